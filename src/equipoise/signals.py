@@ -321,6 +321,12 @@ class Periodic(Brief):
         above = np.flatnonzero(sizes > scale * np.max(sizes))
         return cls(found[..., : (int(above[-1]) if above.size else 0) + 1], turns)
 
+    def amplitude(self, place: int) -> Array:
+        """Complex amplitude (...) of one order by its place; 0 above the last."""
+        if place < self.amplitudes.shape[-1]:
+            return np.asarray(self.amplitudes[..., place])
+        return np.zeros(self.amplitudes.shape[:-1], complex)
+
     @property
     def orders(self) -> Array:
         """Order of each amplitude: events in one turn of the crank."""

@@ -30,7 +30,7 @@ LAWS = ("modified sine", "cycloidal", "3-4-5", "harmonic", "s-curve")
 
 
 def mm(value: float) -> str:
-    return f"{value:.6g} mm"
+    return f"{value:.9g} mm"
 
 
 def deg(angle: float) -> str:
@@ -38,7 +38,7 @@ def deg(angle: float) -> str:
 
 
 def pair(place: complex, unit: str = "mm") -> list[str]:
-    return [f"{place.real:.6g} {unit}", f"{place.imag:.6g} {unit}"]
+    return [f"{place.real:.9g} {unit}", f"{place.imag:.9g} {unit}"]
 
 
 class Growing:
@@ -56,7 +56,8 @@ class Growing:
             "frame": {"A": 0j}, "crank": {"A": 0j, "B": crank}
         }  # fmt: skip
         self.far = {"frame": 0.0, "crank": size}
-        self.document: Document = {"assembly": {}, "sliders": [], "gears": [], "belts": []}
+        self.document: Document = {"assembly": {}, "sliders": [], "gears": [], "belts": [],
+                                   "circular_slots": [], "curved_slots": []}  # fmt: skip
         self.loops = False
 
     # -- where the next joint is -------------------------------------------------------------------
@@ -226,6 +227,41 @@ class Growing:
             self.far[self.link("bar", **{pin: end, name: corner})] = self.far[one]
         self.loops = True
 
+    def bar_in_slot(self) -> None:
+        """A bar whose pin runs in a slot of another body, a circle, an arc or any curve round."""
+        chance, one = self.chance, self.body(moving=True)
+        other = "frame" if chance.random() < 0.6 else self.body()
+        first, middle = self.joint(one), self.joint(other)
+        p, q = self.bodies[one][first], self.bodies[other][middle]
+        apart, far = abs(q - p), 1.2 * (self.far[one] + self.far[other])
+        if not apart or one == other:
+            return
+        radius, sense = (apart + far) * chance.uniform(0.6, 1.2), chance.choice((1, -1))
+        rod = (apart + far) * chance.uniform(1.1, 1.7) - chance.choice((0, 1)) * radius / 2
+        cosine = (apart**2 + rod**2 - radius**2) / (2 * apart * rod)
+        if abs(cosine) >= 1:
+            return
+        pin = p + rect(rod, phase(q - p) + sense * float(np.arccos(cosine)))
+        name = f"R{len(self.bodies)}"
+        bar = self.link("bar", **{first: p, name: pin})
+        self.far[bar], at = far, phase(pin - q)
+        slot: Document = {"link": bar, "point": name, "on": other}
+        if chance.random() < 0.5:
+            wide = chance.uniform(0.3, 3.1)
+            arc = [deg(at - wide), deg(at + wide * chance.uniform(0.3, 1))]
+            slot |= {"center": middle, "radius": mm(radius)} | chance.choice([{}, {"arc": arc}])
+            self.document["circular_slots"].append(slot)
+            self.entry(f"{name} in {other}", "left" if sense > 0 else "right")
+            return
+        slot |= {"origin": middle, "closed": chance.random() < 0.7}
+        count, waves = chance.choice((4, 8, 16, 48)), chance.choice((1, 2, 3))
+        wave, way = chance.uniform(0, 0.2), 2 * pi if slot["closed"] else chance.uniform(2, 6)
+        angles = [way * (k / count - 0.5) for k in range(count)]
+        sizes = [radius * (1 + wave * (1 - np.cos(waves * angle))) for angle in angles]
+        slot["points"] = [pair(rect(r, at + a)) for r, a in zip(sizes, angles, strict=True)]
+        self.document["curved_slots"].append(slot)
+        self.loops = True
+
     def parallel_crank(self) -> None:
         """A four-bar of equal opposite sides on the crank."""
         way = rect(self.size * self.chance.uniform(1.5, 5), self.chance.uniform(-pi, pi))
@@ -243,7 +279,7 @@ class Growing:
         ways: list[Callable[[], None]] = [
             self.two_bars, self.two_bars, self.two_bars, self.rod_and_block, self.rod_and_block,
             self.block_on_arm, self.block_on_arm, self.two_blocks, self.yoke, self.gear, self.gear,
-            self.triad, self.parallel_crank,
+            self.triad, self.parallel_crank, self.bar_in_slot, self.bar_in_slot,
         ]  # fmt: skip
         for _ in range(chance.choice((1, 1, 2, 2, 3, 3, 4, 6))):
             chance.choice(ways)()
@@ -282,6 +318,10 @@ def dress(chance: random.Random, document: Document, wanted: str) -> Files:
     twist = random.Random(len(str(document)))  # of its own, so that other draws stay as they are
     if twist.random() < 0.3:
         _twisted(twist, document)
+    if twist.random() < 0.3 or "friction" in wanted:
+        _rubbing(twist, document)
+    if twist.random() < 0.05:
+        document["units"] = {"length": "in", "force": "lbf", "angle": "rad", "speed": "ft/s"}
     if chance.random() < 0.3 or likely.get("planting"):
         tables |= _planting(chance, document)
     if chance.random() < 0.35 or likely.get("support"):
@@ -442,6 +482,41 @@ def _twisted(chance: random.Random, document: Document) -> None:
     if chance.random() < 0.5:
         point = chance.choice([*document["links"][link]["points"]])
         document["joints"] = [{"joint": f"joints.{point}", "radius": "4 mm"}]
+
+
+def _rubbing(chance: random.Random, document: Document) -> None:
+    """Friction, damping, drag and stiffness of some joints, some of which lock a machine."""
+    holders = [*document["links"].values(), document["frame"]]
+    held = [name for part in holders for name in part["points"]]
+    pins = sorted({name for name in held if held.count(name) > 1})
+    slides = [
+        slider.get("label") or f"{slider['link']} on {slider['on']}"
+        for slider in document.get("sliders", ())
+    ]
+    slots = (*document.get("circular_slots", ()), *document.get("curved_slots", ()))
+    runs = [slot.get("label") or f"{slot['point']} in {slot['on']}" for slot in slots]
+    taken = {joint["joint"] for joint in document.get("joints", ())}
+    for name in chance.sample([*pins, *slides, *runs], chance.randint(0, len(pins + slides))):
+        part: Document = {"joint": f"joints.{name}"}
+        if part["joint"] in taken and chance.random() < 0.95:
+            continue
+        given: Document = {"friction": chance.choice((0.05, 0.1, 0.1, 0.2, 0.7))}
+        if chance.random() < 0.03:  # most machines leave no joint force open
+            given["stiffness"] = f"{10 ** chance.uniform(2, 5):.4g} kN/m"
+        if name in pins:
+            given |= {"torsional_damping": "0.01 N m s/rad", "drag_torque": "0.05 N m"}
+        elif name in slides:
+            given |= {"damping": "3 N s/m", "drag_force": "2 N",
+                      "guide_length": mm(10 ** chance.uniform(1, 2.5))}  # fmt: skip
+        if name not in runs or chance.random() < 0.05:
+            part |= dict(chance.sample([*given.items()], chance.randint(1, len(given))))
+        if "guide_length" in part:
+            part["friction"] = 0.1
+        if name not in slides:
+            part["radius"] = mm(10 ** chance.uniform(0, 1.3))
+        if "friction" in part and chance.random() < 0.4:
+            part |= {"static_friction": 0.3 + part["friction"], "stribeck_speed": "5 mm/s"}
+        document["joints"] = [*document.get("joints", ()), part]
 
 
 def _carried(chance: random.Random, document: Document) -> None:

@@ -22,6 +22,7 @@ from surface.running import (
     command,
     command_lines,
     equipoise,
+    example_text,
     interrupted,
     process,
     refused,
@@ -451,3 +452,16 @@ def test_a_bar_in_a_terminal() -> None:
     assert re.search(r"designs/s, \d.* left", text)
     assert "best so far: vertical" in text
     assert "failed: does not turn fully" in text
+
+
+def test_a_model_that_no_command_computes_is_refused_before_there_is_a_store() -> None:
+    """A compiled loop may be made of it, and fails for every design."""
+    torsion = (
+        '\n[[torsion_springs]]\nlink = "crank"\non = "coupler"\nangles = ["-40 deg", "60 deg"]\n'
+    )
+    torsion += 'torques = ["9 N m", "-20 N m"]\n'
+    Path("model.toml").write_text(example_text("yamashita-1") + torsion, encoding="utf-8")
+    study = LENGTHS.replace('"yamashita-1"', '"model.toml"')
+    Path("study.toml").write_text(study, encoding="utf-8")
+    sentence = refuses("sweep study.toml -o new.zarr", "beyond half a turn")
+    assert sentence.startswith("study.toml: outputs[")

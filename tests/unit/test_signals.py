@@ -420,3 +420,10 @@ def test_signals_in_parts_are_those_of_the_whole(monkeypatch: pytest.MonkeyPatch
     assert signal.values(theta) == pytest.approx(values, abs=1e-12)
     assert np.array_equal(signal.extreme(1)[0], extremes[0])
     assert signal.values(np.empty(0)).shape == (3, 2, 0)
+
+
+def test_orders_above_the_last_are_nothing() -> None:
+    found = Periodic.of(np.cos(3 * np.arange(64) * 2 * pi / 64)[None])
+    assert found.amplitude(3) == pytest.approx(np.ones(1))
+    assert found.amplitudes.shape == (1, 4)
+    np.testing.assert_array_equal(found.amplitude(4), np.zeros(1))

@@ -95,6 +95,7 @@ LOOKS: dict[str, Look] = {
     "several 3": Look(INK, dashes=(6, 1.6, 1.2, 1.6)),
     "several 4": Look(EARTH, dashes=(1.3, 1.1)),
     "several 5": Look(LINES, dashes=(10, 3)),
+    "several 6": Look(POINTS),
     "air": Look(LINES, dashes=(4, 1.6)),
     "soil signal": Look(STRESS),
     # lines and shades
@@ -199,6 +200,8 @@ LOOKS |= {
         ("pick-up", "entry", "lowest", "release", "exit"), ("D", "v", "o", "s", "^"), strict=True
     )
 }
+SEVERAL = sum(role.startswith("several ") for role in LOOKS)
+"""Signals of one quantity that are told apart; further ones look like the first again."""
 LOOKS["quieter"] = Look(FAINT, 0.7, order=2.5)
 
 
@@ -213,6 +216,8 @@ def look_of(role: str, dashed: bool = False) -> Look:
     name, _, size = role.rpartition(" ")
     if name == "meeting":
         return replace(LOOKS[name], size=float(size))
+    if name == "several":
+        role = f"several {(int(size) - 1) % SEVERAL + 1}"
     look = LOOKS[role]
     return replace(look, dashes=MEDIUM) if dashed else look
 

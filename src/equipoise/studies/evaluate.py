@@ -118,6 +118,8 @@ def _quick(study: Study, threads: int | None) -> tuple[Quick, list[int]] | None:
         wanted = {k: f for k, f in figures.items() if can_compute(machine, study.paths, f)}
         masses = {k: f for k, f in figures.items() if can_use(machine, study.paths, [f])}
         chosen = masses if masses and len(masses) >= len(wanted) else wanted
+        if chosen:  # a loop may be made of a machine that no command computes, and fail only then
+            find_outputs(study, [*chosen])
         given = (machine, study.paths, [*chosen.values()], study.angles, study.tolerance)
         if chosen:
             batch = MassBatch(*given) if chosen is masses else Batch(*given, threads)

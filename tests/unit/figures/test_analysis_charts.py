@@ -17,6 +17,8 @@ from equipoise.figures import analysis as view
 from equipoise.figures import forces, planting, points
 from equipoise.figures.pictures import analysis_pictures, planting_pictures
 from equipoise.figures.shared import angle_step
+from equipoise.figures.style import look_of
+from equipoise.mechanism.dynamics.shares import CAUSES
 from equipoise.mechanism.parts.balance import Objective
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.support import Row
@@ -352,3 +354,10 @@ def test_ratios_and_strands_over_the_crank() -> None:
     left, right = (next(iter(signals(p))) for p in charts_of("knife-drive")["belt-crank"].panels)
     assert has([left], belt.left)
     assert has([right], belt.right)
+
+
+def test_every_cause_looks_different_and_further_signals_like_the_first() -> None:
+    """Such as the tips of more planting arms than there are looks."""
+    looks = [look_of(f"several {number}") for number in range(1, len(CAUSES) + 1)]
+    assert all(one not in looks[:k] for k, one in enumerate(looks))
+    assert all(look_of(f"several {number}") in looks for number in range(1, 40))

@@ -14,8 +14,9 @@ from equipoise.codegen.batch import Batch
 from equipoise.codegen.figures import Figure
 from equipoise.codegen.javascript import javascript
 from equipoise.errors import ModelError, UsageError
-from equipoise.mechanism import Machine
+from equipoise.mechanism import Belt, Link, Machine
 from equipoise.mechanism.assembly.linkage import assemble
+from equipoise.mechanism.kinematics.crossing import crossings
 from equipoise.mechanism.parts.circular_slots import CircularSlot
 from equipoise.mechanism.parts.joint_properties import JointProperties
 from equipoise.symbols.pieces import pieces
@@ -223,3 +224,18 @@ def test_the_page_has_its_form_and_moves_it(tmp_path: Path) -> None:
     state(ask(session, "make", do="rename", what="point", name="D", to="M", at=0)[0])
     assert session.shown.design.machine.circular_slots[0].center == "M"
     state(ask(session, "make", do="delete", what="point", name="M", at=0)[0])
+
+
+def test_the_centre_of_a_slot_is_no_axle_that_a_belt_has_to_pass() -> None:
+    """Of a belt on the frame, whose strands run on both sides of it."""
+    wheel = Link({"W": (0.0, 0.0)}, 1.0, (0.0, 0.0), 1e-3)
+    frame = {**MACHINE.frame, "W": (4 * MACHINE.frame["D"][0], 4 * MACHINE.frame["D"][1])}
+    belted = replace(
+        MACHINE,
+        frame=frame,
+        links={**MACHINE.links, "wheel": wheel},
+        belts=(Belt("crank", "wheel", radii=(0.02, 0.02)),),
+    )
+    found = eq.analyze(belted, 90)
+    assert found.forces.joints["C in frame"] is not None
+    assert [*crossings(found.motion.linkage)] == []

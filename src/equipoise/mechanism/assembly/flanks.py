@@ -237,9 +237,11 @@ def contact(builder: Builder, joints: Structure, coupling: Coupling) -> Flank:
     def others() -> Iterator[tuple[str, Any, list[str]]]:
         points = builder.machine.points_of(carrier)
         for pin, bodies in joints.pins.items():
-            if carrier in bodies and pin not in pins:
-                place = planar(points[pin]) - planar(points[pins[0]])
-                yield pin, place, [body for body in bodies if body != carrier]
+            if carrier not in bodies or pin in pins:
+                continue
+            turning = [body for body in bodies if body != carrier and body not in joints.riders]
+            if turning:  # the centre of a slot is no axle
+                yield pin, planar(points[pin]) - planar(points[pins[0]]), turning
 
     where = place_in_file(joints, coupling)
     line = coupling.line(Seat(where, pins, centres, way, others))

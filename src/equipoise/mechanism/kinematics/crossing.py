@@ -38,7 +38,9 @@ def crossings(linkage: Linkage) -> Iterator[Note]:
             if belt.carrier not in bodies or pin in coupling_pins(joints, belt):
                 continue
             for link in bodies:
-                if link in (belt.carrier, FRAME) or machine.links[link].plane not in planes:
+                if link in (belt.carrier, FRAME) or link in joints.riders:
+                    continue
+                if machine.links[link].plane not in planes:
                     continue
                 at = motion.crank_angle[_across(motion, belt, pin, link)]
                 if at.size:

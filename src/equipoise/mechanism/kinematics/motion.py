@@ -111,7 +111,7 @@ class Motion(Displayed):
     def amplitude(self, values: Array, place: int) -> Array:
         """Complex amplitude (...) of values (..., N) at one place of the orders of `periodic`."""
         if self.sampling is None:
-            return np.asarray(Periodic.of(values, self.turns).amplitudes[..., place])
+            return Periodic.of(values, self.turns).amplitude(place)
         return self.sampling.amplitude(values, place)
 
     def at(
