@@ -2,20 +2,14 @@
 
 from __future__ import annotations
 
-import tomllib
 from html.parser import HTMLParser
 from pathlib import Path
-from typing import Any
 
 import pytest
-import tomli_w
 
-from surface.running import equipoise, example_text, succeeded
+from support.hostile import hostile_text
+from surface.running import equipoise, succeeded
 
-HOSTILE = (
-    '"><script>window.x=1</script><img src=x onerror="window.x=1"> \'onload=x\' '
-    "javascript:window.x=1 ]]> </style></svg>&amp;"
-)
 OWN = {"equipoise-machine", "equipoise-states", "equipoise-page"}
 """Scripts of an interactive file."""
 
@@ -46,21 +40,7 @@ class Markup(HTMLParser):
 
 @pytest.fixture
 def hostile() -> None:
-    """A machine whose links, points and texts all are markup."""
-    content = tomllib.loads(example_text("yamashita-1"))
-    named = {"frame": content["frame"], **content["links"]}
-    names = {*content["links"], *(point for part in named.values() for point in part["points"])}
-
-    def changed(value: Any) -> Any:
-        if isinstance(value, dict):
-            return {name(key): changed(one) for key, one in value.items()}
-        return [changed(one) for one in value] if isinstance(value, list) else name(value)
-
-    def name(value: Any) -> Any:
-        return f"{value}{HOSTILE}" if isinstance(value, str) and value in names else value
-
-    text = tomli_w.dumps(changed(content) | {"title": HOSTILE, "description": HOSTILE})
-    Path("model.toml").write_text(text, encoding="utf-8")
+    Path("model.toml").write_text(hostile_text(), encoding="utf-8")
 
 
 @pytest.mark.usefixtures("hostile")
