@@ -20,7 +20,11 @@ from functools import cached_property
 import numpy as np
 
 from equipoise.balancing.jump_bounds import JumpBounds
+from equipoise.balancing.jump_readings import Forms, JumpReadings, linear_forms
+from equipoise.balancing.jumping_rows import JumpingDesigns, JumpingRows, smoothed
+from equipoise.balancing.least_of_forms import Part, least_of_forms
 from equipoise.balancing.multi_row import AREA_SAMPLES, Cost, Term, by_orders
+from equipoise.mechanism.parts.balance import Measure
 from equipoise.signals import AT_ONCE, Array, Periodic
 
 HALVINGS = 48
@@ -44,6 +48,8 @@ class Numbers:
     columns : of each term, what a unit of each number adds to its amplitudes, (K, V, m, C, N).
     low, high, start : (K,) ends of each, and the best known.
     least : of a direction (K,), the least of direction @ numbers over all that is allowed.
+    jumping : of each term, the rows by these numbers as functions of the crank angle, where its
+        extremes jump.
     cuts : directions (K,) with their least.
     """
 
@@ -52,6 +58,7 @@ class Numbers:
     high: Array
     start: Array
     least: Callable[[Array], float]
+    jumping: tuple[JumpingDesigns | None, ...] = ()
     cuts: list[tuple[Array, float]] = field(default_factory=list)
 
     @classmethod
@@ -60,6 +67,10 @@ class Numbers:
         nothing = np.zeros(0)
         columns = tuple(term.signals.amplitudes[None][:0] for term in cost.measured)
         return cls(columns, nothing, nothing, nothing, lambda _: 0.0)
+
+    def of_terms(self, count: int) -> Numbers:
+        """What the same numbers do to the first terms."""
+        return replace(self, columns=self.columns[:count], jumping=self.jumping[:count])
 
     def cut(self, slope: Array) -> None:
         """Learn how far the numbers can go against a slope (K,)."""
@@ -108,23 +119,33 @@ class Bounder:
     prices : what the cost falls by for as much more of each limit as it is; any bound what is
         allowed, as long as none is negative, and the right ones do it best.
     jumps : of each term and limit whose extremes jump, what bounds it where phases alone are free.
+    designs : of the same, what reads it where numbers are free too.
     """
 
     cost: Cost
     numbers: Numbers
     prices: tuple[float, ...]
-    jumps: Mapping[int, JumpBounds] = field(default_factory=dict)
+    jumps: Mapping[int, JumpBounds | JumpReadings] = field(default_factory=dict)
+    designs: Mapping[int, JumpReadings] = field(default_factory=dict)
 
     @classmethod
     def of(cls, cost: Cost, numbers: Numbers | None, prices: tuple[float, ...]) -> Bounder:
         """For a cost whose terms may jump: read smoothed, and by the pieces between jumps."""
-        if numbers is not None:
-            return cls(cost, numbers, prices)
-        jumps, smoothed = {}, cost.smoothed
-        for place, term in enumerate(cost.measured):
-            if (rows := term.jumping) is not None and not rows.is_vector:
-                jumps[place] = JumpBounds(rows, term.measure)
-        return cls(smoothed, Numbers.none(smoothed), prices, jumps)
+        if numbers is None:
+            jumps = {
+                place: _by_pieces_of(rows, term.measure)
+                for place, term in enumerate(cost.measured)
+                if (rows := term.jumping) is not None
+            }
+            return cls(cost.smoothed, Numbers.none(cost.smoothed), prices, jumps)
+        designs, columns = {}, list(numbers.columns)
+        pairs = zip(cost.measured, numbers.jumping, strict=False)
+        for place, (term, by_number) in enumerate(pairs):
+            if term.jumping is not None and by_number is not None:
+                designs[place] = JumpReadings(by_number, term.measure)
+                columns[place] = smoothed(columns[place], term.signals.turns)
+        numbers = replace(numbers, columns=tuple(columns))
+        return cls(cost.smoothed, numbers, prices, designs=designs)
 
     @property
     def most_at_once(self) -> int:
@@ -148,6 +169,8 @@ class Bounder:
             np.einsum("jvkcn,bkn->bjvcn", each, turning[..., : each.shape[-1]], optimize=True)
             for each in self._amplitudes
         ]
+        if self.designs:
+            return self._by_forms(boxes, totals, turning)
         for _ in range(2):
             boxes, pushed = self._near_best(boxes, totals)
         readings = [self._reading(*each, boxes) for each in self._each(totals)]
@@ -196,6 +219,61 @@ class Bounder:
         widest = np.where(by_pieces, np.maximum(np.argmax(drops, axis=1), 1), boxes.widest)
         bounds = np.maximum(apart, boxes.bounds)
         return replace(boxes, bounds=bounds, widest=widest), self.cost.of(middles)
+
+    def _by_forms(
+        self, boxes: Boxes, totals: list[Array], turning: Array
+    ) -> tuple[Boxes, Array, Array]:
+        """The same where numbers are free and terms jump: readings at many crank angles at once,
+        of which a linear program tells how small the largest can be.
+        """
+        halves, losses = self.half / 2.0**boxes.halvings, np.zeros(boxes.middles.shape)
+        values, here, parts, terms = [], [], [], len(self.cost.terms)
+        for place, (term, total, amplitudes) in enumerate(self._each(totals)):
+            value, reading = self._reading(term, total, amplitudes, boxes)
+            form, bends = self._form(boxes, reading * turning[:, None])
+            groups: tuple[Forms, ...] = (form,)
+            lost = bends
+            if (jump := self.designs.get(place)) is not None and jump.possible:
+                ends = boxes.numbers, boxes.low, boxes.high
+                read = jump.readings(boxes.middles, halves, *ends)
+                groups, lost = read.groups, read.losses
+                value = np.maximum(value, read.values)
+                if len(groups) == 1:
+                    groups = (groups[0].with_more(form),)
+            values.append(value)
+            here.append(sum(np.max(one.at(boxes.numbers), axis=1) for one in groups))
+            parts.append(Part(groups, np.full(len(value), 1.0 / term.scale), place >= terms))
+            losses += lost / term.scale
+        shares = self._shares(self.cost.factors[:, None] * values[:terms])
+        for place, share in enumerate(shares):
+            parts[place] = replace(parts[place], factors=share * self.cost.factors[place])
+        ends = boxes.low, boxes.high, boxes.numbers
+        found = least_of_forms(parts, *ends, *self.numbers.directions, SMALL)
+        bounds, cost = np.maximum(found.bounds, boxes.bounds), self.cost.of(values)
+        # what the phases' sides lose at these numbers, and what the numbers' sides lose beyond it
+        above, beyond = cost - self.cost.of(here), self.cost.of(here) - bounds
+        widest = np.argmax(losses + TINY * halves * (np.arange(self.cost.rows) > 0), axis=1)
+        by_number = self.cost.rows + np.argmax(
+            np.abs(found.slopes) * (boxes.high - boxes.low), axis=1
+        )
+        of_phases = (above >= beyond) | (len(self.numbers.low) == 0)
+        boxes = replace(boxes, numbers=found.numbers, bounds=bounds)
+        return replace(boxes, widest=np.where(of_phases, widest, by_number)), cost, found.slopes
+
+    def _form(self, boxes: Boxes, turned: Array) -> tuple[Forms, Array]:
+        """A reading, turned to the middles (B, 1 + K, m, N), as a form over boxes (B,); and how far
+        the sides of each row let it fall (B, m).
+        """
+        along = np.swapaxes((np.swapaxes(turned, 1, 2) @ self._points[boxes.halvings]).real, 1, 2)
+        spacing = 2 * self.half / 2.0**boxes.halvings / (POINTS - 1)
+        bend = np.abs(turned) @ self._orders**2 * spacing[:, None] ** 2 / 8
+        least, most = np.min(along, axis=3) - bend, np.max(along, axis=3) + bend
+        middle = along[..., POINTS // 2]
+        least[..., 0] = most[..., 0] = middle[..., 0]  # row 1 is not moved
+        whole = _with_one(boxes.numbers)[..., None]
+        drops = np.sum(whole * middle - np.minimum(whole * least, whole * most), axis=1)
+        least, most = (np.sum(one, axis=2)[:, None] for one in (least, most))
+        return linear_forms(least, most, boxes.low, boxes.high), drops
 
     def _each(self, totals: list[Array]) -> list[tuple[Term, Array, Array]]:
         return list(zip(self.cost.measured, totals, self._amplitudes, strict=True))
@@ -332,6 +410,13 @@ class Bounder:
         prices = np.array([price / term.scale for price, term in pairs]).reshape(-1, 1)
         whole = np.vstack([factors, np.repeat(prices, len(x), axis=1)]) / sizes
         return np.asarray(np.einsum("tb,tbij->bij", whole, np.array(grams)))
+
+
+def _by_pieces_of(rows: JumpingRows, measure: Measure) -> JumpBounds | JumpReadings:
+    """What bounds extremes of rows over boxes of phases."""
+    if rows.is_vector:
+        return JumpReadings(JumpingDesigns((rows,)), measure)
+    return JumpBounds(rows, measure)
 
 
 def _with_one(numbers: Array) -> Array:

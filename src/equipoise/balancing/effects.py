@@ -149,6 +149,12 @@ class Effects:
         """The same at another speed, rad/s."""
         return Effects(self.machine, self.parts, self.motion.at(speed))
 
+    def at_angles(self, crank_angle: Array) -> Effects:
+        """The same at other crank angles (N,), rad, of one cycle or not."""
+        motion = self.motion
+        moved = move(self.machine, crank_angle, motion.speed, motion.acceleration)
+        return Effects(self.machine, self.parts, moved, self.like)
+
     def of_row(self, phase: float) -> Effects:
         """Of a linkage ahead by a phase, rad, at the same crank angles of the first one."""
         motion = self.motion
@@ -255,7 +261,9 @@ class Effects:
         """A run whose gears are in contact on the flanks that count."""
         if self.like is None or not self.machine.couplings:
             return self.start.solved
-        theta = ANGLES if self.motion.sampling is None else self.motion.crank_angle
+        motion = self.motion
+        equally = motion.whole_cycle and motion.sampling is None
+        theta = ANGLES if equally else motion.crank_angle
         like = forces(move(self.like, theta, acceleration=0.0).at(self.motion.speed))
         return replace(like, rubs=False).solved
 

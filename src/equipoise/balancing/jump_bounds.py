@@ -111,21 +111,7 @@ class JumpBounds:
 
     @cached_property
     def _windows(self) -> tuple[Array, Array]:
-        """Least and largest values (levels, m, N + 1, N) of each row: at [l, k, j, n] over 2^l bins
-        from bin j + n.
-        """
-        edges = np.arange(self._bins + 1) * (self.rows.period / self._bins)
-        ends = np.broadcast_arrays(edges[:-1] - SLACK, edges[1:] + SLACK)
-        each = [
-            self.pieces.extremes(np.full(self._bins, k), *ends)
-            for k in range(len(self.rows.curves))
-        ]
-        return tuple(
-            np.lib.stride_tricks.sliding_window_view(
-                _doubled(np.array([one[which] for one in each]), pick), self._bins, axis=2
-            )
-            for which, pick in enumerate((np.minimum, np.maximum))
-        )  # type: ignore[return-value]
+        return self.pieces.windows(self._bins)
 
     @cached_property
     def pieces(self) -> Pieces:
@@ -254,6 +240,20 @@ class Pieces:
         up, down = ((3 * a * u + 2 * b) * u + c for u in (begin, end))
         third = (end - begin) / 3
         return np.array([first, first + third * up, last - third * down, last])
+
+    def windows(self, bins: int) -> tuple[Array, Array]:
+        """Least and largest values (levels, m, N + 1, N) of each row: at [l, k, j, n] over 2^l of N
+        bins of the cycle from bin j + n.
+        """
+        edges = np.arange(bins + 1) * (self.period / bins)
+        ends = np.broadcast_arrays(edges[:-1] - SLACK, edges[1:] + SLACK)
+        each = [self.extremes(np.full(bins, k), *ends) for k in range(len(self.cubics))]
+        return tuple(
+            np.lib.stride_tricks.sliding_window_view(
+                _doubled(np.array([one[which] for one in each]), pick), bins, axis=2
+            )
+            for which, pick in enumerate((np.minimum, np.maximum))
+        )  # type: ignore[return-value]
 
     def extremes(self, row: Array, low: Array, high: Array) -> tuple[Array, Array]:
         """Values (...) between which rows (...) lie from crank angles to others (...), rad."""

@@ -7,8 +7,8 @@ between these, or on one side of one of them, at theta = jump - phi_k; both are 
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from math import ceil, pi
 from typing import Any
 
@@ -153,6 +153,7 @@ class JumpingRows:
         spacing = self.period / count
         grid = np.broadcast_to(np.arange(count) * spacing, (len(phases), count))
         values = self._sum(phases, grid, sign)
+        self._skip_jumps(phases, values)
         best, least = np.max(values, axis=1), np.min(values, axis=1)
         top = values >= (best - near * (best - least))[:, None]
         top &= (values >= np.roll(values, 1, axis=1)) & (values >= np.roll(values, -1, axis=1))
@@ -166,9 +167,35 @@ class JumpingRows:
             way = np.divide(before - after, 2 * bend, out=np.zeros_like(bend), where=bend < 0)
             moved = theta + width * np.clip(way, -1.0, 1.0)
             found = self._sum(phases[owner], moved[:, None], sign)[:, 0]
+            found = np.where(self._at_jump(phases[owner], moved), -np.inf, found)
             theta = np.where(found > reached, moved, theta)
             reached = np.maximum(found, reached)
         return owner, theta, reached
+
+    def _skip_jumps(self, phases: Array, values: Array) -> None:
+        """Give samples (B, N) that lie within a jump the lower of the values beside them.
+
+        Jumps of two rows may coincide, of which rounding would take the one before the other.
+        """
+        count = values.shape[1]
+        spacing = self.period / count
+        at = (self.jumps - phases[..., None]).reshape(len(phases), -1)
+        place = np.round(at / spacing).astype(int)
+        owner, which = np.nonzero(np.abs(place * spacing - at) < self._within)
+        place = place[owner, which]
+        sides = [values[owner, (place + way) % count] for way in (-1, 1)]
+        values[owner, place % count] = np.minimum(*sides)
+
+    def _at_jump(self, phases: Array, theta: Array) -> Array:
+        """Whether crank angles (T,) lie within a jump of some row at phases (T, m)."""
+        at = (self.jumps - phases[..., None]).reshape(len(phases), -1)
+        away = np.mod(theta[:, None] - at + self.period / 2, self.period) - self.period / 2
+        return np.asarray(np.any(np.abs(away) < self._within, axis=1))
+
+    @property
+    def _within(self) -> float:
+        """rad, from a jump, where no side of it is."""
+        return BESIDE * self.turns / 2
 
     # -- followed while phases change --------------------------------------------------------------
 
@@ -197,6 +224,47 @@ class JumpingRows:
         carried = np.flatnonzero(row >= 0)
         by_phase[carried, row[carried]] -= np.sum(by_phase[carried], axis=1)
         return size if self.is_vector else sign * total[:, 0], by_phase
+
+
+@dataclass(frozen=True, eq=False)
+class JumpingDesigns:
+    """Rows whose signals jump and are linear in K numbers, such as masses.
+
+    each : of the machine without these numbers, and of a unit of each of them, 1 + K.
+    """
+
+    each: tuple[JumpingRows, ...]
+
+    @classmethod
+    def of(
+        cls, read: Callable[[Array], Array], jumps: Array, turns: int, bends: Array
+    ) -> JumpingDesigns:
+        """From what gives values (1 + K, m, C, N) of all rows at crank angles (N,), rad."""
+
+        def flat(theta: Array) -> Array:
+            values = read(theta)
+            return values.reshape(-1, *values.shape[2:])
+
+        count = read(np.zeros(1)).shape[1]
+        whole = JumpingRows.of(flat, jumps, turns, bends)
+        places = range(0, len(whole.curves), count)
+        return cls(tuple(replace(whole, curves=whole.curves[k : k + count]) for k in places))
+
+    def of_numbers(self, places: Sequence[int]) -> JumpingDesigns:
+        """The same with some of the K numbers only."""
+        return JumpingDesigns((self.each[0], *(self.each[1 + k] for k in places)))
+
+    def at(self, numbers: Array) -> JumpingRows:
+        """The rows with numbers (K,)."""
+        from scipy.interpolate import PPoly
+
+        start, curves = self.each[0], []
+        for row, (curve, _) in enumerate(start.curves):
+            pairs = zip(numbers.tolist(), self.each[1:], strict=True)
+            cubics = curve.c + sum(number * one.curves[row][0].c for number, one in pairs)
+            whole = PPoly(cubics, curve.x, extrapolate="periodic")
+            curves.append((whole, whole.derivative()))
+        return replace(start, curves=tuple(curves))
 
 
 def smoothed(amplitudes: Array, turns: int) -> Array:

@@ -241,14 +241,12 @@ def balance_rows(machine: Machine, plan: Balance, progress: Progress | None = No
     if solution is None:
         return found
     changed = result_of(machine, plan, solution)
+    after = replace(search, machine=changed.machine)
     return replace(
         changed,
         changes=(*changed.changes, *found.changes),
         objectives={
-            one.objective.name: (
-                one.value_at(search.present),
-                changed.objectives[one.objective.name][1],
-            )
+            one.objective.name: (one.value_at(search.present), after.value_of(one.objective))
             for one in search.cost.terms
         },
         bound=min(phasing.bound, changed.cost),

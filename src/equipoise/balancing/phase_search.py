@@ -120,6 +120,10 @@ class PhaseSearch:
         before = float(term.values(self.present))
         return replace(term, scale=term.single if self.vanishes(term) else before)
 
+    def value_of(self, objective: Objective) -> float:
+        """Value of an objective with the phases of the machine as it is."""
+        return Term(objective, self.rows.signals(objective)).value_at(self.present)
+
     def _limit(self, limit: Limit) -> Term:
         term = Term(limit.objective, self.rows.signals(limit.objective, "limits"))
         before = float(term.values(self.present))

@@ -18,6 +18,7 @@ from equipoise.balancing.balanced import proved_of
 from equipoise.balancing.box_bounds import Numbers
 from equipoise.balancing.branch_and_bound import finite
 from equipoise.balancing.effects import Effects
+from equipoise.balancing.jumping_rows import JumpingDesigns
 from equipoise.balancing.multi_row import Cost, RowSignals, Term
 from equipoise.balancing.objectives import Near, of_rows_alone, read, reading_of
 from equipoise.balancing.phase_bound import Proof, prove
@@ -30,6 +31,7 @@ from equipoise.balancing.program import NoSolutionError, Program
 from equipoise.balancing.solution import Solution, solve_problem
 from equipoise.errors import UsageError
 from equipoise.i18n import Note
+from equipoise.mechanism.kinematics.jumps import bends_of, jumps_of
 from equipoise.mechanism.parts.balance import Objective
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.objectives import GAUGES, WITHIN
@@ -41,9 +43,9 @@ BEGINNINGS, FEW, GUESSES, FIRST_ROUNDS, ROUNDS, TRIES = 6, 3, 24, 3, 12, 12
 """Phases from which masses and phases are balanced in turn; where that takes long; at random, where
 limits can be kept from none of these; turns of each, and of the best; how often they are again,
 where a box looks better."""
-GAIN, NO_GAIN, ROUNDING = 1e-4, 1e-8, 1e-9
+GAIN, NO_GAIN, ROUNDING, WITHIN_LIMIT = 1e-4, 1e-8, 1e-9, 1e-6
 """Share of the cost before by which a turn must gain, and one of the best; of what a program's
-bound may miss."""
+bound may miss; of a limit, by which it counts as kept."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,7 +137,7 @@ class Together:
         if found.complete or not start.limits:
             return found
         # Without limits more rows may be alike, which leaves fewer boxes.
-        free, numbers = replace(start, limits=()), replace(numbers, columns=numbers.columns[:count])
+        free, numbers = replace(start, limits=()), numbers.of_terms(count)
         other = prove(free, found.phases, _no_better, numbers, self.best.cost, CLOSE)
         return other if other.bound > found.bound else found
 
@@ -201,8 +203,11 @@ class Together:
         cost = self._cost(solution)
         value = float(cost.values(phases))
         if self.best is None or value < self.best.cost:
-            if any(term.value_at(phases) > term.scale * (1 + 1e-6) for term in cost.limits):
+            if any(term.value_at(phases) > term.scale * (1 + WITHIN_LIMIT) for term in cost.limits):
                 return inf
+            # by how little a limit may be passed counts for the search, not for the proof
+            value = float(replace(cost, limits=()).values(phases))
+        if self.best is None or value < self.best.cost:
             self.best = Found(value, phases % self.period, solution)
         return value
 
@@ -225,6 +230,11 @@ class Together:
         if not self._bent:
             return self._of_any
         return [of_each_row(self.problem.effects, one, Near(near)) for one in self._measured]
+
+    @cached_property
+    def _jumping(self) -> list[JumpingDesigns | None]:
+        """Of each: the rows as functions of the crank angle, where forces jump."""
+        return [jumping_designs(self.problem.effects, one) for one in self._measured]
 
     @property
     def _bent(self) -> bool:
@@ -252,9 +262,11 @@ class Together:
         """The cost as a function of phases, for a share of the numbers of a solution."""
         terms, numbers = [], share * np.concatenate(solution.numbers)
         near = self._amplitudes(solution.machine)
-        for one, scale, each in zip(self._measured, self._scales, near, strict=True):
+        each_term = zip(self._measured, self._scales, near, self._jumping, strict=True)
+        for one, scale, each, designs in each_term:
             whole = each[0] + np.tensordot(numbers, each[1:], 1)
-            terms.append(Term(one, RowSignals(whole, self.turns), scale))
+            jumping = None if designs is None else designs.at(numbers)
+            terms.append(Term(one, RowSignals(whole, self.turns, jumping), scale))
         count = len(self.problem.plan.objectives)
         return Cost(tuple(terms[:count]), self.problem.plan.combine, tuple(terms[count:]))
 
@@ -291,7 +303,8 @@ class Together:
         low, high = np.array([least(e) for e in ends]), -np.array([least(-e) for e in ends])
         start = np.clip(np.concatenate(self.best.solution.numbers)[used], low, high)
         columns = tuple(each[1:][used] for each in amplitudes)
-        return Numbers(columns, low, high, start, least)
+        jumping = tuple(each and each.of_numbers(used.tolist()) for each in self._jumping)
+        return Numbers(columns, low, high, start, least, jumping)
 
 
 def _no_better(phases: Array, _: float) -> tuple[Array, float]:
@@ -304,6 +317,24 @@ def _counting_alike(problem: Problem, search: PhaseSearch) -> Problem:
     terms = {one.objective.name: one.scale for one in search.cost.terms}
     limits = {one.objective.name: one.value_at(search.present) for one in search.cost.limits}
     return replace(problem, counts={**problem.before, **limits, **terms})
+
+
+def jumping_designs(effects: Effects, objective: Objective) -> JumpingDesigns | None:
+    """What an objective reads of every row in phase 0, by the free numbers, as functions of the
+    crank angle; None where nothing jumps, or some orders or a gauge count, of which nothing does.
+    """
+    jumps = jumps_of(effects.motion.linkage)
+    if not len(jumps) or objective.orders or objective.output.startswith(GAUGES):
+        return None
+
+    def at(theta: Array) -> Array:
+        rows = of_rows_alone(effects.at_angles(theta), objective.output, objective.about)
+        values = np.array([np.vstack([row.start, row.columns]) for row in rows])
+        parts = [values.real, values.imag] if np.iscomplexobj(values) else [values]
+        return np.moveaxis(np.stack(parts, axis=2), 1, 0)
+
+    turns = effects.motion.turns
+    return JumpingDesigns.of(at, jumps, turns, bends_of(effects.machine, turns))
 
 
 def of_each_row(effects: Effects, objective: Objective, near: Near) -> Array:
