@@ -49,6 +49,13 @@ def picture_in(html: str) -> str:
     return base64.b64decode(data).decode()
 
 
+def test_a_machine_without_a_crank_has_cycles_in_its_line() -> None:
+    machine = eq.load("hydraulic-loader")
+    for value in (machine, eq.move(machine, 90)):
+        assert "6.000 cycles a minute" in repr(value)
+        assert "rpm" not in repr(value) and "crank" not in repr(value)
+
+
 @pytest.mark.parametrize("angles", [24, [0.0, 0.3]])
 def test_a_notebook_draws_a_machine_and_its_motion_and_tabulates_forces(angles: Any) -> None:
     motion = eq.move(FOUR_BAR, angles)

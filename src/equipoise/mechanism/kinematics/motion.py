@@ -67,8 +67,9 @@ class Motion(Displayed):
     @property
     def caption(self) -> str:
         """Of which machine, at how many crank angles, how fast."""
-        count, speed = len(self.crank_angle), told(self.speed, "angular speed", "rpm")
-        return f"of {str(self.machine.title)!r} at {count} crank angles, {speed}"
+        count, machine = len(self.crank_angle), self.machine
+        where = "crank angles" if machine.crank_turns else "places of the cycle"
+        return f"of {str(machine.title)!r} at {count} {where}, {machine.spoken_rate(self.speed)}"
 
     @property
     def turns(self) -> int:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from math import lcm
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from equipoise.displays import Displayed
@@ -76,7 +77,7 @@ from equipoise.mechanism.parts.springs import Spring
 from equipoise.mechanism.parts.support import Row, Support
 from equipoise.mechanism.parts.torsion_springs import TorsionSpring
 from equipoise.mechanism.parts.whole import problems_of
-from equipoise.quantities import told
+from equipoise.quantities import display
 
 if TYPE_CHECKING:
     from equipoise.mechanism.parts.balance import Balance
@@ -212,8 +213,15 @@ class Machine(Driven, Displayed, Frozen):
         """Title and drive, for a line."""
         count = len(self.links)
         links = f"{count} moving link{'s' * (count != 1)}"
-        speed = told(self.drive.speed, "angular speed", "rpm")
-        return f"{str(self.title)!r}, {links}, {self.drive.link} at {speed}"
+        rate = self.spoken_rate(self.drive.speed)
+        return f"{str(self.title)!r}, {links}, {self.drive.link} at {rate}"
+
+    def spoken_rate(self, speed: float) -> str:
+        """A speed of the crank, rad/s, or the cycles in a minute of what no crank drives."""
+        turns = 1 if self.crank_turns else lcm(*(one.turns for one in self.driven))
+        rate = display("angular speed", [speed / turns], "rpm")
+        text = rate.text(speed / turns)
+        return rate.with_unit(text) if self.crank_turns else f"{text} cycles a minute"
 
     @property
     def bodies(self) -> Bodies:
