@@ -268,7 +268,7 @@ class JumpReadings:
         for row, functions in enumerate(self._functions):
             for (j, c), function in np.ndenumerate(functions):
                 total[..., c] += shares[:, j, None, None] * window[function, middle[..., row]]
-        return total / np.maximum(np.linalg.norm(total, axis=3, keepdims=True), TINY)
+        return np.asarray(total / np.maximum(np.linalg.norm(total, axis=3, keepdims=True), TINY))
 
     # -- readings there ----------------------------------------------------------------------------
 
@@ -284,7 +284,7 @@ class JumpReadings:
         """Value (B, A) of the sum in the middles of boxes; of a vector its size."""
         values, _, _ = self._values(leader, angles, ahead)
         total = np.einsum("bamjc,bj->bac", values, shares)
-        return np.linalg.norm(total, axis=2) if self._is_vector else total[..., 0]
+        return np.asarray(np.linalg.norm(total, axis=2) if self._is_vector else total[..., 0])
 
     def _read(
         self,

@@ -105,53 +105,62 @@ def _solved(
     from scipy import sparse
     from scipy.optimize import linprog
 
-    boxes, count = low.shape
-    width = np.maximum(high - low, TINY)
-    groups = [(part, forms) for part in parts for forms in part.groups]
-    limits = [part for part in parts if part.is_limit]
-    columns = count + len(groups) + len(limits)
-    cost, blocks, right = np.zeros((boxes, columns)), [], []
-
-    def rows_of(size: int) -> Array:
-        return np.zeros((boxes, size, columns))
-
-    for place, (part, forms) in enumerate(groups, count):
-        factors = part.factors[:, None]
-        block = rows_of(forms.constants.shape[1])
-        block[..., :count] = factors[..., None] * forms.slopes * width[:, None]
-        block[..., place] = -1.0
-        blocks.append(block)
-        right.append(-factors * forms.at(low))
-        cost[:, place] = 0.0 if part.is_limit else 1.0
-    for k, part in enumerate(limits):
-        block = rows_of(1)
-        for place, (other, _) in enumerate(groups, count):
-            block[..., place] = 1.0 if other is part else 0.0
-        block[..., count + len(groups) + k] = -1.0
-        blocks.append(block)
-        right.append(np.full((boxes, 1), 1 + slack))
-    cost[:, count + len(groups) :] = PENALTY
-    block = rows_of(len(least))
-    block[..., :count] = -directions * width[:, None]
-    blocks.append(block)
-    right.append(low @ directions.T - least)
-
+    (boxes, count), width = low.shape, np.maximum(high - low, TINY)
+    groups = sum(len(part.groups) for part in parts)
+    limits = sum(part.is_limit for part in parts)
+    blocks, right = _rows(parts, low, width, directions, least, slack)
     matrix = np.concatenate(blocks, axis=1)
-    bounds = np.full((boxes, columns, 2), (-np.inf, np.inf))
-    bounds[:, :count] = (0.0, 1.0)
-    bounds[:, count + len(groups) :, 0] = 0.0
+    cost = np.zeros((boxes, count + groups + limits))
+    of_terms = [not part.is_limit for part in parts for _ in part.groups]
+    cost[:, count : count + groups] = of_terms
+    cost[:, count + groups :] = PENALTY
+    ends = np.full((*cost.shape, 2), (-np.inf, np.inf))
+    ends[:, :count] = (0.0, 1.0)
+    ends[:, count + groups :, 0] = 0.0
     found = linprog(
         cost.ravel(),
-        sparse.block_diag(matrix, format="csr") if boxes > 1 else matrix[0],
+        sparse.block_diag(matrix, format="csr"),
         np.concatenate(right, axis=1).ravel(),
-        bounds=bounds.reshape(-1, 2),
+        bounds=ends.reshape(-1, 2),
         method="highs",
     )
     if found.x is None or found.ineqlin.marginals is None:
         return None
     numbers = low + width * np.clip(found.x.reshape(boxes, -1)[:, :count], 0.0, 1.0)
-    prices = -found.ineqlin.marginals.reshape(boxes, -1)
-    ends = np.cumsum([one.shape[1] for one in blocks])[:-1]
-    each = np.split(np.maximum(prices, 0.0), ends, axis=1)
-    weights, of_limits = each[: len(groups)], each[len(groups) : -1]
-    return numbers, [one[:, 0] for one in of_limits], weights, each[-1]
+    prices = np.maximum(-found.ineqlin.marginals.reshape(boxes, -1), 0.0)
+    each = np.split(prices, np.cumsum([one.shape[1] for one in blocks])[:-1], axis=1)
+    return numbers, [one[:, 0] for one in each[groups:-1]], each[:groups], each[-1]
+
+
+def _rows(
+    parts: Sequence[Part],
+    low: Array,
+    width: Array,
+    directions: Array,
+    least: Array,
+    slack: float,
+) -> tuple[list[Array], list[Array]]:
+    """Rows (B, R, columns) of the program and what they are at most (B, R): those of the forms of
+    each group, of the limits, and of the directions.
+    """
+    boxes, count = low.shape
+    groups = [(part, forms) for part in parts for forms in part.groups]
+    limits = [part for part in parts if part.is_limit]
+    columns = count + len(groups) + len(limits)
+    blocks, right = [], []
+    for place, (part, forms) in enumerate(groups, count):
+        factors = part.factors[:, None]
+        block = np.zeros((*forms.constants.shape, columns))
+        block[..., :count] = factors[..., None] * forms.slopes * width[:, None]
+        block[..., place] = -1.0
+        blocks.append(block)
+        right.append(-factors * forms.at(low))
+    for k, part in enumerate(limits, count + len(groups)):
+        block = np.zeros((boxes, 1, columns))
+        block[..., count : count + len(groups)] = [other is part for other, _ in groups]
+        block[..., k] = -1.0
+        blocks.append(block)
+        right.append(np.full((boxes, 1), 1 + slack))
+    block = np.zeros((boxes, len(least), columns))
+    block[..., :count] = -directions * width[:, None]
+    return [*blocks, block], [*right, low @ directions.T - least]
