@@ -29,7 +29,7 @@ from equipoise.mechanism.kinematics.swinging import middle_angle, solve_swinging
 from equipoise.mechanism.parts.element_kinds import Element
 from equipoise.mechanism.parts.joint_kinds import joint_kinds
 from equipoise.mechanism.parts.machine import FRAME, Drive, FurtherDrive, Machine, Slider
-from equipoise.quantities import HUGE, Dimension, in_si, told
+from equipoise.quantities import HUGE, Dimension, in_si
 from equipoise.signals import Figures, JumpSampling, Periodic, first_below
 
 MOST_ANGLES = 400_000
