@@ -5,6 +5,7 @@ import { h } from "./dom";
 import type { Field, State } from "./protocol";
 import { breakable } from "./format";
 import type { Locks } from "./locks";
+import { keyPath } from "./paths";
 import { Row } from "./row";
 import { say } from "./words";
 
@@ -47,7 +48,7 @@ export class Inspector {
   choose(group: string | null, point: string | null): void {
     for (const [name, details] of this.groups) details.classList.toggle("chosen", name === group);
     for (const [path, row] of this.rows) {
-      row.root.classList.toggle("chosen", !!point && path.includes(`.points.${point}.`));
+      row.root.classList.toggle("chosen", !!point && path.includes(`.${keyPath("points", point)}.`));
     }
     const found = group === null ? undefined : this.groups.get(group);
     if (!found) return;

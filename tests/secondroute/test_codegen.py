@@ -104,7 +104,7 @@ def test_joints_that_hold_too_much(kind: str, numpy_engine: None) -> None:
     for row, got in zip(values, figures, strict=True):
         given = base
         for path, value in zip(paths, row, strict=True):
-            given = given.with_number(tuple(path.split(".")), float(value))
+            given = given.with_number(path, float(value))
         summary = eq.analyze(given, ANGLES).summary
         np.testing.assert_allclose(got, [summary[f.signal].rms for f in wanted], rtol=1e-10)
     joint = next(iter(eq.analyze(base, 8).forces.joints))
@@ -164,7 +164,7 @@ def test_masses_in_planes_of_their_own(numpy_engine: None) -> None:
     figures, reasons = Batch(base, [path], wanted, angles=ANGLES)(masses)
     assert not reasons.any()
     for (mass,), got in zip(masses, figures, strict=True):
-        heavier = base.with_number(("links", link, "bodies", "2", "mass"), float(mass))
+        heavier = base.with_number(f"links.{link}.bodies[2].mass", float(mass))
         summary = eq.analyze(heavier, ANGLES).summary
         for value, figure in zip(got, wanted, strict=True):
             assert value == pytest.approx(getattr(summary[figure.signal], figure.name), rel=1e-10)

@@ -15,6 +15,7 @@ import numpy as np
 
 import equipoise as eq
 from equipoise.errors import ChangePointError, ModelError, MotionError, RangeError
+from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.parts.gear_shapes import GearShape
 from equipoise.mechanism.parts.machine import Machine
@@ -225,11 +226,16 @@ def _places(machine: Machine, share: float, polar: bool) -> Iterator[Number]:
     ]
     for link, body in machine.links.items():
         pairs += [
-            (f"links.{link}.points.{name}", ("links", link, "points", name), reach)
+            (
+                str(KeyPath(("links", link, "points", name))),
+                ("links", link, "points", name),
+                reach,
+            )
             for name in body.points
         ]
         if body.center_of_mass is not None:
-            pairs.append((f"links.{link}.center_of_mass", ("links", link, "center"), 30 * reach))
+            path = str(KeyPath(("links", link, "center_of_mass")))
+            pairs.append((path, ("links", link, "center"), 30 * reach))
     pairs.append(("gravity", ("gravity",), hypot(*machine.gravity) or 1.0))
     for path, keys, spread in pairs:
         place = _at(plain_of(machine), keys)
@@ -272,7 +278,7 @@ def _of_links(machine: Machine) -> Iterator[Number]:
             value = getattr(link, key)
             if value is not None:
                 put = _putter("links", name, key)
-                yield Number(f"links.{name}.{key}", value, put, _times(value))
+                yield Number(str(KeyPath(("links", name, key))), value, put, _times(value))
 
 
 def _across(machine: Machine) -> Iterator[Number]:
@@ -280,7 +286,7 @@ def _across(machine: Machine) -> Iterator[Number]:
     for name, link in machine.links.items():
         ways = {("plane",): link.plane, **{("planes", k): z for k, z in link.planes.items()}}
         for keys, z in ways.items():
-            path = ".".join(("links", name, *keys))
+            path = str(KeyPath(("links", name, *keys)))
             yield Number(path, z, _putter("links", name, *keys), _near(z, spread))
     for name, one in machine.bearings.items():
         put = _putter("bearings", name, "plane")

@@ -112,7 +112,7 @@ def on_the_page(machine: Machine, table: str, keys: Sequence[str], numbers: Sequ
     found = fields_of(Design("mine", machine))
     for number in numbers:
         value = getattr(getattr(machine, table)[0], number)
-        assert found[f"{table}.1.{number}"].value == value
+        assert found[f"{table}[1].{number}"].value == value
 
 
 def refused_by_formats(machine: Machine, table: str, special: str, folder: Path) -> None:

@@ -1,6 +1,7 @@
 /** What a drag or a typed number does to the numbers of a machine. */
 
 import type { Pair } from "../protocol";
+import { keyPath } from "../paths";
 import { say } from "../words";
 import type { Machine, Solution } from "./machine";
 import type { Field, Measure } from "./data";
@@ -16,17 +17,17 @@ export function movable(machine: Machine): string[] {
 
 function isMovable({ data, numbers }: Machine, name: string): boolean {
   const at = (path: string) => numbers.has(`${path}.x`) && numbers.has(`${path}.y`);
-  if (data.scene.frame.includes(name) && !at(`frame.points.${name}`)) return false;
+  if (data.scene.frame.includes(name) && !at(keyPath("frame", "points", name))) return false;
   return Object.entries(data.links).every(([link, { points, sized }]) => {
     if (!points.includes(name) || points.length < 2) return true;
-    if (sized === "points") return at(`links.${link}.points.${name}`);
+    if (sized === "points") return at(keyPath("links", link, "points", name));
     return points.every((other) => other === name || lengthPath({ data, numbers }, link, name, other));
   });
 }
 
 /** Links whose centre of mass can be dragged. */
 export function massesMovable({ data, numbers }: Machine): string[] {
-  const there = (link: string) => ["x", "y"].every((axis) => numbers.has(`links.${link}.center_of_mass.${axis}`));
+  const there = (link: string) => ["x", "y"].every((axis) => numbers.has(keyPath("links", link, "center_of_mass", axis)));
   return data.scene.mass_centers.filter(there);
 }
 
@@ -36,8 +37,9 @@ function lengthPath(
   point: string,
   other: string,
 ): string | null {
-  if (data.links[link]?.sized === "length") return numbers.has(`links.${link}.length`) ? `links.${link}.length` : null;
-  const paths = [`${point}-${other}`, `${other}-${point}`].map((side) => `links.${link}.sides.${side}`);
+  const whole = keyPath("links", link, "length");
+  if (data.links[link]?.sized === "length") return numbers.has(whole) ? whole : null;
+  const paths = [`${point}-${other}`, `${other}-${point}`].map((side) => keyPath("links", link, "sides", side));
   return paths.find((path) => numbers.has(path)) ?? null;
 }
 
@@ -56,11 +58,11 @@ export function moved(solution: Solution, name: string, to: Pair, at: number): F
     const place = machine.numbers.get(path);
     if (place !== undefined) next[place] = rounded(value, extent(data.scene.box));
   };
-  if (data.scene.frame.includes(name)) putPoint(put, `frame.points.${name}`, target);
+  if (data.scene.frame.includes(name)) putPoint(put, keyPath("frame", "points", name), target);
   for (const [link, { points, sized }] of Object.entries(data.links)) {
     if (!points.includes(name) || points.length < 2) continue;
     const others = points.filter((point) => point !== name);
-    if (sized === "points") putPoint(put, `links.${link}.points.${name}`, local(solution, link, others[0] as string, target, at));
+    if (sized === "points") putPoint(put, keyPath("links", link, "points", name), local(solution, link, others[0] as string, target, at));
     else
       for (const other of others) {
         const path = lengthPath(machine, link, name, other);
@@ -80,7 +82,7 @@ export function massMoved(solution: Solution, link: string, to: Pair, at: number
       const place = machine.numbers.get(path);
       if (place !== undefined) next[place] = rounded(value, extent(machine.data.scene.box));
     },
-    `links.${link}.center_of_mass`,
+    keyPath("links", link, "center_of_mass"),
     local(solution, link, first as string, to, at),
   );
   return next;
@@ -99,7 +101,7 @@ function local(solution: Solution, link: string, by: string, place: Pair, at: nu
 
 /** A point of a link in that link's axes, m. */
 function own(solution: Solution, link: string, point: string): Pair {
-  const [x, y] = [".x", ".y"].map((axis) => solution.number(`links.${link}.points.${point}${axis}`));
+  const [x, y] = ["x", "y"].map((axis) => solution.number(keyPath("links", link, "points", point, axis)));
   if (x !== undefined && y !== undefined) return [x, y];
   return solution.machine.data.links[link]?.places[point] ?? [0, 0];
 }
@@ -119,8 +121,8 @@ function reachable(solution: Solution, name: string, to: Pair, at: number): Pair
 
 /** Direction of a guide at a crank angle. */
 export function guideWay(solution: Solution, slider: { name: string; on: string; direction: number }, at: number): Pair {
-  const number = solution.machine.data.sliders.findIndex(({ name }) => name === slider.name) + 1;
-  const direction = solution.number(`sliders[${number}].direction`) ?? slider.direction;
+  const number = solution.machine.data.sliders.findIndex(({ name }) => name === slider.name);
+  const direction = solution.number(keyPath("sliders", number, "direction")) ?? slider.direction;
   return times(solution.rotation(slider.on, at), towards(direction));
 }
 

@@ -35,6 +35,7 @@ from equipoise.codegen.march import STEPS, March
 from equipoise.codegen.source import Source
 from equipoise.codegen.trace import FAR, Trace
 from equipoise.errors import UsageError
+from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.assembly import cycle, full_turn
 from equipoise.mechanism.assembly.family import linkage_of, with_columns
 from equipoise.mechanism.assembly.linkage import Linkage, assemble
@@ -210,7 +211,7 @@ class Batch:
         windings = self.base.cycle.windings if rounds else {}
         fastest = max((abs(turns) for turns in windings.values()), default=1) / self.turns
         fastest *= prod(max(map(abs, g.ratios)) / abs(g.speed_ratio) for g in machine.gears)
-        shaped = any(".shape." in path for path in self.paths)
+        shaped = any("shape" in KeyPath.parse(path) for path in self.paths)
         self.slope = SLOPE * max(1.0, fastest) * (SWUNG if shaped else 1.0)
 
     def __call__(self, values: Array) -> tuple[Array, Array]:

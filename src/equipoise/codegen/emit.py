@@ -5,7 +5,6 @@ Signals go by their names in the output of an analysis.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Collection, Iterable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
@@ -23,6 +22,7 @@ from equipoise.codegen.terms import angle_of
 from equipoise.codegen.trace import Trace
 from equipoise.errors import MassError, UsageError
 from equipoise.i18n import Note
+from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.assembly.family import can_vary
 from equipoise.mechanism.assembly.linkage import Linkage, assemble
 from equipoise.mechanism.assembly.newton import LoopGroup
@@ -36,13 +36,6 @@ from equipoise.mechanism.parts.joint_properties import JOINTS, family_of
 from equipoise.mechanism.parts.machine import Machine
 
 RUBS = Note("what friction in joints changes cannot be computed in a loop")
-_OF_FORCES = re.compile(
-    r"drive\..+|gravity\..+|links\..+\.(mass|inertia|center_of_mass\..+)"
-    r"|links\..+\.bodies\[\d+\]\..+"
-)
-"""Paths of numbers on which forces depend and the motion by crank angle does not; those of force
-elements beside them.
-"""
 PARTS: dict[str, Callable[[Any], Any]] = {
     "": lambda value: value,
     "size": length,
@@ -329,8 +322,16 @@ def emit(
 def moves_shared(linkage: Linkage, paths: Sequence[str]) -> bool:
     """Whether these numbers change the motion of a linkage whose lengths have to agree."""
     tables = force_kinds(type(linkage.machine))
-    lengths = (path for path in paths if path.partition("[")[0] not in tables)
-    return linkage.shared is not None and not all(map(_OF_FORCES.fullmatch, lengths))
+    return linkage.shared is not None and not all(
+        _of_forces(KeyPath.parse(path), tables) for path in paths
+    )
+
+
+def _of_forces(path: KeyPath, tables: Collection[str]) -> bool:
+    """Whether forces depend on a number and the motion by crank angle does not."""
+    if path[0] == "links" and len(path) > 2:
+        return path[2] in ("mass", "inertia", "center_of_mass", "bodies")
+    return path[0] in ("drive", "gravity", *tables)
 
 
 def can_compute(machine: Machine, paths: Sequence[str], figure: Figure) -> bool:

@@ -17,6 +17,7 @@ import numpy as np
 from equipoise.codegen.figures import COMPUTED, MOST_ANGLES, NO_MACHINE, NOT_STILL, Figure
 from equipoise.decompositions import svd
 from equipoise.errors import UsageError
+from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.assembly.family import can_vary, massive_link, with_columns
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.assembly.refusing import wrong
@@ -90,8 +91,9 @@ class MassBatch:
         self.rows = np.concatenate(rows)
         self.ends = np.cumsum([0, *map(len, rows)])
         # What follows from a number in more than one step is computed anew.
-        self.anew = any(p.endswith((".distance", ".direction")) or ".bodies[" in p for p in paths)
-        self.not_negative = [k for k, p in enumerate(paths) if p.endswith((".mass", ".inertia"))]
+        steps = [KeyPath.parse(path) for path in paths]
+        self.anew = any(p[-1] in ("distance", "direction") or p[2] == "bodies" for p in steps)
+        self.not_negative = [k for k, p in enumerate(steps) if p[-1] in ("mass", "inertia")]
 
     def __call__(self, values: Array) -> tuple[Array, Array]:
         """Figures (P, m) and reasons (P,) of designs (P, d), SI units; NaN where one failed."""

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.codegen.terms import ANGLE, BOTH, DESIGN, Graph, Pair, Term, angle_of, rotation
+from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.assembly.steps import Call, RunningAngle, Step, p, planar, u
 from equipoise.mechanism.formulas import kernels
@@ -247,10 +248,11 @@ def _changed(linkage: Linkage, paths: Collection[str]) -> tuple[set[str], set[st
     that designs change.
     """
     shifted, shaped = set(), set()
+    varied = {*map(KeyPath.parse, paths)}
     for where, one in _numbered(linkage.machine):
-        if f"{where}.start" in paths:
+        if where / "start" in varied:
             shifted.add(one.driven)
-        if any(path.startswith(f"{where}.shape.") for path in paths):
+        if any(path.begin(3) == where / "shape" for path in varied):
             shaped.add(one.driven)
     told, loose = {FRAME, *(drive.link for drive in linkage.machine.driven)}, set()
     for step in linkage.motion:
@@ -267,9 +269,9 @@ def _changed(linkage: Linkage, paths: Collection[str]) -> tuple[set[str], set[st
     return shifted, loose
 
 
-def _numbered(machine: Machine) -> Iterator[tuple[str, Coupling]]:
-    """Couplings, each with its place in the file."""
+def _numbered(machine: Machine) -> Iterator[tuple[KeyPath, Coupling]]:
+    """Couplings, each with its path in the file."""
     counts: Counter[str] = Counter()
     for one in machine.couplings:
+        yield KeyPath((one.table, counts[one.table])), one
         counts[one.table] += 1
-        yield f"{one.table}[{counts[one.table]}]", one

@@ -280,13 +280,14 @@ def quantities_of(value: Frozen | type[Frozen]) -> Mapping[str, Key]:
 
 def changed(
     value: Any,
-    steps: Sequence[str],
+    steps: Sequence[str | int],
     change: Callable[[Any], Any],
     make: Callable[..., Any] = replace,
 ) -> Any:
     """An object with something else at a place.
 
-    steps : keys of the file and names; of lists the number from 1, of points ``x``, ``y`` or ``z``.
+    steps : keys of the file, names, and numbers in lists, such as a `KeyPath`; of points ``x``,
+        ``y`` or ``z``.
     change : from what is there to what is to be there.  make : as `dataclasses.replace`.
 
     Raises
@@ -297,17 +298,23 @@ def changed(
         return change(value)
     step, rest = steps[0], steps[1:]
     if isinstance(value, tuple):
-        index = XYZ.index(step) if step in XYZ else int(step) - 1
+        index = step if isinstance(step, int) else _coordinate(step)
         inner = changed(value[index], rest, change, make)
         return (*value[:index], inner, *value[index + 1 :])
     if isinstance(value, Mapping):
         return {**value, step: changed(value[step], rest, change, make)}
-    one = keys_of(type(value))[step]
+    one = keys_of(type(value))[str(step)]
     held = getattr(value, one.field)
     if isinstance(one.kind, Table) and not isinstance(held, Frozen):
         rest = rest[1:]  # a table with one key, which the object has without it
     new = {one.field: changed(held, rest, change, make)}
     return make(value, **value.following(new))
+
+
+def _coordinate(step: str) -> int:
+    if step not in XYZ:
+        raise KeyError(step)
+    return XYZ.index(step)
 
 
 def with_fields(value: Given, **changes: Any) -> Given:

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.keys import changed, keys_of
+from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.kinematics.tip import planting_of, tip_link
 from equipoise.mechanism.parts.gears import Gear
@@ -229,10 +230,6 @@ def _instead(new: float, _: Any) -> float:
     return new
 
 
-def _steps(path: str) -> list[str]:
-    return re.findall(r"[^.\[\]]+", path)
-
-
 def _of_gears(machine: Machine, name: str, numbers: Sequence[int], path: str) -> Variable | None:
     """A number of some of the gears: angles turn by as much, the rest becomes equal."""
     if any(not 0 <= k < len(machine.gears) for k in numbers):
@@ -248,6 +245,6 @@ def _of_gears(machine: Machine, name: str, numbers: Sequence[int], path: str) ->
     def put(draft: Draft, value: float) -> None:
         for k, before in zip(numbers, values, strict=True):
             new = before + value - values[0] if dimension == "angle" else value
-            draft.gears[k] = changed(draft.gears[k], _steps(path), partial(_instead, new))
+            draft.gears[k] = changed(draft.gears[k], KeyPath.parse(path), partial(_instead, new))
 
     return Variable(name, values[0], low, high, dimension, put, tuple(numbers))

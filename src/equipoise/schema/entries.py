@@ -1,8 +1,8 @@
 """Tables of a file that are added, changed and deleted, such as one spring or one mount.
 
 All is done to the content of the file, as plain values, so that the reader of files tells what is
-wrong.  A place is the keys, names and numbers on the way: ``("springs", 0)``,
-``("support", "mounts", "front")``; the number after the last one is that of a new entry.
+wrong.  The number after the last one of a list, such as ``springs[3]`` where there are two, is
+that of a new entry.
 """
 
 from __future__ import annotations
@@ -16,10 +16,11 @@ from typing import Any
 from equipoise.errors import ModelError
 from equipoise.i18n import Note
 from equipoise.keys import Frozen, Key, Named, Table, Tables, Whole, all_keys, innermost, keys_of
+from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.schema.models import Held, machine_of, plain_of
-from equipoise.schema.places import Context, Place, written_place
+from equipoise.schema.places import Context
 from equipoise.schema.reading import read_table
 from equipoise.schema.template import named_parts
 
@@ -54,7 +55,7 @@ class Document:
         """
         return machine_of(self.content, Held(self.beside, texts or {}))
 
-    def put(self, place: Place, values: Content, name: str | None = None) -> Document:
+    def put(self, place: KeyPath, values: Content, name: str | None = None) -> Document:
         """With other values of the plain keys of an entry, or with a new entry.
 
         name : what an entry that has a name is called from now on.
@@ -74,7 +75,7 @@ class Document:
         _set(above, place, {**kept(kind.type, old), **values}, name)
         return self._with(content)
 
-    def without(self, place: Place) -> Document:
+    def without(self, place: KeyPath) -> Document:
         """Without an entry, and without a list that is empty then.
 
         Raises
@@ -85,12 +86,10 @@ class Document:
         content = deepcopy(self.content)
         above = _above(self.of, content, place) if place else {}
         if not place or not _held(above, place[-1]):
-            raise ModelError(
-                written_place(place), Note("there is no such entry; it may be deleted")
-            )
+            raise ModelError(place.shown, Note("there is no such entry; it may be deleted"))
         del above[place[-1]]
         if not above and len(place) > 1:
-            del _above(self.of, content, place[:-1])[place[-2]]
+            del _above(self.of, content, place.parent)[place[-2]]
         return self._with(content)
 
     def _with(self, content: Content) -> Document:
@@ -119,7 +118,7 @@ def kept(of: type[Frozen], entry: Mapping[str, Any]) -> Content:
     return {name: value for name, value in entry.items() if name not in own}
 
 
-def kind_at(of: type[Frozen], place: Place) -> Table:
+def kind_at(of: type[Frozen], place: KeyPath) -> Table:
     """The kind of an entry.
 
     Raises
@@ -131,7 +130,7 @@ def kind_at(of: type[Frozen], place: Place) -> Table:
     for step in steps:
         known = tables_below(held.type)
         if step not in known:
-            raise ModelError(written_place(place), unknown(str(step), known, "table"))
+            raise ModelError(place.shown, unknown(str(step), known, "table"))
         one = known[str(step)].kind
         inner = entry_of(one)
         assert inner is not None
@@ -139,9 +138,7 @@ def kind_at(of: type[Frozen], place: Place) -> Table:
             last = next(steps, None)
             if isinstance(last, int) != isinstance(one, Tables) or last is None:
                 what = "the number" if isinstance(one, Tables) else "the name"
-                raise ModelError(
-                    written_place(place), Note("give {what} of the entry too", what=what)
-                )
+                raise ModelError(place.shown, Note("give {what} of the entry too", what=what))
         held = inner
     return held
 
@@ -163,56 +160,54 @@ def _held(above: Any, step: str | int) -> bool:
     return isinstance(above, dict) and step in above
 
 
-def _above(of: type[Frozen], content: Content, place: Place) -> Any:
+def _above(of: type[Frozen], content: Content, place: KeyPath) -> Any:
     """The table or list in which an entry stands, made where it may be empty."""
     here: Any = content
     for length, step in enumerate(place[:-1], 1):
         if not _held(here, step):
             # a list, or a table of names, begins with its first entry; another table does not
-            if length != len(place) - 1 or _is_entry(of, place[:length]):
-                first = written_place(place[:length])
+            if length != len(place) - 1 or _is_entry(of, place.begin(length)):
+                first = place.begin(length).shown
                 raise ModelError(
-                    written_place(place), Note("there is no {first}; add that first", first=first)
+                    place.shown, Note("there is no {first}; add that first", first=first)
                 )
             here[step] = [] if isinstance(place[length], int) else {}
         here = here[step]
     return here
 
 
-def _is_entry(of: type[Frozen], place: Place) -> bool:
+def _is_entry(of: type[Frozen], place: KeyPath) -> bool:
     with suppress(ModelError):
         return bool(kind_at(of, place))
     return False
 
 
-def _set(above: Any, place: Place, entry: Content, name: str | None) -> None:
+def _set(above: Any, place: KeyPath, entry: Content, name: str | None) -> None:
     """Put an entry into its list or table; another name takes the same place among the names."""
     step = place[-1]
     if isinstance(above, list):
         assert isinstance(step, int)
         if step > len(above):
             number = f"there are {len(above)} entries; the next has the number {len(above) + 1}"
-            raise ModelError(written_place(place), number)
+            raise ModelError(place.shown, number)
         above[step : step + 1] = [entry]
         return
     new = step if name is None else name
     if new != step and new in above:
-        raise ModelError(
-            written_place(place), Note("{new!r} is taken already; give another name", new=new)
-        )
+        raise ModelError(place.shown, Note("{new!r} is taken already; give another name", new=new))
     items = [(new, entry) if key == step else (key, value) for key, value in above.items()]
     above.clear()
     above.update(items)
     above.setdefault(new, entry)
 
 
-def _make_room(of: type[Frozen], content: Content, place: Place) -> None:
+def _make_room(of: type[Frozen], content: Content, place: KeyPath) -> None:
     """Leave out what follows from a new entry, such as the mass of a link from its first body."""
-    length = len(place) - (1 if _is_entry(of, place[:-1]) else 2)
+    length = len(place) - (1 if _is_entry(of, place.parent) else 2)
     here: Any = content
     for step in place[:length]:
         here = here[step]
-    above, key = kind_at(of, place[:length]).type, str(place[length])
+    above, key = kind_at(of, place.begin(length)).type, str(place[length])
     if here is content:
         return  # nothing of the whole follows from its tables
     with suppress(ModelError):

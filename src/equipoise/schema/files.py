@@ -6,7 +6,6 @@ import csv
 import io
 import json
 import os
-import re
 import stat
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from math import isfinite
@@ -21,7 +20,6 @@ from equipoise.quantities import column_heading
 if TYPE_CHECKING:
     from equipoise.results.analysis import Analysis
 
-LONGEST_KEY = 60
 LARGEST = 2_000_000
 """Bytes; no model file or load table comes near it."""
 
@@ -125,17 +123,6 @@ def write_all(folder: Name, files: Mapping[str, bytes]) -> None:
         raise UsageError(f"{printable(folder)}: {what}; choose another place or name") from error
     for name, data in files.items():
         write(Path(folder) / name, data)
-
-
-def quoted(value: object) -> str:
-    """Text, or a list of texts, as it stands in TOML."""
-    return json.dumps(value, ensure_ascii=False)
-
-
-def written_key(name: str) -> str:
-    """Return a key as it stands in TOML, cut where it is endless."""
-    name = name if len(name) <= LONGEST_KEY else f"{name[:57]}..."
-    return name if re.fullmatch(r"[A-Za-z0-9_-]+", name) else quoted(name)
 
 
 def printable(path: Name) -> str:

@@ -1,12 +1,7 @@
-"""Finding a number in the content of a model file by its path, such as ``links.crank.points.B.x``.
-
-Keys stand between points, in quotes where they have odd signs; entries of a list are counted
-from 1 in brackets: ``loads[1].force.x``, ``gears[2].teeth[1]``.
-"""
+"""Finding a number in the content of a model file by its path (`keys.paths`)."""
 
 from __future__ import annotations
 
-import json
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
@@ -16,16 +11,15 @@ from typing import Any
 from equipoise.errors import ModelError
 from equipoise.keys import PLANES, Key, Listing, Named, OneOr, Table, Tables, Whole, all_keys
 from equipoise.keys import Kind as KeyKind
+from equipoise.keys.paths import KeyPath, with_values
 from equipoise.mechanism.checks import unknown
 from equipoise.quantities import KINDS, NUMBER, Dimension, plain_unit
 from equipoise.quantities.reading import described
 from equipoise.schema.numbers import POLAR, XYZ, Number, Planes, Vector, read_number, vector_of
 from equipoise.schema.opening import Kind, document_of
-from equipoise.schema.places import Place, written_place
 from equipoise.schema.writing import plain_default
 
 Content = Mapping[str, Any]
-_STEP = re.compile(r'(?:(?:^|\.)(?:"((?:[^"\\]|\\.)*)"|([^."\[\]]+))|\[([0-9]{1,9})\])')
 
 
 @dataclass(frozen=True)
@@ -36,7 +30,7 @@ class Found:
     rest : path inside of the linkage whose file is named there; then `number` is not known here.
     """
 
-    place: Place
+    place: KeyPath
     number: Number | None = None
     whole: Vector | Planes | None = None
     part: str = ""
@@ -50,8 +44,8 @@ def find(content: Content, kind: Kind, path: str) -> Found:
     ------
     ModelError : there is none; `where` is the path.
     """
-    steps = steps_of(path)
-    place: Place = ()
+    steps = KeyPath.parse(path)
+    place = KeyPath()
     here: Any = content
     for count, step in enumerate(steps):
         group = _group(here, step, kind) if count == len(steps) - 1 else None
@@ -59,9 +53,9 @@ def find(content: Content, kind: Kind, path: str) -> Found:
             part = XYZ[step] if isinstance(step, int) else step
             return Found(place, group.numbers[part], group, part)
         if kind == "tool" and place[-1:] == ("linkage",) and isinstance(here, str):
-            return Found(place, rest=written_place(steps[count:]))
-        here = _below(content, kind, path, (*place, step), here)
-        place = (*place, step)
+            return Found(place, rest=str(KeyPath(steps[count:])))
+        here = _below(content, kind, path, place / step, here)
+        place = place / step
     number = read_number(here, isinstance(here, int) and is_whole(kind, place))
     if number is None:
         raise ModelError(path, _no_number(path, here))
@@ -70,19 +64,19 @@ def find(content: Content, kind: Kind, path: str) -> Found:
 
 def all_numbers(content: Content) -> dict[str, Number]:
     """Every number that is written in a model file, by its path."""
-    return dict(_walk(content, ()))
+    return dict(_walk(content, KeyPath()))
 
 
-def _walk(here: Any, place: Place) -> Iterator[tuple[str, Number]]:
+def _walk(here: Any, place: KeyPath) -> Iterator[tuple[str, Number]]:
     vector, number = vector_of(here), read_number(here)
     if vector is not None:
         for part, component in vector.numbers.items():
-            yield f"{written_place(place)}.{part}", component
+            yield str(place / part), component
     elif number is not None and place != ("schema",):
-        yield written_place(place), number
+        yield str(place), number
     elif isinstance(here, dict | list):
         for key, below in here.items() if isinstance(here, dict) else enumerate(here):
-            yield from _walk(below, (*place, key))
+            yield from _walk(below, place / key)
 
 
 def _group(here: Any, step: str | int, kind: Kind) -> Vector | Planes | None:
@@ -98,57 +92,21 @@ def _group(here: Any, step: str | int, kind: Kind) -> Vector | Planes | None:
     return vector if step in vector.numbers else None
 
 
-# -- paths -----------------------------------------------------------------------------------------
-
-
-def steps_of(path: str) -> tuple[str | int, ...]:
-    """Keys on the way to a number, and numbers in lists from 0.
-
-    Raises
-    ------
-    ModelError : it is no path.
-    """
-    steps: list[str | int] = []
-    end = 0
-    while match := _STEP.match(path, end):
-        quoted, bare, number = match.groups()
-        if number is not None:
-            steps.append(int(number) - 1)
-        else:
-            steps.append(_unquoted(quoted) if bare is None else bare.strip())
-        end = match.end()
-    if not path or end < len(path) or -1 in steps:
-        shown = path if len(path) <= 60 else f"{path[:57]}..."
-        raise ModelError(
-            path,
-            f"got {shown!r}; give keys with points between, and numbers in lists from 1 in "
-            "brackets, such as links.crank.points.B.x or gears[1].ratio",
-        )
-    return tuple(steps)
-
-
-def _unquoted(text: str) -> str:
-    try:
-        return str(json.loads(f'"{text}"'))
-    except ValueError:
-        return text
-
-
 # -- what the file can have at a place -------------------------------------------------------------
 
 
-def key_at(kind: Kind, place: Place) -> Key | None:
+def key_at(kind: Kind, place: KeyPath) -> Key | None:
     """The key at the end of a place; None where it is a name of the user's, or unknown."""
-    above = _kind_at(kind, place[:-1])
+    above = _kind_at(kind, place.parent)
     return all_keys(above.type).get(str(place[-1])) if isinstance(above, Table) else None
 
 
-def is_whole(kind: Kind, place: Place) -> bool:
+def is_whole(kind: Kind, place: KeyPath) -> bool:
     """Whether only whole numbers will do at a place."""
     return isinstance(_kind_at(kind, place), Whole)
 
 
-def _kind_at(kind: Kind, place: Place) -> KeyKind | None:
+def _kind_at(kind: Kind, place: KeyPath) -> KeyKind | None:
     """What stands at a place; None where nothing is known of it."""
     found: KeyKind | None = Table(document_of(kind))
     for step in place:
@@ -165,7 +123,7 @@ def _kind_at(kind: Kind, place: Place) -> KeyKind | None:
 # -- one step --------------------------------------------------------------------------------------
 
 
-def _below(content: Content, kind: Kind, path: str, place: Place, here: Any) -> Any:
+def _below(content: Content, kind: Kind, path: str, place: KeyPath, here: Any) -> Any:
     """What stands at a place, of which `here` stands above; what is left out is its default."""
     step = place[-1]
     if isinstance(step, int) and isinstance(here, list) and step < len(here):
@@ -178,7 +136,7 @@ def _below(content: Content, kind: Kind, path: str, place: Place, here: Any) -> 
         if default is not None:
             return default
         if one is not None:
-            missing = written_place(place)
+            missing = place.shown
             raise ModelError(
                 path, f"{missing} is not written in the model; add it there to vary it"
             )
@@ -205,9 +163,9 @@ def replaced(content: Content, given: Iterable[Given]) -> dict[str, Any]:
     ------
     ModelError : a value is none, or two paths mean the same number; `where` is the path.
     """
-    changes: dict[Place, Any] = {}
-    parts: dict[Place, dict[str, float]] = {}
-    wholes: dict[Place, Vector | Planes] = {}
+    changes: dict[KeyPath, Any] = {}
+    parts: dict[KeyPath, dict[str, float]] = {}
+    wholes: dict[KeyPath, Vector | Planes] = {}
     for path, found, value in given:
         if isinstance(value, bool) or not isinstance(value, Real):
             raise ModelError(path, f"got {value!r}; give a number")
@@ -219,7 +177,7 @@ def replaced(content: Content, given: Iterable[Given]) -> dict[str, Any]:
         elif found.number is not None:
             changes[found.place] = found.number.written(value)
     changes |= {place: whole.changed(parts[place]) for place, whole in wholes.items()}
-    return with_changes(content, changes)
+    return with_values(content, changes)
 
 
 def _check_company(path: str, found: Found, beside: Mapping[str, float], taken: bool) -> None:
@@ -234,20 +192,6 @@ def _check_company(path: str, found: Found, beside: Mapping[str, float], taken: 
             f"{path} cannot vary beside {above}.{next(iter(beside))}; let either "
             f"{' and '.join(XYZ[:2])} or {' and '.join(POLAR)} of a point vary",
         )
-
-
-def with_changes(content: Content, changes: Mapping[Place, Any]) -> dict[str, Any]:
-    """The content with other values at some places; what is not changed is shared, not copied."""
-    root = dict(content)
-    copied: dict[Place, Any] = {(): root}
-    for place, value in changes.items():
-        here: Any = root
-        for length, key in enumerate(place[:-1], 1):
-            if place[:length] not in copied:
-                here[key] = copied[place[:length]] = here[key].copy()
-            here = here[key]
-        here[place[-1]] = value
-    return root
 
 
 SHARE = "%"
@@ -287,11 +231,10 @@ def handy(dimension: Dimension) -> str:
 
 def _given(content: Mapping[str, Any], found: Found) -> Iterator[Any]:
     """What stands in the file where a number does: first its own text, then those beside it."""
-    here: Any = content
-    for key in found.place:
-        if isinstance(here, dict) and key not in here:
-            return  # left out, so that a default stands for it
-        here = here[key]
+    try:
+        here = found.place.read(content)
+    except KeyError:
+        return  # left out, so that a default stands for it
     if isinstance(here, dict):
         yield from (here[key] for key in sorted(here, key=lambda key: key != found.part))
     elif isinstance(here, list):

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from equipoise.errors import EquipoiseError, ModelError, UsageError, to_paste
 from equipoise.i18n import Note
 from equipoise.keys import Frozen
+from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.shown_units import units_of
 from equipoise.quantities import format_exact, parse, showing_by_default
@@ -73,7 +74,7 @@ def machine_of(content: Mapping[str, Any], reader: Beside) -> Machine:
     from equipoise.mechanism.parts.balance import Balance, Limit
 
     context = Context(reader.read, {Limit: partial(_limit, machine)})
-    return machine.with_balance(read_table(Balance, balance, context, ("balance",)))
+    return machine.with_balance(read_table(Balance, balance, context, KeyPath(("balance",))))
 
 
 def tool_of(content: Mapping[str, Any], reader: Beside) -> Tool:

@@ -17,11 +17,11 @@ from typing import Any
 from equipoise import keys
 from equipoise.errors import ModelError, UsageError, meant
 from equipoise.i18n import LANGUAGES, Note, Worded
+from equipoise.keys.paths import KeyPath, quoted
 from equipoise.mechanism.checks import unknown
 from equipoise.quantities import KINDS, parse
-from equipoise.schema.files import quoted
 from equipoise.schema.numbers import Polar
-from equipoise.schema.places import WRONG, Context, Place, within, written_place
+from equipoise.schema.places import WRONG, Context, within
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class Values:
     """Values of a table, of which an object is to be made."""
 
     of: type[keys.Frozen]
-    place: Place
+    place: KeyPath
     given: dict[str, Any]
 
 
@@ -38,12 +38,12 @@ class NamedFile:
     """What lies in a file that is named at a place."""
 
     sort: str
-    place: Place
+    place: KeyPath
     file: str
 
 
 def read_table(
-    of: type[keys.Frozen], content: Mapping[str, Any], context: Context, place: Place = ()
+    of: type[keys.Frozen], content: Mapping[str, Any], context: Context, place: KeyPath = KeyPath()
 ) -> Any:
     """The object of a whole file, or of the table of one at a place.
 
@@ -56,11 +56,11 @@ def read_table(
         (where, what), *others = context.problems
         if others:
             what = Note("{sentence} (and {more} more)", sentence=what, more=len(others))
-        raise ModelError(written_place(where), what)
+        raise ModelError(where.shown, what)
     return made(found, context)
 
 
-def _table(kind: keys.Table, given: Any, place: Place, context: Context) -> Any:
+def _table(kind: keys.Table, given: Any, place: KeyPath, context: Context) -> Any:
     if not isinstance(given, dict):
         return context.wrong(place, given, Note("give a table"))
     of = kind.type
@@ -72,13 +72,11 @@ def _table(kind: keys.Table, given: Any, place: Place, context: Context) -> Any:
                 hint = Note("did you mean {name!r}?", name=path)
                 what = Note("no {kind} is called {given!r}; {hint}", kind=Note("key"), given=name,
                             hint=hint)  # fmt: skip
-                return context.say((*place, name), what)
-            return context.say((*place, name), wrong)
+                return context.say(place / name, what)
+            return context.say(place / name, wrong)
     for name, one in known.items():
         if one.required and name not in given:
-            return context.say(
-                (*place, name), Note("missing; add {example}", example=_example(one))
-            )
+            return context.say(place / name, Note("missing; add {example}", example=_example(one)))
     return Values(of, place, _values(of, given, place, context))
 
 
@@ -105,7 +103,7 @@ def _looks_like(kind: keys.Kind, value: Any) -> bool:
 
 
 def _values(
-    of: type[keys.Frozen], given: Mapping[str, Any], place: Place, context: Context
+    of: type[keys.Frozen], given: Mapping[str, Any], place: KeyPath, context: Context
 ) -> dict[str, Any]:
     """What is given of the keys of a class, by field."""
     values: dict[str, Any] = {}
@@ -114,7 +112,7 @@ def _values(
         if isinstance(kind, keys.Table) and kind.flat:
             values[at] = Values(kind.type, place, _values(kind.type, given, place, context))
         elif name in given:
-            values[at] = READERS[type(kind)](kind, given[name], (*place, name), context)
+            values[at] = READERS[type(kind)](kind, given[name], place / name, context)
     return values
 
 
@@ -129,14 +127,14 @@ def _example(one: keys.Key) -> str:
     return f"{name} = {quoted(example)}"
 
 
-def _tables(kind: keys.Tables, given: Any, place: Place, context: Context) -> Any:
+def _tables(kind: keys.Tables, given: Any, place: KeyPath, context: Context) -> Any:
     if not isinstance(given, list):
-        header = written_place(step for step in place if isinstance(step, str))
+        header = KeyPath(step for step in place if isinstance(step, str)).shown
         return context.wrong(place, given, f"write each as a table under [[{header}]]")
-    return tuple(_table(kind.item, one, (*place, n), context) for n, one in enumerate(given))
+    return tuple(_table(kind.item, one, place / n, context) for n, one in enumerate(given))
 
 
-def _named(kind: keys.Named, given: Any, place: Place, context: Context) -> Any:
+def _named(kind: keys.Named, given: Any, place: KeyPath, context: Context) -> Any:
     if kind.listed and isinstance(given, list):
         return _listing(keys.Listing(keys.Text(), right="names in quotes"), given, place, context)
     if not isinstance(given, dict):
@@ -146,7 +144,7 @@ def _named(kind: keys.Named, given: Any, place: Place, context: Context) -> Any:
             Note("give a table, or a list of names") if kind.listed else Note("give a table"),
         )
     read, item = READERS[type(kind.item)], kind.item
-    return {name: read(item, one, (*place, name), context) for name, one in given.items()}
+    return {name: read(item, one, place / name, context) for name, one in given.items()}
 
 
 def made(value: Any, context: Context) -> Any:
@@ -179,14 +177,14 @@ def _given(found: Values, context: Context) -> dict[str, Any]:
 # -- single values ---------------------------------------------------------------------------------
 
 
-def _quantity(kind: keys.Quantity, given: Any, place: Place, context: Context) -> Any:
+def _quantity(kind: keys.Quantity, given: Any, place: KeyPath, context: Context) -> Any:
     try:
         return parse(given, kind.dimension)
     except UsageError as error:
         return context.say(place, error.note)
 
 
-def _text(kind: keys.Text, given: Any, place: Place, context: Context) -> Any:
+def _text(kind: keys.Text, given: Any, place: KeyPath, context: Context) -> Any:
     if kind.names:
         right: Note | str = Note("give {what}", what=keys.choice(kind.names))
         if isinstance(given, str):
@@ -199,7 +197,7 @@ def _text(kind: keys.Text, given: Any, place: Place, context: Context) -> Any:
     )
 
 
-def _wording(kind: keys.Wording, given: Any, place: Place, context: Context) -> Any:
+def _wording(kind: keys.Wording, given: Any, place: KeyPath, context: Context) -> Any:
     if not isinstance(given, dict):
         return _text(kind, given, place, context)
     example = f'{place[-1]}.en = "..."'
@@ -209,14 +207,14 @@ def _wording(kind: keys.Wording, given: Any, place: Place, context: Context) -> 
         )
     for code, text in given.items():
         if code not in LANGUAGES:
-            return context.say((*place, code), unknown(code, LANGUAGES, "language"))
+            return context.say(place / code, unknown(code, LANGUAGES, "language"))
         if text == "":
-            return context.say((*place, code), Note("is empty; give text, or leave it out"))
-    read = {code: _text(kind, one, (*place, code), context) for code, one in given.items()}
+            return context.say(place / code, Note("is empty; give text, or leave it out"))
+    read = {code: _text(kind, one, place / code, context) for code, one in given.items()}
     return WRONG if WRONG in read.values() else Worded(read)
 
 
-def _number(kind: keys.Number, given: Any, place: Place, context: Context) -> Any:
+def _number(kind: keys.Number, given: Any, place: KeyPath, context: Context) -> Any:
     if isinstance(given, bool) or not isinstance(given, int | float):
         return context.wrong(place, given, Note("give a plain number without unit and quotes"))
     with suppress(OverflowError):
@@ -225,7 +223,7 @@ def _number(kind: keys.Number, given: Any, place: Place, context: Context) -> An
     return context.wrong(place, given, Note("give a finite number"))
 
 
-def _whole(kind: keys.Whole, given: Any, place: Place, context: Context) -> Any:
+def _whole(kind: keys.Whole, given: Any, place: KeyPath, context: Context) -> Any:
     whole = isinstance(given, int) and not isinstance(given, bool)
     if kind.names:
         right = Note("give {what}", what=keys.choice(kind.names))
@@ -241,7 +239,7 @@ def _whole(kind: keys.Whole, given: Any, place: Place, context: Context) -> Any:
     )
 
 
-def _file(kind: keys.File, given: Any, place: Place, context: Context) -> Any:
+def _file(kind: keys.File, given: Any, place: KeyPath, context: Context) -> Any:
     file = _text(keys.Text(), given, place, context)
     return file if file is WRONG else NamedFile(kind.sort, place, file)
 
@@ -249,7 +247,7 @@ def _file(kind: keys.File, given: Any, place: Place, context: Context) -> Any:
 # -- several values --------------------------------------------------------------------------------
 
 
-def _listing(kind: keys.Listing, given: Any, place: Place, context: Context) -> Any:
+def _listing(kind: keys.Listing, given: Any, place: KeyPath, context: Context) -> Any:
     if kind.right:
         counts = kind.sizes or range(1, len(given) + 1) if isinstance(given, list) else ()
         if not isinstance(given, list) or len(given) not in counts:
@@ -257,7 +255,7 @@ def _listing(kind: keys.Listing, given: Any, place: Place, context: Context) -> 
     elif not isinstance(given, list):
         return context.wrong(place, given, _two_of(kind.item))
     read, item = READERS[type(kind.item)], kind.item
-    values = tuple(read(item, one, (*place, n), context) for n, one in enumerate(given))
+    values = tuple(read(item, one, place / n, context) for n, one in enumerate(given))
     if kind.right or len(given) == 2:
         return values
     for _ in range(max(2 - len(given), 1)):
@@ -280,7 +278,7 @@ _PLACE = '["0 mm", "300 mm"], or with z ["0 mm", "300 mm", "0 mm"]'
 _POINT = 'give ["33.5 mm", "0 mm"] or { distance = "88 mm", direction = "-83 deg" }'
 
 
-def _point(kind: keys.Point, given: Any, place: Place, context: Context) -> Any:
+def _point(kind: keys.Point, given: Any, place: KeyPath, context: Context) -> Any:
     if kind.named and isinstance(given, str):
         return given
     if isinstance(given, dict):
@@ -301,7 +299,7 @@ def _point(kind: keys.Point, given: Any, place: Place, context: Context) -> Any:
 _VECTOR = 'an angle such as "90 deg", or three plain numbers such as [0, 1, 0]'
 
 
-def _direction(kind: keys.Direction, given: Any, place: Place, context: Context) -> Any:
+def _direction(kind: keys.Direction, given: Any, place: KeyPath, context: Context) -> Any:
     if isinstance(given, list):
         return _listing(keys.Listing(keys.Number(), (3,), _VECTOR), given, place, context)
     if not isinstance(given, str):
@@ -309,7 +307,7 @@ def _direction(kind: keys.Direction, given: Any, place: Place, context: Context)
     return _quantity(keys.Quantity(dimension="angle"), given, place, context)
 
 
-def _one_or(kind: keys.OneOr, given: Any, place: Place, context: Context) -> Any:
+def _one_or(kind: keys.OneOr, given: Any, place: KeyPath, context: Context) -> Any:
     if isinstance(given, list):
         return _listing(keys.Listing(kind.item, (kind.size,), kind.right), given, place, context)
     plain = isinstance(given, int | float) and not isinstance(given, bool)
@@ -319,7 +317,7 @@ def _one_or(kind: keys.OneOr, given: Any, place: Place, context: Context) -> Any
     return value if value is WRONG else (value,) * (kind.size if kind.repeat else 1)
 
 
-def _planes(kind: keys.Planes, given: Any, place: Place, context: Context) -> Any:
+def _planes(kind: keys.Planes, given: Any, place: KeyPath, context: Context) -> Any:
     """One value, or two by the names of the planes."""
     read, item = READERS[type(kind.item)], kind.item
     example = example_of(item)
@@ -331,13 +329,13 @@ def _planes(kind: keys.Planes, given: Any, place: Place, context: Context) -> An
         return value if value is WRONG else (value,) * (2 if isinstance(item, keys.Quantity) else 1)
     for name in given:
         if name not in keys.PLANES:
-            return context.say((*place, name), unknown(name, keys.PLANES, "plane"))
+            return context.say(place / name, unknown(name, keys.PLANES, "plane"))
     for plane in keys.PLANES:
         if plane not in given:
             return context.say(
-                (*place, plane), Note("missing; add {example}", example=f'{plane} = "{example}"')
+                place / plane, Note("missing; add {example}", example=f'{plane} = "{example}"')
             )
-    return tuple(read(item, given[plane], (*place, plane), context) for plane in keys.PLANES)
+    return tuple(read(item, given[plane], place / plane, context) for plane in keys.PLANES)
 
 
 def example_of(kind: keys.Kind) -> str:
@@ -345,7 +343,7 @@ def example_of(kind: keys.Kind) -> str:
     return KINDS[kind.dimension].example if isinstance(kind, keys.Quantity) else "hand.csv"
 
 
-READERS: dict[type[keys.Kind], Callable[[Any, Any, Place, Context], Any]] = {
+READERS: dict[type[keys.Kind], Callable[[Any, Any, KeyPath, Context], Any]] = {
     keys.Anything: lambda kind, given, place, context: given,
     keys.Direction: _direction,
     keys.File: _file,

@@ -18,6 +18,7 @@ from equipoise.errors import ModelError
 from equipoise.handheld.model import Tool
 from equipoise.i18n import Note
 from equipoise.keys import Key
+from equipoise.keys.paths import KeyPath, with_values
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.schema.finding import (
@@ -27,12 +28,10 @@ from equipoise.schema.finding import (
     key_at,
     replaced,
     unit_in,
-    with_changes,
 )
 from equipoise.schema.models import Beside, Held, machine_of, parts_of, text_of, tool_of
 from equipoise.schema.numbers import Number
 from equipoise.schema.opening import Kind, Opened, in_file, kind_of, model_content, opened
-from equipoise.schema.places import Place, written_place
 from equipoise.schema.tables import TABLES
 from equipoise.schema.words import words_of
 
@@ -168,11 +167,11 @@ class Template:
             return self._base
         try:
             linkages = self._linkages(values)
-            names = {place: f"{written_place(place)} changed" for place in linkages}
+            names = {place: f"{place.shown} changed" for place in linkages}
             given = ((path, self._find(path), value) for path, value in values.items())
             content = replaced(self._content, (one for one in given if not one[1].rest))
             known = self._known | {("linkage", names[at]): new for at, new in linkages.items()}
-            made = self._read(with_changes(content, names), _Carried(None, known))
+            made = self._read(with_values(content, names), _Carried(None, known))
         except ModelError as error:
             raise error.in_file(self.source) from error
         return _without_names(made, {*names.values()}) if names else made
@@ -219,27 +218,24 @@ class Template:
             self._found[path] = find(self._content, self.kind, path)
         return self._found[path]
 
-    def _linkage(self, place: Place) -> Template:
+    def _linkage(self, place: KeyPath) -> Template:
         """The template of the linkage whose file is named at a place."""
-        name: Any = self._content
-        for key in place:
-            name = name[key]
-        inside: Template = self._known["linkage", name]
+        inside: Template = self._known["linkage", place.read(self._content)]
         return inside
 
-    def _linkages(self, values: Mapping[str, float]) -> dict[Place, Machine]:
+    def _linkages(self, values: Mapping[str, float]) -> dict[KeyPath, Machine]:
         """The linkages of a tool that are others, by the places of their files' names."""
-        inside: dict[Place, dict[str, float]] = defaultdict(dict)
+        inside: dict[KeyPath, dict[str, float]] = defaultdict(dict)
         for path, value in values.items():
             found = self._find(path)
             if found.rest:
                 inside[found.place][found.rest] = value
-        linkages: dict[Place, Machine] = {}
+        linkages: dict[KeyPath, Machine] = {}
         for place, numbers in inside.items():
             try:
                 machine = self._linkage(place).machine(numbers)
             except ModelError as error:
-                raise ModelError(f"{written_place(place)}.{error.where}", error.what) from error
+                raise ModelError(f"{place.shown}.{error.where}", error.what) from error
             assert isinstance(machine, Machine)
             _ = assemble(machine).cycle  # it has to turn fully, as on reading a tool's file
             linkages[place] = machine

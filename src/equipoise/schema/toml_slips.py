@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import re
 
+from equipoise.keys.paths import quoted, written_key
 from equipoise.quantities.reading import NUMBER, readings
-from equipoise.schema.files import quoted, written_key
 
 LONGEST_LINE = 1000
 """Of those in which slips are looked for."""

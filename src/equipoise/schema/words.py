@@ -14,10 +14,10 @@ from typing import Any
 from equipoise.i18n import Note, to_say
 from equipoise.keys import Key, Listing, Named, OneOr, Planes, Point, Table, Tables, all_keys
 from equipoise.keys import Kind as KeyKind
+from equipoise.keys.paths import KeyPath
 from equipoise.schema.finding import Content, Found
 from equipoise.schema.numbers import vector_of
 from equipoise.schema.opening import Kind, document_of
-from equipoise.schema.places import Place
 
 PARTS = {
     "distance": to_say("distance"),
@@ -73,8 +73,8 @@ def words_of(
     if not layers:
         return None
     *around, last = layers
-    beside = ".".join([*map(str, found.place), "y"])
-    length = None if beside in others else _length(content, found)
+    other = found.place / "y"
+    length = None if other in map(KeyPath.parse, others) else _length(content, found)
     what = length or Note(last.word, **last.names)
     for above, layer in enumerate(reversed(around)):
         alone = isinstance(layer.key.kind, Table)
@@ -95,7 +95,7 @@ def _number(layer: Layer) -> str:
     return "" if told else layer.names.get("number", "")
 
 
-def _layers(content: Content, kind: Kind, place: Place) -> list[Layer]:
+def _layers(content: Content, kind: Kind, place: KeyPath) -> list[Layer]:
     """Keys on the way to a place; none where they are not known."""
     held: KeyKind = Table(document_of(kind))
     here: Any = content
@@ -132,9 +132,7 @@ def _length(content: Content, found: Found) -> Note | None:
     """The length of a body from the point in its origin to one whose distance from there it is."""
     if found.place[-2:-1] != ("points",) or found.part not in ("x", "distance"):
         return None
-    points: Any = content
-    for step in found.place[:-1]:
-        points = _below(points, step)
+    points = found.place.parent.read(content)
     if not isinstance(points, dict):  # a list of points has no origin among them
         return None
     places = {name: vector_of(one) for name, one in points.items()}

@@ -9,9 +9,10 @@ from typing import Any
 from equipoise import keys
 from equipoise.errors import ModelError
 from equipoise.i18n import Worded
+from equipoise.keys.paths import KeyPath
 from equipoise.quantities import format_exact
 from equipoise.schema.numbers import written_point
-from equipoise.schema.places import Place, within, written_place
+from equipoise.schema.places import within
 
 
 @dataclass(frozen=True)
@@ -27,7 +28,9 @@ class Writer:
         default_factory=dict
     )
 
-    def content(self, of: type[keys.Frozen], value: Any, place: Place = ()) -> dict[str, Any]:
+    def content(
+        self, of: type[keys.Frozen], value: Any, place: KeyPath = KeyPath()
+    ) -> dict[str, Any]:
         """Content of the table of an object as plain values."""
         given = _given(self.makers.get(of, of.to_table), value, place)
         table: dict[str, Any] = {}
@@ -37,15 +40,15 @@ class Writer:
             if isinstance(one.kind, keys.Table) and one.kind.flat:
                 table |= self.content(one.kind.type, given[name], place)
             else:
-                table[name] = self.plain(one.kind, given[name], (*place, name))
+                table[name] = self.plain(one.kind, given[name], place / name)
         return table
 
-    def plain(self, kind: keys.Kind, value: Any, place: Place) -> Any:
+    def plain(self, kind: keys.Kind, value: Any, place: KeyPath) -> Any:
         """A value as it stands in the file."""
         return WRITERS[type(kind)](kind, value, place, self)
 
 
-def _given(to_table: Callable[[Any], dict[str, Any]], value: Any, place: Place) -> dict[str, Any]:
+def _given(to_table: Callable[[Any], dict[str, Any]], value: Any, place: KeyPath) -> dict[str, Any]:
     """What the file says of an object; errors tell its place."""
     try:
         return to_table(value)
@@ -59,40 +62,40 @@ def plain_default(one: keys.Key) -> Any:
         return one.shown
     if isinstance(one.kind, keys.Table | keys.Tables | keys.File):
         return None
-    default = Writer({}).plain(one.kind, one.default, ())
+    default = Writer({}).plain(one.kind, one.default, KeyPath())
     return None if isinstance(default, list | dict) and not default else default
 
 
 def beside(of: type[keys.Frozen], value: Any) -> Iterator[tuple[str, str, Any, str]]:
     """What lies in files of their own: the key that names each, its sort, itself, and its name."""
-    yield from _beside(keys.Table(of), value, ())
+    yield from _beside(keys.Table(of), value, KeyPath())
 
 
-def _beside(kind: keys.Kind, value: Any, place: Place) -> Iterator[tuple[str, str, Any, str]]:
+def _beside(kind: keys.Kind, value: Any, place: KeyPath) -> Iterator[tuple[str, str, Any, str]]:
     if isinstance(kind, keys.File):
-        yield written_place(place), kind.sort, value, getattr(value, "file", "")
+        yield place.shown, kind.sort, value, getattr(value, "file", "")
     elif isinstance(kind, keys.Planes):
         for part, item in _in_planes(value, place):
             yield from _beside(kind.item, item, part)
     elif isinstance(kind, keys.Tables):
         for number, item in enumerate(value):
-            yield from _beside(kind.item, item, (*place, number))
+            yield from _beside(kind.item, item, place / number)
     elif isinstance(kind, keys.Named) and isinstance(value, Mapping):
         for name, item in value.items():
-            yield from _beside(kind.item, item, (*place, name))
+            yield from _beside(kind.item, item, place / name)
     elif isinstance(kind, keys.Table):
         for name, item in _given(kind.type.to_table, value, place).items():
             one = keys.keys_of(kind.type)[name]
-            inner = place if isinstance(one.kind, keys.Table) and one.kind.flat else (*place, name)
+            inner = place if isinstance(one.kind, keys.Table) and one.kind.flat else place / name
             for where, sort, found, file in _beside(one.kind, item, inner):
                 named = isinstance(one.kind, keys.File) and one.kind.named
                 yield where, sort, found, getattr(value, named) if named else file
 
 
-def _in_planes(value: tuple[Any, ...], place: Place) -> Iterator[tuple[Place, Any]]:
+def _in_planes(value: tuple[Any, ...], place: KeyPath) -> Iterator[tuple[KeyPath, Any]]:
     """The parts of what is of both planes, each with its place in the file."""
     if len(value) == len(keys.PLANES):
-        yield from (((*place, plane), one) for plane, one in zip(keys.PLANES, value, strict=True))
+        yield from ((place / plane, one) for plane, one in zip(keys.PLANES, value, strict=True))
     else:
         yield from ((place, one) for one in value)
 
@@ -105,7 +108,7 @@ def tidy(value: float) -> float:
     return int(value) if float(value).is_integer() and abs(value) < 1e6 else value
 
 
-def _point(kind: keys.Point, value: Any, place: Place, writer: Writer) -> Any:
+def _point(kind: keys.Point, value: Any, place: KeyPath, writer: Writer) -> Any:
     if isinstance(value, str):
         return value
     if kind.space and value[2]:
@@ -113,29 +116,29 @@ def _point(kind: keys.Point, value: Any, place: Place, writer: Writer) -> Any:
     return written_point((value[0], value[1]))
 
 
-def _direction(kind: keys.Direction, value: Any, place: Place, writer: Writer) -> Any:
+def _direction(kind: keys.Direction, value: Any, place: KeyPath, writer: Writer) -> Any:
     if isinstance(value, tuple):
         return [tidy(component) for component in value]
     return format_exact(value, "angle")
 
 
-def _listing(kind: keys.Listing, value: Any, place: Place, writer: Writer) -> Any:
+def _listing(kind: keys.Listing, value: Any, place: KeyPath, writer: Writer) -> Any:
     return [writer.plain(kind.item, one, place) for one in value]
 
 
-def _named(kind: keys.Named, value: Any, place: Place, writer: Writer) -> Any:
+def _named(kind: keys.Named, value: Any, place: KeyPath, writer: Writer) -> Any:
     if isinstance(value, tuple):
         return [*value]
-    return {name: writer.plain(kind.item, one, (*place, name)) for name, one in value.items()}
+    return {name: writer.plain(kind.item, one, place / name) for name, one in value.items()}
 
 
-def _one_or(kind: keys.OneOr, value: Any, place: Place, writer: Writer) -> Any:
+def _one_or(kind: keys.OneOr, value: Any, place: KeyPath, writer: Writer) -> Any:
     items = _listing(keys.Listing(kind.item), value, place, writer)
     alike = kind.repeat and all(one == value[0] for one in value)
     return items[0] if len(items) == 1 or alike else items
 
 
-def _planes(kind: keys.Planes, value: Any, place: Place, writer: Writer) -> Any:
+def _planes(kind: keys.Planes, value: Any, place: KeyPath, writer: Writer) -> Any:
     if isinstance(kind.item, keys.Quantity):
         texts = [writer.plain(kind.item, one, place) for one in value]
         return texts[0] if value[0] == value[1] else dict(zip(keys.PLANES, texts, strict=True))
@@ -143,10 +146,10 @@ def _planes(kind: keys.Planes, value: Any, place: Place, writer: Writer) -> Any:
     return named[0] if len(named) == 1 else dict(zip(keys.PLANES, named, strict=False))
 
 
-WRITERS: dict[type[keys.Kind], Callable[[Any, Any, Place, Writer], Any]] = {
+WRITERS: dict[type[keys.Kind], Callable[[Any, Any, KeyPath, Writer], Any]] = {
     keys.Anything: lambda kind, value, place, writer: value,
     keys.Direction: _direction,
-    keys.File: lambda kind, value, place, writer: writer.names[written_place(place)],
+    keys.File: lambda kind, value, place, writer: writer.names[place.shown],
     keys.Flag: lambda kind, value, place, writer: value,
     keys.Listing: _listing,
     keys.Named: _named,
@@ -157,7 +160,7 @@ WRITERS: dict[type[keys.Kind], Callable[[Any, Any, Place, Writer], Any]] = {
     keys.Quantity: lambda kind, value, place, writer: format_exact(value, kind.dimension),
     keys.Table: lambda kind, value, place, writer: writer.content(kind.type, value, place),
     keys.Tables: lambda kind, value, place, writer: [
-        writer.plain(kind.item, one, (*place, n)) for n, one in enumerate(value)
+        writer.plain(kind.item, one, place / n) for n, one in enumerate(value)
     ],
     keys.Text: lambda kind, value, place, writer: value,
     keys.Told: lambda kind, value, place, writer: value,

@@ -8,6 +8,7 @@ from math import pi
 from typing import Any
 
 from equipoise.errors import UsageError
+from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.quantities import clean, format_exact, parse
 from equipoise.schema.entries import Document
@@ -45,7 +46,7 @@ def _in_twos(document: Document, entry: Entry, own: Machine) -> Document:
     if entry.values is None:
         gone = own.bearings.get(str(entry.place[-1]))
         for name in [name for name, one in bearings.items() if gone and one["link"] == gone.link]:
-            document = document.without(("bearings", name))
+            document = document.without(KeyPath(("bearings", name)))
         return document
     name, link = str(entry.name or entry.place[-1]), entry.values.get("link")
     if link not in own.links or [one.get("link") for one in bearings.values()].count(link) != 1:
@@ -58,7 +59,7 @@ def _in_twos(document: Document, entry: Entry, own: Machine) -> Document:
     other = 2 * middle - plane if plane != middle else plane + APART
     second = next(one for one in map(f"{name}{{}}".format, count(2)) if one not in bearings)
     values = {"link": link, "plane": format_exact(clean(other, "length"), "length")}
-    return document.put(("bearings", second), values)
+    return document.put(KeyPath(("bearings", second)), values)
 
 
 def _in_a_cycle(document: Document, entry: Entry) -> Document:
@@ -66,10 +67,8 @@ def _in_a_cycle(document: Document, entry: Entry) -> Document:
     the one before, takes what is left.  The first one stands in place of another way to give the
     law, and a second one leads back to where it begins.
     """
-    *way, number = entry.place
-    law: Any = document.content
-    for step in way[:-1]:
-        law = law[step]
+    way, number = entry.place.parent, entry.place[-1]
+    law: Any = way.parent.read(document.content)
     segments = law.get("segments", [])
     overs = [parse(one["over"], "angle") for one in segments]
     left = 2 * pi * law.get("turns", 1) - sum(overs)
@@ -78,7 +77,7 @@ def _in_a_cycle(document: Document, entry: Entry) -> Document:
     if len(segments) == 1 and entry.values is not None:
         start = law.get("start") or law.get("between", [_none_of(segments[0]["to"])])[0]
         plain = {key: value for key, value in law.items() if key not in OTHERWISE}
-        document = document.put(tuple(way[:-1]), {**plain, "start": start})
+        document = document.put(way.parent, {**plain, "start": start})
         beside, values = 1, {"to": start}
     else:
         after = int(number) + (entry.values is not None)
@@ -87,7 +86,7 @@ def _in_a_cycle(document: Document, entry: Entry) -> Document:
     if left <= 0:
         return document
     over = format_exact(clean(left, "angle"), "angle")
-    return document.put((*way, beside), {**values, "over": over})
+    return document.put(way / beside, {**values, "over": over})
 
 
 def _none_of(text: str) -> str:

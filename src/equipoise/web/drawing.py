@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.assembly.joints import Structure
 from equipoise.mechanism.kinematics.tip import surface_of
 from equipoise.mechanism.parts.machine import Machine
@@ -79,12 +80,12 @@ def cams_told(machine: Machine, joints: Structure) -> list[Values]:
     return [
         {
             "name": cam.name,
-            "path": f"cams.{number}.base_radius",
+            "path": str(KeyPath(("cams", number, "base_radius"))),
             "radius": cam.base_radius,
             "axis": joints.pins_between(cam.driver, cam.carrier)[0],
             "point": cam.point,
         }
-        for number, cam in enumerate(machine.cams, 1)
+        for number, cam in enumerate(machine.cams)
     ]
 
 

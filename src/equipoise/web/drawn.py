@@ -10,6 +10,7 @@ import numpy as np
 
 from equipoise.errors import EquipoiseError, MobilityError, UsageError, to_paste
 from equipoise.i18n import Note, listed, say
+from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.assembly.named_joints import pin_radii
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.parts.machine import FRAME, Machine
@@ -195,14 +196,14 @@ def _fields(sketch: Sketch) -> Iterator[Field]:
         )
     for body, points in sketch.bodies.items():
         for one in measures_of(points):
-            path = f"{'frame' if body == FRAME else f'links.{body}'}.{one.key}"
+            path = one.path(KeyPath((FRAME,) if body == FRAME else ("links", body)))
             put = partial(_measured, body, one)
-            yield Field(path, body, one.label, one.dimension, one.value, put, one)
+            yield Field(str(path), body, one.label, one.dimension, one.value, put, one)
     for point, place in sketch.frame.items():
         for axis, value in zip("xy", place, strict=True):
             put = partial(_placed, point, axis)
-            path = f"frame.points.{point}.{axis}"
-            yield Field(path, FRAME, listed(point, axis), "length", value, put)
+            path = KeyPath((FRAME, "points", point, axis))
+            yield Field(str(path), FRAME, listed(point, axis), "length", value, put)
 
 
 def _with_speed(sketch: Sketch, value: float) -> Sketch:

@@ -11,6 +11,7 @@ from typing import Any
 from equipoise.errors import ModelError, UsageError
 from equipoise.i18n import listed, say, to_say
 from equipoise.keys import Frozen, Quantity, quantities_of
+from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.outputs.declared import GROUPS
 from equipoise.mechanism.parts.links import MASS_FIELDS
 from equipoise.mechanism.parts.machine import FRAME, Link, Machine, Vector, size_of
@@ -148,13 +149,15 @@ SECTIONS = {
     "support": to_say("support"),
 }
 """Groups that are no links, and no kinds of parts -> what they are called."""
+COUNTERWEIGHTS = "counterweights"
+"""Begins the paths of counterweights, which are of the page and not of the file."""
 WEIGHT = "counterweight on "
 """Before the name of a link: the group of its counterweight."""
 
 
 def _heading(field: Field) -> str:
     """What the group of a number is called, in the language that is spoken."""
-    if field.path.startswith("counterweights."):
+    if field.path.startswith(f"{COUNTERWEIGHTS}."):
         return say("counterweight on {link}", link=field.group.removeprefix(WEIGHT))
     if field.path.startswith("links."):
         return field.group
@@ -194,26 +197,22 @@ def fields_of(design: Design) -> dict[str, Field]:
     return {field.path: field for field in (*found, *_weights(design))}
 
 
-Place = tuple[str, ...]
-"""Keys and names on the way to a number, which may have points in them."""
+def _field(path: KeyPath, group: str, label: str, dimension: Dimension, value: float) -> Field:
+    """A number of the machine, which its path tells how to change."""
+    return Field(str(path), group, label, dimension, value, partial(_put, path))
 
 
-def _field(place: Place, group: str, label: str, dimension: Dimension, value: float) -> Field:
-    """A number of the machine, which its place tells how to change."""
-    return Field(".".join(place), group, label, dimension, value, partial(_put, place))
+def _put(path: KeyPath, design: Design, value: float) -> Design:
+    return design.with_machine(design.own.with_number(path, value))
 
 
-def _put(place: Place, design: Design, value: float) -> Design:
-    return design.with_machine(design.own.with_number(place, value))
-
-
-def _point(place: Place, group: str, label: str, point: Vector) -> Iterator[Field]:
+def _point(path: KeyPath, group: str, label: str, point: Vector) -> Iterator[Field]:
     for axis, value in zip("xy", point, strict=True):
-        yield _field((*place, axis), group, listed(label, axis), "length", value)
+        yield _field(path / axis, group, listed(label, axis), "length", value)
 
 
 def _numbers(
-    place: Place, group: str, of: str, item: Frozen, without: tuple[str, ...] = ()
+    path: KeyPath, group: str, of: str, item: Frozen, without: tuple[str, ...] = ()
 ) -> Iterator[Field]:
     """Those keys of an object that are quantities and are given, by their words after `of`."""
     for key, one in quantities_of(item).items():
@@ -221,49 +220,49 @@ def _numbers(
         if value is not None and key not in without and isinstance(one.kind, Quantity):
             word = say(one.word or key.replace("_", " "))
             label = listed(of, word) if of else word
-            yield _field((*place, key), group, label, one.kind.dimension, value)
+            yield _field(path / key, group, label, one.kind.dimension, value)
 
 
 def _drive(machine: Machine) -> Iterator[Field]:
     label = say("speed") if machine.crank_turns else say("speed of the cycle")
-    yield _field(("drive", "speed"), "drive", label, "angular speed", machine.drive.speed)
+    yield _field(KeyPath(("drive", "speed")), "drive", label, "angular speed", machine.drive.speed)
 
 
 def _links(machine: Machine) -> Iterator[Field]:
     for name, link in machine.links.items():
-        where = ("links", name)
+        where = KeyPath(("links", name))
         yield from _numbers(where, name, "", link, (*MASS_FIELDS,) if link.bodies else ())
         yield from _bodies(where, name, link)
         for side, length in link.sides.items():
-            yield _field((*where, "sides", side), name, side, "length", length)
+            yield _field(where / "sides" / side, name, side, "length", length)
         for point, plane in link.planes.items():
             label = say("plane of {name}", name=point)
-            yield _field((*where, "planes", point), name, label, "length", plane)
+            yield _field(where / "planes" / point, name, label, "length", plane)
         if link.has_mass and not link.bodies:
             center = link.center_of_mass or CENTER
-            yield from _point((*where, "center_of_mass"), name, say("centre of mass"), center)
+            yield from _point(where / "center_of_mass", name, say("centre of mass"), center)
         if link.length is None and not link.sides:
-            yield from _measures(".".join(where), name, link.points)
+            yield from _measures(where, name, link.points)
             for point, place in link.points.items():
-                yield from _point((*where, "points", point), name, point, place)
+                yield from _point(where / "points" / point, name, point, place)
 
 
-def _bodies(where: Place, name: str, link: Link) -> Iterator[Field]:
-    for number, body in enumerate(link.bodies, 1):
-        place = (*where, "bodies", str(number))
-        of = f"{say(body.shape)} {number}"
+def _bodies(where: KeyPath, name: str, link: Link) -> Iterator[Field]:
+    for number, body in enumerate(link.bodies):
+        path = where / "bodies" / number
+        of = f"{say(body.shape)} {number + 1}"
         known = quantities_of(body).items()
         left_out = (key for key, one in known if getattr(body, key) == one.default)
-        yield from _numbers(place, name, of, body, (*left_out,))
+        yield from _numbers(path, name, of, body, (*left_out,))
         if body.at is not None and not isinstance(body.at, str):
-            yield from _point((*place, "at"), name, listed(of, say("centre")), body.at)
+            yield from _point(path / "at", name, listed(of, say("centre")), body.at)
 
 
-def _measures(where: str, body: str, points: Mapping[str, Vector]) -> Iterator[Field]:
+def _measures(where: KeyPath, body: str, points: Mapping[str, Vector]) -> Iterator[Field]:
     """Lengths and directions between the points of a body."""
     for one in measures_of(points):
         put = partial(_measured, body, one)
-        yield Field(f"{where}.{one.key}", body, one.label, one.dimension, one.value, put, one)
+        yield Field(str(one.path(where)), body, one.label, one.dimension, one.value, put, one)
 
 
 def _measured(
@@ -274,26 +273,26 @@ def _measured(
 
 
 def _frame(machine: Machine) -> Iterator[Field]:
-    yield from _measures(FRAME, FRAME, machine.frame)
+    yield from _measures(KeyPath((FRAME,)), FRAME, machine.frame)
     for point, place in machine.frame.items():
-        yield from _point(("frame", "points", point), "frame", point, place)
+        yield from _point(KeyPath((FRAME, "points", point)), "frame", point, place)
 
 
 def _parts(machine: Machine) -> Iterator[Field]:
     for table, number, part in machine.parts:
-        place, of = (table, str(number + 1)), part.label.said()
-        yield from _numbers(place, table, of, part, part.idle_keys)
+        path, of = KeyPath((table, number)), part.label.said()
+        yield from _numbers(path, table, of, part, part.idle_keys)
 
 
 def _joints(machine: Machine) -> Iterator[Field]:
-    for number, joint in enumerate(machine.joints, 1):
-        yield from _numbers(("joints", str(number)), "joints", joint.joint, joint)
+    for number, joint in enumerate(machine.joints):
+        yield from _numbers(KeyPath(("joints", number)), "joints", joint.joint, joint)
 
 
 def _rows(machine: Machine) -> Iterator[Field]:
-    for number, row in enumerate(machine.rows, 1):
-        label = say("row {number}, phase", number=number)
-        yield _field(("rows", str(number), "phase"), "rows", label, "angle", row.phase)
+    for number, row in enumerate(machine.rows):
+        label = say("row {number}, phase", number=number + 1)
+        yield _field(KeyPath(("rows", number, "phase")), "rows", label, "angle", row.phase)
 
 
 NOT_OF_PLANTING = ("release", "acceleration_limit", "soil_acceleration_limit")
@@ -302,7 +301,9 @@ NOT_OF_PLANTING = ("release", "acceleration_limit", "soil_acceleration_limit")
 
 def _planting(machine: Machine) -> Iterator[Field]:
     if machine.planting is not None:
-        yield from _numbers(("planting",), "planting", "", machine.planting, NOT_OF_PLANTING)
+        yield from _numbers(
+            KeyPath(("planting",)), "planting", "", machine.planting, NOT_OF_PLANTING
+        )
 
 
 def _mounts(machine: Machine) -> Iterator[Field]:
@@ -311,7 +312,7 @@ def _mounts(machine: Machine) -> Iterator[Field]:
     for name, mount in machine.support.mounts.items():
         other = OF_POINT if mount.axis is not None else OF_AXIS
         without = (*other, "preload")
-        where = ("support", "mounts", name)
+        where = KeyPath(("support", "mounts", name))
         yield from _numbers(where, "support", f"{name}, ", mount, without)
 
 
@@ -329,7 +330,7 @@ def _weights(design: Design) -> Iterator[Field]:
         weight = design.weight_on(name)
         for key, dimension in quantities:
             put = partial(_with_weight, name, key)
-            path = f"counterweights.{name}.{key}"
+            path = str(KeyPath((COUNTERWEIGHTS, name, key)))
             label = say("radius, from {point}", point=pin) if key == "radius" else say(key)
             value = getattr(weight, key)
             yield Field(path, f"{WEIGHT}{name}", label, dimension, value, put)

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.assembly.joints import coupling_pins
 from equipoise.mechanism.formulas.strands import LEFT, RIGHT
 from equipoise.mechanism.kinematics.motion import Motion
@@ -65,17 +66,23 @@ def _tie(scene: Scene, motion: Motion, piece: Piece, shape: Shape) -> Values | N
 def _shaping(motion: Motion, body: str, role: str) -> Iterator[str]:
     """Numbers from which solids of a link, and slots in a body, are computed."""
     if role in ("solid", "opening"):
-        yield from (f"links.{body}.{key}" for key in ("bodies", "points", "length", "sides"))
+        keys = ("bodies", "points", "length", "sides")
+        yield from (str(KeyPath(("links", body, key))) for key in keys)
     elif role in SLOTS:
         yield from joint_kinds(type(motion.machine))
-        yield f"{FRAME}.points" if body == FRAME else f"links.{body}.points"
+        yield str(_points_of(body))
 
 
 def _of_shape(motion: Motion, role: str) -> Iterator[str]:
     """Numbers besides those of cams from which ribs and faces are computed; none of rollers."""
     if role != "rider":
-        yield from ("sliders", f"{FRAME}.points")
-        yield from (f"links.{link}.points" for link in motion.machine.links)
+        yield "sliders"
+        yield from (str(_points_of(body)) for body in (FRAME, *motion.machine.links))
+
+
+def _points_of(body: str) -> KeyPath:
+    """Path of the points of a body in its file."""
+    return KeyPath((FRAME, "points") if body == FRAME else ("links", body, "points"))
 
 
 def _of_coupling(motion: Motion, piece: Piece, shape: Shape) -> Values | None:
@@ -167,12 +174,12 @@ def _made_of(motion: Motion, table: str, name: str) -> Iterator[str]:
     joints = motion.linkage.joints
     couplings = [coupling for coupling in joints.couplings if coupling.table == table]
     number, coupling = next(
-        (k, coupling) for k, coupling in enumerate(couplings, 1) if coupling.name == name
+        (k, coupling) for k, coupling in enumerate(couplings) if coupling.name == name
     )
-    yield f"{table}[{number}]"
-    for slider, guide in enumerate(joints.sliders, 1):
+    yield str(KeyPath((table, number)))
+    for slider, guide in enumerate(joints.sliders):
         if (guide.link, guide.on) == (coupling.driven, coupling.carrier):
-            yield f"sliders[{slider}]"
+            yield str(KeyPath(("sliders", slider)))
     ends = {
         point
         for link in (coupling.driver, coupling.driven)
@@ -180,8 +187,7 @@ def _made_of(motion: Motion, table: str, name: str) -> Iterator[str]:
     }
     ends |= {point for point in (getattr(coupling, "point", None),) if point}
     for body in (coupling.driver, coupling.driven, coupling.carrier):
-        where = FRAME if body == FRAME else f"links.{body}"
-        yield from (f"{where}.points.{point}." for point in sorted(ends))
+        yield from (f"{_points_of(body) / point}." for point in sorted(ends))
 
 
 def _of_arrow(scene: Scene, link: str) -> Values | None:

@@ -21,6 +21,7 @@ from equipoise.codegen.javascript import Script, javascript
 from equipoise.errors import UsageError
 from equipoise.exchange.formats import Job
 from equipoise.i18n import Note, catalogue, said, say, spoken
+from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.assembly.family import can_vary
 from equipoise.mechanism.assembly.full_turn import CHANGE_POINT
 from equipoise.mechanism.kinematics.motion import Motion
@@ -32,7 +33,6 @@ from equipoise.quantities.numbers import Display, in_unit
 from equipoise.results.analysis import Analysis, analyze
 from equipoise.results.outputs import Output
 from equipoise.results.own_words import words_of
-from equipoise.schema.finding import steps_of
 from equipoise.schema.numbers import POLAR, Number
 from equipoise.schema.template import Template
 from equipoise.symbols.scene import Scene
@@ -178,19 +178,18 @@ class Interactive:
 
     @cached_property
     def _candidates(self) -> dict[str, Number]:
-        """Numbers of the model that may be columns, by the path that columns have.
+        """Numbers of the model that may be columns, by their paths.
 
         Lengths that have to agree with others, as where joints hold more than the motion needs, are
         none of them.
         """
         columns, numbers, linkage = {}, self.template.numbers(), self.motion.linkage
         for path, number in numbers.items():
-            whole, _, part = path.rpartition(".")
-            if part in POLAR and f"{whole}.x" in numbers:
+            steps = KeyPath.parse(path)
+            if steps[-1] in POLAR and str(steps.parent / "x") in numbers:
                 continue  # the same point by its coordinates
-            column = column_path(path)
-            if can_vary(self.machine, column) and not moves_shared(linkage, [column]):
-                columns[column] = number
+            if can_vary(self.machine, path) and not moves_shared(linkage, [path]):
+                columns[path] = number
         return columns
 
     # -- what the page knows -----------------------------------------------------------------------
@@ -281,17 +280,15 @@ class Interactive:
     def _fields(self) -> Iterator[Values]:
         """Every number of the script, in its order."""
         template = self.template
-        paths = {column_path(path): path for path in template.numbers()}
         numbers = self._candidates
         for path in self.script.paths:
-            number, written = numbers[path], paths[path]
-            unit = _unit(number, template.unit(written))
-            key = template.key(written)
-            steps = steps_of(written)
+            number, steps = numbers[path], KeyPath.parse(path)
+            unit = _unit(number, template.unit(path))
+            key = template.key(path)
             yield {
                 "path": path,
                 "steps": [*steps],
-                "label": said(template.words(written)),
+                "label": said(template.words(path)),
                 "heading": str(steps[1]) if steps[0] == "links" else _section(str(steps[0])),
                 "value": float(number.value),
                 **_unit_content(unit),
@@ -308,17 +305,17 @@ class Interactive:
         bodies = {FRAME: self.machine.frame}
         bodies |= {name: link.points for name, link in self.machine.links.items()}
         for body, points in bodies.items():
-            where = f"{FRAME}.points" if body == FRAME else f"links.{body}.points"
+            where = KeyPath((FRAME, "points") if body == FRAME else ("links", body, "points"))
             for measure in measures_of(points):
-                ends = [f"{where}.{point}" for point in (measure.start, measure.moves)]
-                if measure.dimension == "length" and {f"{ends[1]}.x", f"{ends[1]}.y"} <= paths:
+                start, end = where / measure.start, where / measure.moves
+                if measure.dimension == "length" and {str(end / "x"), str(end / "y")} <= paths:
                     yield {
                         "label": measure.label,
                         "heading": _section(FRAME) if body == FRAME else body,
                         "start": measure.start,
                         "moves": measure.moves,
-                        "from": ends[0],
-                        "path": ends[1],
+                        "from": str(start),
+                        "path": str(end),
                         "fixed": points[measure.start],
                         **_unit_content(in_unit("mm")),
                         "units": _factors(Number(measure.value, "length")),
@@ -332,14 +329,6 @@ class Interactive:
             if group.margin is not None and not group.through
         ]
         return [[*groups[dyad].links] for dyad in self.script.source.watched]
-
-
-def column_path(path: str) -> str:
-    """The path of a number as columns have it: names as they are, without quotes."""
-    steps = steps_of(path)
-    return "".join(
-        f"[{step + 1}]" if isinstance(step, int) else f".{step}" for step in steps
-    ).removeprefix(".")
 
 
 def _section(name: str) -> str:

@@ -11,6 +11,7 @@ from typing import Any, Literal
 
 from equipoise.errors import UsageError
 from equipoise.i18n import Note, all_of, listed, say
+from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.parts.machine import Vector
 from equipoise.web.messages import Drag
 
@@ -32,11 +33,10 @@ class Measure:
     moves: str
     value: float
 
-    @property
-    def key(self) -> str:
-        """In the path of the number."""
+    def path(self, body: KeyPath) -> KeyPath:
+        """Path of the number below that of its body."""
         what = "lengths" if self.dimension == "length" else "directions"
-        return f"{what}.{self.start}-{self.moves}"
+        return body / what / f"{self.start}-{self.moves}"
 
     @property
     def told(self) -> dict[str, Any]:

@@ -10,6 +10,7 @@ from typing import Any, NoReturn
 
 from equipoise.errors import UsageError
 from equipoise.keys import MOST_WHOLE
+from equipoise.keys.paths import KeyPath
 from equipoise.quantities.reading import described
 from equipoise.quantities.units import HUGE
 from equipoise.schema.files import LARGEST
@@ -100,7 +101,7 @@ class Entry:
     files : texts of CSV files that it names.
     """
 
-    place: tuple[str | int, ...]
+    place: KeyPath
     values: Mapping[str, Any] | None
     name: str | None
     files: Mapping[str, str]
@@ -194,7 +195,7 @@ class Message:
             _wrong("entry: values", values, "a table of values as in a file")
         if name is not None and not isinstance(name, str):
             _wrong("entry: name", name, "a text")
-        return Entry(tuple(place), values, name, self.files)
+        return Entry(KeyPath(place), values, name, self.files)
 
     @property
     def files(self) -> Mapping[str, str]:

@@ -10,12 +10,12 @@ from typing import Any
 
 from equipoise.i18n import Worded, say, to_say
 from equipoise.keys import Frozen, Key, Named, Tables, Wording
+from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.outputs.declaring import declared
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.objectives import balanced_names
 from equipoise.quantities import told
 from equipoise.schema.entries import Document, entry_of, own_keys, tables_below
-from equipoise.schema.places import Place, written_place
 from equipoise.schema.writing import value_text
 from equipoise.web.completing import completed
 from equipoise.web.design import Design, pin_of
@@ -67,17 +67,17 @@ def tables_of(machine: Machine) -> Values:
     document = Document.of_machine(machine)
     of = type(machine)
     first = {"word": say(WHOLE[0]), "text": say(WHOLE[1]), "of": ""}
-    whole = _group((), of, "one", first) | {"required": True}
-    whole["entries"] = [_entry(of, document.content, ())]
+    whole = _group(KeyPath(), of, "one", first) | {"required": True}
+    whole["entries"] = [_entry(of, document.content, KeyPath())]
     bodies = {name: dict(points) for name, points in machine.bodies.items()}
-    groups = [whole, *_groups(machine, of, document.content, (), "")]
+    groups = [whole, *_groups(machine, of, document.content, KeyPath(), "")]
     found = ((name, declared(name)) for name in balanced_names(machine))
     outputs = {name: one[0].say(one[1]) for name, one in found if one is not None}
     return {"groups": groups, "forms": forms_of(of), "bodies": bodies, "outputs": outputs}
 
 
 def _groups(
-    machine: Machine, of: type[Frozen], entry: Mapping[str, Any] | None, place: Place, name: str
+    machine: Machine, of: type[Frozen], entry: Mapping[str, Any] | None, place: KeyPath, name: str
 ) -> Iterator[Values]:
     """The groups below an entry; below one that is not there they tell what has to be added first.
 
@@ -86,7 +86,7 @@ def _groups(
     for key, one in tables_below(of).items():
         inner = entry_of(one.kind)
         assert inner is not None
-        at = (*place, key)
+        at = place / key
         many = {Tables: "list", Named: "named"}.get(type(one.kind), "one")
         words = {"word": word_of(one), "text": text_of(one), "of": name}
         group = _group(at, inner.type, many, words)
@@ -106,34 +106,34 @@ def _groups(
             yield from _groups(machine, inner.type, None, at, word_of(one))
 
 
-def _group(place: Place, of: type[Frozen], many: str, words: Values) -> Values:
-    told = {"place": [*place], "where": written_place(place), "form": of.__name__}
+def _group(place: KeyPath, of: type[Frozen], many: str, words: Values) -> Values:
+    told = {"place": [*place], "where": place.shown, "form": of.__name__}
     return {**told, "many": many, "needs": "", **words}
 
 
-def _entries(held: Any, place: Place, many: str) -> Iterator[tuple[Place, Any]]:
+def _entries(held: Any, place: KeyPath, many: str) -> Iterator[tuple[KeyPath, Any]]:
     """The entries of a key, each with its place."""
     if many == "one":
         yield from [] if held is None else [(place, held)]
     elif many == "list":
-        yield from (((*place, number), one) for number, one in enumerate(held or ()))
+        yield from ((place / number, one) for number, one in enumerate(held or ()))
     else:
-        yield from (((*place, name), one) for name, one in (held or {}).items())
+        yield from ((place / name, one) for name, one in (held or {}).items())
 
 
-def _called(one: Any, place: Place) -> str:
+def _called(one: Any, place: KeyPath) -> str:
     last = place[-1]
     return f"{word_of(one)} {last + 1}" if isinstance(last, int) else word_of(one)
 
 
-def _entry(of: type[Frozen], entry: Mapping[str, Any], place: Place) -> Values:
+def _entry(of: type[Frozen], entry: Mapping[str, Any], place: KeyPath) -> Values:
     own = own_keys(of)
     values = {name: value for name, value in entry.items() if name in own}
     shown = ((one, values[name]) for name, one in own.items() if name in values)
     said = [f"{word_of(one)} {_brief(_said(one, value))}" for one, value in shown]
     return {
         "place": [*place],
-        "where": written_place(place),
+        "where": place.shown,
         "words": ", ".join(said[:MOST_WORDS]),
         "values": values,
         "below": [name for name in entry if name in tables_below(of)],

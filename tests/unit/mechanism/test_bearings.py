@@ -57,7 +57,7 @@ def test_life_uses_up_step_by_step(kind: str) -> None:
 def test_a_bearing_of_the_rating_that_is_needed_reaches_the_life_that_is_wanted() -> None:
     machine = engine()
     needed = eq.analyze(machine).rolling_bearings["C"].needed_rating
-    enough = machine.with_number(("joints", "2", "bearing", "dynamic_rating"), needed)
+    enough = machine.with_number("joints[2].bearing.dynamic_rating", needed)
     found = eq.analyze(enough).rolling_bearings["C"]
     assert found.rated_life == pytest.approx(2000 * 3600.0)
     assert found.reached == pytest.approx(0.95)

@@ -555,10 +555,10 @@ def test_the_schema_knows_what_goes_together() -> None:
 
 def test_numbers_of_bodies_and_lengths_by_their_path() -> None:
     machine = loads(TEXT)
-    steps = ("links", "rocker", "bodies", "1", "thickness")
-    thick = machine.with_number(steps, 0.010)
+    path = "links.rocker.bodies[1].thickness"
+    thick = machine.with_number(path, 0.010)
     assert thick == loads(TEXT.replace('thickness = "5 mm"', 'thickness = "10 mm"', 1))
-    longer = machine.with_number(("links", "coupler", "length"), 0.075)
+    longer = machine.with_number("links.coupler.length", 0.075)
     assert longer == loads(TEXT.replace("71.5 mm", "75 mm"))
     assert longer.links["coupler"].mass == pytest.approx(
         machine.links["coupler"].mass * 75 / 71.5,
@@ -568,8 +568,8 @@ def test_numbers_of_bodies_and_lengths_by_their_path() -> None:
 
 def test_errors_of_changed_links_tell_their_place() -> None:
     machine = loads(TEXT)
-    steps = ("links", "rocker", "bodies", "1", "width")
-    refused("links.rocker.bodies[1].width", "got -1 m", lambda: machine.with_number(steps, -1.0))
+    path = "links.rocker.bodies[1].width"
+    refused("links.rocker.bodies[1].width", "got -1 m", lambda: machine.with_number(path, -1.0))
     refused("links.rocker.mass", "cannot be", lambda: machine.with_link("rocker", mass=-1.0))
     refused("links.coupler.length", "give more", lambda: machine.with_link("coupler", length=0.0))
 
@@ -579,7 +579,7 @@ def test_what_is_given_itself_takes_the_place_of_what_told_it() -> None:
     heavy = machine.with_link("rocker", mass=1.0).links["rocker"]
     assert heavy.bodies == () and heavy.mass == 1.0
     assert heavy.inertia == machine.links["rocker"].inertia
-    moved = machine.with_number(("links", "coupler", "points", "C", "x"), 0.08)
+    moved = machine.with_number("links.coupler.points.C.x", 0.08)
     coupler = moved.links["coupler"]
     assert coupler.length is None and coupler.points["C"] == (0.08, 0.0)
     assert coupler.center_of_mass == (0.04, 0.0)  # its bar goes where its points go
@@ -618,8 +618,7 @@ def test_columns_are_designs_of_their_own(paths: list[str]) -> None:
     for k in range(2):
         alone = machine
         for path in paths:
-            steps = path.replace("[", ".").replace("]", "").split(".")
-            alone = alone.with_number(steps, COLUMNS[path][k])
+            alone = alone.with_number(path, COLUMNS[path][k])
         wanted = parameters(assemble(alone))
         for one, other in zip(found, wanted, strict=True):
             value = np.broadcast_to(one, (2, 1))[k, 0]
@@ -644,7 +643,7 @@ def test_columns_of_sides_and_what_no_machine_can_have() -> None:
     base = assemble(machine)
     columns = {"links.coupler.sides.C-P": np.array([[0.05], [0.5], [-1.0]])}
     assert wrong(with_columns(machine, columns), base, columns).tolist() == [False, True, True]
-    alone = machine.with_number(("links", "coupler", "sides", "C-P"), 0.05).links["coupler"]
+    alone = machine.with_number("links.coupler.sides.C-P", 0.05).links["coupler"]
     told = with_columns(machine, columns).links["coupler"].points["P"]
     assert [float(part[0, 0]) for part in told] == pytest.approx(alone.points["P"])
     columns = {f"{ROCKER}[3].radius": np.array([[0.05], [0.0], [-1.0]])}
@@ -693,10 +692,10 @@ def test_plates_of_columns() -> None:
     columned = with_columns(machine, columns)
     assert wrong(columned, base, columns).tolist() == [False, False, False, False]
     crossing = {"links.crank.points.B.y": np.array([[0.0], [0.05]])}
-    made = with_columns(machine.with_number(tuple(path.split(".")), 0.002), crossing)
+    made = with_columns(machine.with_number(path, 0.002), crossing)
     assert wrong(made, base, crossing).tolist() == [False, True]
     for k, value in enumerate(values):
-        alone = machine.with_number(tuple(path.split(".")), value).links["crank"]
+        alone = machine.with_number(path, value).links["crank"]
         link = columned.links["crank"]
         assert float(link.mass[k, 0]) == pytest.approx(alone.mass, rel=CLOSE)  # type: ignore[index]
         assert float(link.inertia[k, 0]) == pytest.approx(alone.inertia, rel=1e-12)  # type: ignore[index]
@@ -720,7 +719,7 @@ def test_mean_squares_by_masses_alone() -> None:
     figures, reason = MassBatch(machine, [path], [figure])(values)
     assert np.flatnonzero(reason).tolist() == [4]
     for k in (0, 3, 8199):
-        alone = machine.with_number(("links", "rocker", "bodies", "1", "thickness"), values[k, 0])
+        alone = machine.with_number(path, values[k, 0])
         wanted = eq.analyze(alone).summary["shaking_force"].rms
         assert figures[k, 0] == pytest.approx(wanted, rel=1e-6)
 
@@ -772,11 +771,11 @@ def test_the_page_shows_measures_and_keeps_bodies() -> None:
     machine: Machine = loads(MASSY)
     design = Design("mine", machine)
     fields = fields_of(design)
-    assert "links.rocker.bodies.1.thickness" in fields and "links.coupler.length" in fields
-    assert "links.rocker.bodies.3.at.x" in fields
-    hidden = {"links.rocker.mass", "links.coupler.points.C.x", "links.rocker.bodies.1.wall"}
+    assert "links.rocker.bodies[1].thickness" in fields and "links.coupler.length" in fields
+    assert "links.rocker.bodies[3].at.x" in fields
+    hidden = {"links.rocker.mass", "links.coupler.points.C.x", "links.rocker.bodies[1].wall"}
     assert not hidden & fields.keys()
-    changed = fields["links.rocker.bodies.1.thickness"].put(design, 0.007)
+    changed = fields["links.rocker.bodies[1].thickness"].put(design, 0.007)
     assert changed.own.links["rocker"].bodies[0].thickness == 0.007
     weighted = design.with_weight("rocker", Counterweight(0.1, 0.05, pi)).machine
     assert weighted.links["rocker"].bodies[:3] == machine.links["rocker"].bodies

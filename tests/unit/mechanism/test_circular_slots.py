@@ -213,7 +213,7 @@ def test_the_page_has_its_form_and_moves_it(tmp_path: Path) -> None:
     eq.save(MACHINE, tmp_path / "mine.toml")
     session.open(opened_file(tmp_path / "mine.toml"))
     content = state(ask(session, "ready")[1])
-    assert content.field("circular_slots.1.radius")["value"] == 0.08
+    assert content.field("circular_slots[1].radius")["value"] == 0.08
     before = content.place("C")
     values = {"link": "coupler", "point": "C", "on": "frame", "center": "D", "radius": "80.5 mm"}
     told = ask(session, "entry", place=["circular_slots", 0], values=values, seq=1)

@@ -451,7 +451,7 @@ def test_the_page_has_its_form_and_moves_it(tmp_path: Path) -> None:
     eq.save(in_curve(circle(12)), tmp_path / "mine.toml")
     session.open(opened_file(tmp_path / "mine.toml"))
     content = state(ask(session, "ready")[1])
-    assert content.field("curved_slots.1.direction")["value"] == 0
+    assert content.field("curved_slots[1].direction")["value"] == 0
     before = content.place("C")
     points = [[f"{1.01e3 * x} mm", f"{1e3 * y} mm"] for x, y in circle(12)]
     values = {"link": "coupler", "point": "C", "on": "frame", "origin": "D", "points": points,

@@ -138,7 +138,7 @@ def test_what_is_drawn_keeps_properties_and_names() -> None:
     state(ask(session, "make", do="rename", what="point", name="E", to="K", at=0)[0])
     assert joints() == [("joints.A", 0.007), ("joints.K", 0.005)]
     content = state(ask(session, "ready")[1]).content
-    assert {"joints.1.radius", "joints.2.radius"} <= {one["path"] for one in content["fields"]}
+    assert {"joints[1].radius", "joints[2].radius"} <= {one["path"] for one in content["fields"]}
 
 
 @pytest.mark.parametrize(

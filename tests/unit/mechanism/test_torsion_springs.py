@@ -108,7 +108,7 @@ def test_loops_know_designs_by_all_their_numbers() -> None:
         torques, angles = list(ROWS[1]), list(ROWS[0])
         torques[2], angles[1] = torque, start
         second = replace(TABLED, torques=tuple(torques), angles=tuple(angles))
-        design = sprung(first, second).with_number(("links", "rocker", "points", "C", "x"), x)
+        design = sprung(first, second).with_number("links.rocker.points.C.x", x)
         summary = eq.analyze(design, 90).summary
         np.testing.assert_allclose(row, [summary[name].peak for name in names], rtol=1e-9)
 
@@ -189,7 +189,7 @@ def test_the_page_has_forms_and_numbers_of_them() -> None:
     values = {"link": "rocker", "stiffness": "2 N m/rad", "angle": "80 deg"}
     told = ask(session, "entry", place=["torsion_springs", 0], values=values, seq=1)
     content = state(told[0]).content
-    assert "torsion_springs.1.stiffness" in {one["path"] for one in content["fields"]}
+    assert "torsion_springs[1].stiffness" in {one["path"] for one in content["fields"]}
     assert session.shown.design.machine.torsion_springs[0].stiffness == 2.0
     wrong = {"link": "rocker"}
     told = ask(session, "entry", place=["torsion_springs", 1], values=wrong, seq=2)

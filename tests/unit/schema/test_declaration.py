@@ -14,6 +14,7 @@ from equipoise.errors import ModelError
 from equipoise.handheld import design_plan, shaft, station
 from equipoise.handheld import model as tool
 from equipoise.keys import Frozen, Number, Table, Tables, Text, declared, key, wrong_values
+from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.parts import (
     balance,
     bodies,
@@ -97,7 +98,7 @@ BRAKE = {"link": "crank", "torque": "2 N m", "drag": "0.015 N m", "lining": "sin
 
 def read(given: dict[str, Any]) -> Brake:
     """As a table [brake] of a file; numbers are checked as those of a machine are."""
-    brake: Brake = read_table(Brake, given, Context(), ("brake",))
+    brake: Brake = read_table(Brake, given, Context(), KeyPath(("brake",)))
     for wrong in wrong_values("brake", brake):
         raise wrong
     return brake
@@ -233,7 +234,7 @@ def test_a_new_key_is_reached_by_its_path(text: str) -> None:
     assert made.springs[0].loss == 7.5
     machine = loads(text)
     design = Design(machine, machine)
-    field = fields_of(design)["springs.1.loss"]
+    field = fields_of(design)["springs[1].loss"]
     assert (field.label, field.dimension) == ("C to A, loss", "damping")
     own: Any = field.put(design, 4.0).own
     assert own.springs[0].loss == 4.0

@@ -60,7 +60,7 @@ def test_names_with_dots_are_names() -> None:
     machine = eq.load("yamashita-1")
     links = {f"{name}.x": link for name, link in machine.links.items()}
     dotted = replace(machine, links=links, drive=replace(machine.drive, link="crank.x"))
-    field = fields_of(Design("dotted", dotted))["links.crank.x.points.B.x"]
+    field = fields_of(Design("dotted", dotted))['links."crank.x".points.B.x']
     assert field.put(Design("", dotted), 0.04).own.links["crank.x"].points["B"] == (0.04, 0.0)
 
 
@@ -71,7 +71,7 @@ def test_planes_of_links_and_points_are_fields() -> None:
     made = fields["links.crank.planes.B1"].put(Design("", machine), -0.03).own
     assert made.links["crank"].planes["B1"] == -0.03
     assert (
-        fields["links.crank.bodies.2.plane"].put(Design("", machine), -0.05).own.mass
+        fields["links.crank.bodies[2].plane"].put(Design("", machine), -0.05).own.mass
         == machine.mass
     )
 
@@ -91,5 +91,5 @@ def test_numbers_of_couplings_are_called_by_their_words() -> None:
     """Start alone would not say of what."""
     session, _ = opened("knife-drive")
     labels = {path: field.label for path, field in fields_of(session.shown.design).items()}
-    assert labels["belts.1.start"] == "shaft to crank, angle at the start"
-    assert labels["racks.1.travel"] == "sector to knife, travel at the start"
+    assert labels["belts[1].start"] == "shaft to crank, angle at the start"
+    assert labels["racks[1].travel"] == "sector to knife, travel at the start"

@@ -21,7 +21,7 @@ from equipoise.schema.template import Template
 from equipoise.symbols.scene import Scene
 from equipoise.web.drawing import stage_of
 from equipoise.web.following_signs import ties_of
-from equipoise.web.interactive import Interactive, column_path
+from equipoise.web.interactive import Interactive
 from support import machines
 from support.chosen import DISTINCT, few
 from support.interactive import NODE, evaluated
@@ -103,13 +103,12 @@ def test_changed_numbers_are_those_of_a_changed_machine(name: str, tmp_path: Pat
     """Every number changed at once, by as much as lets the machine turn."""
     machine = eq.load(name)
     template = Template.of(machine)
-    by_column = {column_path(path): path for path in template.numbers()}
     random = np.random.default_rng(7)
     given = {}
     for path in Interactive(machine).script.paths:
-        value = template.number(by_column[path])[0]
+        value = template.number(path)[0]
         given[path] = float(value * (1 + 2e-3 * random.uniform(-1, 1)))
-    changed = template.machine({by_column[path]: value for path, value in given.items()})
+    changed = template.machine(given)
     got = evaluated(page_of(machine), AFTER, tmp_path, given)
     assert got["refusal"] is None
     compare(got["figures"], eq.analyze(changed), 1e-9)
@@ -286,14 +285,12 @@ def test_signs_follow_the_numbers(name: str, tmp_path: Path) -> None:
     low, high = Scene.of(eq.analyze(machine).motion).box
     same = evaluated(html, DRAWN, tmp_path, {})["signs"]
     compare_drawings(same, Interactive(machine).content["scene"]["signs"], abs(high - low))
-    by_column = {column_path(path): path for path in template.numbers()}
     random = np.random.default_rng(3)
     paths = [path for path in Interactive(machine).script.paths if ".bodies[" not in path]
     given = {
-        path: float(template.number(by_column[path])[0] * (1 + 2e-3 * random.uniform(-1, 1)))
-        for path in paths
+        path: float(template.number(path)[0] * (1 + 2e-3 * random.uniform(-1, 1))) for path in paths
     }
-    changed = template.machine({by_column[path]: value for path, value in given.items()})
+    changed = template.machine(given)
     got = evaluated(html, DRAWN, tmp_path, given)
     assert got["refusal"] is None
     scene = Scene.of(eq.analyze(changed).motion)

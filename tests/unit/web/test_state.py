@@ -42,7 +42,7 @@ def test_arrays_are_those_of_the_analysis() -> None:
 def test_rows_add_up_as_their_phases_say() -> None:
     """The sum of one row's signal, read as far ahead as each row's crank is."""
     session, _ = opened("four-row-transplanter")
-    shown = edit(session, {"set": "rows.2.phase", "text": "75 deg"})
+    shown = edit(session, {"set": "rows[2].phase", "text": "75 deg"})
     rows = session.shown.design.machine.rows
     for name, read in (("shaking_force", shown.vector), ("drive_torque", shown.array)):
         one = read(name)

@@ -10,6 +10,7 @@ import pytest
 import equipoise as eq
 from equipoise.i18n import speaking
 from equipoise.keys import Frozen, Named, Quantity, Tables
+from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.quantities import parse, showing
 from equipoise.schema.entries import Document, entry_of, own_keys, tables_below
@@ -51,7 +52,7 @@ def test_each_entry_put_back_as_its_form_has_it_leaves_the_machine_as_it_was(nam
         known = {control["key"] for control in told["forms"][one["form"]]["controls"]}
         for entry in one["entries"]:
             assert known >= entry["values"].keys()
-            assert document.put(tuple(entry["place"]), entry["values"]).machine() == machine
+            assert document.put(KeyPath(entry["place"]), entry["values"]).machine() == machine
 
 
 def test_each_table_that_a_file_can_have_is_offered() -> None:
@@ -158,7 +159,7 @@ def test_a_spring_is_added_changed_and_deleted_each_as_one_step() -> None:
     session, first = opened("yamashita-1")
     added = state(enter(session, ["springs", 0], SPRING)[0])
     assert added.content["undo"] == "entry"
-    assert added.field("springs.1.stiffness")["value"] == 2000.0
+    assert added.field("springs[1].stiffness")["value"] == 2000.0
     (entry,) = group(tables(session), "springs")["entries"]
     assert entry["words"] == "link rocker, point C, other point A, stiffness 2000 N/m"
     enter(session, ["springs", 0], {**SPRING, "free_length": "30 mm"})
@@ -168,7 +169,7 @@ def test_a_spring_is_added_changed_and_deleted_each_as_one_step() -> None:
     gone = state(enter(session, ["springs", 0], None)[0])
     assert gone.block.tobytes() == first.block.tobytes()
     back = state(ask(session, "undo")[0])
-    assert back.field("springs.1.free_length")["value"] == 0.03
+    assert back.field("springs[1].free_length")["value"] == 0.03
 
 
 def test_mounts_have_names_which_can_change() -> None:

@@ -10,7 +10,6 @@ refused for is here a design of which `refusing.wrong` is true.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from contextlib import suppress
 from dataclasses import replace
@@ -19,7 +18,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from equipoise.errors import UsageError
+from equipoise.errors import ModelError, UsageError
 from equipoise.keys import (
     Frozen,
     Quantity,
@@ -29,6 +28,7 @@ from equipoise.keys import (
     quantities_of,
     with_fields,
 )
+from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.assembly.joints import Structure, all_sliders
 from equipoise.mechanism.assembly.linkage import Linkage, ordered
 from equipoise.mechanism.assembly.steps import (
@@ -185,52 +185,59 @@ def column(values: Iterable[Any]) -> Array:
 Columns = Mapping[str, Array]
 """Path of a number -> its values (P, 1), SI units."""
 Value = TypeVar("Value")
+Part = str | tuple[str, int]
+"""Key of a number, or of a list of numbers and the place in it."""
 
 PAIR = {"x", "y", "distance", "direction"}
 
 
-HOLDERS: Mapping[str, Set[str] | None] = {
-    r"(drive)": {"speed", "acceleration"},
-    r"(gravity)": PAIR,
-    r"(frame)\.(points)\.(.+)": PAIR,
-    r"(links)\.(.+?)\.(points)\.(.+)": PAIR,
-    r"(links)\.(.+)\.(center_of_mass)": PAIR,
-    r"(links)\.(.+)\.(bodies)\[([1-9]\d*)\]\.(at)": PAIR,
-    r"(links)\.(.+)\.(bodies)\[([1-9]\d*)\]": {*quantities_of(Body)},
-    r"(links)\.(.+)\.(sides)": None,
-    r"(links)\.(.+)\.(planes)": None,
-    r"(links)\.(.+)": {"mass", "inertia", "length", "plane"},
-    r"(bearings)\.(.+)": {"plane"},
-    r"(sliders)\[([1-9]\d*)\]": {"direction", "angle"},
+HOLDERS: Mapping[tuple[str | type, ...], Set[str] | None] = {
+    ("drive",): {"speed", "acceleration"},
+    ("gravity",): PAIR,
+    ("frame", "points", str): PAIR,
+    ("links", str, "points", str): PAIR,
+    ("links", str, "center_of_mass"): PAIR,
+    ("links", str, "bodies", int, "at"): PAIR,
+    ("links", str, "bodies", int): {*quantities_of(Body)},
+    ("links", str, "sides"): None,
+    ("links", str, "planes"): None,
+    ("links", str): {"mass", "inertia", "length", "plane"},
+    ("bearings", str): {"plane"},
+    ("sliders", int): {"direction", "angle"},
 }
-"""What has numbers that may be columns, by its path in the model file, and their keys; None where
-these are names.  Couplings tell theirs, and all quantities of elements may."""
+"""What has numbers that may be columns, by its path in the model file (`KeyPath.matches`), and
+their keys; None where these are names.  Couplings tell theirs, and all quantities of elements may.
+"""
 
 
-_LISTED = re.compile(r"\[[1-9]\d*\]$")
-"""Place in a list of numbers."""
-
-
-def _listed_holders(of: type[Frozen]) -> Iterator[tuple[str, Set[str]]]:
+def _listed_holders(of: type[Frozen]) -> Iterator[tuple[tuple[str | type, ...], Set[str]]]:
     """As `HOLDERS`, of the couplings and elements of a class of machines."""
     for table, coupling in coupling_kinds(of).items():
         for inner, keys in coupling.columns.items():
-            yield rf"({table})\[([1-9]\d*)\]" + (rf"\.({inner})" if inner else ""), keys
+            yield (table, int, inner) if inner else (table, int), keys
     for table, kind in element_kinds(of).items():
         known = keys_of(kind).items()
-        names = {name for name, one in known if isinstance(innermost(one.kind), Quantity)}
-        yield rf"({table})\[([1-9]\d*)\]", names
+        yield (
+            (table, int),
+            {name for name, one in known if isinstance(innermost(one.kind), Quantity)},
+        )
 
 
-def _holder(whole: str, parts: Set[str], of: type[Frozen] = Machine) -> tuple[str, ...]:
-    """The steps to what has these numbers; a `KeyError` where they may be no columns."""
+def _check_holder(whole: KeyPath, parts: Set[Part], of: type[Frozen] = Machine) -> None:
+    """A `KeyError` where what stands at a path has no such numbers that may be columns."""
+    names = {part if isinstance(part, str) else part[0] for part in parts}
     for pattern, keys in (*HOLDERS.items(), *_listed_holders(of)):
-        found = re.fullmatch(pattern, whole)
-        if found is not None and (
-            keys is None or {_LISTED.sub("", part) for part in parts} <= keys
-        ):
-            return found.groups()
-    raise KeyError(whole)
+        if whole.matches(pattern) and (keys is None or names <= keys):
+            return
+    raise KeyError(str(whole))
+
+
+def _split(path: KeyPath) -> tuple[KeyPath, Part]:
+    """What holds a number, and which of its numbers it is."""
+    *_, name, last = ("", "", *path)
+    if isinstance(last, int):
+        return path.begin(-2), (str(name), last)
+    return path.parent, last
 
 
 def can_vary(machine: Machine, path: str) -> bool:
@@ -251,25 +258,34 @@ def with_columns(machine: Machine, columns: Columns) -> Machine:
     ------
     UsageError : there is no such number, or it cannot be a column.
     """
-    parts: dict[str, dict[str, Array]] = {}
+    held: dict[KeyPath, dict[Part, Array]] = {}
     for path, column in columns.items():
-        whole, _, part = path.rpartition(".")
-        parts.setdefault(whole, {})[part] = column
-    for whole, found in parts.items():
+        whole, part = _split(_path(path))
+        held.setdefault(whole, {})[part] = column
+    for whole, parts in held.items():
         try:
-            steps = _holder(whole, found.keys(), type(machine))
-            machine = changed(machine, steps, partial(_filled, found), with_fields)
+            _check_holder(whole, parts.keys(), type(machine))
+            machine = changed(machine, whole, partial(_filled, parts), with_fields)
             _check_outlines(machine)
             _check_shapes(machine)
         except (KeyError, IndexError):
-            told = " and ".join(f"{whole}.{part}".lstrip(".") for part in found)
-            raise UsageError(
-                f"got {told}; the machine has no such number that can be a column"
-            ) from None
+            paths = (KeyPath((*whole, *((one,) if isinstance(one, str) else one))) for one in parts)
+            raise _no_column(" and ".join(map(str, paths))) from None
     return machine
 
 
-def _filled(parts: Mapping[str, Array], held: Any) -> Any:
+def _path(text: str) -> KeyPath:
+    try:
+        return KeyPath.parse(text)
+    except ModelError:
+        raise _no_column(text) from None
+
+
+def _no_column(paths: str) -> UsageError:
+    return UsageError(f"got {paths}; the machine has no such number that can be a column")
+
+
+def _filled(parts: Mapping[Part, Array], held: Any) -> Any:
     """What holds numbers with columns for some of them, which have to be given."""
     if isinstance(held, tuple):
         return _pair(held, parts)
@@ -279,13 +295,13 @@ def _filled(parts: Mapping[str, Array], held: Any) -> Any:
         raise KeyError
     fields: dict[str, Any] = {}
     for part, column in parts.items():
-        name, _, place = part.rstrip("]").partition("[")
+        name, place = (part, None) if isinstance(part, str) else part
         value = fields.get(name, getattr(held, name))
-        if value is None or bool(place) != isinstance(value, tuple):
+        if value is None or (place is not None) != isinstance(value, tuple):
             raise KeyError
-        if place and int(place) > len(value):
+        if place is not None and place >= len(value):
             raise KeyError
-        fields[name] = (*value[: int(place) - 1], column, *value[int(place) :]) if place else column
+        fields[name] = column if place is None else (*value[:place], column, *value[place + 1 :])
     return with_fields(held, **held.following(fields))
 
 
@@ -306,7 +322,7 @@ def _check_shapes(machine: Machine) -> None:
             raise KeyError
 
 
-def _pair(place: Vector, parts: Mapping[str, Array]) -> tuple[Any, Any]:
+def _pair(place: Vector, parts: Mapping[Any, Array]) -> tuple[Any, Any]:
     """A pair with coordinates, or polar coordinates, replaced; x and y go by what is there then."""
     x: Any
     y: Any
@@ -335,11 +351,13 @@ def joints_of(machine: Machine, base: Linkage) -> Structure:
 
 def massive_link(path: str) -> str | None:
     """The link whose mass, centre of mass or moment of inertia a path leads to."""
-    whole, _, part = path.rpartition(".")
-    with suppress(KeyError):
-        match _holder(whole, {part}):
-            case ("links", link) if part not in ("length", "plane"):
+    with suppress(KeyError, ModelError):
+        steps = KeyPath.parse(path)
+        whole, part = _split(steps)
+        _check_holder(whole, {part})
+        match whole:
+            case ("links", str(link)) if part not in ("length", "plane"):
                 return link
-            case ("links", link, "center_of_mass" | "bodies", *_):
+            case ("links", str(link), "center_of_mass" | "bodies", *_):
                 return link
     return None

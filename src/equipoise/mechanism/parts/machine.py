@@ -6,7 +6,7 @@ with; what it cannot do (turn fully, close) is found by `mechanism.assembly.link
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
 from math import lcm
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -30,6 +30,7 @@ from equipoise.keys import (
     declared,
     key,
 )
+from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.checks import (
     FRAME,
     SIDES,
@@ -329,10 +330,11 @@ class Machine(Driven, Displayed, Frozen):
         changed = replace(self, drive=replace(self.drive, **changes))
         return self._same_motion(changed, not {*changes} & {*MOVING})
 
-    def with_number(self, steps: Sequence[str], number: float) -> Machine:
-        """Return the machine with another number, by the keys and names on the way to it such as
-        ``links``, ``crank``, ``mass`` or ``springs``, ``1``, ``stiffness``, in SI units.
+    def with_number(self, path: str | KeyPath, number: float) -> Machine:
+        """Return the machine with another number, by its path such as ``links.crank.mass`` or
+        ``springs[1].stiffness``, in SI units.
         """
+        steps = KeyPath.of(path)
         first, last = steps[0], steps[-1]
 
         def put(_: Any) -> float:
@@ -342,7 +344,7 @@ class Machine(Driven, Displayed, Frozen):
         still = first in STILL or first in force_kinds(type(self))
         same = massive or still or last == "speed"
         if first == "links":
-            found = self._with_link(steps[1], lambda link: changed(link, steps[2:], put))
+            found = self._with_link(str(steps[1]), lambda link: changed(link, steps[2:], put))
         else:
             found = changed(self, steps, put)
         return self._same_motion(found, same)
