@@ -18,6 +18,7 @@ from equipoise.mechanism.dynamics.assessment import FourBar, four_bar, remarks
 from equipoise.mechanism.dynamics.bearing_life import BearingLife, bearing_lives
 from equipoise.mechanism.dynamics.cam_contacts import CamFigures, cam_figures
 from equipoise.mechanism.dynamics.forces import Forces, forces, massless
+from equipoise.mechanism.dynamics.link_stress import LinkStress, link_stresses
 from equipoise.mechanism.dynamics.losses import Losses, losses_of
 from equipoise.mechanism.dynamics.undecided import undecided
 from equipoise.mechanism.formulas import kernels
@@ -141,6 +142,13 @@ class Analysis(Result):
         crank angles are no whole cycle.
         """
         return {} if self.solved is None else bearing_lives(self.resolved.forces)
+
+    @cached_property
+    def sections(self) -> Mapping[str, LinkStress]:
+        """Stress, buckling and life of links whose section is given, by link; none where the crank
+        is not turned evenly, or the crank angles are no whole cycle.
+        """
+        return {} if self.solved is None else link_stresses(self.resolved.forces)
 
     @cached_property
     def outputs(self) -> Outputs:

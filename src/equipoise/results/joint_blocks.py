@@ -18,6 +18,7 @@ from equipoise.results.bearing_blocks import bearing_blocks
 from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Value
 from equipoise.results.friction_blocks import friction_blocks
 from equipoise.results.machine_blocks import largest, smallest
+from equipoise.results.section_blocks import section_blocks
 
 if TYPE_CHECKING:
     from equipoise.mechanism.dynamics.forces import Forces
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
 
 
 def joint_blocks(analysis: Analysis) -> Iterator[Block]:
-    """Forces in joints, of which of them statics does not tell, friction and bearings."""
+    """Forces in joints, which of them statics leaves open, friction, bearings, stress in links."""
     if analysis.forces.joints or analysis.forces.gears:
         yield joint_table(analysis)
     told = [*undecided(analysis.motion.linkage).told()]
@@ -36,6 +37,7 @@ def joint_blocks(analysis: Analysis) -> Iterator[Block]:
         yield Notes(tuple(told))
     yield from friction_blocks(analysis)
     yield from bearing_blocks(analysis)
+    yield from section_blocks(analysis)
 
 
 def elements_tables(analysis: Analysis) -> Iterator[Table]:

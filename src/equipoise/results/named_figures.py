@@ -7,10 +7,12 @@ from typing import Any
 
 from equipoise.mechanism.dynamics.bearing_life import BearingLife
 from equipoise.mechanism.dynamics.cam_contacts import CamFigures
+from equipoise.mechanism.dynamics.link_stress import LinkStress
 from equipoise.mechanism.kinematics.stroke_figures import declared_figures
 from equipoise.quantities import Dimension
 
-NAMED_FIGURES: dict[str, type] = {"cams": CamFigures, "rolling_bearings": BearingLife}
+NAMED_FIGURES: dict[str, type] = {"cams": CamFigures, "rolling_bearings": BearingLife,
+                                  "sections": LinkStress}  # fmt: skip
 """Classes with declared figures by attribute of an `Analysis`, which maps names to them, and key
 of the JSON object."""
 

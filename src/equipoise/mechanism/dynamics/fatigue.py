@@ -42,6 +42,9 @@ class LoadCycles:
 def reversals(load: Array) -> Array:
     """Values (K,) at which a load (N,) turns back, with the first and the last one."""
     load = np.asarray(load, float)
+    if load.size > 2:  # most values lie on the way up or down
+        turns = np.diff(load)[:-1] * np.diff(load)[1:] <= 0
+        load = load[np.concatenate([[True], turns, [True]])]
     least = SMALL * float(np.max(np.abs(load), initial=0.0))
     kept: list[float] = []
     for value in load.tolist():

@@ -41,6 +41,7 @@ from equipoise.mechanism.dynamics.reactions import (
     pushed,
     reactions,
 )
+from equipoise.mechanism.dynamics.section_loads import SectionLoads, section_loads
 from equipoise.mechanism.dynamics.shares import CAUSES, Split
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.kinematics.motion import Motion
@@ -125,6 +126,16 @@ class Forces(Exerted, Displayed):
     def plain_bearings(self) -> Mapping[str, PlainBearing]:
         """Pressure in pins whose radius and width are given, by name."""
         return plain_bearings(self.motion, self.joints)
+
+    @cached_property
+    def sections(self) -> Mapping[str, SectionLoads]:
+        """Loads along links whose section is given, by link."""
+        links = self.motion.machine.links.items()
+        return {
+            name: section_loads(self.motion, self.solved, name)
+            for name, link in links
+            if link.section is not None
+        }
 
     @property
     def friction_loss(self) -> Array:

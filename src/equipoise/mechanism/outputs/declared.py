@@ -365,6 +365,15 @@ of_plain_bearing("pressure", "modulus", to_say("pressure in joint {name}"))
 of_plain_bearing("pressure_speed", "pressure times speed",
                  to_say("pressure times sliding speed in joint {name}"))  # fmt: skip
 
+of_section = alike(
+    "links.{}.",
+    lambda name, found, link: getattr(found.forces.sections[link], name),
+    members=lambda machine: [name for name, one in machine.links.items() if one.section],
+)
+of_section("stress", "modulus", to_say("largest stress along {name}"))
+of_section("axial_force", "force", to_say("largest axial force along {name}"))
+of_section("bending_moment", "torque", to_say("largest bending moment along {name}"))
+
 
 def _members_of(table: str) -> dict[str, Any]:
     return {

@@ -29,6 +29,7 @@ from equipoise.keys import (
 from equipoise.mechanism.checks import FRAME, Vector, unknown, unknown_point
 from equipoise.mechanism.parts.bodies import Body, together, weighed
 from equipoise.mechanism.parts.body_checks import demands, wrong_bodies
+from equipoise.mechanism.parts.sections import LinkSection, wrong_section
 
 MASS_FIELDS = {"mass", "center_of_mass", "inertia"}
 FLAT = 1e-12
@@ -101,6 +102,11 @@ class Link(Frozen):
         factory=dict,
         above=0,
         word=to_say("side {name}"),
+    )
+    section: LinkSection | None = key(
+        Table(LinkSection, headed=True),
+        "cross-section and material, by which stress along the link is computed",
+        default=None,
     )
     plane: float = key("length", "z of the plane in which it moves", default=0.0)
     planes: Mapping[str, float] = key(
@@ -306,6 +312,8 @@ def wrong_link(where: str, name: str, link: Link) -> Iterator[ModelError]:
     yield from wrong_points(where, link.points)
     for point in link.planes:
         yield from unknown_point(f"{where}.planes", point, name, {name: link.points})
+    if link.section is not None:
+        yield from wrong_section(f"{where}.section", name, link.points, link.section)
     given = {"mass": link.mass, "center_of_mass": link.center_of_mass, "inertia": link.inertia}
     missing = [key for key, value in given.items() if value is None]
     if 0 < len(missing) < 3:

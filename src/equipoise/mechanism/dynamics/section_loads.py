@@ -1,0 +1,233 @@
+"""Axial force, shear force and bending moment along a link, and the stress that they make.
+
+The link is cut across the line between two of its points.  Joints, springs, loads and drives act at
+their places; a place beside the line, or beyond its ends, is joined to it by a rigid arm.  Mass
+lies along the line as a uniform rod with a lump at each end: the three masses that have the link's
+mass, centre of mass and moment of inertia, beside the line by as much as its centre of mass.  What
+acts on the part before a cut, with weight and inertia, is held by what the part behind it exerts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import chain
+from typing import Any
+
+import numpy as np
+
+from equipoise.mechanism.assembly.steps import Array, p, planar
+from equipoise.mechanism.dynamics import acting
+from equipoise.mechanism.dynamics.friction import direction
+from equipoise.mechanism.dynamics.reactions import PUSH, TORQUE, Acting, Pass, full
+from equipoise.mechanism.formulas.kernels import cross
+from equipoise.mechanism.kinematics.motion import Motion
+from equipoise.mechanism.kinematics.pushing import pushes
+from equipoise.mechanism.kinematics.rubbing import rubbing_joints
+from equipoise.mechanism.parts.sections import LinkSection
+
+CUTS = 41
+"""Places along a link at which it is cut, beside those where something acts."""
+SAME_PLACE = 9
+"""Digits of a place, over the length of the line, beyond which two are the same."""
+NO_FORCE = np.zeros((), complex)
+FIBRES = ("left", "right")
+"""Outermost fibres, as one looks from the first point to the second."""
+
+
+@dataclass(frozen=True)
+class MassAlongLine:
+    """Mass of a link along its line: a uniform rod and a lump at each end, kg.
+
+    aside : by which all of it lies to the left of the line, m.
+    """
+
+    rod: float
+    first: float
+    last: float
+    aside: float
+
+    @classmethod
+    def of(cls, mass: float, center: complex, inertia: float, length: float) -> MassAlongLine:
+        """With a mass, its centre from the first point along and beside the line, and its moment
+        of inertia about that centre.
+        """
+        moment = mass * center.real
+        rod = 6 * (moment * length - inertia - mass * center.real**2) / length**2
+        last = (moment - rod * length / 2) / length
+        return cls(rod, mass - rod - last, last, center.imag)
+
+
+@dataclass(frozen=True, eq=False)
+class SectionLoads:
+    """Loads in cuts of a link: (K, N) over places and crank angles.
+
+    section : of the link.  length : of its line, m.  mass : along it.
+    places : from its first point, m; twice where something acts: before and behind.  The last is
+        behind all of the link, where nothing is left to be held.
+    axial : force, N, positive in tension.  shear : force, N, and
+    bending : moment, N m, that the part behind a cut exerts on the part before it; the force is
+        positive to the left of the line, the moment counterclockwise.
+    fixed : (K,) whether a place is the same at all crank angles.
+    """
+
+    section: LinkSection
+    length: float
+    mass: MassAlongLine
+    places: Array
+    axial: Array
+    shear: Array
+    bending: Array
+    fixed: Array
+
+    @cached_property
+    def stresses(self) -> Array:
+        """Normal stress (2, K, N) in the left and the right outermost fibre, Pa."""
+        of = self.section
+        bent = self.bending * of.outermost / of.second_moment
+        drawn = self.axial / of.area
+        return of.stress_concentration * np.array([drawn - bent, drawn + bent])
+
+    @property
+    def stress(self) -> Array:
+        """Largest size of the normal stress anywhere along the link (N,), Pa."""
+        return np.asarray(np.max(np.abs(self.stresses), axis=(0, 1)))
+
+    @property
+    def bending_moment(self) -> Array:
+        """Largest size of the bending moment along the link (N,), N m."""
+        return np.asarray(np.max(np.abs(self.bending), axis=0))
+
+    @property
+    def axial_force(self) -> Array:
+        """The axial force (N,) that is largest in size along the link, N."""
+        at = np.argmax(np.abs(self.axial), axis=0)
+        return np.asarray(np.take_along_axis(self.axial, at[None], axis=0)[0])
+
+
+def section_loads(motion: Motion, solved: Pass, link: str) -> SectionLoads:
+    """Loads along a link with a section.
+
+    solved : forces in all joints, by which the link moves as it does.
+    """
+    body = motion.machine.links[link]
+    assert body.section is not None and body.center_of_mass is not None
+    first, second = (planar(body.points[name]) for name in body.section.ends(body.points))
+    length, along = abs(second - first), (second - first) / abs(second - first)
+    turn = full(motion, motion.state[f"u({link})"], complex) * along
+    begin = motion.state[f"p({motion.linkage.anchors[link]})"]
+    begin = begin + turn / along * (first - planar(body.points[motion.linkage.anchors[link]]))
+    center = (planar(body.center_of_mass) - first) / along
+    mass = MassAlongLine.of(body.mass or 0.0, center, body.inertia or 0.0, length)
+    still, growing = _field(motion, link, turn, begin, mass.aside)
+    at: list[Array] = []
+    ends: list[tuple[Array, Array, Array]] = []
+    for place, force, torque in _acting_on(motion, solved, link):
+        spot = full(motion, (place - begin) / turn, complex)
+        inside = np.round(np.clip(spot.real / length, 0.0, 1.0), SAME_PLACE) * length
+        own = full(motion, force / turn, complex)
+        at.append(inside)
+        ends.append((inside, own, full(motion, torque, float) + cross(spot - inside, own)))
+    for lump, end in ((mass.first, 0.0), (mass.last, length)):
+        own = lump * (still + growing * end)
+        ends.append((np.full(len(turn), end), own, cross(1j * mass.aside, own)))
+    grid = np.linspace(0.0, length, CUTS)
+    cuts = [(np.full(len(turn), s), False) for s in grid]
+    cuts += [(s, behind) for s in at for behind in (False, True)]
+    cuts.append((np.full(len(turn), length), True))
+    loads = [_cut(s, behind, ends, (still, growing), mass, length) for s, behind in cuts]
+    axial, shear, bending = np.moveaxis(np.array(loads), 1, 0)
+    places = np.array([s for s, _ in cuts])
+    fixed = np.array([True] * CUTS + [bool(np.ptp(s) == 0) for s, _ in cuts[CUTS:]])
+    return SectionLoads(body.section, length, mass, places, axial, shear, bending, fixed)
+
+
+def _field(
+    motion: Motion, link: str, turn: Array, begin: Array, aside: float
+) -> tuple[Array, Array]:
+    """Weight less inertia of a unit of mass, in the axes of the line: at its begin, and by how much
+    it grows along a unit of it (N,), m/s2 and 1/s2.
+    """
+    state, anchor = motion.state, motion.linkage.anchors[link]
+    _, rate, curving = (state[name] for name in p(anchor))
+    speed, gain = motion.speed, motion.acceleration
+    turning = full(motion, state[f"w({link})"] * speed, float)
+    spinning = full(motion, motion.links[link].angular_acceleration, float)
+    growing = turning**2 - 1j * spinning
+    # of the anchor, and from there to the begin of the line
+    moved = (rate * gain + curving * speed**2) / turn
+    from_anchor = (begin - state[f"p({anchor})"]) / turn
+    still = complex(*motion.machine.gravity) / turn - moved + growing * (from_anchor + 1j * aside)
+    return full(motion, still, complex), full(motion, growing, complex)
+
+
+def _cut(
+    s: Array,
+    behind: bool,
+    ends: list[tuple[Array, Array, Array]],
+    field: tuple[Array, Array],
+    mass: MassAlongLine,
+    length: float,
+) -> tuple[Array, Array, Array]:
+    """Axial force, shear force and moment (N,) at places (N,), before or behind what acts there."""
+    (q, k), density = field, mass.rod / length
+    force = density * (q * s + k * s**2 / 2)
+    moment = -density * (q.imag * s**2 / 2 + k.imag * s**3 / 6) - mass.aside * force.real
+    for place, own, torque in ends:
+        counts = place <= s if behind else (place < s)
+        force = force + counts * own
+        moment = moment + counts * (torque + (place - s) * own.imag)
+    return -force.real, -force.imag, -moment
+
+
+def _acting_on(motion: Motion, solved: Pass, link: str) -> Iterator[tuple[Any, Any, Any]]:
+    """Place, force and torque of all that acts on a link but for its weight."""
+    state = solved.state
+    for reaction in motion.linkage.reactions:
+        for body, sign in ((reaction.on, 1.0), (reaction.by, -1.0)):
+            if body == link:
+                couple = 0.0 if reaction.couple is None else state[reaction.couple]
+                yield state[f"p({reaction.at})"], sign * state[reaction.force], sign * couple
+    beside: Iterator[Acting] = chain(
+        acting.acting_loads(motion),
+        acting.acting_elements(motion),
+        *(ends for _, ends in acting.acting_preloads(motion)),
+        _driving(motion, solved),
+        _rubbing(motion, solved),
+    )
+    anchor = state[f"p({motion.linkage.anchors[link]})"]
+    for body, point, force, torque in beside:
+        if body == link:
+            named = isinstance(point, str)
+            place = anchor if point is None else motion.point(point).place if named else point
+            yield place, force, torque
+
+
+def _driving(motion: Motion, solved: Pass) -> Iterator[Acting]:
+    """What drives and the flywheel exert."""
+    machine, state = motion.machine, solved.state
+    for drive in machine.driven:
+        if drive.pushes:
+            for body, place, way in pushes(motion, drive):
+                yield body, place, state[PUSH.format(drive.link)] * way, 0.0
+        else:
+            yield drive.link, None, NO_FORCE, state[TORQUE.format(drive.link)]
+    first = machine.drive
+    if first.flywheel:
+        spinning = motion.links[first.link].angular_acceleration
+        yield first.link, None, NO_FORCE, -first.flywheel * spinning
+
+
+def _rubbing(motion: Motion, solved: Pass) -> Iterator[Acting]:
+    """What friction in joints exerts on both bodies of each."""
+    for joint in rubbing_joints(motion.linkage):
+        if joint.name not in solved.friction:
+            continue
+        effort = solved.friction[joint.name].effort
+        for body, sign in ((joint.on, 1.0), (joint.by, -1.0)):
+            if joint.slider is None:
+                yield body, motion.state[f"p({joint.reaction.at})"], NO_FORCE, sign * effort
+            else:
+                at = motion.point(joint.slider.point).place
+                yield body, at, sign * effort * direction(motion, joint), 0.0

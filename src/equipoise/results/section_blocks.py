@@ -1,0 +1,72 @@
+"""What an analysis shows of links whose section is given: stress, buckling and life."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from equipoise.i18n import Note, say, to_say
+from equipoise.quantities import told
+from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Value
+
+if TYPE_CHECKING:
+    from equipoise.results.analysis import Analysis
+
+BELOW = 1e-9
+"""Share of a link's mass below 0 that is rounding."""
+
+
+def section_blocks(analysis: Analysis) -> Iterator[Block]:
+    """Loads and strength of each link with a section."""
+    if not analysis.sections:
+        return
+    loads: list[tuple[Cell, ...]] = []
+    strength: list[tuple[Cell, ...]] = []
+    for name, one in analysis.sections.items():
+        forces = (one.tension, one.compression, one.shear, one.bending_moment)
+        loads.append((name, *map(Value, forces)))
+        safeties = (one.safety, one.buckling_safety, one.fatigue_safety)
+        cells = (None if safety is None else Value(safety) for safety in safeties)
+        life = None if one.life is None else Value(one.life)
+        place = say(
+            "{distance} from {point}, {side}",
+            distance=told(one.place, "length", "mm"),
+            point=_first(analysis, name),
+            side=say("left fibre") if one.fibre == "left" else say("right fibre"),
+        )
+        stress = Value(one.stress, at=one.stress_at)
+        strength.append((name, stress, place, *cells, life))
+    heads = (say("tension"), say("compression"), say("shear"))
+    columns = ["", *(Column(head, "force") for head in heads)]
+    columns.append(Column(say("bending moment"), "torque"))
+    yield Table.of(say("Loads along links, largest"), columns, loads)
+    heads = (say("yielding"), say("buckling"), say("fatigue"))
+    columns = ["", Column(say("stress"), "modulus"), say("place"), *heads]
+    columns.append(Column(say("life"), "time", "h"))
+    shown = [k for k in range(len(columns)) if any(row[k] is not None for row in strength)]
+    title = say("Largest stress along links (at crank angle), and safety")
+    rows = ([row[k] for k in shown] for row in strength)
+    yield Table.of(title, [columns[k] for k in shown], rows)
+    if notes := tuple(_notes(analysis)):
+        yield Notes(notes)
+
+
+def _first(analysis: Analysis, link: str) -> str:
+    body = analysis.machine.links[link]
+    assert body.section is not None
+    return body.section.ends(body.points)[0]
+
+
+def _notes(analysis: Analysis) -> Iterator[Note]:
+    """Links whose mass does not lie between the ends of their line."""
+    for name, one in analysis.sections.items():
+        mass = analysis.machine.links[name].mass or 0.0
+        if min(one.rod_mass, one.least_end_mass) < -BELOW * mass:
+            yield Note(
+                to_say(
+                    "mass of the {link} lies beyond the ends of the line of its section, or close "
+                    "to its middle: a rod with a lump at each end has it only with one of these "
+                    "below 0"
+                ),
+                link=name,
+            )

@@ -1,0 +1,208 @@
+"""Loads in a cut of a link against the equilibrium of each half, its mass as many particles.
+
+Forces are those that the analysis reports of joints; accelerations of the particles follow from
+those of the two ends of the line, as of any rigid body.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import pi
+from typing import Any
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.errors import ModelError
+from equipoise.mechanism.dynamics.section_loads import SectionLoads
+from equipoise.mechanism.parts.joint_properties import JointProperties
+from equipoise.mechanism.parts.sections import LinkSection
+from equipoise.results.blocks import Table
+from equipoise.schema.files import to_csv
+from equipoise.studies.figures import dimension_of
+from unit.schema.samples import survives
+
+Array = np.ndarray[Any, Any]
+PARTICLES = 4000
+STEEL = LinkSection(None, "22 mm", "10 mm", elastic_modulus="206 GPa", yield_strength="355 MPa",
+                    fatigue_limit="180 MPa", tensile_strength="510 MPa")  # fmt: skip
+
+
+def engine(**changes: Any) -> eq.Machine:
+    """A slider-crank whose rod has a section."""
+    machine = eq.load("slider-crank-engine")
+    rod = replace(machine.links["rod"], section=replace(STEEL, **changes))
+    return replace(machine, links={**machine.links, "rod": rod}, balance=None)
+
+
+def cross(a: Any, b: Any) -> Any:
+    return np.imag(np.conj(a) * b)
+
+
+@pytest.mark.parametrize("aside", [0.0, 0.012])
+def test_each_half_of_a_cut_rod_is_in_equilibrium(aside: float) -> None:
+    machine = engine()
+    rod = machine.links["rod"]
+    length = rod.points["C"][0] - rod.points["B"][0]
+    assert rod.center_of_mass is not None and rod.mass is not None
+    center = (rod.center_of_mass[0], aside)
+    machine = machine.with_link("rod", center_of_mass=center)
+    found = eq.analyze(machine, 24)
+    loads = found.forces.sections["rod"]
+    turn = np.exp(1j * found.motion.links["rod"].angle)
+    begin, end = (found.motion.points[name].acceleration_vector / turn for name in "BC")
+    parts = [(found.forces.joints[n].value / turn, n) for n in "BC"]
+    by = {n: (1 if found.forces.joints[n].on == "rod" else -1) * value for value, n in parts}
+    gravity = complex(*machine.gravity) / turn
+
+    lumps = loads.mass
+    spots = (np.arange(PARTICLES) + 0.5) / PARTICLES * length
+    masses = np.full(PARTICLES, lumps.rod / PARTICLES)
+    places = np.concatenate([[0.0], spots, [length]]) + 1j * aside
+    masses = np.concatenate([[lumps.first], masses, [lumps.last]])
+    # the particles are the body that the file gives
+    about = np.sum(masses * np.abs(places - complex(*center)) ** 2)
+    assert np.sum(masses) == pytest.approx(rod.mass)
+    assert np.sum(masses * places) / rod.mass == pytest.approx(complex(*center))
+    assert about == pytest.approx(rod.inertia, rel=1e-6)
+    moved = begin + (end - begin) * places[:, None] / length
+    inertia = masses[:, None] * (gravity - moved)
+    for k in range(1, 40, 6):
+        cut = loads.places[k, 0]
+        internal = loads.axial[k] + 1j * loads.shear[k]
+        for half, sign, joint, at in (("first", 1, "B", 0.0), ("last", -1, "C", length)):
+            mine = places.real < cut if half == "first" else places.real > cut
+            force = by[joint] + np.sum(inertia[mine], axis=0) + sign * internal
+            turns = cross(at - cut, by[joint]) + sign * loads.bending[k]
+            turns = turns + np.sum(cross((places[mine] - cut)[:, None], inertia[mine]), axis=0)
+            size = np.max(np.abs(by["B"]))
+            assert np.max(np.abs(force)) < 1e-3 * size  # of the particle that the cut splits
+            assert np.max(np.abs(turns)) < 1e-3 * size * length
+
+
+def closes(loads: SectionLoads) -> bool:
+    """Whether nothing is left behind the end."""
+    each = (loads.axial, loads.shear, loads.bending / loads.length)
+    size = max(float(np.max(np.abs(one))) for one in each)
+    return all(float(np.max(np.abs(one[-1]))) <= 1e-9 * size for one in each)
+
+
+def sectioned(machine: eq.Machine) -> eq.Machine:
+    """With a section between the first and the last point of each link."""
+    for name, link in machine.links.items():
+        ends = tuple(link.points)[:: max(len(link.points) - 1, 1)]
+        if len(ends) == 2 and link.points[ends[0]] != link.points[ends[1]]:
+            section = LinkSection(ends, "20 mm", "10 mm")
+            machine = replace(
+                machine, links={**machine.links, name: replace(link, section=section)}
+            )
+    return machine
+
+
+@pytest.mark.parametrize(
+    "name", ["transplanter", "baler-pickup", "cam-pusher", "twin-engine", "hydraulic-loader"]
+)
+def test_nothing_is_left_behind_the_end_of_a_link(name: str) -> None:
+    """Whatever acts: joints, drives and cylinders, springs, loads, soil, teeth, slots."""
+    machine = sectioned(eq.load(name))
+    speeds = {"acceleration": 20.0} if machine.has_crank else {}
+    sections = eq.analyze(machine, 24, **speeds).forces.sections
+    assert sections and all(map(closes, sections.values()))
+
+
+def test_friction_and_a_flywheel_count() -> None:
+    machine = sectioned(eq.load("slider-crank-engine"))
+    joints = (
+        JointProperties("joints.B", radius=0.012, friction=0.05, drag_torque=0.3),
+        JointProperties("joints.piston on frame", friction=0.1),
+    )
+    drive = replace(machine.drive, flywheel=0.4)
+    found = eq.analyze(replace(machine, joints=joints, drive=drive), 24, acceleration=50.0)
+    assert all(map(closes, found.forces.sections.values()))
+
+
+def test_a_rod_that_hangs_and_a_bar_that_swings() -> None:
+    """Closed forms: a uniform bar turned about one end at a constant speed is drawn by
+    m w^2 (L^2 - s^2) / 2 L, and by gravity across it bent by m g (L - s)^2 / 2 L.
+    """
+    length, mass, speed = 0.8, 2.4, 30.0
+    section = LinkSection(None, diameter="20 mm", yield_strength="235 MPa")
+    points = {"A": (0, 0), "B": (length, 0)}
+    bar = eq.Link(points, mass, (length / 2, 0), mass * length**2 / 12, section=section)
+    machine = eq.Machine("bar", eq.Drive("bar", speed), {"A": (0.0, 0.0)}, {"bar": bar})
+    found = eq.analyze(machine, [0.0])
+    loads = found.forces.sections["bar"]
+    s = loads.places[1:40, 0]
+    drawn = mass * speed**2 * (length**2 - s**2) / (2 * length)
+    bent = -mass * 9.80665 * (length - s) ** 2 / (2 * length)
+    np.testing.assert_allclose(loads.axial[1:40, 0], drawn, rtol=1e-12)
+    np.testing.assert_allclose(loads.bending[1:40, 0], bent, rtol=1e-9)
+    assert loads.mass.rod == pytest.approx(mass)
+    told = eq.analyze(machine, 360).sections["bar"]
+    area, modulus = pi * 0.02**2 / 4, pi * 0.02**3 / 32
+    most = mass * speed**2 * length / 2 / area + mass * 9.80665 * length / 2 / modulus
+    assert told.stress == pytest.approx(most, rel=2e-3)  # weight along the bar beside it
+    assert told.place == 0.0 and told.safety == pytest.approx(235e6 / told.stress)
+
+
+def test_a_column_of_euler_and_one_of_johnson() -> None:
+    """Shigley 4-13: half of what yields is where both meet."""
+    slim = LinkSection(("B", "C"), "10 mm", "20 mm", elastic_modulus="200 GPa",
+                       yield_strength="250 MPa")  # fmt: skip
+    euler = pi**2 * 200e9 * 0.02 * 0.01**3 / 12
+    assert slim.buckling_load(1.0) == pytest.approx(euler)
+    squash = 250e6 * 0.02 * 0.01
+    assert slim.buckling_load(0.1) == pytest.approx(squash * (1 - squash / (4 * euler / 0.01)))
+    meeting = (2 * euler / squash) ** 0.5
+    assert slim.buckling_load(meeting) == pytest.approx(squash / 2)
+    assert replace(slim, elastic_modulus=None).buckling_load(1.0) is None
+
+
+def test_life_follows_from_the_stress_of_a_cycle() -> None:
+    """A thinner rod under the same forces: Miner's sum by hand of its one large cycle."""
+    thin = eq.analyze(engine(height="5 mm", width="3 mm", tensile_strength=None))
+    told = thin.sections["rod"]
+    assert told.cycles_to_failure is not None and told.life is not None
+    period = 2 * pi / abs(thin.machine.drive.speed)
+    assert told.life == pytest.approx(told.cycles_to_failure * period)
+    stresses = thin.resolved.forces.sections["rod"].stresses
+    swing = np.max(np.ptp(stresses, axis=2)) / 2
+    assert told.fatigue_safety == pytest.approx(180e6 / swing)
+    assert told.cycles_to_failure == pytest.approx(1e6 * (180e6 / swing) ** 5, rel=0.2)
+    endless = eq.analyze(engine()).sections["rod"]
+    assert endless.cycles_to_failure is None and endless.fatigue_safety > 1
+
+
+def test_they_are_reported_everywhere() -> None:
+    machine = engine()
+    survives(machine)
+    found = eq.analyze(machine, 90)
+    assert found.to_dict()["sections"]["rod"]["stress"] == found.sections["rod"].stress
+    assert found.summary["links.rod.stress"].peak == pytest.approx(found.sections["rod"].stress)
+    assert "links.rod.stress [Pa]" in to_csv(found).partition("\n")[0]
+    assert dimension_of(machine, "analyze", "sections.rod.stress") == "modulus"
+    titles = [one.title for one in found.blocks() if isinstance(one, Table)]
+    assert "Loads along links, largest" in titles
+    bare = replace(machine, links=eq.load("slider-crank-engine").links)
+    np.testing.assert_array_equal(
+        found.forces.joints["C"].value, eq.analyze(bare, 90).forces.joints["C"].value
+    )
+
+
+WRONG: list[tuple[dict[str, Any], str]] = [
+    ({"height": "1 mm"}, "links.rod.section: give either height and width, or diameter"),
+    ({"diameter": "1 mm", "wall": "0.5 mm"}, "links.rod.section.wall: got a wall that leaves no"),
+    ({"diameter": "1 mm", "between": ("B", "X")}, "links.rod.section.between: no point of rod"),
+    ({"diameter": "1 mm", "tensile_strength": 1e6}, "links.rod.section.tensile_strength: goes"),
+    ({"diameter": "0 mm"}, "links.rod.section.diameter: got 0 m; give more than 0"),
+]
+
+
+@pytest.mark.parametrize(("given", "sentence"), WRONG)
+def test_what_is_no_section_is_refused(given: dict[str, Any], sentence: str) -> None:
+    machine = eq.load("slider-crank-engine")
+    rod = replace(machine.links["rod"], section=LinkSection(**given))
+    with pytest.raises(ModelError) as caught:
+        replace(machine, links={**machine.links, "rod": rod})
+    assert str(caught.value).startswith(sentence)
