@@ -16,7 +16,7 @@ from equipoise.errors import EquipoiseError
 from equipoise.figures import render
 from equipoise.figures.points import kinematics, outputs_chart
 from equipoise.i18n import speaking
-from equipoise.mechanism.outputs.declared import DECLARED, declaring, output
+from equipoise.mechanism.outputs.declared import DECLARED, declared, declaring, output
 from equipoise.mechanism.parts.balance import AddedMass, Balance, Objective, Weight
 from equipoise.present.composition import report_page
 from equipoise.present.findings import Findings
@@ -71,6 +71,18 @@ def linear(request: pytest.FixtureRequest) -> Iterator[bool]:
 def found_with() -> eq.Analysis:
     assert POWER in DECLARED
     return eq.analyze(eq.load("yamashita-1"), 90)
+
+
+def test_names_mean_what_is_declared_now() -> None:
+    """Meanings of names are kept, but no longer than what they were looked up in."""
+    assert declared(POWER) is None
+    for linear in (True, False):
+        with declaring():
+            assert declared(POWER) is None
+            declare(linear)
+            known = declared(POWER)
+            assert known is not None and known[0].linear is linear
+        assert declared(POWER) is None
 
 
 def test_it_stands_among_plain_data(power: None) -> None:

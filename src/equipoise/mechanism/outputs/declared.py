@@ -18,6 +18,7 @@ from equipoise.mechanism.outputs.declaring import (
     Found,
     Measure,
     alike,
+    declare_as,
     declared,
     declaring,
     looked_up,
@@ -432,12 +433,14 @@ of_rows("drive_torque", "torque", to_say("drive torque"), compared=TORQUE, yards
         by_friction=True, **TURNED)  # fmt: skip
 of_rows("drive_force", "force", to_say("drive force"), compared=TORQUE, yardstick="effort",
         by_friction=True, **PUSHED)  # fmt: skip
-DECLARED["gauges.{}"] = Declared(
-    "gauges.{}",
-    "length",
-    to_say("reading at {name}"),
-    None,
-    needs="support",
-    yardstick="vibration",
-    members=lambda machine: [] if machine.support is None else list(machine.support.gauges),
+declare_as(
+    Declared(
+        "gauges.{}",
+        "length",
+        to_say("reading at {name}"),
+        None,
+        needs="support",
+        yardstick="vibration",
+        members=lambda machine: [] if machine.support is None else list(machine.support.gauges),
+    )
 )

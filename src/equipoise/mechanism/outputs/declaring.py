@@ -244,6 +244,12 @@ DECLARED: dict[str, Declared] = {}
 """Everything that is declared, by name, in the order in which it is told."""
 
 
+def declare_as(one: Declared) -> None:
+    """Declare an output as it is."""
+    DECLARED[one.name] = one
+    _matches.cache_clear()
+
+
 def output(
     name: str,
     dimension: Dimension | None,
@@ -277,15 +283,15 @@ def output(
             name, dimension, label, read, needs=needs, linear=linear, reason=reason, **more
         )
         if parts is None:
-            DECLARED[name] = replace(one, summed=of_size)
+            declare_as(replace(one, summed=of_size))
             return read
         one_part = replace(
             one, summed=of_parts, compared=one.compared if of_parts else (), yardstick=""
         )
-        DECLARED[parts[0]] = replace(one_part, name=parts[0], part="x")
-        DECLARED[parts[1]] = replace(one_part, name=parts[1], part="y")
+        declare_as(replace(one_part, name=parts[0], part="x"))
+        declare_as(replace(one_part, name=parts[1], part="y"))
         if sized:
-            DECLARED[name] = replace(one, part="size", array=False, summed=of_size, ordered=False)
+            declare_as(replace(one, part="size", array=False, summed=of_size, ordered=False))
         return read
 
     return declare
@@ -301,6 +307,7 @@ def declaring() -> Iterator[None]:
         for known, values in before:
             known.clear()
             known.update(values)  # type: ignore[arg-type]
+        _matches.cache_clear()
 
 
 @contextmanager
@@ -313,30 +320,38 @@ def of_parts() -> Iterator[None]:
     yield
     for known, values in last:
         known.update(values)
+    _matches.cache_clear()
 
 
-def matches(name: str) -> Iterator[tuple[Declared, str]]:
+def matches(name: str) -> tuple[tuple[Declared, str], ...]:
     """Declarations that a name may mean, each with the member, the likeliest first.
 
     Balancing calls ``joints.B.x`` what is a component of a vector, and ``roll_moment`` what only
     all rows together have.
     """
+    return _matches(name)
+
+
+@lru_cache(8192)
+def _matches(name: str) -> tuple[tuple[Declared, str], ...]:
+    """The same, kept until something else is declared: advice asks a hundred thousand times."""
     found = [(one, item) for one in DECLARED.values() for item in [one.item_of(name)]]
-    known = [(one, item) for one, item in found if item is not None]
     # joints.B.moment is the moment in B, and no force in a joint B.moment
-    yield from sorted(known, key=lambda pair: -len(pair[0].name))
+    known = sorted(((one, item) for one, item in found if item is not None),
+                   key=lambda pair: -len(pair[0].name))  # fmt: skip
     if f"rows.{name}" in DECLARED:
-        yield DECLARED[f"rows.{name}"], ""
+        known.append((DECLARED[f"rows.{name}"], ""))
     whole, _, axis = name.rpartition(".")
-    for one, item in matches(whole) if whole and axis in ("x", "y") else ():
+    for one, item in _matches(whole) if whole and axis in ("x", "y") else ():
         if one.is_vector:
             part: Part = "x" if axis == "x" else "y"
-            yield replace(one, name=f"{one.name}.{axis}", part=part), item
+            known.append((replace(one, name=f"{one.name}.{axis}", part=part), item))
+    return tuple(known)
 
 
 def declared(name: str) -> tuple[Declared, str] | None:
     """The declaration of an output, and its member, by the name of the output; None if unknown."""
-    return next(matches(name), None)
+    return next(iter(_matches(name)), None)
 
 
 @lru_cache(8192)
