@@ -239,13 +239,15 @@ def _keep_clear(reach: Array, seen: Array, clearance: float) -> None:
     Between two crank angles it is no farther from one of them than half of its way.
     """
     step = float(np.max(np.abs(np.diff(np.append(seen, seen[0])))))
-    away, clear = np.abs(seen), clearance + step / 2
+    clear = clearance + step / 2
+    seen = seen[np.abs(seen) - clear < np.max(reach)]  # others cut nothing
+    away = np.abs(seen)
     ahead = np.degrees(np.angle(seen)) % 360
     half = np.degrees(np.arcsin(np.minimum(1.0, clear / np.maximum(away, clear))))
     half = np.where(away > clear, half, 180.0)
     apart = np.abs((np.arange(DIRECTIONS)[:, None] - ahead + 180) % 360 - 180)
     free = np.where(apart <= half + 1, away - clear, np.inf)
-    np.minimum(reach, np.min(free, axis=1), out=reach)
+    np.minimum(reach, np.min(free, axis=1, initial=np.inf), out=reach)
 
 
 def _joined(machine: Machine) -> set[str]:
