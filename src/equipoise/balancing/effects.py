@@ -125,7 +125,7 @@ class Effects:
     """Outputs of a machine as signals of its free numbers.
 
     machine : from which the numbers count.  parts : whose numbers they are, K in all.
-    like : a machine of the same links, whose gears are in contact on the flanks that are taken.
+    like : a machine of the same links, whose couplings are in contact on the flanks that are taken.
     """
 
     def __init__(
@@ -258,7 +258,7 @@ class Effects:
 
     @cached_property
     def flanks(self) -> Pass:
-        """A run whose gears are in contact on the flanks that count."""
+        """A run whose couplings are in contact on the flanks that count."""
         if self.like is None or not self.machine.couplings:
             return self.start.solved
         motion = self.motion

@@ -66,7 +66,7 @@ SLOPE = 6.0
 """A dyad's number between two crank angles is no lower than the lower one less (SLOPE h / 2)^2, for
 links that turn no faster than the crank."""
 SWUNG = 3.0
-"""How much farther ratios may swing of designs that differ in the shape of gears."""
+"""How much farther ratios may swing of designs that differ in the shape of pitch curves."""
 AT_ONCE = 500_000
 """Designs times crank angles that one thread does sooner than several."""
 SMOOTH = ("mean", "rms")
@@ -210,7 +210,7 @@ class Batch:
         self.march = March.of(self.source, self.base)
         windings = self.base.cycle.windings if rounds else {}
         fastest = max((abs(turns) for turns in windings.values()), default=1) / self.turns
-        fastest *= prod(max(map(abs, g.ratios)) / abs(g.speed_ratio) for g in machine.gears)
+        fastest *= prod(one.unevenness for one in machine.couplings)
         shaped = any("shape" in KeyPath.parse(path) for path in self.paths)
         self.slope = SLOPE * max(1.0, fastest) * (SWUNG if shaped else 1.0)
 

@@ -3,9 +3,9 @@
 Where the crank angle alone tells the angles of driver and carrier, it tells the driven link's too,
 up to the angle at which each design starts.
 
-Followers of cams are moved by laws of their cams' angles, gears of varying ratio by laws of their
-drivers' and with each design's own numbers; where the crank angle alone does not tell these angles,
-a law is evaluated at each design's own, and its piece is looked up in tables, without a branch.
+A law tells an angle or a way by that of the driver, with each design's own numbers; where the crank
+angle alone does not tell the driver's, the law is evaluated at each design's own, and its piece is
+looked up in tables, without a branch.
 """
 
 from __future__ import annotations
@@ -65,7 +65,7 @@ def _followed(step: Call, driver: Turning, carrier: Turning, theta: Array) -> tu
 def trace_coupling(trace: Trace, step: Call) -> None:
     """A coupling that need not be counted on, or one with a law."""
     driver, carrier, link = links_of(step)
-    even = step.kernel is kernels.gear and {driver, carrier} <= trace.orders.keys()
+    even = step.kernel is kernels.in_ratio and {driver, carrier} <= trace.orders.keys()
     if even and not trace.counted:
         _trace_uniform(trace, step)
         return
@@ -89,7 +89,7 @@ def trace_coupling(trace: Trace, step: Call) -> None:
 
 
 def trace_rolled(trace: Trace, step: Call, number: int) -> None:
-    """Where gears of varying ratio touch: the step of this number of the ``forces``."""
+    """Where what rolls with a varying ratio touches: the step of this number of the ``forces``."""
     name = step.outputs[0].removeprefix("lever(")[:-1]
     link = next(one.driven for one in trace.machine.couplings if one.name == name)
     if link in trace.loose:
@@ -126,7 +126,7 @@ def _coupling(found: Linkage, link: str) -> Coupling:
 
 
 def _trace_uniform(trace: Trace, step: Call) -> None:
-    """A gear whose driver and carrier turn in proportion to the crank does so too.
+    """What is driven by a driver and a carrier that turn in proportion to the crank does so too.
 
     Its rotation is a cosine and sine of a multiple of the crank angle, known for all designs.
     """
@@ -147,7 +147,7 @@ def _follows(step: Call, driver: Any, carrier: Any, offset: Any) -> Any:
 def _start(found: Linkage, link: str) -> Any:
     """Angle of a link at crank angle 0, of links that turn in proportion to the crank."""
     for step in found.motion:
-        if isinstance(step, Call) and step.kernel is kernels.gear:
+        if isinstance(step, Call) and step.kernel is kernels.in_ratio:
             driver, carrier, driven = links_of(step)
             if driven == link:
                 offset = step.parameters[1]
@@ -320,8 +320,8 @@ def _turned(number: int, found: Linkage) -> Any:
 
 
 def trace_law(trace: Trace, step: Call, number: int) -> None:
-    """How a gear turns whose ratio varies: the step of this number of the ``motion``."""
-    _Law(trace, step, number).trace_gear()
+    """How something turns whose ratio varies: the step of this number of the ``motion``."""
+    _Law(trace, step, number).trace_driven()
 
 
 class _Law:
@@ -337,7 +337,7 @@ class _Law:
         driver, carrier = (trace.state[f"phi({one})"] for one in (self.driver, self.carrier))
         self.angle = driver - carrier - self.own("zero")
 
-    def trace_gear(self) -> None:
+    def trace_driven(self) -> None:
         link, state = self.link, self.trace.state
         match self.law:
             case HalfAngle():

@@ -165,7 +165,7 @@ class Signals:
         return self.forces[f"M({item})"]
 
     def joint_force(self, item: str) -> Any:
-        """A joint's force on the later of its bodies, a gear's on the driven one."""
+        """A joint's force on the later of its bodies, a coupling's on the driven one."""
         reaction = self._reaction(item)
         return self._sign(reaction) * self.forces[reaction.force]
 
@@ -246,7 +246,7 @@ def _arm_of_center(link: str, found: Linkage) -> Any:
 
 
 def can_emit(linkage: Linkage) -> bool:
-    """Whether the steps of a linkage can be traced: no soil, no gears beside loops, and no
+    """Whether the steps of a linkage can be traced: no soil, no couplings beside loops, and no
     drive that pushes.
     """
     if linkage.machine.pushers:

@@ -102,7 +102,7 @@ def trace_step(trace: Trace, step: Step, steps: str, number: int) -> None:
     elif isinstance(step, Call):
         if step.kernel is coupled and links_of(step)[-1] in trace.loose:
             trace_law(trace, step, number)
-        elif step.kernel is coupled or (step.kernel is kernels.gear and not trace.counted):
+        elif step.kernel is coupled or (step.kernel is kernels.in_ratio and not trace.counted):
             trace_coupling(trace, step)
         elif step.kernel is rolled:
             trace_rolled(trace, step, number)

@@ -75,11 +75,11 @@ class Trace:
     state : values by the names that steps have for them.
     paths : of the numbers in which designs differ; None of one design.
     fixed : whether no design changes the motion, so that the crank angle alone decides it.
-    loose : gears of varying ratio at angles, or by numbers, that designs change.
+    loose : couplings of varying ratio at angles, or by numbers, that designs change.
     shifted : links that designs start at other angles.
     rotated : those of them whose rotation is known without their angle.
     counted : whether angles of links are counted on from crank angle to crank angle, because a
-        gear follows a link that a dyad moves.
+        coupling follows a link that a dyad moves.
     orders : link -> turns in a turn of the crank, of links that turn in proportion to it.
     apart : number of a dyad with a block -> how far, over the size of the machine and squared, the
         block is from its guide's pivot.  Near there the number drops too fast to tell between the
@@ -244,8 +244,8 @@ def _turning(machine: Machine) -> set[str]:
 
 
 def _changed(linkage: Linkage, paths: Collection[str]) -> tuple[set[str], set[str]]:
-    """Links that designs start at other angles; gears of varying ratio at angles, or by numbers,
-    that designs change.
+    """Links that designs start at other angles; couplings of varying ratio at angles, or by
+    numbers, that designs change.
     """
     shifted, shaped = set(), set()
     varied = {*map(KeyPath.parse, paths)}

@@ -87,8 +87,7 @@ def _linkage(space: Any, scene: Scene) -> None:
             )
             space.add_lwpolyline(_points(at[wheel.center] + turned), close=True, dxfattribs=layer)
     for mark in scene.marks:
-        table = mark.part[0] if mark.part else "cams" if mark.shape.role == "cam" else None
-        if table:
+        if table := mark.part and mark.part[0]:
             corners = _points(corner[0] for corner in scene.spots(mark))
             layer = _layer(table, mark.body)
             space.add_lwpolyline(corners, close=mark.shape.closed, dxfattribs=layer)

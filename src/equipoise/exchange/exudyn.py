@@ -126,24 +126,24 @@ def _end(tree: Tree, body: str, point: str) -> End:
 
 
 def _geared(tree: Tree) -> list[Data]:
-    """Links that turn so many times as fast as one other, as gears make them.
+    """Links that turn so many times as fast as one other, as couplings make them.
 
     Raises
     ------
     UsageError : a coupling is of three bodies of which none follows another or stands still.
     """
     shares: dict[str, dict[str, float]] = {}
-    for gear in tree.machine.couplings:
-        ratio = gear.speed_ratio
+    for one in tree.machine.couplings:
+        ratio = one.speed_ratio
         total = dict[str, float]()
-        for body, share in ((gear.driver, ratio), (gear.carrier, 1 - ratio)):
+        for body, share in ((one.driver, ratio), (one.carrier, 1 - ratio)):
             for root, factor in shares.get(body, {body: 1.0}).items():
                 total[root] = total.get(root, 0.0) + share * factor
         total.pop(FRAME, None)
-        shares[gear.driven] = {body: factor for body, factor in total.items() if factor}
-        if len(shares[gear.driven]) > 1 or tree.machine.support is not None:
+        shares[one.driven] = {body: factor for body, factor in total.items() if factor}
+        if len(shares[one.driven]) > 1 or tree.machine.support is not None:
             raise UsageError(
-                f"the {gear.noun} {gear.name} follows two bodies that move, which the file's "
+                f"the {one.noun} {one.name} follows two bodies that move, which the file's "
                 "format has no joint for; give another format"
             )
     named = ((driven, by, one) for driven, follows in shares.items() for by, one in follows.items())

@@ -207,7 +207,7 @@ def _held(root: ET.Element, tree: Tree) -> None:
         ends = _in_plane(root, tree, loop.one, loop.pin, plane), _place(tree, loop.other, loop.pin)
         sites = {f"site{number}": name for number, name in enumerate(ends, 1)}
         ET.SubElement(_part(root, "equality"), "connect", sites)
-    for gear, factors in tree.gears:
+    for gear, factors in tree.proportions:
         _kept(root, f"{gear}{tree.suffix}", {f"{k}{tree.suffix}": v for k, v in factors.items()})
 
 

@@ -1,6 +1,6 @@
 """Modelica: one flat model of a linkage in the plane, Newton's and Euler's equations of each link.
 
-Pins and sliders are constraints with their reactions, gears keep sums of angles by couples; a
+Pins and sliders are constraints with their reactions, couplings keep sums of angles by couples; a
 compiler reduces the index.  SI units; the crank turns at constant speed, and `tau` is what drives.
 """
 
@@ -90,7 +90,7 @@ def made(job: Job) -> str:
         _link(model, name, motion)
     _pins(model)
     _sliders(model, motion)
-    _gears(model, motion)
+    _couplings(model, motion)
     _forces(model, job)
     _drive(model, job)
     lines = [*_balances(model), *model.equations]
@@ -170,12 +170,12 @@ def _sliders(model: Flat, motion: Motion) -> None:
             moments.append(f"- {couple}")
 
 
-def _gears(model: Flat, motion: Motion) -> None:
+def _couplings(model: Flat, motion: Motion) -> None:
     """What teeth do, as couples on driver, driven and carrier that do no work together."""
-    for number, gear in enumerate(model.machine.couplings, 1):
-        ratio = gear.speed_ratio
+    for number, one in enumerate(model.machine.couplings, 1):
+        ratio = one.speed_ratio
         couple = f"G_{number}"
-        shares = ((gear.driven, 1.0), (gear.driver, -ratio), (gear.carrier, ratio - 1.0))
+        shares = ((one.driven, 1.0), (one.driver, -ratio), (one.carrier, ratio - 1.0))
         model.real(couple)
         known = [(body, share) for body, share in shares if body != FRAME and share]
         total = sum(share * float(motion.links[body].angle[0]) for body, share in known)

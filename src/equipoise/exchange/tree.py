@@ -122,18 +122,20 @@ class Tree:
         return {link: one for link, one in factors.items() if one}
 
     @property
-    def gears(self) -> Iterator[tuple[str, dict[str, float]]]:
-        """Of each pair of gears its name, and link -> factor of its hinge in a sum that is 0."""
-        for gear in self.machine.couplings:
-            if not isinstance(gear, Turning):
+    def proportions(self) -> Iterator[tuple[str, dict[str, float]]]:
+        """Of each coupling of links that turn its name, and link -> factor of its hinge in a sum
+        that is 0.
+        """
+        for one in self.machine.couplings:
+            if not isinstance(one, Turning):
                 continue
-            ratio = gear.speed_ratio
+            ratio = one.speed_ratio
             factors = dict[str, float]()
-            shares = ((gear.driven, 1.0), (gear.driver, -ratio), (gear.carrier, ratio - 1))
+            shares = ((one.driven, 1.0), (one.driver, -ratio), (one.carrier, ratio - 1))
             for body, share in shares:
                 for link in self.turning(body):
                     factors[link] = factors.get(link, 0.0) + share
-            yield gear.name, {link: one for link, one in factors.items() if one}
+            yield one.name, {link: share for link, share in factors.items() if share}
 
 
 def trees(job: Job) -> tuple[Tree, ...]:

@@ -136,9 +136,9 @@ def _way(machine: Machine, link: Hung) -> float:
 
 def _gears(root: ET.Element, tree: Tree, job: Job) -> None:
     """A joint that follows another; of three URDF does not know."""
-    for gear, factors in tree.gears:
+    for name, factors in tree.proportions:
         if len(factors) != 2:
-            job.leave_out(f"the gears {gear}, which join more than two joints")
+            job.leave_out(f"the gears {name}, which join more than two joints")
             continue
         (one, by), (other, share) = factors.items()
         joint = next(j for j in root.iter("joint") if j.get("name") == f"{one}{tree.suffix}")

@@ -164,7 +164,7 @@ class Joint:
 
 
 def joints_of(analysis: Analysis) -> dict[str, Joint]:
-    """Every joint, pair of gears and bearing; of a slider its couple too; rounding as zeros."""
+    """Every joint, coupling and bearing; of a slider its couple too; rounding as zeros."""
     found, forces = {}, analysis.forces
     every = forces.solved.contacts
     largest = max((float(np.max(joint.size)) for joint in every.values()), default=0.0)

@@ -436,7 +436,7 @@ def analyze(
     Parameters
     ----------
     angles : number of crank angles in each turn, equally spaced from 0 over the whole cycle (which
-        takes several turns where gears or loops need them), or the crank angles themselves, rad.
+        takes several turns where couplings or loops need them), or the crank angles, rad.
     speed, acceleration : of the crank, rad/s and rad/s2, or texts such as ``"300 rpm"``; those of
         the machine where not given.
     about : point about which moments are taken, a name or (x, y) in m; the drive pivot if None.

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 def joint_blocks(analysis: Analysis) -> Iterator[Block]:
     """Forces in joints, which of them statics leaves open, friction, bearings, stress in links."""
-    if analysis.forces.joints or analysis.forces.gears:
+    if analysis.forces.solved.contacts:
         yield joint_table(analysis)
     told = [*undecided(analysis.motion.linkage).told()]
     told += idle_told(analysis.motion.linkage, analysis.forces.solved.state)

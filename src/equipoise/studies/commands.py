@@ -192,7 +192,7 @@ def _parted(study: Study, model: Machine | Tool, asked: Request) -> list[Request
     of_one = {*PlantingFigures.declared, *OF_DRIVE}  # what is no figure of a curve
     machine = cast("Machine", model)
     field = {path for path in study.paths if path.startswith("planting.")}
-    alike = field <= EACH_ITS_OWN and not machine.gears
+    alike = field <= EACH_ITS_OWN and not machine.couplings
     alike = alike and all(isinstance(step, Call) for step in assemble(machine).motion)
     parts: dict[str, list[int]] = {"planted": [], "plant": []}
     for k, steps in enumerate(asked.steps):

@@ -223,7 +223,7 @@ def reason_of(error: EquipoiseError, model: Machine | Tool) -> int:
         return NO_FULL_TURN if error.ranges else NO_ASSEMBLY
     if isinstance(error, ChangePointError):
         return CHANGE_POINT
-    if isinstance(error, MotionError) and not getattr(model, "gears", ()):
+    if isinstance(error, MotionError) and not getattr(model, "couplings", ()):
         return NO_FULL_TURN  # where Newton's method ends on the way round
     return NOT_COMPUTED
 

@@ -6,11 +6,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from equipoise.mechanism.assembly.cam_fits import Fit, fits_of, sharpest
+from equipoise.mechanism.assembly.cam_fits import Fit, fitted, sharpest
 from equipoise.mechanism.assembly.cam_shapes import Shape
-from equipoise.mechanism.assembly.joints import Structure
 from equipoise.mechanism.formulas.kernels import cross
-from equipoise.mechanism.parts.machine import Machine
+from equipoise.mechanism.parts.cams import Cam
+from equipoise.symbols.part_signs import Surroundings
 from equipoise.symbols.shapes import Array, Mark, circle, line
 
 CORNERS = 360
@@ -21,28 +21,22 @@ BEYOND = 0.15
 """How much farther a flat face reaches than the cam touches it, over the base radius."""
 
 
-def cams_of(machine: Machine, joints: Structure) -> Iterator[Mark]:
-    """Every cam, then what rides on each; a knife's edge is a point, and has a sign already."""
-    turn = np.linspace(0.0, 2 * np.pi, CORNERS, endpoint=False)
-    cut = [(fit, fit.shape(turn)) for fit in fits_of(machine, joints)]
-    for fit, shape in cut:
-        cam = fit.cam
-        flanks = {"cam": shape.surface}
-        if cam.closed_by == "groove":
-            flanks = {"groove": shape.beside(2 * shape.radius), **flanks}
-        for role, flank in flanks.items():
-            around = line(role, *flank, closed=True)
-            yield Mark(cam.driver, fit.cam_pin, around, (cam.table, cam.name))
-        if cam.closed_by == "ribs":
-            inside = -min(RIB * cam.base_radius, sharpest(fit)[0] / 2)
-            rib = line("rib", *shape.beside(inside), closed=True)
-            yield Mark(cam.driver, fit.cam_pin, rib)
-    for fit, shape in cut:
-        if fit.cam.rides == "roller":
-            roller = circle("rider", 0j, fit.cam.roller_radius)
-            yield Mark(fit.cam.driven, fit.cam.point, roller)
-        elif fit.cam.rides == "flat":
-            yield Mark(fit.cam.driven, fit.cam.point, line("face", *_face(fit, shape)))
+def cam_sign(cam: Cam, around: Surroundings) -> Iterator[Mark]:
+    """A cam and what rides on it; a knife's edge is a point, and has a sign already."""
+    fit = fitted(around.machine(), around.joints, cam)
+    shape = fit.shape(np.linspace(0.0, 2 * np.pi, CORNERS, endpoint=False))
+    flanks = {"cam": shape.surface}
+    if cam.closed_by == "groove":
+        flanks = {"groove": shape.beside(2 * shape.radius), **flanks}
+    for role, flank in flanks.items():
+        yield Mark(cam.driver, fit.cam_pin, line(role, *flank, closed=True), (cam.table, cam.name))
+    if cam.closed_by == "ribs":
+        inside = -min(RIB * cam.base_radius, sharpest(fit)[0] / 2)
+        yield Mark(cam.driver, fit.cam_pin, line("rib", *shape.beside(inside), closed=True))
+    if cam.rides == "roller":
+        yield Mark(cam.driven, cam.point, circle("rider", 0j, cam.roller_radius))
+    elif cam.rides == "flat":
+        yield Mark(cam.driven, cam.point, line("face", *_face(fit, shape)))
 
 
 def _face(fit: Fit, shape: Shape) -> Array:

@@ -59,6 +59,7 @@ class Piece:
     link : whose plate or bar it is, if any.
     part : ``slider``, or the list of a coupling, and the name of that which it tells.
     still : whether it stands on the ground, and not on the support.
+    table : key of the list that has the numbers which shape it, of signs of parts.
     """
 
     layer: str
@@ -67,6 +68,7 @@ class Piece:
     link: str = ""
     still: bool = False
     part: tuple[str, str] | None = None
+    table: str = ""
 
     def track(self, scene: Scene, unit: float = 0.0) -> Track | None:
         """How it moves; None where it stands still.  unit : of signs, m; the scene's if 0."""
@@ -162,19 +164,19 @@ def _carrier(scene: Scene) -> Iterator[Piece]:
 def _wheels(scene: Scene) -> Iterator[Piece]:
     bodies = {body.name: body for body in scene.bodies}
     seen = set()
-    for gear in sorted(scene.wheels, key=lambda gear: -gear.radius):
-        key = (gear.link, gear.center, round(gear.radius / scene.unit))
-        if gear.curve is None and key in seen:
+    for one in sorted(scene.wheels, key=lambda one: -one.radius):
+        key = (one.link, one.center, round(one.radius / scene.unit))
+        if one.curve is None and key in seen:
             continue
         seen.add(key)
-        if gear.link == FRAME:
-            still = complex(scene.places[gear.center][0])
-            yield Piece("wheels", (rim(still, gear.radius, gear.curve),), part=gear.part)
+        if one.link == FRAME:
+            still = complex(scene.places[one.center][0])
+            yield Piece("wheels", (rim(still, one.radius, one.curve),), part=one.part)
             continue
-        body = bodies[gear.link]
-        center = scene.local(body, scene.places[gear.center])
-        shapes = tuple(wheel(center, gear.radius, gear.curve))
-        yield Piece("wheels", shapes, _with(body), part=gear.part)
+        body = bodies[one.link]
+        center = scene.local(body, scene.places[one.center])
+        shapes = tuple(wheel(center, one.radius, one.curve))
+        yield Piece("wheels", shapes, _with(body), part=one.part)
     yield from _drawn(scene, "wheels")
 
 
@@ -189,7 +191,7 @@ def _drawn(scene: Scene, layer: str) -> Iterator[Piece]:
             start = scene.local(bodies[mark.body], scene.places[mark.point])
             hold = _with(bodies[mark.body])
         moved = replace(mark.shape, role=role, places=mark.shape.places + start)
-        yield Piece(layer, (moved,), hold, part=mark.part)
+        yield Piece(layer, (moved,), hold, part=mark.part, table=mark.table)
 
 
 def _stands(scene: Scene) -> Iterator[Piece]:

@@ -15,13 +15,11 @@ from equipoise.mechanism.kinematics.tip import surface_of
 from equipoise.mechanism.parts.bodies import place_of
 from equipoise.mechanism.parts.body_checks import Outline, outlines
 from equipoise.mechanism.parts.machine import FRAME, Link
-from equipoise.symbols.cams import cams_of
 from equipoise.symbols.carrier import MOUNT, Carrier, Swing
 from equipoise.symbols.drives import Drive
-from equipoise.symbols.element_signs import element_signs
+from equipoise.symbols.part_signs import Surroundings, in_order, signs_of
 from equipoise.symbols.rows import ONE, Rows, rows_of
 from equipoise.symbols.shapes import Array, Mark, hull
-from equipoise.symbols.taut import racks_of, strands_of
 from equipoise.symbols.wheels import Wheel, wheels_of
 
 
@@ -105,7 +103,7 @@ class Scene:
     planned : springs that balancing may set, likewise.
     room : places besides that are to be in sight, complex, m.
     rows : those of its machine, where all of them are to be seen.
-    marks : cams with what rides on them, strands of belts, racks, and signs of elements.
+    marks : signs of parts, those that no other covers last.
     swing : how the support moves, where it is to be seen; places are in the frame's axes all along.
     """
 
@@ -135,7 +133,8 @@ class Scene:
         machine, joints = motion.machine, motion.linkage.joints
         places = {name: point.place for name, point in motion.points.items()}
         angles = {name: float(link.angle[0]) for name, link in motion.links.items()}
-        elements = (element for *_, element in machine.elements)
+        around = Surroundings(lambda: machine, joints, machine.bodies, motion.linkage.pin_radii,
+                              lambda slider: motion.sliders[slider.name].travel)  # fmt: skip
         planned = machine.balance.springs if machine.balance is not None else ()
         return cls(
             motion.crank_angle,
@@ -153,11 +152,8 @@ class Scene:
             tuple((one.point, one.to) for one in planned if (one.point, one.to) not in springs),
             _field(motion),
             Carrier.of(machine),
-            marks=(
-                *cams_of(machine, joints),
-                *strands_of(joints, machine.bodies),
-                *element_signs(elements, joints, machine.bodies, motion.linkage.pin_radii),
-                *racks_of(joints, machine.bodies, lambda one: motion.sliders[one.name].travel),
+            marks=in_order(
+                mark for table, _, part in machine.parts for mark in signs_of(table, part, around)
             ),
         )
 

@@ -61,12 +61,14 @@ class Mark:
     """A shape that moves with a body, maybe the frame: from a point of that, in the body's axes.
 
     part : list and name of what it tells, if a page can have that deleted by it.
+    table : key of the list that has the numbers which shape it.
     """
 
     body: str
     point: str
     shape: Shape
     part: tuple[str, str] | None = None
+    table: str = ""
 
 
 def runs(shapes: Iterable[Shape]) -> Iterator[list[Shape]]:
@@ -103,7 +105,7 @@ def plate(corners: Array, roles: Sequence[str] = ("edge", "body")) -> list[Shape
 
 
 def wheel(center: complex, radius: float, curve: Array | None = None) -> list[Shape]:
-    """A gear: its pitch circle, or the curve around its center that it has instead, with three
+    """A wheel: its pitch circle, or the curve around its center that it has instead, with three
     spokes, so that one sees it turn.
     """
     ways = radius * np.exp(2j * np.pi * np.arange(3) / 3) if curve is None else _thirds(curve)
@@ -112,7 +114,7 @@ def wheel(center: complex, radius: float, curve: Array | None = None) -> list[Sh
 
 
 def rim(center: complex, radius: float, curve: Array | None = None) -> Shape:
-    """The pitch circle of a gear, or its curve."""
+    """The pitch circle of a wheel, or its curve."""
     if curve is None:
         return circle("wheel", center, radius)
     return line("wheel", *(center + curve), closed=True)

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 
 import numpy as np
 
-from equipoise.mechanism.assembly.joints import Structure
-from equipoise.mechanism.checks import Bodies
 from equipoise.mechanism.parts.circular_slots import CircularSlot
 from equipoise.mechanism.parts.curved_slots import CurvedSlot
+from equipoise.symbols.part_signs import Surroundings
 from equipoise.symbols.shapes import PIN, Array, Mark, Shape
 
 PLAY = 1.4
@@ -22,26 +21,24 @@ CAP = np.exp(1j * np.linspace(-np.pi / 2, np.pi / 2, 9))
 """Round ends, seen along the way ahead."""
 
 
-def circular_sign(
-    slot: CircularSlot, joints: Structure, bodies: Bodies, radii: Mapping[str, float]
-) -> Iterator[Mark]:
+def circular_sign(slot: CircularSlot, around: Surroundings) -> Iterator[Mark]:
     """The slot in its body."""
     first, last = slot.arc or (0.0, 2 * np.pi)
     angle = np.linspace(first, last, CORNERS)
     way = np.exp(1j * angle)
-    for shape in slot_shapes(slot.radius * way, 1j * way, not slot.arc, radii.get(slot.point)):
+    for shape in slot_shapes(
+        slot.radius * way, 1j * way, not slot.arc, around.radii.get(slot.point)
+    ):
         yield Mark(slot.on, slot.center, shape)
 
 
-def curved_sign(
-    slot: CurvedSlot, joints: Structure, bodies: Bodies, radii: Mapping[str, float]
-) -> Iterator[Mark]:
+def curved_sign(slot: CurvedSlot, around: Surroundings) -> Iterator[Mark]:
     """The slot in its body."""
     curve, turn = slot.curve, np.exp(1j * slot.direction)
     s = np.linspace(0.0, curve.knots[-1], CORNERS)
     middle, first, *_ = curve.at(s)
     ahead = turn * first / abs(first)
-    for shape in slot_shapes(turn * middle, ahead, slot.closed, radii.get(slot.point)):
+    for shape in slot_shapes(turn * middle, ahead, slot.closed, around.radii.get(slot.point)):
         yield Mark(slot.on, slot.origin, shape)
 
 

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from math import pi, radians, tan
 
 import numpy as np
 
 from equipoise.mechanism.assembly.builder import Guide
-from equipoise.mechanism.assembly.joints import Structure, coupling_pins
-from equipoise.mechanism.checks import Bodies
+from equipoise.mechanism.assembly.joints import coupling_pins
 from equipoise.mechanism.formulas.strands import LEFT, RIGHT
-from equipoise.mechanism.parts.machine import Slider
+from equipoise.mechanism.parts.belts import Belt
 from equipoise.mechanism.parts.racks import Rack
+from equipoise.symbols.part_signs import Surroundings
 from equipoise.symbols.shapes import Array, Mark, line
 
 MOST_TEETH = 80
@@ -21,40 +21,37 @@ SLOPE = tan(radians(20))
 """Of their flanks."""
 
 
-def strands_of(joints: Structure, bodies: Bodies) -> Iterator[Mark]:
-    """Both strands of every belt, but where one pulley covers the other, as it may in a sketch."""
-    for belt in (one for one in joints.couplings if one.table == "belts"):
-        driver, driven = coupling_pins(joints, belt)
-        points = bodies[belt.carrier]
-        strands = belt.strands(complex(*points[driven]) - complex(*points[driver]))  # type: ignore[attr-defined]
-        if not strands.distance > abs(strands.radius - strands.other):
-            continue
-        for side in (LEFT, RIGHT):
-            strand = line("strand", *strands.ends(side))
-            yield Mark(belt.carrier, driver, strand, (belt.table, belt.name))
+def strand_sign(belt: Belt, around: Surroundings) -> Iterator[Mark]:
+    """Both strands, but where one pulley covers the other, as it may in a sketch."""
+    driver, driven = coupling_pins(around.joints, belt)
+    points = around.bodies[belt.carrier]
+    strands = belt.strands(complex(*points[driven]) - complex(*points[driver]))
+    if not strands.distance > abs(strands.radius - strands.other):
+        return
+    for side in (LEFT, RIGHT):
+        strand = line("strand", *strands.ends(side))
+        yield Mark(belt.carrier, driver, strand, (belt.table, belt.name))
 
 
-def racks_of(
-    joints: Structure, bodies: Bodies, travel: Callable[[Slider], Array | float]
-) -> Iterator[Mark]:
-    """Every rack, as far as its pinion rolls on it, and a radius more.
-
-    travel : of a slider along its guide, m.
+def rack_sign(rack: Rack, around: Surroundings) -> Iterator[Mark]:
+    """The rack, as far as its pinion rolls on it, and a radius more; a sketch may lack its guide or
+    its pin.
     """
-    for rack in (one for one in joints.couplings if isinstance(one, Rack)):
-        pair = (rack.rack, rack.carrier)
-        slider = next(one for one in joints.sliders if (one.link, one.on) == pair)
-        guide = Guide.seen_from(slider, rack.carrier)
-        points = bodies[rack.carrier]
-        (pin,) = joints.pins_between(rack.pinion, rack.carrier)
-        foot = (complex(*points[pin]) - complex(*points[guide.base])) / guide.along
-        foot -= 1j * rack.left * rack.radius
-        reach = foot.real - travel(slider)
-        low, high = float(np.min(reach)) - rack.radius, float(np.max(reach)) + rack.radius
-        toward = 1j * rack.left  # the pinion, of a bar along the x axis
-        corners = low + 1j * foot.imag + _bar(high - low, rack.radius, toward)
-        bar = line("wheel", *(corners / guide.turn), closed=True)
-        yield Mark(rack.rack, guide.point, bar, (rack.table, rack.name))
+    pair = (rack.rack, rack.carrier)
+    slider = next((one for one in around.joints.sliders if (one.link, one.on) == pair), None)
+    pins = around.joints.pins_between(rack.pinion, rack.carrier)
+    if slider is None or len(pins) != 1:
+        return
+    guide = Guide.seen_from(slider, rack.carrier)
+    points = around.bodies[rack.carrier]
+    foot = (complex(*points[pins[0]]) - complex(*points[guide.base])) / guide.along
+    foot -= 1j * rack.left * rack.radius
+    reach = foot.real - around.travel(slider)
+    low, high = float(np.min(reach)) - rack.radius, float(np.max(reach)) + rack.radius
+    toward = 1j * rack.left  # the pinion, of a bar along the x axis
+    corners = low + 1j * foot.imag + _bar(high - low, rack.radius, toward)
+    bar = line("wheel", *(corners / guide.turn), closed=True)
+    yield Mark(rack.rack, guide.point, bar, (rack.table, rack.name))
 
 
 def _bar(length: float, radius: float, toward: complex) -> Array:

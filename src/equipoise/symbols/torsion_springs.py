@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 
 import numpy as np
 
-from equipoise.mechanism.assembly.joints import Structure
-from equipoise.mechanism.checks import Bodies
 from equipoise.mechanism.parts.torsion_springs import TorsionSpring
+from equipoise.symbols.part_signs import Surroundings
 from equipoise.symbols.shapes import Array, Mark, sign
 
 INNER, OUTER, TURNS, CORNERS = 6.0, 17.0, 2.25, 64
@@ -17,12 +16,10 @@ END = 6.0
 """Units, of the straight end that holds on to the link."""
 
 
-def torsion_sign(
-    spring: TorsionSpring, joints: Structure, bodies: Bodies, radii: Mapping[str, float]
-) -> Iterator[Mark]:
+def torsion_sign(spring: TorsionSpring, around: Surroundings) -> Iterator[Mark]:
     """A spiral that turns with the link."""
-    shared = joints.pins_between(spring.link, spring.on)
-    point = shared[0] if shared else next(iter(bodies[spring.link]))
+    shared = around.joints.pins_between(spring.link, spring.on)
+    point = shared[0] if shared else next(iter(around.bodies[spring.link]))
     yield Mark(spring.link, point, sign("spiral", 0j, spiral()))
 
 

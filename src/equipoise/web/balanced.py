@@ -31,6 +31,7 @@ from equipoise.i18n import Note, said, say
 from equipoise.mechanism.outputs.declared import declared
 from equipoise.mechanism.parts.balance import Balance, Limit, Objective
 from equipoise.mechanism.parts.bodies import Body
+from equipoise.mechanism.parts.couplings import coupling_kinds
 from equipoise.mechanism.parts.machine import Link, Machine
 from equipoise.quantities import clean, clean_place, display, told
 from equipoise.results.outputs import objective_named, shown_in
@@ -77,16 +78,19 @@ def balanced(base: Design, hold: bool = False) -> Balanced:
 
 
 def _without_shafts(base: Design) -> Design:
-    """The design without links that an earlier balance has added, their gears and pins."""
+    """The design without links that an earlier balance has added, their couplings and pins."""
     own, gone = base.own, base.shafts & base.own.links.keys()
     links = {name: link for name, link in own.links.items() if name not in gone}
-    gears = tuple(one for one in own.gears if not gone & {one.driver, one.driven})
+    couplings: dict[str, Any] = {
+        table: tuple(one for one in getattr(own, table) if gone.isdisjoint(one.bodies))
+        for table in coupling_kinds(Machine)
+    }
     held = {point for link in links.values() for point in link.points}
     pins = {point for name in gone for point in own.links[name].points} - held
     frame = {point: place for point, place in own.frame.items() if point not in pins}
     if not gone:
         return base
-    return base.with_machine(replace(own, links=links, gears=gears, frame=frame))
+    return base.with_machine(replace(own, links=links, frame=frame, **couplings))
 
 
 def _advised(base: Design) -> Balanced:

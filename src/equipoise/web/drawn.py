@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -15,12 +16,10 @@ from equipoise.mechanism.assembly.named_joints import pin_radii
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.parts.machine import FRAME, Machine
 from equipoise.quantities import DIGITS, display
-from equipoise.symbols.cams import cams_of
 from equipoise.symbols.drives import Drive
-from equipoise.symbols.element_signs import element_signs
+from equipoise.symbols.part_signs import Surroundings, in_order, signs_of
 from equipoise.symbols.scene import Guide, Scene, bodies_of
 from equipoise.symbols.shapes import Mark
-from equipoise.symbols.taut import racks_of, strands_of
 from equipoise.symbols.wheels import Wheel, wheels_of
 from equipoise.web.block import Block, Values
 from equipoise.web.design import Design
@@ -262,13 +261,13 @@ def scene_of(sketch: Sketch) -> Scene:
         springs,
         {name: pose.angle * one for name, pose in sketch.poses.items()},
         (drive,),
-        marks=tuple(_taut(sketch)),
+        marks=in_order(_marks(sketch)),
         room=() if sketch.links else EMPTY,
     )
 
 
 def _wheels(sketch: Sketch) -> list[Wheel]:
-    """Pitch curves, as far as their gears have their pins by now."""
+    """Pitch curves, as far as their wheels have their pins by now."""
     try:
         angles = {name: pose.angle for name, pose in sketch.poses.items()}
         return [*wheels_of(sketch.joints, sketch.bodies, angles)]
@@ -276,15 +275,13 @@ def _wheels(sketch: Sketch) -> list[Wheel]:
         return []
 
 
-def _taut(sketch: Sketch) -> list[Mark]:
-    """Strands of belts, racks, cams and signs of elements, as far as what they need is there."""
-    try:
-        cams = cams_of(sketch.machine(), sketch.joints) if sketch.rest.get("cams") else ()
-        racks = racks_of(sketch.joints, sketch.bodies, sketch.travel)
-        held = element_signs(sketch.elements, sketch.joints, sketch.bodies, _radii(sketch))
-        return [*cams, *strands_of(sketch.joints, sketch.bodies), *racks, *held]
-    except (EquipoiseError, StopIteration, ValueError):  # a rack without its guide, or its pin
-        return []
+def _marks(sketch: Sketch) -> Iterator[Mark]:
+    """Signs of parts, as far as what they need is there."""
+    around = Surroundings(sketch.machine, sketch.joints, sketch.bodies, _radii(sketch),
+                          sketch.travel)  # fmt: skip
+    for part in (*sketch.joints.couplings, *sketch.elements):
+        with suppress(EquipoiseError, ValueError):
+            yield from signs_of("", part, around)
 
 
 def _radii(sketch: Sketch) -> dict[str, float]:

@@ -215,9 +215,9 @@ def _local(motion: Motion, link: str, at: int, place: complex) -> Vector:
 def _position(machine: Machine, motion: Motion, change: Drag | None = None) -> Position:
     """Where the machine is, for the start of Newton's method: with a point that is dragged.
 
-    Gears hold the place that their teeth have at crank angle 0, which is then the only one to ask.
+    Couplings hold the place that they have at crank angle 0, which is then the only one to ask.
     """
-    at = 0 if change is None or motion.machine.gears else change.at
+    at = 0 if change is None or motion.machine.couplings else change.at
     places = {name: point.place[at] for name, point in motion.points.items()}
     if change is not None and at == change.at:
         places[change.name] = change.to

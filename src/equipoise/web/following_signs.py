@@ -15,7 +15,7 @@ from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.assembly.joints import coupling_pins
 from equipoise.mechanism.formulas.strands import LEFT, RIGHT
 from equipoise.mechanism.kinematics.motion import Motion
-from equipoise.mechanism.parts.joint_kinds import joint_kinds
+from equipoise.mechanism.parts.couplings import coupling_kinds
 from equipoise.mechanism.parts.machine import FRAME
 from equipoise.symbols.pieces import Piece, pieces
 from equipoise.symbols.scene import WIDE, Guide, Scene
@@ -25,8 +25,6 @@ from equipoise.web.block import Values
 
 SAME = 1e-9
 """Over the size of the machine: how near a corner is to the point that it is."""
-RIDING = ("rider", "face", "rib")
-"""Roles of what rides on cams, and of their ribs, which no list of couplings is told by."""
 PLATES = ("edge", "body", "rod-edge", "rod")
 """Roles of shapes around all points of a link."""
 
@@ -51,30 +49,30 @@ def _tie(scene: Scene, motion: Motion, piece: Piece, shape: Shape) -> Values | N
     body = FRAME if piece.hold is None else piece.hold.link
     if not body:
         return None  # it moves with a guide, or is stretched between points
-    if numbers := [*_shaping(motion, body, shape.role)]:
+    if numbers := [*_shaping(piece, body, shape.role)]:
         return {"made_of": numbers}
     if piece.layer == "drive" and piece.hold is not None:
         return _of_arrow(scene, body)
     if piece.part is not None and piece.part[0] != "slider":
         return _of_coupling(motion, piece, shape)
     tie = _of_points(scene, piece, shape, body)
-    if shape.role in RIDING:
-        return {**(tie or {}), "made_of": ["cams", *_of_shape(motion, shape.role)]}
+    if piece.table in coupling_kinds(type(motion.machine)):
+        return {**(tie or {}), "made_of": [piece.table, *_of_shape(motion, shape.role)]}
     return tie
 
 
-def _shaping(motion: Motion, body: str, role: str) -> Iterator[str]:
+def _shaping(piece: Piece, body: str, role: str) -> Iterator[str]:
     """Numbers from which solids of a link, and slots in a body, are computed."""
     if role in ("solid", "opening"):
         keys = ("bodies", "points", "length", "sides")
         yield from (str(KeyPath(("links", body, key))) for key in keys)
     elif role in SLOTS:
-        yield from joint_kinds(type(motion.machine))
+        yield piece.table
         yield str(_points_of(body))
 
 
 def _of_shape(motion: Motion, role: str) -> Iterator[str]:
-    """Numbers besides those of cams from which ribs and faces are computed; none of rollers."""
+    """Numbers besides those of its list from which ribs and faces are computed; none of rollers."""
     if role != "rider":
         yield "sliders"
         yield from (str(_points_of(body)) for body in (FRAME, *motion.machine.links))
@@ -170,7 +168,7 @@ def _strand(motion: Motion, shape: Shape, belt: Any) -> Values | None:
 
 
 def _made_of(motion: Motion, table: str, name: str) -> Iterator[str]:
-    """Numbers from which the shape of a cam or rack, as it is drawn, is computed."""
+    """Numbers from which the shape of a coupling, as it is drawn, is computed."""
     joints = motion.linkage.joints
     couplings = [coupling for coupling in joints.couplings if coupling.table == table]
     number, coupling = next(

@@ -75,7 +75,7 @@ class Rollers(Turning):
 
     @property
     def relation(self) -> Relation:
-        return kernels.gear, (self.speed_ratio,)
+        return kernels.in_ratio, (self.speed_ratio,)
 
     def line(self, seat: Seat) -> Line:
         return Line(seat.centres / (1 - self.speed_ratio), np.tan(self.lean))

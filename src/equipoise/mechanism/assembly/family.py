@@ -313,13 +313,9 @@ def _check_outlines(machine: Machine) -> None:
 
 
 def _check_shapes(machine: Machine) -> None:
-    """Whether the laws of gears are formulas of their numbers."""
-    shapes = [gear.shape for gear in machine.gears if gear.shape is not None]
-    if any(shape.varies for shape in shapes):
-        from equipoise.mechanism.parts import pitch_curves
-
-        if not all(map(pitch_curves.can_vary, shapes)):
-            raise KeyError
+    """Whether the relations of couplings are formulas of their numbers."""
+    if not all(one.has_formula for one in machine.couplings):
+        raise KeyError
 
 
 def _pair(place: Vector, parts: Mapping[Any, Array]) -> tuple[Any, Any]:

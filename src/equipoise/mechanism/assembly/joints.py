@@ -186,7 +186,7 @@ def drive_pivot(joints: Structure, drive: str, where: str = "drive.link") -> str
 
 
 def place_in_file(joints: Structure, coupling: Coupling) -> str:
-    """Where a coupling stands in the model file, such as ``gears[2]``."""
+    """Where a coupling stands in the model file, such as ``belts[2]``."""
     alike = [one for one in joints.couplings if one.table == coupling.table]
     return f"{coupling.table}[{alike.index(coupling) + 1}]"
 

@@ -269,7 +269,7 @@ class Maker:
         return self.joints.tracked.keys().isdisjoint((loop.on.body, loop.by.body))
 
     def tree(self, loops: Sequence[Loop]) -> tuple[Place, ...]:
-        """Where each link is; one that nothing but gears, or riders, holds may be anywhere."""
+        """Where each link is; one that nothing but couplings, or riders, holds may be anywhere."""
         held = [self.place(link, loops[k]) for link, k in self.holds.items()]
         return (*map(Free, self.free), *held)
 
@@ -333,7 +333,7 @@ def _solve_start(
     loops: tuple[Loop, ...],
     near: Position | None,
 ) -> tuple[LoopGroup, tuple[Loop, ...]]:
-    """The group with its solution at crank angle 0 and, from that, the offsets of its gears."""
+    """The group with its solution at crank angle 0 and, from that, the offsets of its couplings."""
     position = near or builder.machine.position
     if position is None:
         raise ModelError(
@@ -385,11 +385,13 @@ def _solve_start(
 
 
 def _standing(loops: Sequence[Loop], starts: Mapping[str, float]) -> tuple[Loop, ...]:
-    """Joints for rough poses: gears stand still at the angles at which they start, and riders are
+    """Joints for rough poses: couplings stand still as they start, and riders are
     on their tracks already.
     """
     return tuple(
-        replace(loop, carrier=FRAME, kernel=kernels.gear, numbers=(0.0,), offset=starts[loop.name])
+        replace(
+            loop, carrier=FRAME, kernel=kernels.in_ratio, numbers=(0.0,), offset=starts[loop.name]
+        )
         if isinstance(loop, CouplingLoop) and loop.starts
         else loop
         for loop in loops

@@ -1,7 +1,7 @@
 """Loop equations: what vanishes where a joint holds two bodies together, and where it may be.
 
 Each joint says of two bodies that something vanishes: the gap of a pin (2 equations), turn and
-offset of a slider (2), or of a rider on its track, the mismatch of a gear (1).  The same
+offset of a slider (2), or of a rider on its track, the mismatch of a coupling (1).  The same
 expressions in velocities and accelerations are linear in them, and the force in the joint acts
 where and as the gap is measured.
 
@@ -23,7 +23,7 @@ from equipoise.mechanism.formulas.curve_kernels import on_track
 class Pose:
     """Place of a body's anchor, and its rotation, with two derivatives each, of shape (..., N).
 
-    angle : running angle, which only gears ask for.
+    angle : running angle, which only couplings ask for.
     along : of a rider, the parameter of its track, and its speed along that by the crank angle.
     """
 

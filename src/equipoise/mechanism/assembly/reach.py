@@ -97,8 +97,8 @@ def reach(linkage: Assembled) -> Reach | None:
 
     Raises
     ------
-    RangeError : the linkage cannot be put together at any crank angle, or has gears and cannot at
-        crank angle 0, where these start.
+    RangeError : the linkage cannot be put together at any crank angle, or has couplings and cannot
+        at crank angle 0, where these start.
     MotionError : its motion does not repeat.
     """
     try:

@@ -461,7 +461,7 @@ class Shared(LoopForces):
         return self.those(np.max(np.abs(unknowns[:, -1]), axis=0) > BESIDE)
 
     def unsensed(self, state: State) -> Array:
-        """The equations, for whatever flank of gears."""
+        """The equations, for whatever flanks of couplings."""
         return self.balance(state, self.poses(state), [0.0] * len(self.loops))[0]
 
     def those(self, told: Array) -> frozenset[str]:

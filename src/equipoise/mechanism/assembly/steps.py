@@ -9,7 +9,7 @@ Names of values in a state
 ``p(B)``, ``p1(B)``, ``p2(B)``            point and its derivatives by crank angle
 ``u(rod)``, ``w(rod)``, ``a(rod)``        rotation of a link and its derivatives
 ``s(pin)``, ``s1(pin)``                   parameter of the track of a rider, speed along it
-``phi(gear)``                             running angle of a link, rad, counted through the turns
+``phi(wheel)``                            running angle of a link, rad, counted through the turns
 ``F(rod)``, ``M(rod)``                    what the joints of a link must supply, about its anchor
 ``R(B/rod)``, ``C(B/rod)``                force and couple that a joint exerts on a link
 """

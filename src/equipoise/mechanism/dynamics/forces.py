@@ -108,7 +108,7 @@ class Forces(Exerted, Displayed):
         return self.solved_like(None)
 
     def solved_like(self, other: Pass | None) -> Pass:
-        """The same with the flanks of gears in contact that are so in another run."""
+        """The same with the flanks of couplings in contact that are so in another run."""
         total = dict(self.inertia)
         for more in (self.weights, self.loads, self.springs):
             for link, (force, moment) in more.items():

@@ -288,7 +288,7 @@ def reactions(motion: Motion, demands: Mapping[str, Demand], like: Pass | None =
     """Joint forces that meet the demands of all links.
 
     demands : link -> force and moment about its anchor, of shapes (..., N).
-    like : a pass whose gears are in contact on the same flanks; without it the demands tell.
+    like : a pass whose couplings are in contact on the same flanks; without it the demands tell.
     """
     if motion.machine.pushers:
         return _pushed(motion, demands, like)

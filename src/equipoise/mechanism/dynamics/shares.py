@@ -60,7 +60,7 @@ class Split(Shares):
     """Outputs by cause and link: arrays (C, L, N), causes as in `CAUSES`, of which the
     last only with friction; links in file order.
 
-    Gears are taken with the flank in contact that the whole load gives, and chains with the strand
+    Teeth are taken with the flank in contact that the whole load gives, and chains with the strand
     that pulls.
     """
 

@@ -68,7 +68,7 @@ def rpp_forces(p, s, u, force_p, moment_p, force_s, moment_s, along, inner):
 
 
 def flank(moment):
-    """Sign of the moment that a driven gear needs: it tells which flank of the teeth is loaded."""
+    """Sign of the moment that a driven body needs: it tells which flank of the teeth is loaded."""
     return (moment / (abs(moment) + 1e-300),)
 
 
@@ -133,7 +133,7 @@ def slant(sense, radial, slope):
 
 
 def rolling_forces(force, moment, u, sense, lever, slope, radial):
-    """As `flank_forces`, of gears whose ratio varies; lever : along the line of centres."""
+    """As `flank_forces`, of what rolls with a varying ratio; lever : along the line of centres."""
     turned = -slant(sense, radial, slope)
     at_pin, mesh, tangential = flank_forces(force, moment, u, 1.0, lever, turned)
     return at_pin, mesh, tangential

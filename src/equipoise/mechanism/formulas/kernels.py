@@ -70,8 +70,8 @@ def point(p, p1, p2, u, w, a, arm):
     return p + r, p1 + 1j * w * r, p2 + (1j * a - w * w) * r
 
 
-def gear(angle_r, w_r, a_r, angle_c, w_c, a_c, ratio, offset):
-    """Angle of a driven gear: relative to the carrier c it turns `ratio` times the driver r."""
+def in_ratio(angle_r, w_r, a_r, angle_c, w_c, a_c, ratio, offset):
+    """Angle of a driven body: relative to the carrier c it turns `ratio` times the driver r."""
     return (
         angle_c + ratio * (angle_r - angle_c) + offset,
         w_c + ratio * (w_r - w_c),

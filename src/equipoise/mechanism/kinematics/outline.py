@@ -1,7 +1,7 @@
 """A machine as it is drawn: where each of its links lies; it may lack anything.
 
 What is drawn is held by the pose of each link, so that whatever is still missing follows from the
-drawing: the sides of dyads, the start of gears, the rough position of loops.
+drawing: the sides of dyads, the start of couplings, the rough position of loops.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ TITLE = "Untitled machine"
 USUAL_SIZE = 0.1
 """m, of a machine that has no points yet."""
 MESHING = 1e-9
-"""rad by which the start of a gear may differ from what is drawn: rounding."""
+"""rad by which the start of a coupling may differ from what is drawn: rounding."""
 
 
 @dataclass(frozen=True)
@@ -257,12 +257,12 @@ def _known(one: Turning, angles: Mapping[str, tuple[float, float]]) -> bool:
     return {one.driver, one.carrier} <= angles.keys() and one.driven not in angles
 
 
-def _way(gear: Turning, driver: tuple[float, float], carrier: tuple[float, float]) -> float:
-    """How far a driven gear turns while driver and carrier turn from one angle to another."""
-    kernel, numbers = gear.relation
+def _way(one: Turning, driver: tuple[float, float], carrier: tuple[float, float]) -> float:
+    """How far a driven link turns while driver and carrier turn from one angle to another."""
+    kernel, numbers = one.relation
     before, after = (
-        float(kernel(one, 0.0, 0.0, other, 0.0, 0.0, *numbers, 0.0)[0])
-        for one, other in zip(driver, carrier, strict=True)
+        float(kernel(angle, 0.0, 0.0, other, 0.0, 0.0, *numbers, 0.0)[0])
+        for angle, other in zip(driver, carrier, strict=True)
     )
     return after - before
 

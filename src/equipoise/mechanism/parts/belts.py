@@ -49,6 +49,7 @@ class Belt(Turning):
     }
 
     table: ClassVar[str] = "belts"
+    sign = "equipoise.symbols.taut:strand_sign"
     noun = to_say("belt")
     group = to_say("belts")
     heading = Note("Belt")
@@ -113,7 +114,7 @@ class Belt(Turning):
 
     @property
     def relation(self) -> Relation:
-        return kernels.gear, (self.speed_ratio,)
+        return kernels.in_ratio, (self.speed_ratio,)
 
     @property
     def exact_ratio(self) -> Fraction | None:

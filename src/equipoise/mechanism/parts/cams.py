@@ -38,6 +38,7 @@ class Cam(Coupling):
 
     called = to_say("{what} of cam {number}")
     table: ClassVar[str] = "cams"
+    sign = "equipoise.symbols.cams:cam_sign"
     noun = to_say("cam")
     group = to_say("cams")
     columns: ClassVar[Mapping[str, Set[str]]] = {"": {"base_radius", "roller_radius", "normal"}}

@@ -206,6 +206,16 @@ class Coupling(PartKind):
             yield ModelError(where, told)
 
     @property
+    def unevenness(self) -> float:
+        """How many times as fast as in the mean the driven body turns where it is fastest."""
+        return 1.0
+
+    @property
+    def has_formula(self) -> bool:
+        """Whether its relation has a formula for columns of its numbers."""
+        return True
+
+    @property
     def slides(self) -> str:
         """The body that slides on the carrier by a guide instead of being pinned to it; empty if
         none does.

@@ -59,6 +59,8 @@ class PartKind(Frozen):
 
     most : that a machine may have.
     group : what several are called, above their outputs and their numbers.
+    sign : ``module:function`` of the room of symbols that draws it, from the part and its
+        surroundings to marks; empty where it has no sign of its own.
     special : what it is called by formats of other programs, some of which lack it; empty of what
         all have.
     """
@@ -66,6 +68,7 @@ class PartKind(Frozen):
     most: ClassVar[int] = 200
     group: ClassVar[str]
     special: ClassVar[Any] = ""
+    sign: ClassVar[str] = ""
 
     @property
     @abstractmethod
@@ -106,12 +109,9 @@ class Element(PartKind):
     outputs : dimension and label of each, by name.
     title : of the table of their outputs.  headings : of those outputs that it shows, of the
         smallest and of the largest value.
-    sign : ``module:function`` of the room of symbols that draws it, from the element, the joints
-        and the bodies to marks; empty where it has no sign of its own.
     still : fields whose numbers no design changes, so that compiled loops have them as they are.
     """
 
-    sign: ClassVar[str] = ""
     still: ClassVar[tuple[str, ...]] = ()
     outputs: ClassVar[Mapping[str, tuple[Dimension, str]]] = {}
     title: ClassVar[str]

@@ -127,7 +127,7 @@ class Gear(Turning):
     def relation(self) -> Relation:
         if self.law is not None:
             return coupled, (self.law,)
-        return kernels.gear, (self.speed_ratio,)
+        return kernels.in_ratio, (self.speed_ratio,)
 
     @property
     def law(self) -> Law | None:
@@ -145,6 +145,18 @@ class Gear(Turning):
         from equipoise.mechanism.parts.pitch_curves import ratios_of
 
         return ratios_of(self.shape, self.speed_ratio)
+
+    @property
+    def unevenness(self) -> float:
+        return max(map(abs, self.ratios)) / abs(self.speed_ratio)
+
+    @property
+    def has_formula(self) -> bool:
+        if self.shape is None:
+            return True
+        from equipoise.mechanism.parts.pitch_curves import can_vary
+
+        return can_vary(self.shape)
 
     @property
     def exact_ratio(self) -> Fraction | None:

@@ -35,6 +35,7 @@ class Rack(Coupling):
     called = to_say("{what} of rack {number}")
 
     table: ClassVar[str] = "racks"
+    sign = "equipoise.symbols.taut:rack_sign"
     noun = to_say("rack")
     group = to_say("racks")
     columns: ClassVar[Mapping[str, Set[str]]] = {"": {"angle", "travel", "pressure_angle"}}
