@@ -1,7 +1,9 @@
 /** The page as a whole: what it shows, and who tells whom. */
 
+import { menuOf } from "./actions";
 import { Bench } from "./bench";
 import { Charts } from "./charts";
+import { type Asking, ContextMenu, type Menu } from "./context_menu";
 import { Conversation, type Events } from "./conversation";
 import { h, set, write } from "./dom";
 import { dropZone, picker, save, tooLarge } from "./files";
@@ -18,6 +20,7 @@ import { Player } from "./player";
 import type { Asked, FileKind, Hello, Planted, State, Wire } from "./protocol";
 import { BalancePanel, FigureTable, Readings } from "./readings";
 import { Board } from "./board";
+import { Border } from "./border";
 import { Seeing } from "./seeing";
 import { pressed } from "./shortcuts";
 import { type Grip, Stage } from "./stage";
@@ -258,7 +261,8 @@ export class App {
     const held = disabled ? h("fieldset", { class: "bare", disabled }, ...parts) : h("div", {}, ...parts);
     this.aside.append(this.balance.root, held);
     if (disabled) this.aside.tabIndex = 0; // to be scrolled by keys
-    this.views.body.append(stage, this.side, this.aside);
+    const border = new Border(this.views.body, () => this.measure());
+    this.views.body.append(stage, border.root, this.side, this.aside);
     this.root.append(
       this.toolbar.root,
       this.lost,
@@ -272,8 +276,31 @@ export class App {
       this.gallery.root,
       this.picker,
     );
+    this.board.root.append(this.readings.pins.root);
+    if (!this.played)
+      this.root.append(new ContextMenu(this.board.root, this.root, (asking) => this.offered(asking)).root);
     this.watcher.observe(this.board.root);
     this.watcher.observe(this.charts.root);
+  }
+
+  /** What can be done where a menu is asked for. */
+  private offered({ target, at: [x, y], keys }: Asking): Menu | null {
+    const { svg } = this.stage;
+    if (!svg.contains(target)) return null;
+    const box = svg.getBoundingClientRect();
+    const hit = keys ? this.tools.focused(target) : this.tools.at([x - box.left, y - box.top]);
+    const { parts } = this.bench;
+    return (
+      hit &&
+      menuOf(hit, {
+        state: () => this.state,
+        make: (made) => this.tools.make(made),
+        add: (where, values) => parts.add(where, values),
+        change: (where, values, key) => parts.change(where, values, key),
+        numbers: (group) => this.inspector.enter(group),
+        written: (place) => place.map((value) => parts.written(value)) as [string, string],
+      })
+    );
   }
 
   private listen(): void {

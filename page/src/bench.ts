@@ -21,7 +21,7 @@ export interface Room {
 
 export class Bench {
   readonly roots: HTMLElement[];
-  private readonly parts: Parts;
+  readonly parts: Parts;
   private readonly aids: Aids;
   private readonly aim: Aim;
 

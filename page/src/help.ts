@@ -19,6 +19,7 @@ export const KEYS: [keys: string | (() => string), what: string][] = [
   ["Ctrl + S", toSay("save the file that was opened, or download the model")],
   ["V P L J X S G B K C D", toSay("tools: select, point, link, pin, separate, slider, gears, belt, rack, cam, drive")],
   ["Delete", toSay("delete the joint or link that is chosen")],
+  [() => say("menu key"), toSay("what can be done with the chosen joint or link (also: right button, long press)")],
   ["?", toSay("this list")],
 ];
 

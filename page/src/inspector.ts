@@ -63,6 +63,12 @@ export class Inspector {
     }
   }
 
+  /** Show a group, and go to its first number. */
+  enter(group: string): void {
+    this.choose(group, null);
+    this.groups.get(group)?.querySelector<HTMLElement>("input")?.focus();
+  }
+
   private build(fields: Field[], shape: string): void {
     this.shape = shape;
     this.rows.clear();

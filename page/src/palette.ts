@@ -161,7 +161,8 @@ export class Palette {
     const tools = TOOLS.map((told) => {
       const title = `${say(told.name)} (${told.key.toUpperCase()}): ${say(told.first)}`;
       const attributes = { type: "button", title, "aria-label": say(told.name), "aria-pressed": "false" };
-      const button = h("button", { ...attributes, "aria-keyshortcuts": told.key }, icon(told.picture));
+      const name = h("span", { class: "name", "aria-hidden": "true" }, say(told.name));
+      const button = h("button", { ...attributes, "aria-keyshortcuts": told.key }, icon(told.picture), name);
       button.addEventListener("click", () => page.chosen(told.tool));
       this.buttons.set(told.tool, button);
       return button;
@@ -177,11 +178,8 @@ export class Palette {
       "div",
       { class: "making" },
       h("div", { class: "tools", role: "toolbar", "aria-label": say("Tools") }, make, ...tools),
-      this.meshing,
-      this.riding,
-      this.status,
-      this.name,
-      this.next,
+      // A room of its own: sentences that come, go or wrap reach over the sheet, and never move it.
+      h("div", { class: "telling" }, h("div", {}, this.status, this.name, this.next, this.meshing, this.riding)),
     );
   }
 

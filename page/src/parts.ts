@@ -28,6 +28,10 @@ export class Parts {
   private form: Form | null = null;
   private subject: Subject | null = null;
   private seen = -1;
+  /** What is to be opened as soon as the tables are there. */
+  private wanted: ((tables: Tables) => void) | null = null;
+  /** Values of what is edited as they are in the file. */
+  private original: Values = {};
 
   constructor(private readonly page: Page) {
     this.select.addEventListener("change", () => this.choose());
@@ -69,6 +73,35 @@ export class Parts {
       ...tables.groups.filter(({ entries }) => entries.length).map((group) => this.listed(group)),
     );
     this.check();
+    this.wanted?.(tables);
+    this.wanted = null;
+  }
+
+  /** Open the form of a new table of a list, with some of its values; or of what has to be there first. */
+  add(where: string, values: Values): void {
+    this.want(({ groups }) => {
+      const group = groups.find((one) => one.where === where);
+      if (group?.needs) this.begin(groups.find((one) => one.where === where.split(".")[0]), {});
+      else this.begin(group, values);
+    });
+  }
+
+  /** Open the form of a table, with other values of some keys, at one of these. */
+  change(where: string, values: Values, key: string): void {
+    this.want(({ groups }) => {
+      for (const group of groups)
+        for (const entry of group.entries)
+          if (entry.where === where) this.edit(group, entry, values, key);
+    });
+  }
+
+  private want(then: (tables: Tables) => void): void {
+    this.wanted = then;
+    this.root.open = true;
+    this.page.talk.release();
+    this.page.talk.ask({ type: "tables" }, (refusal) => {
+      if (refusal !== null) this.wanted = null;
+    });
   }
 
   /** What is being edited may be another by now, or gone, as after undo. */
@@ -84,7 +117,7 @@ export class Parts {
     } else {
       const entry = group.entries.find(({ where }) => where === subject.where);
       if (!entry) this.close();
-      else if (!same(entry.values, subject.values)) this.edit(group, entry);
+      else if (!same(entry.values, this.original)) this.edit(group, entry);
     }
   }
 
@@ -140,6 +173,13 @@ export class Parts {
     const group = this.tables?.groups[Number(this.select.value)];
     if (!this.select.value || !group) return;
     this.select.value = "";
+    this.begin(group, {});
+  }
+
+  private begin(group: Group | undefined, values: Values): void {
+    if (!group) return;
+    const [held] = group.entries;
+    if (group.many === "one" && held) return this.edit(group, held);
     const { many, entries, place, where } = group;
     const next = many === "list" ? [...place, entries.length] : many === "named" ? [...place, ""] : place;
     const path = many === "list" ? `${where}[${entries.length + 1}]` : where;
@@ -151,14 +191,14 @@ export class Parts {
       place: next,
       where: path,
       name: many === "named" ? "" : null,
-      values: {},
+      values,
       below: [],
       known: false,
       deletable: false,
     });
   }
 
-  private edit(group: Group, entry: EntryTold): void {
+  private edit(group: Group, entry: EntryTold, values: Values = {}, key = ""): void {
     const last = entry.place[entry.place.length - 1];
     this.open({
       heading: nameOf(group, entry),
@@ -168,11 +208,13 @@ export class Parts {
       place: entry.place,
       where: entry.where,
       name: group.many === "named" ? String(last) : null,
-      values: entry.values,
+      values: { ...entry.values, ...values },
       below: entry.below,
       known: true,
       deletable: !group.required,
     });
+    this.original = entry.values;
+    if (key) this.slot.querySelector<HTMLElement>(`[data-key="${key}"] :is(input, select)`)?.focus();
   }
 
   private open(subject: Subject): void {
@@ -205,7 +247,7 @@ export class Parts {
     files: Record<string, string>,
   ): void {
     // What is as it was is no step.
-    if (subject.known && name === subject.name && same(values, subject.values)) return this.close();
+    if (subject.known && name === subject.name && same(values, this.original)) return this.close();
     const at = subject.name === "" ? [...place.slice(0, -1), name ?? ""] : place;
     const more = { ...(name && { name }), ...(Object.keys(files).length && { files }) };
     this.put(at, values, subject.heading, more);
@@ -251,7 +293,7 @@ export class Parts {
   }
 
   /** As finely as a pixel tells. */
-  private written(metres: number): string {
+  written(metres: number): string {
     const { unit, factor } = lengths();
     const digits = Math.max(0, -Math.floor(Math.log10(round(factor / this.page.scale()) / 4)));
     const text = (metres * factor).toFixed(Math.min(digits, 9));

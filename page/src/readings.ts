@@ -1,11 +1,15 @@
 /** Figures of what shakes, and what balancing made of them. */
 
-import { h, show, write } from "./dom";
+import { h, icon, set, show, write } from "./dom";
 import { unbroken } from "./format";
+import { Pins } from "./pins";
 import type { Balanced, Change, Figure, Planted, State } from "./protocol";
 import { say } from "./words";
 
+const PIN = "M5.500 2.500h5M6.500 2.500v4l-2 2.500h7l-2-2.500v-4M8 9v4.500";
+
 interface Line {
+  name: string;
   label: string;
   unit: string;
   rms?: Figure;
@@ -15,6 +19,9 @@ interface Line {
 /** A table of RMS and peak, a line for each signal. */
 export class Readings {
   readonly root = h("div", { class: "readings" });
+  /** Those that are pinned, which stand on the drawing. */
+  readonly pins = new Pins();
+  private lines: Line[] = [];
   private shape = "";
   private cells = new Map<string, { value: HTMLElement; before: HTMLElement | null }>();
 
@@ -28,6 +35,31 @@ export class Readings {
       write(cell.value, figure.text);
       if (cell.before) write(cell.before, figure.was ?? "");
     }
+    this.lines = lines;
+    this.pin();
+  }
+
+  private pin(): void {
+    const told = (line: Line) => {
+      const rms = line.rms && say("RMS {value} {unit}", { value: line.rms.text, unit: line.unit });
+      const peak = line.peak && say("peak {value} {unit}", { value: line.peak.text, unit: line.unit });
+      return { name: line.name, label: line.label, text: [rms, peak].filter((one) => one).join(", ") };
+    };
+    this.pins.show(this.lines.map(told));
+  }
+
+  /** The button that pins a line on the drawing, or takes it off. */
+  private pinner({ name, label }: Line): HTMLElement {
+    const title = say("Pin {name} on the drawing", { name: label });
+    const button = h("button", { type: "button", class: "pin", title, "aria-label": title }, icon(PIN));
+    const mark = () => set(button, { "aria-pressed": String(this.pins.has(name)) });
+    button.addEventListener("click", () => {
+      this.pins.turn(name);
+      mark();
+      this.pin();
+    });
+    mark();
+    return button;
   }
 
   private build(lines: Line[], state: State, shape: string): void {
@@ -57,7 +89,7 @@ export class Readings {
         h("th", { scope: "row" }, line.label),
         cell(line.rms),
         cell(line.peak),
-        h("td", { class: "unit" }, unbroken(line.unit)),
+        h("td", { class: "unit" }, unbroken(line.unit), this.pinner(line)),
       ),
     );
     const caption = h(
@@ -108,7 +140,7 @@ function byLine(figures: Figure[]): Map<string, Line> {
   const lines = new Map<string, Line>();
   for (const figure of figures) {
     const { signal, unit } = figure;
-    const line = lines.get(signal) ?? { label: capital(signal), unit };
+    const line = lines.get(signal) ?? { name: figure.name.replace(/\.[^.]*$/, ""), label: capital(signal), unit };
     line[figure.measure] = figure;
     lines.set(signal, line);
   }

@@ -139,6 +139,21 @@ export class Tools {
 
   // -- by mouse and touch --------------------------------------------------------------------------
 
+  /** What is meant where the keys are: at a handle, or at the crosshair. */
+  focused(element: Element): Hit | null {
+    if (element === this.crosshair) return this.at(this.page.stage.view.px(...this.cross));
+    const { kind, name } = element.closest<SVGElement>(".grip")?.dataset ?? {};
+    if (!kind || !name) return null;
+    const place = this.page.stage.place({ kind: kind as Grip["kind"], name });
+    if (!place) return null;
+    return kind === "point" ? { point: name, place } : { link: name, place };
+  }
+
+  /** Do something at once that a tool does. */
+  make(made: Made): void {
+    this.soon(() => this.ask(made));
+  }
+
   private onSheet(event: Event): boolean {
     return this.page.stage.svg.contains(event.target as Node);
   }
@@ -149,7 +164,7 @@ export class Tools {
   }
 
   /** What is meant at a pixel of the drawing. */
-  private at(px: Pair, level = false): Hit {
+  at(px: Pair, level = false): Hit {
     const box = this.page.stage.svg.getBoundingClientRect();
     const below = document.elementsFromPoint(box.left + px[0], box.top + px[1]);
     const root = this.page.stage.svg.getRootNode() as Document | ShadowRoot;

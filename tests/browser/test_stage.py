@@ -1,0 +1,205 @@
+"""The sheet as the stage: room for the drawing, a sheet that stays, menus, pinned figures."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+from playwright.sync_api import Locator, Page, expect
+
+from browser.live import FITS, SCREENSHOTS, Live
+
+
+def box(part: Locator) -> tuple[float, float, float, float]:
+    """Left, top, width and height on the screen, pixels."""
+    found = part.bounding_box()
+    assert found is not None
+    return found["x"], found["y"], found["width"], found["height"]
+
+
+def board(live: Live) -> Locator:
+    return live.page.locator(".board").first
+
+
+def begun(live: Live) -> None:
+    """Begin a machine from nothing."""
+    live.page.get_by_role("button", name="New", exact=True).click()
+    expect(live.page.locator(".equipoise.unfinished")).to_be_attached()
+    live.settled()
+
+
+def test_the_drawing_has_most_of_the_window_while_one_draws(live: Live) -> None:
+    begun(live)
+    _, _, width, height = box(board(live))
+    assert width * height > 0.5 * 1280 * 900
+    live.page.screenshot(path=SCREENSHOTS / "drawing-1280.png")
+    assert live.findings() == []
+
+
+@pytest.mark.parametrize("language", ["en", "ja", "ko"])
+@pytest.mark.parametrize("width", [400, 1280])
+def test_sentences_that_come_and_go_leave_the_sheet_where_it_is(
+    new_page: Callable[..., Page], address: str, width: int, language: str
+) -> None:
+    """Every tool tells at length what to do; the sheet stays at the same pixel."""
+    options = {"viewport": {"width": width, "height": 900}, "locale": language}
+    live = Live.open(new_page(**options), address)
+    live.page.locator(".making .tools button").first.click()
+    expect(live.page.locator(".equipoise.unfinished")).to_be_attached()
+    live.settled()
+    tops = set()
+    for tool in live.page.locator(".making .tools button[aria-pressed]").all():
+        tool.click()
+        tops.add(box(board(live))[1])
+        x, y, w, h = box(board(live))
+        live.page.mouse.click(x + 0.3 * w, y + 0.7 * h)
+        live.settled()
+        tops.add(box(board(live))[1])
+    assert len(tops) == 1
+    assert live.page.evaluate(FITS)
+
+
+def test_tools_have_names_that_are_seen(live: Live) -> None:
+    tools = live.page.get_by_role("toolbar", name="Tools")
+    for name in ("Select", "Link", "Pin", "Separate", "Slider", "Cam", "Drive", "Delete"):
+        word = tools.get_by_role("button", name=name, exact=True).locator(".name")
+        expect(word).to_have_text(name)
+        expect(word).to_be_visible()
+
+
+def test_the_border_is_dragged_and_remembered(live: Live) -> None:
+    page = live.page
+    border = page.get_by_role("separator", name="Border between drawing and charts")
+    before = box(board(live))[2]
+    live.drag(border, (150.0, 0.0))
+    wider = box(board(live))[2]
+    assert wider - before == pytest.approx(150, abs=3)
+    border.press("ArrowLeft")
+    narrower = box(board(live))[2]
+    assert narrower < wider - 30
+    page.reload()
+    live.settled()
+    assert box(board(live))[2] == pytest.approx(narrower, abs=1)
+
+
+def test_charts_go_below_the_drawing(live: Live) -> None:
+    page = live.page
+    border = page.get_by_role("separator", name="Border between drawing and charts")
+    before = box(board(live))[2]
+    live.drag(border, (410.0, 0.0))  # out of the window on the right
+    assert border.get_attribute("aria-orientation") == "horizontal"
+    assert box(board(live))[2] > before + 380
+    charts = page.get_by_role("region", name="Charts")
+    assert box(charts)[1] > box(board(live))[1] + 300
+    page.screenshot(path=SCREENSHOTS / "charts-below-1280.png")
+    assert live.findings() == []
+    border.press("Enter")
+    assert box(board(live))[2] == pytest.approx(before, abs=1)
+
+
+# -- menus -----------------------------------------------------------------------------------------
+
+
+def menu(live: Live, of: str) -> Locator:
+    return live.page.get_by_role("menu", name=of, exact=True)
+
+
+def items(found: Locator) -> list[str]:
+    return found.get_by_role("menuitem").all_inner_texts()
+
+
+def test_a_joint_has_a_menu_by_the_right_button(live: Live) -> None:
+    live.joint("C").click(button="right")
+    found = menu(live, "C")
+    assert items(found) == [
+        "Spring …", "Load …", "Cylinder …", "Pin to the frame", "Separate", "Delete",
+        "Mount of the support …", "Gauge of the support …",
+    ]  # fmt: skip
+    live.page.screenshot(path=SCREENSHOTS / "menu-1280.png")
+    assert live.findings() == []
+    found.get_by_role("menuitem", name="Spring …").click()
+    form = live.page.get_by_role("form", name="New: springs")
+    expect(form.get_by_label("link", exact=True)).to_have_value("coupler")
+    expect(form.get_by_label("point", exact=True)).to_have_value("C")
+
+
+def test_a_link_has_a_menu_that_leads_to_its_counterweight_and_mass(live: Live) -> None:
+    def opened() -> Locator:
+        (ax, ay), (bx, by) = live.spot(live.joint("A")), live.spot(live.joint("B"))
+        live.page.mouse.click(ax + 0.65 * (bx - ax), ay + 0.65 * (by - ay), button="right")
+        return menu(live, "crank")
+
+    found = opened()
+    assert "Drive" not in items(found)  # it is the drive
+    found.get_by_role("menuitem", name="Counterweight").click()
+    focused = live.page.evaluate("document.activeElement.getAttribute('aria-label')")
+    assert "counterweight on crank" in focused
+    found = opened()
+    found.get_by_role("menuitem", name="Mass …").click()
+    form = live.page.get_by_role("form", name="crank")
+    expect(form.get_by_label("mass", exact=True)).to_be_focused()
+    expect(form.get_by_label("mass", exact=True)).to_have_value("199 g")
+
+
+def test_a_place_has_a_menu_and_a_mount_asks_for_the_support_first(live: Live) -> None:
+    x, y, width, height = box(board(live))
+    live.page.mouse.click(x + 0.6 * width, y + 0.15 * height, button="right")
+    found = menu(live, "This place")
+    found.get_by_role("menuitem", name="Mount of the support …").click()
+    expect(live.page.get_by_role("form", name="New: support")).to_be_visible()
+    live.page.mouse.click(x + 0.6 * width, y + 0.15 * height, button="right")
+    before = live.page.locator("[data-kind=point]").count()
+    found.get_by_role("menuitem", name="Point of the frame").click()
+    expect(live.page.locator("[data-kind=point]")).to_have_count(before + 1)
+
+
+def test_the_menu_key_opens_the_menu_and_delete_deletes(live: Live) -> None:
+    keyboard = live.page.keyboard
+    for key in ("ContextMenu", "Shift+F10"):
+        live.joint("P").focus()
+        keyboard.press(key)
+        expect(menu(live, "P")).to_be_visible()
+        keyboard.press("Escape")
+        expect(menu(live, "P")).to_be_hidden()
+        expect(live.joint("P")).to_be_focused()
+    keyboard.press("ContextMenu")
+    for _ in range(items(menu(live, "P")).index("Delete")):
+        keyboard.press("ArrowDown")
+    keyboard.press("Enter")
+    expect(live.joint("P")).to_have_count(0)
+
+
+def test_a_finger_that_rests_opens_the_menu(new_page: Callable[..., Page], address: str) -> None:
+    options = {"viewport": {"width": 400, "height": 900}, "has_touch": True}
+    live = Live.open(new_page(**options), address)
+    live.joint("C").scroll_into_view_if_needed()
+    x, y = live.spot(live.joint("C"))
+    line = live.page.context.new_cdp_session(live.page)
+    place = [{"x": x, "y": y, "id": 0}]
+    line.send("Input.dispatchTouchEvent", {"type": "touchStart", "touchPoints": place})
+    expect(menu(live, "C")).to_be_visible()
+    live.page.screenshot(path=SCREENSHOTS / "menu-400.png")
+    assert live.page.evaluate(FITS)
+    away = [{"x": x + 40, "y": y, "id": 0}]
+    line.send("Input.dispatchTouchEvent", {"type": "touchMove", "touchPoints": away})
+    line.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
+    expect(menu(live, "C")).to_be_visible()
+    expect(live.button("Undo")).to_be_disabled()  # nothing was dragged
+
+
+# -- pinned figures --------------------------------------------------------------------------------
+
+
+def test_figures_are_pinned_on_the_drawing(live: Live) -> None:
+    page = live.page
+    page.get_by_role("button", name="Pin Shaking force on the drawing", exact=True).click()
+    pins = page.get_by_role("list", name="Figures on the drawing")
+    expect(pins).to_have_text("Shaking forceRMS 14.98 N, peak 23.22 N")
+    live.type(live.field("crank mass"), "400 g")
+    expect(pins).not_to_have_text("Shaking forceRMS 14.98 N, peak 23.22 N")
+    page.reload()
+    live.settled()
+    expect(pins.get_by_role("listitem")).to_have_count(1)
+    page.screenshot(path=SCREENSHOTS / "pinned-1280.png")
+    page.get_by_role("button", name="Pin Shaking force on the drawing", exact=True).click()
+    expect(pins).to_be_hidden()
