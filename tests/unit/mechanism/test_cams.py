@@ -432,6 +432,44 @@ def test_a_cam_moved_by_its_own_follower() -> None:
         assemble(given)
 
 
+SWINGING_CAM = """
+schema = 1
+title = "Swinging cam"
+[drive]
+link = "crank"
+speed = "60 rpm"
+[drive.motor]
+no_load_speed = "100 rpm"
+stall_torque = "50 N m"
+inertia = "0.01 kg m^2"
+[frame.points]
+A = ["0 mm", "0 mm"]
+D = ["300 mm", "0 mm"]
+E = ["80 mm", "-100 mm"]
+[links]
+crank = { points = ["A", "B"], length = "60 mm" }
+coupler = { points = ["B", "C"], length = "280 mm" }
+rocker = { points = ["D", "C"], length = "150 mm" }
+lever = { points = ["E", "R"], length = "90 mm" }
+[[cams]]
+cam = "rocker"
+follower = "lever"
+rides = "roller"
+point = "R"
+roller_radius = "10 mm"
+base_radius = "200 mm"
+closed_by = "groove"
+swing = { between = ["0 deg", "5 deg"] }
+"""
+
+
+def test_sides_are_asked_for_where_a_cam_swings_and_a_motor_drives() -> None:
+    """Which sides turn fully was asked of the cam, and of the cam which sides they are."""
+    with pytest.raises(eq.EquipoiseError, match=r"assembly\.C: missing") as caught:
+        assemble(eq.loads(SWINGING_CAM))
+    assert 'C = "left"' in str(caught.value) and 'C = "right"' in str(caught.value)
+
+
 def test_cams_are_counted_as_such() -> None:
     given = tappet()
     loose = {**given.links, "arm": heavy(A=ORIGIN)}
