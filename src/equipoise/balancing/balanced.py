@@ -112,7 +112,7 @@ class Balanced(Result):
     plan : what was asked.
     changes : what to change, in the order of the plan.
     objectives : name -> value before and after, SI units, as the optimisation has them; extremes at
-        twice the crank angles of an analysis.
+        twice the crank angles of an analysis, where phases are free also between these.
     cost, bound : what was made small (the objectives over their values before, as the plan combines
         them), and a proved lower bound of it for every machine that the plan allows.
     method : ``closed form``, ``cone program`` or ``branch and bound``, with what was scanned.

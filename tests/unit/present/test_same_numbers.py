@@ -199,6 +199,19 @@ def test_every_number_of_respond_and_balance_is_in_the_json(name: str) -> None:
     assert results
 
 
+@pytest.mark.parametrize("name", MACHINES)
+def test_every_figure_of_the_page_is_in_the_json(name: str) -> None:
+    """As a value, and as its card prints it."""
+    shown = figures_of(solved(opened_example(name)).analysis)
+    assert len(shown) >= 8
+    for one in shown:
+        if one["value"] is not None:
+            value = one["value"]
+            assert is_told(name, value, 1e-9 * abs(value) + 1e-12), one
+            (printed,) = quantities(f"{one['text']} {one['unit']}")
+            assert is_told(name, *printed), one
+
+
 def same_as_analyzed(analysis: eq.Analysis, figures: Mapping[str, float | None]) -> int:
     """Figures by their paths against the summary of an analysis; how many there are in both."""
     count = 0
