@@ -14,15 +14,17 @@ from equipoise.codegen.batch import Batch
 from equipoise.codegen.emit import can_compute, can_emit
 from equipoise.codegen.figures import Figure
 from equipoise.errors import UsageError
+from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.parts.laws import LengthLaw
 from equipoise.mechanism.parts.machine import Gear, Machine
-from support import machines_cams
+from support import free_bodies, machines_cams
 from support.batches import by_numpy, every_dyad, known_of, same_figures, signals_of, wanted_of
 from support.chosen import DISTINCT, few
 from support.designs import design, drawn, named, numbers_of, paths_of, reason_of
 from support.machines import KINDS, make
 from support.machines_planes import set_apart
+from support.poses import from_motion
 from unit.mechanism.build import heavy, machine
 
 ANGLES = 60
@@ -108,9 +110,35 @@ def test_joints_that_hold_too_much(kind: str, numpy_engine: None) -> None:
         summary = eq.analyze(given, ANGLES).summary
         np.testing.assert_allclose(got, [summary[f.signal].rms for f in wanted], rtol=1e-10)
     joint = next(iter(eq.analyze(base, 8).forces.joints))
-    assert not can_compute(base, paths, Figure(f"joints.{joint}", "rms"))
+    can = can_compute(base, paths, Figure(f"joints.{joint}", "rms"))
+    assert can == (not base.couplings)  # teeth bear by the sense of what they share
     with pytest.raises(UsageError, match="joints hold more than its motion needs"):
         Batch(base, [f"links.{link}.points.A.x"], wanted)
+
+
+@pytest.mark.parametrize("name", ["straw-walker", "parallel_cranks", "double_guide"])
+def test_forces_that_joints_share(name: str, numpy_engine: None) -> None:
+    """As of an analysis of each design, and of least squares on all its free bodies at once."""
+    base = eq.load(name) if "-" in name else make(name, 1).machine
+    link = next(name for name, one in base.links.items() if one.mass)
+    own = (str(KeyPath(("links", link, *keys))) for keys in (("mass",), ("center_of_mass", "y")))
+    numbers = named(base, *own, "drive.speed")
+    mass, y, speed = (one.value for one in numbers)
+    joints = [*eq.analyze(base, 8).forces.joints]
+    wanted = [Figure(f"joints.{joint}", "rms") for joint in joints]
+    values = np.array([[mass, y, speed], [2.5 * mass, y + 0.02, -0.7 * speed]])
+    figures, reasons = Batch(base, paths_of(numbers), wanted, angles=ANGLES)(values)
+    assert not reasons.any()
+    for row, got in zip(values, figures, strict=True):
+        machine = design(base, numbers, row)
+        found = eq.analyze(machine, ANGLES)
+        known = [found.summary[figure.signal].rms for figure in wanted]
+        largest = max(known)
+        np.testing.assert_allclose(got, known, rtol=1e-9, atol=1e-9 * largest)
+        free = free_bodies.solve(machine, from_motion(machine, found.motion)).joints
+        for joint, one in found.forces.joints.items():
+            least = free[joint].force @ [1, 1j]
+            np.testing.assert_allclose(one.value, np.squeeze(least), atol=1e-8 * largest)
 
 
 CAMS = [(kind, seed) for kind in machines_cams.KINDS for seed in range(3)]

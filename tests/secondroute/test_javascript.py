@@ -69,8 +69,6 @@ def test_example(name: str, tmp_path: Path) -> None:
     machine = eq.load(name)
     linkage = assemble(machine)
     names = [one for one in signals_of(machine) if "." in one or one != "shaking_force"]
-    if linkage.shared is not None:
-        names = [one for one in names if not one.startswith("joints.")]
     script = javascript(linkage, names)
     analysis = eq.analyze(machine, ANGLES)
     theta = analysis.crank_angle

@@ -16,6 +16,7 @@ from equipoise.codegen.applied import traced_element
 from equipoise.codegen.coupled import can_trace_followers
 from equipoise.codegen.figures import Figure, Gathered
 from equipoise.codegen.loops import can_trace
+from equipoise.codegen.shared_forces import check_shared
 from equipoise.codegen.source import Source, source_of
 from equipoise.codegen.steps import trace_demands, trace_joints, trace_motion
 from equipoise.codegen.terms import angle_of
@@ -122,7 +123,7 @@ class Signals:
         """The state with the forces in joints."""
         self.demands  # noqa: B018  they are what joints supply
         if self.linkage.shared is not None:
-            raise UsageError("forces that joints share cannot be computed in a loop")
+            check_shared(self.trace)
         trace_joints(self.trace)
         return self.trace.state
 

@@ -14,7 +14,7 @@ import numpy as np
 from equipoise.codegen.terms import Pair
 from equipoise.codegen.trace import Trace
 from equipoise.mechanism.assembly.linkage import Linkage
-from equipoise.mechanism.assembly.steps import Array, State, p, size_of_bodies, u
+from equipoise.mechanism.assembly.steps import Array, Call, State, p, size_of_bodies, u
 
 STANDING = 1e-13
 """Of the size of the machine, or of a rotation: what moves by less than this stands still."""
@@ -53,6 +53,11 @@ def trace_prescribed(trace: Trace) -> None:
         trace.state[turn] = _vector(trace, motion, turn, 1.0)
         for name in rates:
             trace.state[name] = _number(trace, motion, name, "real", 1.0)
+    asked = {name for step in linkage.forces if isinstance(step, Call) for name in step.inputs}
+    for name in sorted(asked & motion.probed.keys() - trace.state.keys()):
+        vector = np.iscomplexobj(motion.probed[name])
+        trace.state[name] = (_vector(trace, motion, name, size) if vector
+                             else _number(trace, motion, name, "real", 1.0))  # fmt: skip
     for group in linkage.groups:
         if group.margin is not None and not group.through:
             trace.state[group.margin] = _number(trace, motion, group.margin, "real", 1.0)

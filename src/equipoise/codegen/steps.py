@@ -25,6 +25,7 @@ from equipoise.codegen.coupled import (
 from equipoise.codegen.loop_forces import trace_loop_forces
 from equipoise.codegen.loops import trace_loops
 from equipoise.codegen.prescribed import trace_prescribed
+from equipoise.codegen.shared_forces import trace_shared
 from equipoise.codegen.terms import rotation
 from equipoise.codegen.trace import Array, Read, Trace, links_of, running_angle
 from equipoise.errors import MassError
@@ -32,6 +33,7 @@ from equipoise.mechanism.assembly.cam_groups import Displacement
 from equipoise.mechanism.assembly.flanks import rolled
 from equipoise.mechanism.assembly.loopgroup import LoopForces
 from equipoise.mechanism.assembly.newton import LoopGroup
+from equipoise.mechanism.assembly.shared import Shared
 from equipoise.mechanism.assembly.steps import (
     Call,
     Rotation,
@@ -115,7 +117,7 @@ def trace_step(trace: Trace, step: Step, steps: str, number: int) -> None:
     elif isinstance(step, LoopGroup):
         trace_loops(trace, number)
     elif isinstance(step, LoopForces):
-        trace_loop_forces(trace, number)
+        (trace_shared if isinstance(step, Shared) else trace_loop_forces)(trace, number)
 
 
 def _trace_call(trace: Trace, step: Call, steps: str, number: int) -> None:
