@@ -7,12 +7,13 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.balancing.pareto import trade_off
+from equipoise.balancing.pareto import Front, trade_off
 from equipoise.errors import UsageError
 from equipoise.mechanism.parts.balance import (
     AddedMass,
@@ -229,7 +230,11 @@ PLAN = Balance(
         AddedMass("rocker", "D", Weight("any", 0.06, at_most=0.5)),
     )
 )
-FRONT = trade_off(MACHINE, FORCE, TORQUE, PLAN, points=9)
+
+
+@cache
+def traded() -> Front:
+    return trade_off(MACHINE, FORCE, TORQUE, PLAN, points=9)
 
 
 def best(one: Objective) -> float:
@@ -238,7 +243,7 @@ def best(one: Objective) -> float:
 
 
 def test_falls_and_bends_inwards() -> None:
-    first, second = FRONT.values.T
+    first, second = traded().values.T
     assert np.all(np.diff(first) > 0)
     assert np.all(np.diff(second) < 1e-8 * second[0])
     slopes = np.diff(second) / np.diff(first)
@@ -248,15 +253,15 @@ def test_falls_and_bends_inwards() -> None:
 
 def test_ends_are_the_single_optima() -> None:
     """The first is let go by 1e-4 of the range, so that the second has room to move."""
-    least, most = FRONT.values[[0, -1], 0]
+    least, most = traded().values[[0, -1], 0]
     assert least == pytest.approx(best(FORCE), abs=1.01e-4 * (most - least))
-    assert FRONT.values[-1, 1] == pytest.approx(best(TORQUE), rel=1e-6)
+    assert traded().values[-1, 1] == pytest.approx(best(TORQUE), rel=1e-6)
 
 
 def test_each_point_is_proved_and_kept_to_its_limit() -> None:
-    assert FRONT.gap < 1e-8
-    assert FRONT.gap == max(point.gap for point in FRONT.points)
-    for point, (first, second) in zip(FRONT.points[:-1], FRONT.values, strict=False):
+    assert traded().gap < 1e-8
+    assert traded().gap == max(point.gap for point in traded().points)
+    for point, (first, second) in zip(traded().points[:-1], traded().values, strict=False):
         price = point.prices[FORCE.name]
         assert first == pytest.approx(price.used)
         assert price.used <= price.at_most * (1 + 1e-7)
@@ -265,10 +270,10 @@ def test_each_point_is_proved_and_kept_to_its_limit() -> None:
 
 def test_prices_are_slopes_of_the_curve() -> None:
     """Of a convex curve: between the slopes to either side."""
-    first, second = FRONT.values.T
+    first, second = traded().values.T
     slopes = -np.diff(second) / np.diff(first)
     for k in range(1, 7):
-        price = FRONT.points[k].prices[FORCE.name].price
+        price = traded().points[k].prices[FORCE.name].price
         assert slopes[k] * (1 - 1e-3) <= price <= slopes[k - 1] * (1 + 1e-3)
 
 
@@ -279,21 +284,21 @@ def test_nothing_lies_below_the_curve() -> None:
     for weight in (0.3, 1.0, 3.0):
         both = (FORCE, replace(TORQUE, weight=weight))
         found = eq.balance(MACHINE, replace(PLAN, objectives=both))
-        sums = FRONT.values[:, 0] / before[0] + weight * FRONT.values[:, 1] / before[1]
+        sums = traded().values[:, 0] / before[0] + weight * traded().values[:, 1] / before[1]
         assert found.cost <= np.min(sums) + 1e-8
         assert found.cost == pytest.approx(np.min(sums), rel=0.01)
 
 
 def test_columns_and_dictionary() -> None:
-    (first, unit, values), (second, other, _), (mass, kilogram, masses) = FRONT.columns()
+    (first, unit, values), (second, other, _), (mass, kilogram, masses) = traded().columns()
     assert (first, second, mass) == (FORCE.name, TORQUE.name, "added mass")
     assert (unit, other, kilogram) == ("N", "N m", "kg")
-    assert np.array_equal(values, FRONT.values[:, 0])
-    assert masses[3] == FRONT.points[3].added_mass
-    told = json.loads(json.dumps(FRONT.to_dict()))
+    assert np.array_equal(values, traded().values[:, 0])
+    assert masses[3] == traded().points[3].added_mass
+    told = json.loads(json.dumps(traded().to_dict()))
     assert set(told["before"]) == {FORCE.name, TORQUE.name}
     assert told["before"][FORCE.name] > told["points"][0]["first"]
-    assert [point["second"] for point in told["points"]] == FRONT.values[:, 1].tolist()
+    assert [point["second"] for point in told["points"]] == traded().values[:, 1].tolist()
     assert told["points"][2]["changes"][0]["link"] == "crank"
 
 
@@ -304,7 +309,7 @@ def test_limits_of_the_plan_are_kept() -> None:
     for point in front.points:
         peak = point.after["drive_torque.peak"]
         assert peak <= before["drive_torque.peak"] * (1 + 1e-6)
-    assert np.min(front.values[:, 0]) >= FRONT.values[0, 0] * (1 - 1e-7)
+    assert np.min(front.values[:, 0]) >= traded().values[0, 0] * (1 - 1e-7)
 
 
 def test_progress_is_told() -> None:

@@ -19,6 +19,7 @@ from equipoise.present.findings import find
 from equipoise.present.pages import page
 from equipoise.results.blocks import Facts, Text
 from equipoise.results.yardsticks import assess, verdict
+from support.chosen import EXHAUSTIVE
 from support.found import found as found_of
 
 EXAMPLES = Path(eq.__file__).parent / "examples"
@@ -60,6 +61,11 @@ LINKAGES = [
     for name in sorted(eq.examples("linkage"))
     if "\n[drive]" in (EXAMPLES / f"{name}.toml").read_text("utf-8")
 ]
+SLOW = {
+    ("balance", name)
+    for name in ("balance-geared-a", "inline-3", "sieve-short", "walking-beam", "watt-six-bar")
+}
+"""Half of what all commands take; others show the same on every change."""
 COMMANDS = [
     *(("analyze", one) for one in (*LINKAGES, *ADVISED)),
     *(("respond", name) for name in LINKAGES if eq.load(name).support is not None),
@@ -71,7 +77,17 @@ COMMANDS = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize("command", COMMANDS, ids=lambda words: " ".join(words).rpartition("/")[2])
+@pytest.mark.parametrize(
+    "command",
+    [
+        pytest.param(
+            (command, name),
+            id=f"{command} {Path(name).stem}",
+            marks=EXHAUSTIVE if (command, Path(name).stem) in SLOW else (),
+        )
+        for command, name in COMMANDS
+    ],
+)
 def test_what_stands_first_has_fifteen_lines_and_begins_with_the_verdict(
     command: tuple[str, ...], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
