@@ -15,11 +15,12 @@ from dataclasses import replace
 import numpy as np
 
 import equipoise as eq
+from equipoise.design.requirements import Requirement
 from equipoise.mechanism.kinematics.tip import TipCurve
 from equipoise.mechanism.parts.gear_shapes import GearShape
 from equipoise.planting.designs import Designs
 from equipoise.planting.figures import tip_figures
-from equipoise.planting.goals import Goal, Problem
+from equipoise.planting.goals import Problem
 from equipoise.planting.stroke import soil_crossings
 from timing import in_turn, report
 
@@ -44,7 +45,10 @@ SHAPES = {
     ),
 }  # fmt: skip
 """What the gears of the rotary transplanter become, and the number that a search varies."""
-GOALS = [Goal("shaking_moment.rms", make="smallest"), Goal("curve.height", at_least=0.26)]
+GOALS = [
+    Requirement("shaking_moment.rms", make="smallest"),
+    Requirement("curve.height", at_least=0.26),
+]
 
 
 def scan() -> list[int]:

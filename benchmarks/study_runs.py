@@ -22,8 +22,10 @@ from asked import Limit, Table, agree
 from equipoise.codegen.backends import FOLDER, run_loop
 from equipoise.codegen.batch import Batch, all_angles, designs_of, grid_of
 from equipoise.codegen.figures import Figure
+from equipoise.design.spreads import Range
+from equipoise.design.variables import Variable
 from equipoise.schema.template import Template
-from equipoise.studies.design_space import Output, Range, Sampling, Vary
+from equipoise.studies.design_space import Output, Sampling
 from equipoise.studies.run import sweep
 from equipoise.studies.sampling import samples
 from equipoise.studies.store import open_store
@@ -62,7 +64,7 @@ def designs(count: int) -> np.ndarray:
 
 
 def study_of(count: int, angles: int = ANGLES) -> Study:
-    vary = tuple(Vary(path, Range(*limits)) for path, limits in VARIED.items())
+    vary = tuple(Variable(path, Range(*limits)) for path, limits in VARIED.items())
     outputs = tuple(Output(f"{signal}.rms") for signal in SIGNALS)
     sampling = Sampling("sobol", count)
     return Study("lengths and a mass", Template.of(MACHINE), vary, outputs, sampling, angles=angles)

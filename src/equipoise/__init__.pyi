@@ -1,4 +1,5 @@
 from . import balancing as balancing
+from . import design as design
 from . import exposure as exposure
 from . import handheld as handheld
 from . import measured as measured

@@ -10,7 +10,9 @@ import numpy as np
 import pytest
 from scipy.stats import norm, sobol_indices, uniform
 
-from equipoise.studies.design_space import Correlation, Normal, Output, Range, Uniform, Vary
+from equipoise.design.spreads import Normal, Range, Uniform
+from equipoise.design.variables import Variable
+from equipoise.studies.design_space import Correlation, Output
 from equipoise.studies.evaluate import evaluator
 from equipoise.studies.outcomes import Evaluator, Outcome
 from equipoise.studies.searching import search
@@ -27,7 +29,7 @@ Analysis, 2008, 4.6 prints the formulas that give them)."""
 
 
 def of(*spreads: Any, designs: int = 2**15, seed: int = 1, **changes: Any) -> Study:
-    vary = tuple(Vary(path, spread) for path, spread in zip(PATHS, spreads, strict=False))
+    vary = tuple(Variable(path, spread) for path, spread in zip(PATHS, spreads, strict=False))
     some = study(designs=designs, seed=seed, outputs=(Output("f", value="a.b"),))
     return replace(some, vary=vary, **changes)
 
@@ -166,7 +168,7 @@ def test_a_linkage_within_its_worst_case() -> None:
     paths = ("links.crank.points.B.x", "links.coupler.points.C.x", "links.rocker.points.C.x")
     own = [study().model.number(path)[0] for path in paths]
     half = 1e-4
-    vary = tuple(Vary(p, Uniform(float(v), half)) for p, v in zip(paths, own, strict=True))
+    vary = tuple(Variable(p, Uniform(float(v), half)) for p, v in zip(paths, own, strict=True))
     outputs = (Output("four_bar.swing"), Output("four_bar.transmission_min"))
     some = replace(of(*[Normal(0.0, 1.0)] * 3, designs=512), vary=vary, outputs=outputs, angles=8)
     compute = evaluator(some)

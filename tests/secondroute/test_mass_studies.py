@@ -15,10 +15,12 @@ import pytest
 import equipoise as eq
 from equipoise.codegen.figures import COMPUTED, Figure
 from equipoise.codegen.gram import MassBatch, can_use
+from equipoise.design.spreads import Range
+from equipoise.design.variables import Variable
 from equipoise.mechanism.kinematics.jumps import resolved
 from equipoise.mechanism.outputs.declared import DECLARED, Found, declared
 from equipoise.schema.template import Template
-from equipoise.studies.design_space import Output, Range, Sampling, Vary
+from equipoise.studies.design_space import Output, Sampling
 from equipoise.studies.evaluate import evaluator
 from equipoise.studies.study import Study
 from support import machines_cams
@@ -118,7 +120,7 @@ def test_a_study_of_a_chain_has_the_strands_of_each_design(tmp_path: Path) -> No
     study = Study(
         title="Study",
         model=Template.load(str(path)),
-        vary=(Vary("links.knife.mass", Range(1.0, 20.0), "mass"),),
+        vary=(Variable("links.knife.mass", Range(1.0, 20.0), "mass"),),
         outputs=(Output(f"{name}.rms"),),
         sampling=Sampling("sobol", 16),
         angles=360,

@@ -19,9 +19,11 @@ from typing import Any
 import numpy as np
 
 from equipoise.codegen.figures import NO_ASSEMBLY, NO_FULL_TURN
+from equipoise.design.spreads import Choices, Normal, Range
+from equipoise.design.variables import Variable
 from equipoise.errors import UsageError
 from equipoise.studies import run
-from equipoise.studies.design_space import Choices, Normal, Output, Range, Sampling, Vary
+from equipoise.studies.design_space import Output, Sampling
 from equipoise.studies.executors import Task
 from equipoise.studies.outcomes import Block, Outcome
 from equipoise.studies.sampling import samples
@@ -67,9 +69,9 @@ def short_study(designs: int = 1000, chunk: int = 100, **changes: Any) -> Study:
         "title": "Short formulas",
         "model": Numbers(),
         "vary": (
-            Vary(LENGTH, Range(0.06, 0.08)),
-            Vary(MASS, Choices((0.1, 0.2, 0.4))),
-            Vary(SPEED, Normal(20.0, 1.0)),
+            Variable(LENGTH, Range(0.06, 0.08)),
+            Variable(MASS, Choices((0.1, 0.2, 0.4))),
+            Variable(SPEED, Normal(20.0, 1.0)),
         ),
         "outputs": (
             Output("area", at_least=0.0045, make="smallest"),

@@ -20,7 +20,8 @@ from equipoise.studies.blocks import unit_in
 from equipoise.studies.cloud import Blocks, Cloud, cloud_of
 
 if TYPE_CHECKING:
-    from equipoise.studies.design_space import Make, Output
+    from equipoise.design.requirements import Make
+    from equipoise.studies.design_space import Output
 
 Own = tuple[Array, Array]
 """Values (d,) and figures (m,) of the model itself."""

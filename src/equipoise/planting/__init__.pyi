@@ -1,4 +1,3 @@
-from .goals import Goal as Goal
 from .search import Fit as Fit
 from .search import fit_planting as fit_planting
 from .summary import PlantingFigures as PlantingFigures

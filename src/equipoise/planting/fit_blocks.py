@@ -65,8 +65,8 @@ def _goals(fit: Fit) -> Table:
 
 def _changes(fit: Fit) -> Table:
     rows: list[tuple[Cell, ...]] = []
-    for one in fit.designs.variables:
-        values = (one.start, fit.values[one.name], one.low, one.high)
+    for one, limits in zip(fit.designs.lifts, fit.designs.ranges, strict=True):
+        values = (one.start, fit.values[one.name], limits.low, limits.high)
         rows.append((one.name, *(quantity(value, one.dimension) for value in values)))
     old, new = fit.designs.machine.drive.speed, fit.machine.drive.speed
     if old != new:

@@ -6,11 +6,10 @@ from collections.abc import Collection, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
-from math import pi, radians
-from typing import Literal
 
 import numpy as np
 
+from equipoise.design.requirements import Requirement
 from equipoise.errors import EquipoiseError, UsageError
 from equipoise.mechanism.assembly.family import Family
 from equipoise.mechanism.assembly.linkage import assemble
@@ -18,100 +17,8 @@ from equipoise.mechanism.kinematics.tip import TipCurve
 from equipoise.mechanism.parts.machine import Machine, unknown
 from equipoise.planting.arms import machine_figures
 from equipoise.planting.designs import Designs
-from equipoise.planting.names import TURNING, dimension_of
+from equipoise.planting.names import dimension_of
 from equipoise.signals import Array
-
-USUAL_SHARE = 0.01
-USUAL_ANGLE = radians(1)
-"""Tolerance where none is given: a share of the value, or an angle."""
-
-
-@dataclass(frozen=True)
-class Goal:
-    """What one figure has to be, in SI units and radians.
-
-    figure : its dotted name, such as ``soil.hole_length``.
-    target : value to come close to.  at_least, at_most : limits, which are kept.
-    make : whether it is to become as small or as large as the limits allow.
-    tolerance : what counts as one step away; `USUAL_SHARE` of the value where not given.
-    """
-
-    figure: str
-    target: float | None = None
-    at_least: float | None = None
-    at_most: float | None = None
-    make: Literal["smallest", "largest"] | None = None
-    tolerance: float | None = None
-
-    def __post_init__(self) -> None:
-        if self.target is None and self.at_least is None and self.at_most is None and not self.make:
-            raise UsageError(
-                f"{self.figure}: give at least one of target, at_least, at_most and make"
-            )
-        if self.target is not None and self.make:
-            raise UsageError(f"{self.figure}: give either target or make")
-        if self.make not in (None, "smallest", "largest"):
-            raise UsageError(f"{self.figure}: got make = {self.make!r}; give smallest or largest")
-        if None not in (self.at_least, self.at_most) and self.at_least > self.at_most:  # type: ignore[operator]
-            raise UsageError(f"{self.figure}: at_least is above at_most")
-        outside = (
-            self.target is not None
-            and not self.turning
-            and any(slack[0] < 0 for slack in self.slack(np.array([self.target])))
-        )
-        if outside:
-            raise UsageError(f"{self.figure}: the target lies outside the limits; change one")
-        if self.tolerance is not None and not self.tolerance > 0:
-            raise UsageError(f"{self.figure}: the tolerance must be more than 0")
-
-    @property
-    def turning(self) -> bool:
-        """Whether the figure is an angle that is the same after a turn."""
-        return self.figure.rpartition(".")[2] in TURNING
-
-    @property
-    def asks(self) -> bool:
-        """Whether there is a target or a limit, which can be met or not."""
-        return (self.target, self.at_least, self.at_most) != (None, None, None)
-
-    def scale(self, start: float) -> float:
-        """One step away; `start` is the figure of the machine to start from."""
-        if self.tolerance is not None:
-            return self.tolerance
-        if dimension_of(self.figure) == "angle":
-            return USUAL_ANGLE
-        given = (self.target, self.at_least, self.at_most, start)
-        sizes = [abs(value) for value in given if value is not None and np.isfinite(value)]
-        return USUAL_SHARE * max(sizes, default=0.0) or USUAL_SHARE
-
-    def off(self, values: Array) -> Array:
-        """How far values are from the target, 0 without one."""
-        if self.target is None:
-            return np.zeros_like(values)
-        off = values - self.target
-        return np.mod(off + pi, 2 * pi) - pi if self.turning else off
-
-    def slack(self, values: Array) -> list[Array]:
-        """For each limit, how far values are inside it; negative outside."""
-        signs = {1.0: self.at_least, -1.0: self.at_most}
-        given = [limit for limit in signs.values() if limit is not None]
-        if self.turning and given:  # the values whole turns away that are nearest to the limits
-            middle = sum(given) / len(given)
-            values = middle + np.mod(values - middle + pi, 2 * pi) - pi
-        return [sign * (values - limit) for sign, limit in signs.items() if limit is not None]
-
-    def met(self, value: float, step: float) -> bool:
-        """Whether a figure keeps the limits and is within one step of the target."""
-        one = np.array([value])
-        kept = all(slack[0] >= 0 for slack in self.slack(one))
-        return kept and bool(abs(self.off(one)[0]) <= step)
-
-    def size(self, values: Array) -> Array:
-        """What is to become small, 0 unless `make` is given."""
-        if self.make is None:
-            return np.zeros_like(values)
-        return values if self.make == "smallest" else -values
-
 
 GRID = 180
 """Crank angles between which instants of designs are looked for."""
@@ -123,6 +30,12 @@ COST_OF_OPEN, COST_OF_NONE = 1e9, 1e8
 """Cost of a design that cannot turn, and of one that lacks a figure."""
 LIMITS = 1e3
 """Weight of limits beside targets in the global search."""
+
+
+def check_asks(goal: Requirement) -> None:
+    """A search can do nothing with a figure that is only to be reported: `UsageError`."""
+    if goal.is_fact:
+        raise UsageError(f"{goal.figure}: give at least one of target, at_least, at_most and make")
 
 
 @dataclass(frozen=True, eq=False)
@@ -161,7 +74,7 @@ class Problem:
     judged : number of designs so far.
     """
 
-    def __init__(self, designs: Designs, goals: Sequence[Goal]) -> None:
+    def __init__(self, designs: Designs, goals: Sequence[Requirement]) -> None:
         self.designs, self.goals = designs, tuple(goals)
         self.judged = 0
         if not self.goals:
@@ -170,7 +83,10 @@ class Problem:
         for goal in goals:
             if goal.figure not in known:
                 raise UsageError(f"goals: {unknown(goal.figure, known, 'figure')}")
-        self.scales = [goal.scale(float(known[goal.figure][0])) for goal in goals]
+            check_asks(goal)
+        self.scales = [
+            goal.scale(float(known[goal.figure][0]), dimension_of(goal.figure)) for goal in goals
+        ]
 
     @property
     def makes(self) -> bool:

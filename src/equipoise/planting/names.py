@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
+from equipoise.design.requirements import TURNING
 from equipoise.i18n import say, to_say
 from equipoise.quantities import Dimension
 
@@ -106,8 +107,6 @@ DIMENSIONS: dict[str, Dimension] = {
 FIRST = {*INSTANTS, *(name.partition(".")[0] for name in FIGURES), "limits", "clearance"}
 ARM = re.compile(rf"arms\.(?P<tip>.+?)\.(?=(?:{'|'.join(FIRST)})\.)")
 """Begin of the name of a figure of a further arm; tips may be called anything, with dots too."""
-TURNING = {"crank_angle", "direction", "attitude", "min_at", "max_at"}
-"""Last parts of the names of angles that are the same after a turn."""
 
 
 def of_all_arms(figure: str) -> str:

@@ -14,12 +14,13 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from equipoise.design.requirements import Requirement
 from equipoise.errors import EquipoiseError, UsageError
 from equipoise.mechanism.assembly.family import Family
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.planting.designs import Designs, Sense
-from equipoise.planting.goals import LIMITS, Goal, Problem
+from equipoise.planting.goals import LIMITS, Problem
 from equipoise.planting.summary import PlantingFigures, plant
 from equipoise.results.result import Result
 from equipoise.signals import Array
@@ -60,7 +61,7 @@ class Fit(Result):
     machine: Machine
     before: PlantingFigures | None
     after: PlantingFigures
-    goals: tuple[Goal, ...]
+    goals: tuple[Requirement, ...]
     designs: Designs
     values: Mapping[str, float]
     steps: tuple[float, ...]
@@ -92,11 +93,12 @@ class Fit(Result):
             "after": self.after.to_dict(),
         }
 
-    def _told(self, goal: Goal) -> dict[str, Any]:
+    def _told(self, goal: Requirement) -> dict[str, Any]:
         """A goal, whether it is met, and its figure before and after."""
         figures = {"before": self.before, "after": self.after}
         values = {when: one and one.get(goal.figure) for when, one in figures.items()}
-        return {**asdict(goal), "met": self.met.get(goal.figure), **values}
+        asked = {name: value for name, value in asdict(goal).items() if name != "turning"}
+        return {**asked, "met": self.met.get(goal.figure), **values}
 
 
 Progress = Callable[[int, int, float], None]
@@ -105,7 +107,7 @@ Progress = Callable[[int, int, float], None]
 
 def fit_planting(
     machine: Machine,
-    goals: Sequence[Goal],
+    goals: Sequence[Requirement],
     vary: Mapping[str, tuple[float, float]] | None = None,
     sense: Sense = "as given",
     *,
@@ -144,7 +146,7 @@ def fit_planting(
         polished = list(_polished(problem, best))
     candidates = np.vstack([best, *polished])
     values, after = _best(problem, candidates)
-    names = [variable.name for variable in problem.designs.variables]
+    names = [variable.path for variable in problem.designs.variables]
     return Fit(
         machine=after.machine,
         before=_figures(machine),

@@ -8,6 +8,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from equipoise.design.spreads import Choices, Normal, Range, Spread, Uniform
+from equipoise.design.variables import Variable
 from equipoise.errors import EquipoiseError, ModelError, UsageError
 from equipoise.quantities import KINDS, format_exact
 from equipoise.quantities.reading import described
@@ -36,17 +38,7 @@ from equipoise.schema.study_keys import (
 )
 from equipoise.schema.template import Template
 from equipoise.schema.writing import Writer, toml_text
-from equipoise.studies.design_space import (
-    Choices,
-    Correlation,
-    Normal,
-    Output,
-    Range,
-    Sampling,
-    Spread,
-    Uniform,
-    Vary,
-)
+from equipoise.studies.design_space import Correlation, Output, Sampling
 from equipoise.studies.figures import dimension_of
 from equipoise.studies.study import Study, from_plain
 
@@ -146,7 +138,7 @@ def _template(name: str, folder: Path) -> Template:
 # -- what varies -----------------------------------------------------------------------------------
 
 
-def _vary(where: str, given: VaryTable, template: Template) -> Vary:
+def _vary(where: str, given: VaryTable, template: Template) -> Variable:
     forms = [key for key in SPREADS if getattr(given, key) is not None]
     if len(forms) != 1:
         got = " and ".join(forms) or "none"
@@ -162,7 +154,7 @@ def _vary(where: str, given: VaryTable, template: Template) -> Vary:
         spread = _spread(f"{where}.{form}", given, value, dimension)
     except UsageError as error:
         raise ModelError(f"{where}.{form}", str(error)) from error
-    return Vary(given.path, spread, dimension)
+    return Variable(given.path, spread, dimension)
 
 
 def _spread(where: str, given: VaryTable, value: float, dimension: str | None) -> Spread:
@@ -262,7 +254,7 @@ def _written(value: float | None, dimension: str | None) -> Any:
     return format_exact(value, dimension)
 
 
-def _vary_table(one: Vary) -> VaryTable:
+def _vary_table(one: Variable) -> VaryTable:
     spread, dimension = one.spread, one.dimension
     if isinstance(spread, Range):
         limits = tuple(_written(limit, dimension) for limit in (spread.low, spread.high))

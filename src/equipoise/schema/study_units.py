@@ -21,9 +21,10 @@ from equipoise.schema.template import Template
 from equipoise.studies.blocks import Unit
 
 if TYPE_CHECKING:
+    from equipoise.design.variables import Variable
     from equipoise.handheld.model import Tool
     from equipoise.mechanism.parts.machine import Machine
-    from equipoise.studies.design_space import Output, Vary
+    from equipoise.studies.design_space import Output
     from equipoise.studies.run import OnProgress
     from equipoise.studies.store import Store
     from equipoise.studies.study import Study
@@ -140,7 +141,7 @@ def units_in(store: Store) -> dict[str, Unit]:
     return {name: Unit(store.units.get(name, "")) for name in (*store.numbers, *store.outputs)}
 
 
-def _of_number(study: Study, one: Vary) -> str:
+def _of_number(study: Study, one: Variable) -> str:
     if one.dimension in KINDS and (chosen := chosen_unit(one.dimension)):
         return chosen
     if isinstance(study.model, Template):

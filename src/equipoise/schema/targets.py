@@ -10,6 +10,8 @@ from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar, Literal, get_args
 
+from equipoise.design.lifts import dimension_of_lift
+from equipoise.design.requirements import Requirement
 from equipoise.errors import ModelError, UsageError
 from equipoise.keys import (
     VERSION,
@@ -26,10 +28,9 @@ from equipoise.keys import (
 )
 from equipoise.mechanism.parts.machine import unknown
 from equipoise.planting.designs import Sense
-from equipoise.planting.goals import Goal
+from equipoise.planting.goals import check_asks
 from equipoise.planting.names import dimension_of
 from equipoise.planting.search import GENERATIONS, POPULATION
-from equipoise.planting.variables import dimension_of_number
 from equipoise.schema.files import FileError, printable, read_text
 from equipoise.schema.numbers import si_value
 from equipoise.schema.opening import in_file, toml_content
@@ -87,7 +88,7 @@ class TargetTable(Frozen):
 class Targets:
     """A target file that has been read; SI units and radians."""
 
-    goals: tuple[Goal, ...]
+    goals: tuple[Requirement, ...]
     vary: Mapping[str, tuple[float, float]] | None
     search: SearchTable
 
@@ -120,7 +121,7 @@ def read_targets(path: str | os.PathLike[str], figures: Collection[str]) -> Targ
         return Targets(goals, vary, table.search)
 
 
-def _goal(where: str, goal: GoalTable, figures: Collection[str]) -> Goal:
+def _goal(where: str, goal: GoalTable, figures: Collection[str]) -> Requirement:
     if goal.figure.startswith("pick_up.") and goal.figure not in figures:
         raise ModelError(
             f"{where}.figure", f"got {goal.figure!r}; the machine has no planting.tray"
@@ -128,15 +129,17 @@ def _goal(where: str, goal: GoalTable, figures: Collection[str]) -> Goal:
     if goal.figure not in figures:
         raise ModelError(f"{where}.figure", unknown(goal.figure, figures, "figure"))
     keys = ("target", "at_least", "at_most", "tolerance")
-    given = {
+    given: dict[str, Any] = {
         one: si_value(f"{where}.{one}", getattr(goal, one), dimension_of(goal.figure))
         for one in keys
         if getattr(goal, one) is not None
     }
     try:
-        return Goal(goal.figure, make=goal.make, **given)
+        asked = Requirement(goal.figure, make=goal.make, **given)
+        check_asks(asked)
     except UsageError as error:
         raise ModelError(where, str(error)) from error
+    return asked
 
 
 def _limits(
@@ -150,6 +153,6 @@ def _limits(
             continue
         if not isinstance(value, list) or len(value) != 2:
             raise ModelError(f"vary.{name}", 'give two limits, such as ["20 mm", "60 mm"]')
-        dimension = dimension_of_number(name)
+        dimension = dimension_of_lift(name)
         low, high = (si_value(f"vary.{name}", limit, dimension) for limit in value)
         yield name, (low, high)

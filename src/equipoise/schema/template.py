@@ -14,6 +14,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from equipoise.design.lifts import Lift, lift_named, with_lifts
 from equipoise.errors import ModelError
 from equipoise.handheld.model import Tool
 from equipoise.i18n import Note
@@ -25,6 +26,7 @@ from equipoise.schema.finding import (
     Found,
     all_numbers,
     find,
+    handy,
     key_at,
     replaced,
     unit_in,
@@ -69,6 +71,7 @@ class Template:
         self.text, self.source = text, source
         self._known: Known = dict(known or {})
         self._found: dict[str, Found] = {}
+        self._lifts: dict[str, Lift | None] = {}
         with in_file(source):
             self._content = model_content(text)
             self._base = self._read(self._content, _Carried(folder, self._known, texts))
@@ -108,6 +111,8 @@ class Template:
         ------
         ModelError : there is no such number; says which is near.
         """
+        if (lift := self._lift(path)) is not None:
+            return lift.start, lift.dimension
         found = self._find(path)
         if found.number is None:
             return self._linkage(found.place).number(found.rest)
@@ -120,6 +125,8 @@ class Template:
         ------
         ModelError : there is no such number.
         """
+        if (lift := self._lift(path)) is not None:
+            return handy(lift.dimension) if lift.dimension else ""
         found = self._find(path)
         if found.rest:
             return self._linkage(found.place).unit(found.rest)
@@ -134,10 +141,13 @@ class Template:
         ------
         ModelError : there is no such number.
         """
+        if self._lift(path) is not None:
+            return path
         found = self._find(path)
         if found.rest:
             return self._linkage(found.place).words(found.rest)
-        return words_of(self._content, self.kind, found, others) or path
+        numbers = [one for one in others if self._lift(one) is None]
+        return words_of(self._content, self.kind, found, numbers) or path
 
     def key(self, path: str) -> Key | None:
         """The declared key of a number of a machine, with its limits; None where it has none.
@@ -146,6 +156,8 @@ class Template:
         ------
         ModelError : there is no such number.
         """
+        if self._lift(path) is not None:
+            return None
         return key_at(self.kind, self._find(path).place)
 
     def numbers(self) -> dict[str, Number]:
@@ -165,6 +177,10 @@ class Template:
         """
         if not values:
             return self._base
+        lifted = [path for path in values if self._lift(path) is not None]
+        if lifted:
+            plain = {path: value for path, value in values.items() if path not in lifted}
+            return self._lifted(self.machine(plain), {path: values[path] for path in lifted})
         try:
             linkages = self._linkages(values)
             names = {place: f"{place.shown} changed" for place in linkages}
@@ -217,6 +233,26 @@ class Template:
         if path not in self._found:
             self._found[path] = find(self._content, self.kind, path)
         return self._found[path]
+
+    def _lift(self, path: str) -> Lift | None:
+        """The lift of that name, where no number of the file has such a path."""
+        if path not in self._lifts:
+            self._lifts[path] = None
+            try:
+                self._find(path)
+            except ModelError:
+                if isinstance(self._base, Machine):
+                    self._lifts[path] = lift_named(self._base, path)
+        return self._lifts[path]
+
+    def _lifted(self, machine: Machine | Tool, values: Mapping[str, float]) -> Machine:
+        """The machine with other values of lifts, by their names."""
+        assert isinstance(machine, Machine)
+        found = ((lift_named(machine, name), value) for name, value in values.items())
+        try:
+            return with_lifts(machine, [(lift, value) for lift, value in found if lift])
+        except ModelError as error:
+            raise error.in_file(self.source) from error
 
     def _linkage(self, place: KeyPath) -> Template:
         """The template of the linkage whose file is named at a place."""

@@ -1,11 +1,6 @@
-from .design_space import Choices as Choices
 from .design_space import Correlation as Correlation
-from .design_space import Normal as Normal
 from .design_space import Output as Output
-from .design_space import Range as Range
 from .design_space import Sampling as Sampling
-from .design_space import Uniform as Uniform
-from .design_space import Vary as Vary
 from .objective_map import Landscape as Landscape
 from .objective_map import landscape as landscape
 from .run import sweep as sweep

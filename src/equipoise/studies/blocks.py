@@ -10,15 +10,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from equipoise.design.spreads import Choices, Normal, Range
 from equipoise.i18n import Note, say, to_say
 from equipoise.quantities import number
 from equipoise.results.blocks import Block, Cell, Column, Facts, Listing, Notes, Table, Text, Value
 from equipoise.results.outputs import objective_named
-from equipoise.studies.design_space import Choices, Normal, Range
 from equipoise.studies.outcomes import far_apart, signs_of
 
 if TYPE_CHECKING:
-    from equipoise.studies.design_space import Make, Output, Spread
+    from equipoise.design.requirements import Make
+    from equipoise.design.spreads import Spread
+    from equipoise.studies.design_space import Output
     from equipoise.studies.objective_map import Landscape
     from equipoise.studies.searching import Searched
     from equipoise.studies.selection import Best

@@ -1,209 +1,20 @@
-"""What varies of a model, how designs are drawn, and what is computed of them: as values.
-
-One number varies in a range, over a list, or by a tolerance; SI units.
-"""
+"""How designs of a model are drawn, and what is computed of them: as values."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
-from math import isfinite
-from numbers import Real
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, Protocol, get_args
+from typing import TYPE_CHECKING, Literal, Protocol, get_args
 
-import numpy as np
-
-from equipoise.errors import UsageError
+from equipoise.design.requirements import Make, Requirement
 
 if TYPE_CHECKING:
     from equipoise.handheld.model import Tool
     from equipoise.i18n import Note
     from equipoise.mechanism.parts.machine import Machine
 
-Array = np.ndarray[Any, Any]
-
-MOST_STEPS = 1_000_000
-"""Values of one number on a grid."""
-LEAST, MOST = 2.0**-54, 1 - 2.0**-53
-"""Nearest to 0 and 1 that a place in a spread comes: both ends of a normal one are endless."""
-
-
-@dataclass(frozen=True)
-class Range:
-    """Anything from `low` to `high`, all alike.
-
-    steps : values on a grid, both ends among them; needed there only.
-    whole : whole numbers only, such as those of teeth.
-    """
-
-    tolerance: ClassVar[bool] = False
-    low: float
-    high: float
-    steps: int | None = None
-    whole: bool = False
-
-    def __post_init__(self) -> None:
-        _check_finite((self.low, self.high))
-        if not self.low < self.high:
-            raise UsageError("the first limit must be below the second")
-        for end in (self.low, self.high) if self.whole else ():
-            if not float(end).is_integer():
-                raise UsageError(f"got {end:g}; give whole numbers")
-        if self.steps is not None and not 2 <= self.steps <= MOST_STEPS:
-            raise UsageError(f"got {self.steps} steps; give 2 to {MOST_STEPS}")
-
-    @property
-    def levels(self) -> Array:
-        """Values on a grid, (steps,); `UsageError` where their number is not given."""
-        if self.steps is None:
-            raise UsageError("a grid needs the number of steps of the range")
-        levels = np.linspace(self.low, self.high, self.steps)
-        if self.whole and np.any(levels != np.rint(levels)):
-            count = self.high - self.low + 1
-            raise UsageError(
-                f"{self.steps} steps from {self.low:g} to {self.high:g} are no whole numbers; give "
-                f"another number of steps, such as {count:g}"
-            )
-        return levels
-
-    @property
-    def count(self) -> int:
-        """How many whole numbers there are; 0 where it is any number."""
-        return int(self.high - self.low) + 1 if self.whole else 0
-
-    def place(self, value: float) -> float | None:
-        """Where a value is, between 0 and 1; None where it is beyond the limits."""
-        if not self.low <= value <= self.high:
-            return None
-        if self.whole:
-            return float((value - self.low + 0.5) / (self.high - self.low + 1))
-        return float((value - self.low) / (self.high - self.low))
-
-    def at(self, u: Array) -> Array:
-        """Values (n,) at places u (n,) between 0 and 1."""
-        if self.whole:
-            whole: Array = np.floor(self.low + (self.high - self.low + 1) * u)
-            return np.minimum(whole, self.high)
-        inside: Array = np.clip(self.low + (self.high - self.low) * u, self.low, self.high)
-        return inside
-
-
-@dataclass(frozen=True)
-class Choices:
-    """One of some values, all alike."""
-
-    tolerance: ClassVar[bool] = False
-    values: tuple[float, ...]
-
-    def __post_init__(self) -> None:
-        _check_finite(self.values)
-        object.__setattr__(self, "values", tuple(map(float, self.values)))
-        if not self.values:
-            raise UsageError("the list is empty; give at least one value")
-        if len(set(self.values)) < len(self.values):
-            raise UsageError("the list has a value twice; give each once")
-
-    @property
-    def levels(self) -> Array:
-        """Values on a grid, (n,), in the order in which they are given."""
-        return np.array(self.values)
-
-    @property
-    def count(self) -> int:
-        """How many values there are."""
-        return len(self.values)
-
-    def place(self, value: float) -> float | None:
-        """Where a value is, between 0 and 1; None where it is not in the list."""
-        return (self.values.index(value) + 0.5) / self.count if value in self.values else None
-
-    def at(self, u: Array) -> Array:
-        """Values (n,) at places u (n,) between 0 and 1."""
-        place = np.minimum((np.asarray(u) * self.count).astype(np.intp), self.count - 1)
-        chosen: Array = self.levels[place]
-        return chosen
-
-
-@dataclass(frozen=True)
-class Normal:
-    """About `mean` with a standard deviation.
-
-    cut : nothing lies further from the mean than so many deviations; those of the whole curve, so
-        that what is left has a somewhat smaller one.
-    """
-
-    tolerance: ClassVar[bool] = True
-    mean: float
-    deviation: float
-    cut: float | None = None
-
-    def __post_init__(self) -> None:
-        _check_finite((self.mean, self.deviation))
-        if self.deviation <= 0:
-            raise UsageError(f"got a deviation of {self.deviation:g}; give more than 0")
-        if self.cut is not None and not 0 < self.cut < np.inf:
-            raise UsageError(f"got cut = {self.cut:g}; give deviations, more than 0, such as 3")
-
-    @property
-    def levels(self) -> Array:
-        """There are none: `UsageError`."""
-        raise UsageError("a normal spread has no grid; give a range or a list")
-
-    def at(self, u: Array) -> Array:
-        """Values (n,) at places u (n,) between 0 and 1."""
-        from scipy.special import ndtr, ndtri
-
-        low = 0.0 if self.cut is None else ndtr(-self.cut)
-        most = np.inf if self.cut is None else self.cut
-        inside = np.clip(low + (1 - 2 * low) * np.asarray(u), LEAST, MOST)
-        values: Array = self.mean + self.deviation * np.clip(ndtri(inside), -most, most)
-        return values
-
-
-@dataclass(frozen=True)
-class Uniform:
-    """Anything within `half_width` of the centre, all alike."""
-
-    tolerance: ClassVar[bool] = True
-    centre: float
-    half_width: float
-
-    def __post_init__(self) -> None:
-        _check_finite((self.centre, self.half_width))
-        if self.half_width <= 0:
-            raise UsageError(f"got a half width of {self.half_width:g}; give more than 0")
-
-    @property
-    def levels(self) -> Array:
-        """There are none: `UsageError`."""
-        raise UsageError("a uniform tolerance has no grid; give a range or a list")
-
-    def at(self, u: Array) -> Array:
-        """Values (n,) at places u (n,) between 0 and 1."""
-        return self.centre + self.half_width * (2 * np.asarray(u) - 1)
-
-
-Spread = Range | Choices | Normal | Uniform
-"""`tolerance` tells whether it is what making a thing leaves open."""
-SPREADS: dict[str, type[Spread]] = {
-    "range": Range,
-    "list": Choices,
-    "normal": Normal,
-    "uniform": Uniform,
-}
-"""Each by the key that gives it in a study file."""
-KEYS = {kind: key for key, kind in SPREADS.items()}
-
-
-def _check_finite(values: Iterable[float]) -> None:
-    for value in values:
-        if isinstance(value, bool) or not isinstance(value, Real) or not isfinite(value):
-            raise UsageError(f"got {value!r}; give finite numbers")
-
-
 Method = Literal["grid", "sobol", "latin-hypercube", "monte-carlo"]
 Command = Literal["analyze", "plant", "respond", "balance", "tool"]
-Make = Literal["smallest", "largest"]
 METHODS, COMMANDS = get_args(Method), get_args(Command)
 
 
@@ -233,19 +44,6 @@ class Model(Protocol):
 
 
 @dataclass(frozen=True)
-class Vary:
-    """A number of the model that varies.
-
-    path : in the model file, such as ``links.crank.points.B.x``.
-    dimension : of its quantity, None for a plain number; a study has it from its model.
-    """
-
-    path: str
-    spread: Spread
-    dimension: str | None = None
-
-
-@dataclass(frozen=True)
 class Output:
     """A figure that is computed of every design.
 
@@ -268,9 +66,20 @@ class Output:
         object.__setattr__(self, "value", self.value or self.name)
 
     @property
+    def requirement(self) -> Requirement:
+        """What it has to be."""
+        return Requirement(
+            self.value,
+            at_least=self.at_least,
+            at_most=self.at_most,
+            make=self.make,
+            turning=False,  # a cycle may have several turns
+        )
+
+    @property
     def limited(self) -> bool:
         """Whether it has a limit."""
-        return (self.at_least, self.at_most) != (None, None)
+        return self.requirement.limited
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,8 @@ from equipoise.codegen.figures import COMPUTED, REASONS
 from equipoise.errors import needed
 
 if TYPE_CHECKING:
-    from equipoise.studies.design_space import Make, Output
+    from equipoise.design.requirements import Make
+    from equipoise.studies.design_space import Output
 
 Array = np.ndarray[Any, Any]
 
@@ -76,10 +77,10 @@ class Block:
 
 def kept(outputs: Sequence[Output], figures: Array) -> Array:
     """Whether each design keeps each limit, (P, m); `figures` are (P, m)."""
-    low = [-np.inf if output.at_least is None else output.at_least for output in outputs]
-    high = [np.inf if output.at_most is None else output.at_most for output in outputs]
-    inside: Array = (figures >= low) & (figures <= high)
-    return inside
+    return np.stack(
+        [one.requirement.kept(column) for one, column in zip(outputs, figures.T, strict=True)],
+        axis=1,
+    )
 
 
 def designs_told(

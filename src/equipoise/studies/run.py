@@ -16,12 +16,12 @@ from typing import TYPE_CHECKING, Any, cast
 
 from equipoise.codegen.backends import processors
 from equipoise.codegen.figures import REASONS
+from equipoise.design.spreads import Choices
 from equipoise.errors import UsageError, needed
 from equipoise.fence import place_of
 from equipoise.folders import Folder
 from equipoise.partial import beside, made
 from equipoise.quantities import SI
-from equipoise.studies.design_space import Choices
 from equipoise.studies.evaluate import evaluator
 from equipoise.studies.executors import (
     Cluster,

@@ -15,9 +15,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from equipoise.design.spreads import LEAST, MOST
 from equipoise.errors import UsageError
 from equipoise.sequences import sobol
-from equipoise.studies.design_space import LEAST, MOST
 from equipoise.studies.study import correlation_matrix
 
 if TYPE_CHECKING:

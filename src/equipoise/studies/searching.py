@@ -17,10 +17,11 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from equipoise.codegen.figures import COMPUTED, NO_ASSEMBLY, NO_FULL_TURN, NO_MACHINE
+from equipoise.design.requirements import Make
+from equipoise.design.spreads import Choices, Range
 from equipoise.errors import ModelError, UsageError, lacking
 from equipoise.results.result import Result
 from equipoise.sequences import sobol
-from equipoise.studies.design_space import Choices, Make, Range
 from equipoise.studies.outcomes import (
     Block,
     Evaluator,

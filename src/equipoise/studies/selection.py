@@ -18,11 +18,12 @@ from typing import Any, BinaryIO, ClassVar
 import numpy as np
 
 from equipoise.codegen.figures import COMPUTED, REASONS
+from equipoise.design.requirements import Make
 from equipoise.errors import UsageError, needed
 from equipoise.mechanism.checks import unknown
 from equipoise.partial import replaced
 from equipoise.results.result import Result
-from equipoise.studies.design_space import Make, Output
+from equipoise.studies.design_space import Output
 from equipoise.studies.outcomes import (
     Block,
     designs_told,

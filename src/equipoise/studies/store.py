@@ -29,13 +29,14 @@ from typing import TYPE_CHECKING, Any, get_args
 import numpy as np
 
 import equipoise
+from equipoise.design.requirements import Make
 from equipoise.errors import UsageError, needed
 from equipoise.fence import OutsideError, open_folder
 from equipoise.folders import Folder, LinkError
 from equipoise.i18n import worded
 from equipoise.partial import locked
 from equipoise.results.result import Result
-from equipoise.studies.design_space import Make, Output
+from equipoise.studies.design_space import Output
 from equipoise.studies.outcomes import Block, Outcome
 
 if TYPE_CHECKING:

@@ -10,22 +10,12 @@ from typing import Any
 
 import numpy as np
 
+from equipoise.design.spreads import KEYS, SPREADS, Choices, Range
+from equipoise.design.variables import Variable
 from equipoise.errors import ModelError, UsageError
 from equipoise.i18n import worded
 from equipoise.mechanism.checks import unknown, wrong_text
-from equipoise.studies.design_space import (
-    COMMANDS,
-    KEYS,
-    METHODS,
-    SPREADS,
-    Choices,
-    Correlation,
-    Model,
-    Output,
-    Range,
-    Sampling,
-    Vary,
-)
+from equipoise.studies.design_space import COMMANDS, METHODS, Correlation, Model, Output, Sampling
 
 Array = np.ndarray[Any, Any]
 
@@ -56,7 +46,7 @@ class Study:
 
     title: str
     model: Model
-    vary: tuple[Vary, ...]
+    vary: tuple[Variable, ...]
     outputs: tuple[Output, ...]
     sampling: Sampling
     correlations: tuple[Correlation, ...] = ()
@@ -139,7 +129,7 @@ def from_plain(plain: Mapping[str, Any], model: Model, file: str = "") -> Study:
     vary = []
     for one in plain["vary"]:
         spread = dict(one["spread"])
-        vary.append(Vary(**{**one, "spread": SPREADS[spread.pop("kind")](**spread)}))
+        vary.append(Variable(**{**one, "spread": SPREADS[spread.pop("kind")](**spread)}))
     made = {
         "title": worded(plain["title"]),
         "vary": tuple(vary),
@@ -153,7 +143,7 @@ def from_plain(plain: Mapping[str, Any], model: Model, file: str = "") -> Study:
 # -- what varies, and how --------------------------------------------------------------------------
 
 
-def _numbers(model: Model, vary: Sequence[Vary]) -> list[tuple[float, str | None]]:
+def _numbers(model: Model, vary: Sequence[Variable]) -> list[tuple[float, str | None]]:
     """Number and dimension of everything that varies, as the model has it."""
     if not vary:
         raise ModelError("vary", "there is none; give at least one [[vary]]")
@@ -183,7 +173,7 @@ def _numbers(model: Model, vary: Sequence[Vary]) -> list[tuple[float, str | None
     return numbers
 
 
-def _as_in(one: Vary, value: float, dimension: str | None) -> Vary:
+def _as_in(one: Variable, value: float, dimension: str | None) -> Variable:
     """The same with what the model knows of the number."""
     spread = one.spread
     if isinstance(value, int) and isinstance(spread, Range):
@@ -212,7 +202,7 @@ def _beyond(
         yield ModelError(where, f"got {got}; give {low} to {high}{of}")
 
 
-def _wrong_spread(where: str, one: Vary, study: Study) -> Iterator[ModelError]:
+def _wrong_spread(where: str, one: Variable, study: Study) -> Iterator[ModelError]:
     spread, method = one.spread, study.sampling.method
     key = f"{where}.{KEYS[type(spread)]}"
     if isinstance(study.model.number(one.path)[0], int):

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
+from equipoise.design.spreads import Normal, Uniform
 from equipoise.i18n import Note, say, to_say
 from equipoise.quantities import number, percent
 from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Text, Value
 from equipoise.studies.blocks import Units, in_unit, labelled, named_together, unit_in
-from equipoise.studies.design_space import Normal, Uniform
 
 if TYPE_CHECKING:
     from equipoise.studies.tolerances import Cause, Tolerances

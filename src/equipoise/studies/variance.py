@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from equipoise.design.spreads import Normal, Uniform
 from equipoise.sequences import sobol
-from equipoise.studies.design_space import Normal, Uniform
 from equipoise.studies.outcomes import kept
 from equipoise.studies.sampling import BITS, random_numbers, values_at
 

@@ -8,13 +8,14 @@ import numpy as np
 import pytest
 
 import equipoise as eq
+from equipoise.design.requirements import Requirement
 from equipoise.errors import UsageError
 from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.parts.gear_shapes import GearShape
 from equipoise.mechanism.parts.gears import closed
 from equipoise.mechanism.parts.machine import FRAME
 from equipoise.planting.designs import Designs
-from equipoise.planting.goals import Goal, Problem
+from equipoise.planting.goals import Problem
 from equipoise.planting.search import Fit, fit_planting
 from support.chosen import EXHAUSTIVE
 from support.machines import make
@@ -49,7 +50,7 @@ def test_mechanism_a_is_recovered_from_its_figures(
 
     A population of a quarter of the usual one finds it too, in a third of the time.
     """
-    goals = [Goal(name, target=figures_of_a[name]) for name in FIGURES_OF_A]
+    goals = [Requirement(name, target=figures_of_a[name]) for name in FIGURES_OF_A]
     fit = fit_planting(eq.load("kim-chung-b"), goals, sense="either", seed=2, population=30)
     wanted, found = eq.load("kim-chung-a"), fit.machine
     assert all(fit.met.values())
@@ -64,29 +65,31 @@ def test_mechanism_a_is_recovered_from_its_figures(
 
 
 @pytest.fixture(scope="module")
-def calmer(figures_of_a: eq.planting.PlantingFigures) -> tuple[Fit, list[Goal]]:
+def calmer(figures_of_a: eq.planting.PlantingFigures) -> tuple[Fit, list[Requirement]]:
     """A with a smaller largest acceleration, while what planting needs stays within limits."""
     a = figures_of_a
     goals = [
-        Goal("max_acceleration.value", make="smallest"),
-        Goal("curve.height", at_least=0.98 * a["curve.height"]),
-        Goal("soil.hole_length", at_most=1.02 * a["soil.hole_length"]),
-        Goal("lowest.attitude", at_least=a["lowest.attitude"] - 0.1, at_most=-2.2),
-        Goal("max_speed.value", at_most=a["max_speed.value"]),
-        Goal("transmission.min", at_least=a["transmission.min"]),
+        Requirement("max_acceleration.value", make="smallest"),
+        Requirement("curve.height", at_least=0.98 * a["curve.height"]),
+        Requirement("soil.hole_length", at_most=1.02 * a["soil.hole_length"]),
+        Requirement("lowest.attitude", at_least=a["lowest.attitude"] - 0.1, at_most=-2.2),
+        Requirement("max_speed.value", at_most=a["max_speed.value"]),
+        Requirement("transmission.min", at_least=a["transmission.min"]),
     ]
     machine = eq.load("kim-chung-a")
     return fit_planting(machine, goals, seed=2, generations=20, population=25), goals
 
 
-def test_a_stated_figure_becomes_better(calmer: tuple[Fit, list[Goal]]) -> None:
+def test_a_stated_figure_becomes_better(calmer: tuple[Fit, list[Requirement]]) -> None:
     fit, _ = calmer
     assert fit.before is not None
     name = "max_acceleration.value"
     assert fit.after[name] < 0.8 * fit.before[name]
 
 
-def test_no_other_figure_becomes_worse_than_its_limit(calmer: tuple[Fit, list[Goal]]) -> None:
+def test_no_other_figure_becomes_worse_than_its_limit(
+    calmer: tuple[Fit, list[Requirement]],
+) -> None:
     fit, goals = calmer
     for goal in goals:
         value = fit.after[goal.figure]
@@ -94,7 +97,7 @@ def test_no_other_figure_becomes_worse_than_its_limit(calmer: tuple[Fit, list[Go
         assert goal.at_most is None or value <= goal.at_most
 
 
-def test_the_result_is_a_machine_that_turns(calmer: tuple[Fit, list[Goal]]) -> None:
+def test_the_result_is_a_machine_that_turns(calmer: tuple[Fit, list[Requirement]]) -> None:
     """Read from a file again, it has the figures that were told."""
     fit, _ = calmer
     again = eq.plant(eq.loads(eq.dumps(fit.machine)))
@@ -105,7 +108,7 @@ def test_the_result_is_a_machine_that_turns(calmer: tuple[Fit, list[Goal]]) -> N
 
 def test_the_same_seed_gives_the_same_result() -> None:
     machine = eq.load("kim-chung-c")
-    goals = [Goal("curve.width", target=0.1), Goal("soil.depth", at_least=0.01)]
+    goals = [Requirement("curve.width", target=0.1), Requirement("soil.depth", at_least=0.01)]
     few = {"generations": 4, "population": 12}
     one, two, other = (fit_planting(machine, goals, seed=seed, **few) for seed in (3, 3, 4))
     assert one.machine == two.machine
@@ -115,7 +118,7 @@ def test_the_same_seed_gives_the_same_result() -> None:
 
 def test_progress_is_told() -> None:
     told: list[tuple[int, int, float]] = []
-    goals = [Goal("curve.width", target=0.1, tolerance=1e-9)]
+    goals = [Requirement("curve.width", target=0.1, tolerance=1e-9)]
     fit_planting(
         eq.load("kim-chung-c"),
         goals,
@@ -132,7 +135,7 @@ def test_progress_is_told() -> None:
 
 def test_a_machine_that_cannot_be_met_still_gives_the_nearest() -> None:
     """A curve of ten metres is out of reach; the result says so."""
-    goals, vary = [Goal("curve.height", target=10.0)], {"tip.x": (-1.0, 1.0)}
+    goals, vary = [Requirement("curve.height", target=10.0)], {"tip.x": (-1.0, 1.0)}
     fit = fit_planting(eq.load("kim-chung-a"), goals, vary, generations=3, population=5)
     assert fit.met == {"curve.height": False}
     assert fit.before is not None
@@ -142,7 +145,7 @@ def test_a_machine_that_cannot_be_met_still_gives_the_nearest() -> None:
 
 def test_only_what_may_vary_varies() -> None:
     vary = {"crank": (0.03, 0.04), "tip.y": (-0.2, 0.0)}
-    goals = [Goal("curve.height", target=0.26)]
+    goals = [Requirement("curve.height", target=0.26)]
     fit = fit_planting(eq.load("kim-chung-a"), goals, vary, generations=20, population=20)
     start, found = eq.load("kim-chung-a"), fit.machine
     assert fit.met == {"curve.height": True}
@@ -164,11 +167,16 @@ def test_only_what_may_vary_varies() -> None:
         ({"vary": {"crank": (0.2, 0.1)}}, "the first limit must be below the second"),
         ({"vary": {"crank": (-0.2, 0.1)}}, "a length must stay above 0"),
         ({"goals": []}, "give at least one"),
-        ({"goals": [Goal("curve.heigth", target=1.0)]}, "did you mean 'curve.height'"),
+        ({"goals": [Requirement("curve.height")]}, "at least one of target, at_least"),
+        ({"goals": [Requirement("curve.heigth", target=1.0)]}, "did you mean 'curve.height'"),
     ],
 )
 def test_wrong_arguments(change: dict[str, object], said: str) -> None:
-    arguments = {"goals": [Goal("curve.height", target=0.25)], "generations": 1, "population": 5}
+    arguments = {
+        "goals": [Requirement("curve.height", target=0.25)],
+        "generations": 1,
+        "population": 5,
+    }
     with pytest.raises(UsageError, match=said):
         fit_planting(eq.load("kim-chung-a"), **(arguments | change))  # type: ignore[arg-type]
 
@@ -177,7 +185,7 @@ def test_gears_on_other_links_are_refused() -> None:
     machine = make("geared_coupler", 1).machine
     machine = machine.with_planting(tip="P", forward_speed=0.3, surface=0.0)
     with pytest.raises(UsageError, match="this one has gears on other links"):
-        fit_planting(machine, [Goal("curve.height", target=0.25)])
+        fit_planting(machine, [Requirement("curve.height", target=0.25)])
 
 
 def test_arms_on_gears_are_found_again() -> None:
@@ -193,7 +201,7 @@ def test_arms_on_gears_are_found_again() -> None:
         ),
     )
     vary = {"tip.x": (0.03, 0.07), "gears[2,4].start": (2.0, 3.2)}
-    goals = [Goal(name, target=figures[name]) for name in names]
+    goals = [Requirement(name, target=figures[name]) for name in names]
     fit = fit_planting(start, goals, vary, generations=30, population=15)
     assert all(fit.met.values())
     for link, tip in (("planet", "P"), ("planet 2", "Q")):
@@ -206,7 +214,7 @@ def test_shaking_is_kept_small() -> None:
     """It is that of `analyze`, and falls where the second arm moves against the first."""
     machine = two_arms(np.radians(100))
     vary = {"carrier.D,E.direction": (0.0, np.pi)}
-    goals = [Goal("shaking_force.rms", make="smallest")]
+    goals = [Requirement("shaking_force.rms", make="smallest")]
     fit = fit_planting(machine, goals, vary, generations=8, population=6)
     analysis = eq.analyze(fit.machine, 720)
     force = analysis.forces.shaking_force.size
@@ -223,7 +231,7 @@ def test_shaking_is_kept_small() -> None:
 def test_no_design_that_plants() -> None:
     """Lengths between which no crank can turn."""
     vary = {"crank": (0.2, 0.21)}
-    goals = [Goal("curve.height", target=0.2)]
+    goals = [Requirement("curve.height", target=0.2)]
     with pytest.raises(UsageError, match="no design was found"):
         fit_planting(eq.load("kim-chung-a"), goals, vary, generations=2, population=6)
 
@@ -231,7 +239,7 @@ def test_no_design_that_plants() -> None:
 def test_designs_put_values_where_they_are_named() -> None:
     machine = eq.load("kim-chung-a")
     designs = Designs(machine, sense="clockwise")
-    names = [variable.name for variable in designs.variables]
+    names = [variable.path for variable in designs.variables]
     assert names == ["frame", "crank", "coupler", "rocker", "ground_angle", "tip.x", "tip.y"]
     built = designs.build([0.09, 0.03, 0.08, 0.07, 0.4, -0.2, 0.05])
     assert complex(*built.frame["D"]) == pytest.approx(0.09 * np.exp(0.4j))
@@ -254,7 +262,7 @@ def test_coordinates_of_any_point_can_vary() -> None:
 
 def test_designs_are_judged_without_following_their_cycle(monkeypatch: pytest.MonkeyPatch) -> None:
     """Also a single one: what cannot turn by a hair is a poor design, not an error."""
-    problem = Problem(Designs(eq.load("kim-chung-a")), [Goal("curve.height", target=0.25)])
+    problem = Problem(Designs(eq.load("kim-chung-a")), [Requirement("curve.height", target=0.25)])
 
     def followed(linkage: Linkage) -> None:
         raise AssertionError
@@ -273,12 +281,14 @@ def test_a_tip_at_the_origin_of_its_link_can_vary() -> None:
     }
     link = eq.Link(points={name: tuple(place) for name, place in points.items()})
     moved = replace(machine, links={**machine.links, "coupler": link})
-    fit = fit_planting(moved, [Goal("curve.height", target=0.26)], generations=20, population=20)
+    fit = fit_planting(
+        moved, [Requirement("curve.height", target=0.26)], generations=20, population=20
+    )
     assert fit.met == {"curve.height": True}
 
 
 def test_two_goals_of_one_figure() -> None:
-    goals = [Goal("curve.height", at_least=0.26), Goal("curve.height", at_most=0.2)]
+    goals = [Requirement("curve.height", at_least=0.26), Requirement("curve.height", at_most=0.2)]
     fit = fit_planting(eq.load("kim-chung-a"), goals, generations=2, population=8)
     assert fit.met == {"curve.height": False}
 
@@ -305,14 +315,14 @@ def test_an_arm_that_is_varied_alone_goes_its_own_way() -> None:
     vary = {ECCENTRICITY: (0.0, 0.4), "gears[4].start": (-1.0, 0.0)}
     designs = Designs(eq.load("rotary-transplanter"), vary)
     assert designs.build([0.2, -0.5]).gears[3].start == -0.5
-    names = [one.name for one in Designs(designs.machine).variables]
+    names = [one.path for one in Designs(designs.machine).variables]
     assert names == ["tip.x", "tip.y", ECCENTRICITY]
 
 
 def test_the_eccentricity_of_gears_is_found_again() -> None:
     wanted = eq.load("rotary-transplanter")
     start = Designs(wanted, {ECCENTRICITY: (0.0, 0.4)}).build([0.1])
-    goals = [Goal("curve.height", target=eq.plant(wanted)["curve.height"])]
+    goals = [Requirement("curve.height", target=eq.plant(wanted)["curve.height"])]
     vary = {ECCENTRICITY: (0.05, 0.3)}
     fit = fit_planting(start, goals, vary, generations=5, population=5)
     assert fit.values[ECCENTRICITY] == pytest.approx(0.2, abs=1e-6)
@@ -349,7 +359,7 @@ def test_gears_of_any_shape_can_be_judged(kind: str) -> None:
     values = np.append(designs.start, limits)[:, None]
     places = [eq.move(designs.build(row), 3600).points["P"].place for row in values]
     heights = [np.ptp(place.imag) for place in places]
-    goals = [Goal("curve.height", target=heights[0], tolerance=1.0)]
+    goals = [Requirement("curve.height", target=heights[0], tolerance=1.0)]
     outcome = Problem(designs, goals).judge(values)
     np.testing.assert_allclose(outcome.off[:, 0], np.array(heights) - heights[0], atol=1e-6)
     assert np.all(outcome.kept) and len({round(height, 4) for height in heights}) == 3

@@ -13,6 +13,8 @@ import pytest
 
 import equipoise as eq
 from equipoise.balancing.balanced import Balanced
+from equipoise.design.spreads import Range
+from equipoise.design.variables import Variable
 from equipoise.exposure.daily import Exposure
 from equipoise.handheld.exposed import ToolExposure, expose_tool
 from equipoise.handheld.modes import ToolModes, vibrate_tool
@@ -23,7 +25,7 @@ from equipoise.results.declaring import Declarations, ResultOutput, documented
 from equipoise.results.result import Result
 from equipoise.schema.files import csv_text, json_text
 from equipoise.schema.template import Template
-from equipoise.studies.design_space import Output, Range, Sampling, Vary
+from equipoise.studies.design_space import Output, Sampling
 from equipoise.studies.evaluate import OneByOne
 from equipoise.studies.figures import dimension_of
 from equipoise.studies.study import Study
@@ -229,7 +231,7 @@ def test_studies_have_it_and_know_its_dimension(case: Case) -> None:
     assert dimension_of(model.base(), case.of, case.path) == "force"
     speed = "operation.speed" if case.of == "tool" else "drive.speed"
     own = model.number(speed)[0]
-    vary = Vary(speed, Range(own, 1.1 * own), "angular speed")
+    vary = Variable(speed, Range(own, 1.1 * own), "angular speed")
     outputs = (Output("new", case.of, case.path, "force", make="smallest"),)
     study = Study("Study", model, (vary,), outputs, Sampling("sobol", 2))
     figures = OneByOne(study)(np.array([[own], [1.1 * own]])).figures

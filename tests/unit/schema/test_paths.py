@@ -75,7 +75,7 @@ def test_links_with_odd_names_are_computed_in_loops() -> None:
     study = eq.studies.Study(
         title="",
         model=template,
-        vary=(eq.studies.Vary(path, eq.studies.Range(0.1, 0.3)),),
+        vary=(eq.design.Variable(path, eq.design.Range(0.1, 0.3)),),
         outputs=(eq.studies.Output("shaking_force.y.rms"),),
         sampling=eq.studies.Sampling("sobol", 8),
     )

@@ -15,23 +15,15 @@ from hypothesis import strategies as st
 from jsonschema import Draft202012Validator
 
 import equipoise as eq
+from equipoise.design.spreads import Choices, Normal, Range, Spread, Uniform
+from equipoise.design.variables import Variable
 from equipoise.errors import ModelError, UsageError
 from equipoise.quantities import parse
 from equipoise.schema.files import printable
 from equipoise.schema.schemas import json_schema
 from equipoise.schema.studies import load_study, restore
 from equipoise.schema.template import Template
-from equipoise.studies.design_space import (
-    Choices,
-    Correlation,
-    Normal,
-    Output,
-    Range,
-    Sampling,
-    Spread,
-    Uniform,
-    Vary,
-)
+from equipoise.studies.design_space import Correlation, Output, Sampling
 from equipoise.studies.sampling import samples
 from equipoise.studies.study import Study
 from unit.schema.samples import FOUR_BAR
@@ -391,7 +383,7 @@ MODEL = Template.load("yamashita-1")
 PATHS = ("links.crank.mass", "links.rocker.inertia", "links.coupler.points.C.x", "drive.speed")
 
 
-def varied(grid: bool) -> st.SearchStrategy[tuple[Vary, ...]]:
+def varied(grid: bool) -> st.SearchStrategy[tuple[Variable, ...]]:
     """Some numbers, each with a spread; those of tolerances have no place on a grid."""
     steps = st.integers(2, 9) if grid else st.none()
     ordered = st.lists(SIZES, min_size=2, max_size=2, unique=True).map(sorted)
@@ -400,7 +392,7 @@ def varied(grid: bool) -> st.SearchStrategy[tuple[Vary, ...]]:
     ) | st.lists(SIZES, min_size=1, max_size=4, unique=True).map(lambda v: Choices(tuple(v)))
     if not grid:
         spreads |= st.builds(Normal, SIZES, SIZES, LIMITS) | st.builds(Uniform, SIZES, SIZES)
-    one = st.builds(Vary, st.sampled_from(PATHS), spreads)
+    one = st.builds(Variable, st.sampled_from(PATHS), spreads)
     return st.lists(one, min_size=1, max_size=4, unique_by=lambda vary: vary.path).map(tuple)
 
 

@@ -6,12 +6,14 @@ from pathlib import Path
 
 import pytest
 
+from equipoise.design.spreads import Range
+from equipoise.design.variables import Variable
 from equipoise.errors import ModelError
 from equipoise.schema.studies import load_study
 from equipoise.schema.study_units import unit_named, units_of
 from equipoise.schema.template import Template
 from equipoise.studies.blocks import Unit
-from equipoise.studies.design_space import Output, Range, Sampling, Vary
+from equipoise.studies.design_space import Output, Sampling
 from equipoise.studies.study import Study
 
 UNITS = {
@@ -83,7 +85,7 @@ def test_a_study_made_in_python() -> None:
     study = Study(
         "Made",
         Template.load("yamashita-1"),
-        (Vary("links.crank.mass", Range(0.1, 0.2)),),
+        (Variable("links.crank.mass", Range(0.1, 0.2)),),
         (Output("shaking_force.y.rms", dimension="force", at_most=20.0),),
         Sampling("sobol", 8),
     )

@@ -8,8 +8,9 @@ from pathlib import Path
 import pytest
 
 import equipoise as eq
+from equipoise.design.requirements import Requirement
 from equipoise.errors import ModelError
-from equipoise.planting.goals import Goal, figure_names
+from equipoise.planting.goals import figure_names
 from equipoise.schema.targets import SearchTable, Targets, read_targets
 
 KNOWN = figure_names(eq.load("kim-chung-a"))
@@ -66,17 +67,17 @@ def test_everything(tmp_path: Path) -> None:
         "coupler.C.y": (-0.01, 0.01),
     }
     assert targets.goals == (
-        Goal("curve.height", target=0.25, tolerance=0.001),
-        Goal("entry.attitude", at_least=radians(-130), at_most=radians(-100)),
-        Goal("ratio.coupler.min", at_least=-0.9),
-        Goal("max_acceleration.value", make="smallest"),
+        Requirement("curve.height", target=0.25, tolerance=0.001),
+        Requirement("entry.attitude", at_least=radians(-130), at_most=radians(-100)),
+        Requirement("ratio.coupler.min", at_least=-0.9),
+        Requirement("max_acceleration.value", make="smallest"),
     )
 
 
 def test_what_may_be_left_out(tmp_path: Path) -> None:
     targets = read(tmp_path, f'{GOAL}target = "25 cm"\n')
     assert targets == Targets(
-        (Goal("curve.height", target=0.25),), None, SearchTable(1, 300, 120, "as given")
+        (Requirement("curve.height", target=0.25),), None, SearchTable(1, 300, 120, "as given")
     )
 
 

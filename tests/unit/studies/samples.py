@@ -6,17 +6,10 @@ from dataclasses import replace
 from functools import cache
 from typing import Any
 
+from equipoise.design.spreads import Normal, Range, Spread, Uniform
+from equipoise.design.variables import Variable
 from equipoise.schema.template import Template
-from equipoise.studies.design_space import (
-    Correlation,
-    Normal,
-    Output,
-    Range,
-    Sampling,
-    Spread,
-    Uniform,
-    Vary,
-)
+from equipoise.studies.design_space import Correlation, Output, Sampling
 from equipoise.studies.study import Study
 
 MASS, LENGTH, SPEED = "links.crank.mass", "links.coupler.points.C.x", "drive.speed"
@@ -31,11 +24,11 @@ def template(name: str = "yamashita-1") -> Template:
 
 def study(*spreads: Spread, method: str = "sobol", designs: int | None = 64, **given: Any) -> Study:
     """A study of yamashita-1 in which the first of `PATHS` vary."""
-    vary = tuple(Vary(path, spread) for path, spread in zip(PATHS, spreads, strict=False))
+    vary = tuple(Variable(path, spread) for path, spread in zip(PATHS, spreads, strict=False))
     usual: dict[str, Any] = {
         "title": "Study",
         "model": template(),
-        "vary": vary or (Vary(MASS, Range(0.1, 0.2)),),
+        "vary": vary or (Variable(MASS, Range(0.1, 0.2)),),
         "outputs": (Output("drive_torque.rms"),),
         "sampling": Sampling(method, designs, given.pop("seed", 1)),  # type: ignore[arg-type]
     }

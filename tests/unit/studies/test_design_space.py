@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from scipy import stats
 
+from equipoise.design.spreads import SPREADS, Choices, Normal, Range, Spread, Uniform
 from equipoise.errors import UsageError
-from equipoise.studies.design_space import SPREADS, Choices, Normal, Range, Spread, Uniform
 
 EVEN = (np.arange(20_000) + 0.5) / 20_000
 """Places so even that a distribution function is met to 1 / 20000."""

@@ -12,12 +12,14 @@ import pytest
 
 import equipoise as eq
 from equipoise.codegen.figures import REASONS
+from equipoise.design.spreads import Range
+from equipoise.design.variables import Variable
 from equipoise.errors import ModelError, UsageError
 from equipoise.quantities import SI
 from equipoise.results.outputs import unit_of
 from equipoise.schema.template import Template
 from equipoise.studies.commands import find_outputs
-from equipoise.studies.design_space import Command, Output, Range, Sampling, Vary
+from equipoise.studies.design_space import Command, Output, Sampling
 from equipoise.studies.evaluate import OneByOne
 from equipoise.studies.figures import dimension_of, read, resolve, scale
 from equipoise.studies.outcomes import Outcome
@@ -128,7 +130,7 @@ def study(model: Template | str, vary: str, *outputs: Output | str, **given: Any
     return Study(
         title="Study",
         model=made,
-        vary=(Vary(vary, Range(*ends), dimension),),
+        vary=(Variable(vary, Range(*ends), dimension),),
         outputs=tuple(Output(one) if isinstance(one, str) else one for one in outputs),
         sampling=Sampling("sobol", 16),
         **given,
@@ -407,7 +409,7 @@ def test_a_model_that_fails_stands_back_for_designs_that_do_not() -> None:
     with pytest.raises(ModelError):
         eq.plant(broken.base())  # type: ignore[arg-type]
     given = study(broken, "planting.depth", *asked("plant", "soil.depth"))
-    given = replace(given, vary=(Vary("planting.depth", Range(0.5 * depth, depth), "length"),))
+    given = replace(given, vary=(Variable("planting.depth", Range(0.5 * depth, depth), "length"),))
     assert computed(given, depth).figures[0, 0] == pytest.approx(depth, rel=1e-9)
 
 

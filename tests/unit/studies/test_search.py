@@ -11,10 +11,13 @@ import numpy as np
 import pytest
 
 from equipoise.codegen.figures import NO_ASSEMBLY, NO_MACHINE
+from equipoise.design.requirements import Make
+from equipoise.design.spreads import Choices, Normal, Range
+from equipoise.design.variables import Variable
 from equipoise.errors import ModelError, UsageError
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.studies import searching
-from equipoise.studies.design_space import Choices, Correlation, Make, Normal, Output, Range, Vary
+from equipoise.studies.design_space import Correlation, Output
 from equipoise.studies.evaluate import evaluator
 from equipoise.studies.outcomes import Evaluator, Outcome, kept, non_dominated
 from equipoise.studies.searching import search, search_size
@@ -29,7 +32,7 @@ UNIT = (Range(0.0, 1.0),) * 3
 
 
 def of(*outputs: Output, spreads: tuple[Any, ...] = UNIT, **changes: Any) -> Study:
-    vary = tuple(Vary(path, spread) for path, spread in zip(PATHS, spreads, strict=False))
+    vary = tuple(Variable(path, spread) for path, spread in zip(PATHS, spreads, strict=False))
     some = study()
     sampling = replace(some.sampling, designs=20_000)
     return replace(some, **{"vary": vary, "outputs": outputs, "sampling": sampling, **changes})
@@ -241,7 +244,7 @@ def test_a_four_bar_against_every_design() -> None:
         Output("four_bar.swing", make="largest"),
         Output("four_bar.transmission_min", at_least=0.6),
     )
-    vary = (Vary(LENGTH, Choices(lengths)), Vary(rocker, Choices(lengths)))
+    vary = (Variable(LENGTH, Choices(lengths)), Variable(rocker, Choices(lengths)))
     some = replace(of(*outputs), vary=vary, angles=90)
     compute = evaluator(some)
     every = np.stack(np.meshgrid(lengths, lengths, indexing="ij"), axis=-1).reshape(-1, 2)
@@ -257,7 +260,7 @@ def test_a_four_bar_against_every_design() -> None:
     assert isinstance(machine, Machine)
     assert machine.links["rocker"].points["C"][0] == found.values[0, 1]
 
-    ranges = (Vary(LENGTH, Range(0.05, 0.1)), Vary(rocker, Range(0.05, 0.1)))
+    ranges = (Variable(LENGTH, Range(0.05, 0.1)), Variable(rocker, Range(0.05, 0.1)))
     between = search(replace(some, vary=ranges), compute=compute, population=24, generations=12)
     best_of_grid = np.min(outcome.figures[wanted, 0])
     assert np.min(between.figures[:, 0]) < best_of_grid

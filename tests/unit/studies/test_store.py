@@ -15,10 +15,12 @@ import xarray
 import zarr
 
 from equipoise.codegen.figures import REASONS
+from equipoise.design.spreads import Range
+from equipoise.design.variables import Variable
 from equipoise.errors import UsageError
 from equipoise.folders import Folder
 from equipoise.partial import beside
-from equipoise.studies.design_space import Output, Range, Sampling, Vary
+from equipoise.studies.design_space import Output, Sampling
 from equipoise.studies.run import create_store, resume
 from equipoise.studies.sampling import samples
 from equipoise.studies.store import UNKNOWN, DamagedError, open_store, versions
@@ -97,7 +99,7 @@ def test_only_what_repeats_is_compressed(tmp_path: Path) -> None:
     assert sizes[MASS] < 100
     grid = short_study(
         sampling=Sampling("grid"),
-        vary=(Vary(LENGTH, Range(0.06, 0.08, 3)), Vary(MASS, Range(0.1, 0.2, 40))),
+        vary=(Variable(LENGTH, Range(0.06, 0.08, 3)), Variable(MASS, Range(0.1, 0.2, 40))),
     )
     arrays = create_store(tmp_path / "grid", grid, 100, "compiled").arrays
     assert [len(array.compressors) - 1 for array in arrays.values()] == [1, 1, 0, 0, 0, 1]

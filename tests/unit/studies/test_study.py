@@ -10,19 +10,12 @@ from typing import Any
 import pytest
 
 import equipoise as eq
+from equipoise.design.spreads import Choices, Normal, Range, Uniform
+from equipoise.design.variables import Variable
 from equipoise.errors import ModelError
 from equipoise.schema.studies import restore
 from equipoise.schema.template import Template
-from equipoise.studies.design_space import (
-    Choices,
-    Correlation,
-    Normal,
-    Output,
-    Range,
-    Sampling,
-    Uniform,
-    Vary,
-)
+from equipoise.studies.design_space import Correlation, Output, Sampling
 from equipoise.studies.study import Study
 from unit.studies.samples import LENGTH, MASS, SPEED, correlated, study, template
 
@@ -55,13 +48,13 @@ def test_slow_commands_have_small_chunks() -> None:
 
 
 def test_lists_will_do() -> None:
-    given = study(vary=[Vary(MASS, Range(0.1, 0.2))], outputs=[Output("drive_torque.rms")])
+    given = study(vary=[Variable(MASS, Range(0.1, 0.2))], outputs=[Output("drive_torque.rms")])
     assert given == study()
     assert hash(given) == hash(study())
 
 
 def test_whole_numbers_stay_whole() -> None:
-    given = study(model=template("planetary-planting-arm"), vary=(Vary(TEETH, Range(20, 40)),))
+    given = study(model=template("planetary-planting-arm"), vary=(Variable(TEETH, Range(20, 40)),))
     assert given.vary[0].spread == Range(20, 40, whole=True)
 
 
@@ -98,7 +91,7 @@ def test_from_python() -> None:
 
 # -- what is refused -------------------------------------------------------------------------------
 
-ONE = Vary(MASS, Range(0.1, 0.2))
+ONE = Variable(MASS, Range(0.1, 0.2))
 REFUSED: dict[str, tuple[dict[str, Any], str, str]] = {
     # what is given, where, what is said
     "nothing varies": ({"vary": ()}, "vary", "there is none; give at least one [[vary]]"),
@@ -106,21 +99,21 @@ REFUSED: dict[str, tuple[dict[str, Any], str, str]] = {
         {"vary": (ONE, ONE)}, "vary[2].path", f"{MASS} varies in vary[1] already"
     ),
     "no such number": (
-        {"vary": (ONE, Vary("links.crank.mas", Range(0, 1)))}, "vary[2].path",
+        {"vary": (ONE, Variable("links.crank.mas", Range(0, 1)))}, "vary[2].path",
         f"no number of the model is called 'links.crank.mas'; did you mean '{MASS}'?",
     ),
     "both forms": (
-        {"vary": (Vary("frame.points.D.x", Range(0, 1)),
-                  Vary("frame.points.D.distance", Range(0, 1)))}, "vary[2].path",
+        {"vary": (Variable("frame.points.D.x", Range(0, 1)),
+                  Variable("frame.points.D.distance", Range(0, 1)))}, "vary[2].path",
         "frame.points.D.distance cannot vary beside frame.points.D.x; let either x and y or "
         "distance and direction of a point vary",
     ),
     "teeth by tolerance": (
-        {"model": template("planetary-planting-arm"), "vary": (Vary(TEETH, MASSES),)},
+        {"model": template("planetary-planting-arm"), "vary": (Variable(TEETH, MASSES),)},
         "vary[1].normal", f"{TEETH} is a whole number; give a range or a list",
     ),
     "parts of teeth": (
-        {"model": template("planetary-planting-arm"), "vary": (Vary(TEETH, Choices((1.5,))),)},
+        {"model": template("planetary-planting-arm"), "vary": (Variable(TEETH, Choices((1.5,))),)},
         "vary[1].list", f"{TEETH} is a whole number; give whole numbers",
     ),
     "method": (
@@ -135,24 +128,24 @@ REFUSED: dict[str, tuple[dict[str, Any], str, str]] = {
     "seed": ({"sampling": Sampling("sobol", 8, -1)}, "sampling.seed", "got -1; give 0 to"),
     "grid without steps": ({"sampling": Sampling("grid")}, "vary[1].steps", "missing; a grid"),
     "steps without grid": (
-        {"vary": (Vary(MASS, Range(0, 1, 5)),)}, "vary[1].steps",
+        {"vary": (Variable(MASS, Range(0, 1, 5)),)}, "vary[1].steps",
         "goes with a grid, not with sobol; leave it out",
     ),
     "grid of tolerances": (
-        {"vary": (Vary(MASS, MASSES),), "sampling": Sampling("grid")}, "vary[1].normal",
+        {"vary": (Variable(MASS, MASSES),), "sampling": Sampling("grid")}, "vary[1].normal",
         "a normal spread has no grid; give a range or a list",
     ),
     "grid with designs": (
-        {"vary": (Vary(MASS, Range(0, 1, 5)),), "sampling": Sampling("grid", 5)},
+        {"vary": (Variable(MASS, Range(0, 1, 5)),), "sampling": Sampling("grid", 5)},
         "sampling.designs", "a grid has as many as its steps make, here 5; leave it out",
     ),
     "large grid": (
-        {"vary": (Vary(MASS, Range(0, 1, 10**5)), Vary(LENGTH, Range(0, 1, 10**5))),
+        {"vary": (Variable(MASS, Range(0, 1, 10**5)), Variable(LENGTH, Range(0, 1, 10**5))),
          "sampling": Sampling("grid")},
         "sampling.method", "the grid has 1e+10 designs; at most 1e+09 are computed",
     ),
     "correlated grid": (
-        {"vary": (Vary(MASS, Range(0, 1, 5)), Vary(LENGTH, Range(0, 1, 5))),
+        {"vary": (Variable(MASS, Range(0, 1, 5)), Variable(LENGTH, Range(0, 1, 5))),
          "sampling": Sampling("grid"), "correlations": (Correlation(MASS, LENGTH, 0.5),)},
         "correlations[1]", "a grid has no correlations",
     ),
@@ -161,7 +154,7 @@ REFUSED: dict[str, tuple[dict[str, Any], str, str]] = {
         "correlations[1].between[2]", "no [[vary]] is called 'links.crank.mas'; did you mean",
     ),
     "correlated list": (
-        {"vary": (ONE, Vary(LENGTH, Choices((0.07, 0.08)))),
+        {"vary": (ONE, Variable(LENGTH, Choices((0.07, 0.08)))),
          "correlations": (Correlation(MASS, LENGTH, 0.5),)},
         "correlations[1].between[2]", f"{LENGTH} is chosen from a list, which cannot be correlated",
     ),
@@ -170,16 +163,19 @@ REFUSED: dict[str, tuple[dict[str, Any], str, str]] = {
         "got one number twice; give two different ones",
     ),
     "certain": (
-        {"vary": (ONE, Vary(LENGTH, MASSES)), "correlations": (Correlation(MASS, LENGTH, 1.0),)},
+        {
+            "vary": (ONE, Variable(LENGTH, MASSES)),
+            "correlations": (Correlation(MASS, LENGTH, 1.0),),
+        },
         "correlations[1].coefficient", "got 1; give a number between -1 and 1",
     ),
     "correlated twice": (
-        {"vary": (ONE, Vary(LENGTH, MASSES)),
+        {"vary": (ONE, Variable(LENGTH, MASSES)),
          "correlations": (Correlation(MASS, LENGTH, 0.5), Correlation(LENGTH, MASS, 0.4))},
         "correlations[2].between", "is given in correlations[1] already; leave one out",
     ),
     "impossible": (
-        {"vary": (ONE, Vary(LENGTH, MASSES), Vary(SPEED, MASSES)),
+        {"vary": (ONE, Variable(LENGTH, MASSES), Variable(SPEED, MASSES)),
          "correlations": (Correlation(MASS, LENGTH, 0.9), Correlation(LENGTH, SPEED, 0.9),
                           Correlation(MASS, SPEED, -0.9))},
         "correlations", "the coefficients contradict each other",
@@ -210,7 +206,7 @@ REFUSED: dict[str, tuple[dict[str, Any], str, str]] = {
         "got 'tool', but the model is a linkage; give analyze, plant, respond or balance",
     ),
     "of a linkage": (
-        {"model": template("brush-cutter"), "vary": (Vary("shaft.length", Range(1, 2)),)},
+        {"model": template("brush-cutter"), "vary": (Variable("shaft.length", Range(1, 2)),)},
         "outputs[1].of", "got 'analyze', but the model is a tool; give tool",
     ),
     "make": (

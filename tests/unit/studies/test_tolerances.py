@@ -12,8 +12,9 @@ from scipy.stats import norm
 
 import equipoise as eq
 from equipoise.codegen.figures import NO_ASSEMBLY
+from equipoise.design.spreads import Choices, Normal, Range, Uniform
 from equipoise.errors import ModelError, UsageError
-from equipoise.studies.design_space import Choices, Correlation, Normal, Output, Range, Uniform
+from equipoise.studies.design_space import Correlation, Output
 from equipoise.studies.outcomes import Outcome
 from equipoise.studies.study import Study
 from equipoise.studies.tolerances import rows_of, tolerance

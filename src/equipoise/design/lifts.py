@@ -1,22 +1,26 @@
-"""Numbers of a machine that a search of geometry may change, by name."""
+"""Numbers of a machine that designers think in and no file has: each is put into a draft of it.
+
+A further kind of these is a function from a machine to its lifts, in `LIFTS`.
+"""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import partial
 from math import pi
 from typing import Any
 
 import numpy as np
 
+from equipoise.errors import EquipoiseError
 from equipoise.keys import changed, keys_of
 from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.assembly.linkage import assemble
-from equipoise.mechanism.kinematics.tip import planting_of, tip_link
-from equipoise.mechanism.parts.gears import Gear
-from equipoise.mechanism.parts.machine import FRAME, Machine, size_of
+from equipoise.mechanism.kinematics.tip import tip_link
+from equipoise.mechanism.parts.gears import Gear, closed
+from equipoise.mechanism.parts.machine import FRAME, Machine, Vector, size_of
 from equipoise.quantities import Dimension
 
 SHORTEST, LONGEST = 0.4, 2.5
@@ -25,6 +29,8 @@ REACH = 1.5
 """Limits of a coordinate where none are given, over the size of the link."""
 ECCENTRIC = (0.0, 0.5)
 """Limits of an eccentricity where none are given."""
+DIGITS = 12
+"""Decimals of a metre to which moved points are rounded."""
 USUAL = ("tip.x", "tip.y", "gears.shape.eccentricity")
 GEARS = re.compile(r"gears(?:\[(\d+(?:, *\d+)*)\])?\.(start|shape\..+)")
 OF_GEARS: dict[str, Dimension] = {
@@ -39,19 +45,25 @@ Places = tuple[tuple[str, str], ...]
 """Bodies with a point of each."""
 
 
-@dataclass(frozen=True)
+@dataclass
 class Draft:
-    """A design in the making: places of all points in the axes of their bodies, m, and gears."""
+    """A design in the making.
 
+    machine : with all that is changed but these.
+    bodies : places of all points in the axes of their bodies, m.  gears : its gears.
+    """
+
+    machine: Machine
     bodies: dict[str, dict[str, complex]]
     gears: list[Gear]
 
 
 @dataclass(frozen=True)
-class Variable:
-    """A number that may change.
+class Lift:
+    """A number that designers think in.
 
-    name : as in the target file.  start, low, high : m, rad or plain.
+    name : as in the target file.  start : what it is.  low, high : limits where none are given; m,
+        rad or plain.
     dimension : None of a plain number.  put : writes a value into a draft.
     gears : places in the list of those that it changes.
     """
@@ -72,7 +84,7 @@ def usual(name: str) -> bool:
     return "." not in name or name in USUAL
 
 
-def dimension_of_number(name: str) -> Dimension | None:
+def dimension_of_lift(name: str) -> Dimension | None:
     """What the limits of a number are; None of plain ones."""
     gears = GEARS.fullmatch(name)
     if gears is not None:
@@ -80,20 +92,44 @@ def dimension_of_number(name: str) -> Dimension | None:
     return "angle" if name == "ground_angle" or name.endswith(".direction") else "length"
 
 
-def variables(machine: Machine) -> Iterator[Variable]:
-    """Every number that can be varied: lengths, the frame's direction, all coordinates, gears."""
+def lifts(machine: Machine) -> Iterator[Lift]:
+    """Every lift of a machine: lengths, the frame's direction, all coordinates, gears."""
+    for kind in LIFTS:
+        yield from kind(machine)
+
+
+def lift_named(machine: Machine, name: str) -> Lift | None:
+    """The lift of a machine by its name; None where there is none."""
+    try:
+        known = {one.name: one for one in lifts(machine)}
+    except EquipoiseError:  # what cannot be put together has no lifts
+        return None
+    return known.get(name) or joined(machine, name)
+
+
+def _lengths(machine: Machine) -> Iterator[Lift]:
     pivot = assemble(machine).pivot
-    bodies = (FRAME, *machine.links)
-    for body in bodies:
+    for body in (FRAME, *machine.links):
         yield from _length(machine, body, pivot)
     yield from _ground_angle(machine, pivot)
-    tips = [(tip_link(machine, arm.tip), arm.tip) for arm in planting_of(machine).every_arm]
+
+
+def _tips(machine: Machine) -> Iterator[Lift]:
+    if machine.planting is None:
+        return
+    tips = [(tip_link(machine, arm.tip), arm.tip) for arm in machine.planting.every_arm]
     first = machine.links[tips[0][0]].points[tips[0][1]]
     alike = [(link, tip) for link, tip in tips if machine.links[link].points[tip] == first]
     yield from _coordinates(machine, alike, "tip", ("x", "y"))
-    for body in bodies:
+
+
+def _points(machine: Machine) -> Iterator[Lift]:
+    for body in (FRAME, *machine.links):
         for point in machine.points_of(body):
             yield from _coordinates(machine, [(body, point)], f"{body}.{point}")
+
+
+def _gears(machine: Machine) -> Iterator[Lift]:
     numbers = range(len(machine.gears))
     paths = dict.fromkeys(path for gear in machine.gears for path in _numbers(gear))
     for path in paths:
@@ -104,7 +140,41 @@ def variables(machine: Machine) -> Iterator[Variable]:
             yield from () if every is None else (every,)
 
 
-def joined(machine: Machine, name: str) -> Variable | None:
+LIFTS: list[Callable[[Machine], Iterator[Lift]]] = [_lengths, _tips, _points, _gears]
+"""The lifts of a machine, of each kind."""
+
+
+def with_lifts(machine: Machine, values: Sequence[tuple[Lift, float]], **changes: Any) -> Machine:
+    """The machine with other values of lifts; places that have moved are rounded to `DIGITS`, and
+    tables of gears scaled so that their curves close.
+
+    changes : further fields of the machine.
+
+    Raises
+    ------
+    EquipoiseError : there is no such machine.
+    """
+    names = (FRAME, *machine.links)
+    bodies = {name: _places(machine.points_of(name)) for name in names}
+    draft = Draft(machine, bodies, list(machine.gears))
+    for one, value in values:
+        one.put(draft, float(value))
+    machine = draft.machine
+    points = {name: _pairs(bodies[name], machine.points_of(name)) for name in names}
+    links = {
+        name: link if points[name] == dict(link.points) else link.altered(points=points[name])
+        for name, link in machine.links.items()
+    }
+    touched = {number for one, _ in values for number in one.gears}
+    gears = tuple(
+        closed(gear, points) if number in touched else gear
+        for number, gear in enumerate(draft.gears)
+    )
+    made = {"frame": points[FRAME], "links": links, "gears": gears}
+    return replace(machine, **{**made, **changes})
+
+
+def joined(machine: Machine, name: str) -> Lift | None:
     """A number that several gears or points of a link have together: ``gears[1,3].shape.phase``,
     ``carrier.B,D.distance``; None where there is no such number.
     """
@@ -132,7 +202,7 @@ def _pins(machine: Machine, body: str) -> list[str]:
     return [point for point in machine.points_of(body) if point in shared]
 
 
-def _length(machine: Machine, body: str, pivot: str) -> Iterator[Variable]:
+def _length(machine: Machine, body: str, pivot: str) -> Iterator[Lift]:
     pins = _pins(machine, body)
     if len(pins) != 2:
         return
@@ -146,10 +216,10 @@ def _length(machine: Machine, body: str, pivot: str) -> Iterator[Variable]:
         now = places[moved] - places[base]
         places[moved] = places[base] + now * (value / abs(now))
 
-    yield Variable(body, length, SHORTEST * length, LONGEST * length, "length", put)
+    yield Lift(body, length, SHORTEST * length, LONGEST * length, "length", put)
 
 
-def _ground_angle(machine: Machine, pivot: str) -> Iterator[Variable]:
+def _ground_angle(machine: Machine, pivot: str) -> Iterator[Lift]:
     others = [point for point in _pins(machine, FRAME) if point != pivot]
     if not others:
         return
@@ -162,7 +232,7 @@ def _ground_angle(machine: Machine, pivot: str) -> Iterator[Variable]:
         for point in frame:
             frame[point] = center + complex((frame[point] - center) * turn)
 
-    yield Variable("ground_angle", float(np.angle(arm)), -pi, pi, "angle", put)
+    yield Lift("ground_angle", float(np.angle(arm)), -pi, pi, "angle", put)
 
 
 def _coordinates(
@@ -170,7 +240,7 @@ def _coordinates(
     places: Sequence[tuple[str, str]],
     name: str,
     parts: Sequence[str] = ("x", "y", "distance", "direction"),
-) -> Iterator[Variable]:
+) -> Iterator[Lift]:
     """Numbers of a point, or of several together: directions turn, the rest becomes equal."""
     body, point = places[0]
     points = machine.points_of(body)
@@ -181,7 +251,7 @@ def _coordinates(
         low, high = limits.get(part, (-reach, reach))
         put = partial(_put_part, tuple(places), part)
         value = float(_part(place, part))
-        yield Variable(
+        yield Lift(
             f"{name}.{part}", value, low, high, "angle" if part == "direction" else "length", put
         )
 
@@ -230,7 +300,7 @@ def _instead(new: float, _: Any) -> float:
     return new
 
 
-def _of_gears(machine: Machine, name: str, numbers: Sequence[int], path: str) -> Variable | None:
+def _of_gears(machine: Machine, name: str, numbers: Sequence[int], path: str) -> Lift | None:
     """A number of some of the gears: angles turn by as much, the rest becomes equal."""
     if any(not 0 <= k < len(machine.gears) for k in numbers):
         return None
@@ -238,7 +308,7 @@ def _of_gears(machine: Machine, name: str, numbers: Sequence[int], path: str) ->
     if any(path not in one for one in found):
         return None
     values = [one[path] for one in found]
-    dimension = dimension_of_number(name)
+    dimension = dimension_of_lift(name)
     low, high = (-pi, pi) if dimension == "angle" else (-1.0, 1.0)
     low, high = ECCENTRIC if path == "shape.eccentricity" else (low, high)
 
@@ -247,4 +317,18 @@ def _of_gears(machine: Machine, name: str, numbers: Sequence[int], path: str) ->
             new = before + value - values[0] if dimension == "angle" else value
             draft.gears[k] = changed(draft.gears[k], KeyPath.parse(path), partial(_instead, new))
 
-    return Variable(name, values[0], low, high, dimension, put, tuple(numbers))
+    return Lift(name, values[0], low, high, dimension, put, tuple(numbers))
+
+
+def _places(points: Mapping[str, Vector]) -> dict[str, complex]:
+    return {name: complex(*place) for name, place in points.items()}
+
+
+def _pairs(points: Mapping[str, complex], before: Mapping[str, Vector]) -> dict[str, Vector]:
+    """Places of points; those that have moved with so many digits that a file stays readable."""
+    return {
+        name: old
+        if place == complex(*old)
+        else (round(place.real, DIGITS), round(place.imag, DIGITS))
+        for (name, place), old in zip(points.items(), before.values(), strict=True)
+    }

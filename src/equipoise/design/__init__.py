@@ -1,0 +1,12 @@
+"""What a design problem is made of: what may change, and what is wanted.
+
+A `Variable` is a number of the model file by its path, or a `Lift`, a number that designers think
+in; a `Requirement` is what a figure has to be.  Searches of geometry, studies and tools take both
+from here.
+"""
+
+from __future__ import annotations
+
+from equipoise.guarding import attach
+
+__getattr__, __dir__, __all__ = attach(__name__, __file__)
