@@ -21,6 +21,8 @@ from equipoise.mechanism.parts.sections import LinkSection
 from equipoise.results.blocks import Table
 from equipoise.schema.files import to_csv
 from equipoise.studies.figures import dimension_of
+from equipoise.web.design import Design
+from equipoise.web.fields import fields_of
 from unit.schema.samples import survives
 
 Array = np.ndarray[Any, Any]
@@ -182,6 +184,8 @@ def test_they_are_reported_everywhere() -> None:
     assert found.summary["links.rod.stress"].peak == pytest.approx(found.sections["rod"].stress)
     assert "links.rod.stress [Pa]" in to_csv(found).partition("\n")[0]
     assert dimension_of(machine, "analyze", "sections.rod.stress") == "modulus"
+    fields = fields_of(Design("engine", machine))
+    assert fields["links.rod.section.height"].value == pytest.approx(0.022)
     titles = [one.title for one in found.blocks() if isinstance(one, Table)]
     assert "Loads along links, largest" in titles
     bare = replace(machine, links=eq.load("slider-crank-engine").links)

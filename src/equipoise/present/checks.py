@@ -204,10 +204,13 @@ def _curve(motor: Motor) -> str:
         return f"{len(speeds)} rows from {_rpm(speeds[0])} to {_rpm(speeds[-1])} rpm"
     if motor.torque is not None:
         return f"{told(motor.torque, 'torque', 'N m')} at every speed"
-    assert motor.no_load_speed is not None
-    assert motor.stall_torque is not None
-    torque = told(motor.stall_torque, "torque", "N m")
-    return f"{_rpm(motor.no_load_speed)} rpm without load, {torque} at standstill"
+    if (net := motor.induction) is not None:
+        largest = told(net.breakdown_torque, "torque", "N m")
+        return f"induction, {_rpm(net.synchronous_speed)} rpm without slip, {largest} at most"
+    (_, fastest), (stall, _) = motor.rows
+    kind = "" if motor.dc is None else f"{told(motor.dc.voltage, 'voltage')} direct current, "
+    torque = told(stall, "torque", "N m")
+    return f"{kind}{_rpm(fastest)} rpm without load, {torque} at standstill"
 
 
 def _rpm(speed: float) -> str:

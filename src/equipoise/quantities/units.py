@@ -40,6 +40,11 @@ Dimension = Literal[
     "pressure times speed",
     "unbalance",
     "per length",
+    "voltage",
+    "current",
+    "resistance",
+    "inductance",
+    "torque constant",
 ]
 
 
@@ -319,6 +324,20 @@ KINDS: dict[Dimension, Kind] = {
     ),
     "per length": Kind(
         to_say("a number per length"), {"1/m": "1", "1/mm": "1000"}, example="20 1/m"
+    ),
+    "voltage": Kind(to_say("a voltage"), {"V": "1", "mV": "0.001", "kV": "1000"}, example="24 V"),
+    "current": Kind(to_say("a current"), {"A": "1", "mA": "0.001", "kA": "1000"}, example="5 A"),
+    "resistance": Kind(
+        to_say("a resistance"), {"ohm": "1", "mohm": "0.001", "kohm": "1000"}, example="0.4 ohm"
+    ),
+    "inductance": Kind(
+        to_say("an inductance"),
+        {"H": "1", "mH": "0.001", "uH": "0.000001"},
+        example="0.6 mH",
+        usual=("mH", "H"),
+    ),
+    "torque constant": Kind(
+        to_say("a torque constant"), {"N m/A": "1", "V s/rad": "1"}, example="0.08 N m/A"
     ),
 }
 

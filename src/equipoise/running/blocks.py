@@ -133,6 +133,12 @@ def _figures(run: Run) -> Iterator[str]:
         energy=told(cycle.energy_per_turn if gives else 0.0, "energy", "J"),
         power=told(cycle.power if gives else 0.0, "power", "W"),
     )
+    if run.electric is not None:
+        yield say(
+            "current of the motor: up to {most}, {last} at the end",
+            most=told(float(np.max(np.abs(run.electric.current))), "current", "A"),
+            last=told(float(run.electric.current[-1]), "current", "A"),
+        )
 
 
 def run_blocks(run: Run) -> Iterator[Block]:
@@ -144,6 +150,9 @@ def run_blocks(run: Run) -> Iterator[Block]:
     energy = run.kinetic_energy
     rows = [(labels[name], Value(float(work[-1]))) for name, work in run.work.items()]
     rows.append((say("kinetic energy"), Value(float(energy[-1] - energy[0]))))
+    if run.electric is not None:
+        rows.append((say("from the motor's supply"), Value(float(run.electric.supply[-1]))))
+        rows.append((say("heat in the motor"), Value(float(run.electric.heat[-1]))))
     columns = ("", Column(say("work"), "energy"))
     yield Table.of(say("Energy from the start to the end"), columns, rows)
     error = f"{run.energy_error:.1e}"

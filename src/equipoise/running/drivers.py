@@ -1,8 +1,8 @@
-"""What turns the crank: a motor by its curve, while it is switched on."""
+"""What turns the crank: a motor by its curve, or with its current, while it is switched on."""
 
 from __future__ import annotations
 
-from math import copysign
+from math import copysign, log
 
 import numpy as np
 
@@ -15,6 +15,7 @@ class Driver:
     """The drive of a machine: its torque on the crank by the crank's speed.
 
     sense : 1 where it turns the crank counterclockwise, -1 clockwise.  on : whether it is on.
+    circuit : of a direct-current motor; None of any other.
     """
 
     def __init__(self, machine: Machine) -> None:
@@ -22,9 +23,68 @@ class Driver:
         self.sense = copysign(1.0, drive.speed)
         self.on = drive.motor is not None
         self._torque = torque_on_crank(drive, drive.speed) if self.on else None
+        self.circuit = None if drive.motor is None else drive.motor.dc
+        self._gear = 1.0 if drive.motor is None else self.sense * drive.motor.ratio
 
     def torque(self, speed: Array) -> Array:
-        """On the crank (...), N m, at its speed (...), rad/s."""
+        """On the crank (...), N m, at its speed (...), rad/s, that lasts."""
         if self._torque is None or not self.on:
             return np.zeros_like(speed)
         return self._torque(speed, np.zeros(()))
+
+    # -- with its current --------------------------------------------------------------------------
+
+    @property
+    def lags(self) -> bool:
+        """Whether its current follows its speed with a delay, and its torque the current."""
+        return self.on and self.circuit is not None and self.circuit.inductance > 0
+
+    def torque_of(self, current: Array) -> Array:
+        """On the crank (...), N m, of currents (...), A."""
+        assert self.circuit is not None
+        return np.asarray(self._gear * self.circuit.torque_constant * current)
+
+    def current(self, speed: Array) -> Array:
+        """Current (...), A, at speeds (...) of the crank, rad/s, that last."""
+        if self.circuit is None or not self.on:
+            return np.zeros_like(speed)
+        return np.asarray(self.circuit.steady_current(self._gear * speed))
+
+    def stored(self, current: Array) -> Array:
+        """Energy (...), J, of the field of currents (...), A, which a switch turns into heat."""
+        inductance = 0.0 if self.circuit is None else self.circuit.inductance
+        return np.asarray(inductance * current**2 / 2)
+
+    def electric_rates(self, current: Array, speed: Array) -> Array:
+        """Rates (3, ...) by time of the current, A/s, of the work of the supply and of heat, W."""
+        of = self.circuit
+        if of is None or not self.on:
+            return np.zeros((3, *np.shape(current)))
+        left = of.voltage - of.resistance * current - of.torque_constant * self._gear * speed
+        rate = left / of.inductance if self.lags else np.zeros_like(current)
+        return np.array([rate, of.voltage * current, of.resistance * current**2])
+
+    def currents(self, speed: Array, paths: Array, begin: float) -> Array:
+        """Currents (N,), A, at the nodes of a piece that the crank passes at these speeds (N,).
+
+        paths : (N, N), integrals by crank angle up to each node.  begin : current at their begin.
+        """
+        of = self.circuit
+        assert of is not None
+        slower = paths * (of.resistance / (of.inductance * speed))
+        push = of.voltage - of.torque_constant * self._gear * speed
+        right = begin + paths @ (push / (of.inductance * speed))
+        return np.asarray(np.linalg.solve(np.eye(len(speed)) + slower, right))
+
+    def until(self, torque: float) -> tuple[float, Array]:
+        """Time, s, after which its torque at standstill is so large, N m; and current, A, work of
+        the supply and heat, J, by then (3,).
+        """
+        of = self.circuit
+        assert of is not None
+        most = of.voltage / of.resistance
+        current = torque / (abs(self._gear) * of.torque_constant)
+        lag = of.inductance / of.resistance
+        time = -lag * log(1 - current / most)
+        supply = of.voltage * (most * time - lag * current)
+        return time, np.array([current, supply, supply - of.inductance * current**2 / 2])

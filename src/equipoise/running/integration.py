@@ -14,7 +14,7 @@ kinetic energy of the linkage itself.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from math import copysign, inf, pi
 from typing import Any
 
@@ -54,6 +54,8 @@ AT_EDGE = 1e-11
 """rad, by which what is to happen has to be ahead."""
 SAME = 1e-9
 """Of a cycle, within which a crank angle is its begin."""
+ELECTRIC = 3
+"""Values of a motor's circuit in a row of the track: its current, and two works."""
 BETWEEN = 6
 """Instants read in a step in time."""
 
@@ -90,18 +92,23 @@ class Limits:
 
 @dataclass(frozen=True)
 class Instant:
-    """State of a run: s, rad, rad/s, and the work so far of each source and of the drive, J."""
+    """State of a run: s, rad, rad/s, and the work so far of each source and of the drive, J.
+
+    electric : (3,) current of a direct-current motor, A, and work of its supply and heat so far, J.
+    """
 
     time: float
     angle: float
     speed: float
     work: Array
+    electric: Array = field(default_factory=lambda: np.zeros(ELECTRIC))
 
 
 class Integration:
     """Follow a machine's crank.
 
-    track : rows of time, angle, speed and works, at the nodes of the solution.
+    track : rows of time, angle, speed, current, its two works, and works, at the nodes of the
+        solution.
     begins : instants at which a cycle begins.
     """
 
@@ -121,13 +128,19 @@ class Integration:
         self.usual = usual = max(abs(speed), abs(equation.machine.drive.speed)) or 1.0
         works = len(equation.sources) + 1
         energy = inertia * usual**2 / 2
-        self.absolute = ABSOLUTE * np.array([1.0, usual, *[energy] * works])
+        circuit = self.driver.circuit
+        current = 1.0 if circuit is None else circuit.voltage / circuit.resistance
+        sizes = [1.0, usual, current, *[energy] * (works + ELECTRIC - 1)]
+        self.absolute = ABSOLUTE * np.array(sizes)
         now: Instant | None = Instant(0.0, angle, speed, np.zeros(works))
         assert now is not None
+        if self.driver.on and self.driver.circuit is not None and not self.driver.lags:
+            now.electric[0] = self.driver.current(np.asarray(speed))
         self._record(now)
         self.direction = copysign(1.0, speed)
         if speed == 0.0 and not self._sets_off(now):
             return
+        now = self._switched_on(now)
         for _ in range(MOST_PIECES):
             now = self._piece(now)
             if now is None:
@@ -137,8 +150,24 @@ class Integration:
         )
 
     def _record(self, *instants: Instant) -> None:
-        rows = [[one.time, one.angle, one.speed, *one.work] for one in instants]
+        rows = [[one.time, one.angle, one.speed, *one.electric, *one.work] for one in instants]
         self.track.append(np.array(rows))
+
+    def _switched_on(self, now: Instant) -> Instant:
+        """The instant itself, or, where a current has to grow first, when the crank leaves its
+        rest.
+        """
+        driver = self.driver
+        if not driver.lags or now.speed or self.direction != driver.sense:
+            return now
+        acting, holding = self.equation.at_rest(now.angle)
+        needed = holding[driver.sense] - driver.sense * acting
+        if needed <= 0:
+            return now
+        time, electric = driver.until(needed * (1 + AT_REST))
+        later = replace(now, time=time, electric=electric)
+        self._record(later)
+        return later
 
     # -- at rest -----------------------------------------------------------------------------------
 
@@ -194,44 +223,78 @@ class Integration:
             if not np.all(energy > 0):
                 return None
             speed = self.direction * np.sqrt(2 * energy / inertia)
-            torques = self._torques(values, speed)
+            current = self._current(speed, paths, begin)
+            torques = self._torques(values, speed, current)
             missed = began + paths @ np.sum(torques, axis=0) - energy
             if np.max(np.abs(missed)) <= CLOSE * np.max(energy):
                 break
             if inverse is None:
-                nudged = np.sum(self._torques(values, speed * (1 + NUDGE)) - torques, axis=0)
-                slopes = nudged / (2 * NUDGE * energy)
-                inverse = np.linalg.inv(np.eye(len(POINTS)) - paths * slopes)
+                slopes = self._slopes(values, speed, torques, (paths, begin)) / energy
+                inverse = np.linalg.inv(np.eye(len(POINTS)) - paths @ slopes)
             energy = energy + inverse @ missed
         else:
             return None
         pace = 1 / speed
         resolved = RESOLVED if self.equation.friction is None else WITH_CORNERS
-        if roughness(pace) > resolved * np.max(np.abs(pace)):
-            return None
-        rates = np.array([pace, *torques])
+        for smooth in (pace, current) if self.driver.lags else (pace,):
+            if roughness(smooth) > resolved * np.max(np.abs(smooth)):
+                return None
+        rates = np.array([pace, *pace * self.driver.electric_rates(current, speed), *torques])
 
         def rows(x: Array) -> Array:
             gained = half * integral_to(x, start) @ rates.T
             angle = ends[0] + half * (x + 1)
-            energy = began + np.sum(gained[:, 1:], axis=1)
+            energy = began + np.sum(gained[:, 1 + ELECTRIC :], axis=1)
             now = self.direction * np.sqrt(2 * energy / self._inertia_at(k, x))
-            work = begin.work + gained[:, 1:]
-            return np.column_stack([begin.time + gained[:, 0], angle, now, work])
+            electric = begin.electric + gained[:, 1 : 1 + ELECTRIC]
+            if not self.driver.lags:
+                electric[:, 0] = self.driver.current(now)
+            work = begin.work + gained[:, 1 + ELECTRIC :]
+            return np.column_stack([begin.time + gained[:, 0], angle, now, electric, work])
 
         def at(x: float) -> Instant:
-            time, angle, now, *work = rows(np.array([x]))[0].tolist()
-            angle = ends[0] if x == -1 else ends[1] if x == 1 else angle
-            return Instant(time, angle, now, np.array(work))
+            found = self._instant(rows(np.array([x]))[0])
+            return replace(found, angle=ends[0] if x == -1 else ends[1] if x == 1 else found.angle)
 
         return at, rows
 
     def _inertia_at(self, k: int, x: Array | float) -> Array:
         return np.asarray(polynomials(x)[..., :NODES] @ self.table.coefficients[k][0])
 
-    def _torques(self, columns: Array, speed: Array) -> Array:
-        """Of each source and of the drive (K + 1, ...)."""
-        driving = self.driver.torque(speed)
+    @staticmethod
+    def _instant(row: Array) -> Instant:
+        """Of a row of the track."""
+        time, angle, speed = row[:3].tolist()
+        return Instant(time, angle, speed, row[3 + ELECTRIC :], row[3 : 3 + ELECTRIC])
+
+    def _current(self, speed: Array, paths: Array, begin: Instant) -> Array:
+        """Of the motor (N,), A, at the nodes of a piece that is passed at these speeds (N,)."""
+        if self.driver.lags:
+            return self.driver.currents(speed, paths, float(begin.electric[0]))
+        return self.driver.current(speed)
+
+    def _slopes(
+        self, values: Array, speed: Array, torques: Array, piece: tuple[Array, Instant]
+    ) -> Array:
+        """Of the sum of torques (N, N) at the nodes by the logarithm of the energy at each: only
+        the same one, but for a motor whose current knows what was before.
+        """
+        if not self.driver.lags:
+            nudged = self._torques(values, speed * (1 + NUDGE), self.driver.current(speed))
+            return np.diag(np.sum(nudged - torques, axis=0) / (2 * NUDGE))
+        columns = []
+        for own in np.eye(len(speed)):
+            faster = speed * (1 + NUDGE * own)
+            nudged = self._torques(values, faster, self._current(faster, *piece))
+            columns.append(np.sum(nudged - torques, axis=0) / (2 * NUDGE))
+        return np.stack(columns, axis=1)
+
+    def _torques(self, columns: Array, speed: Array, current: Array) -> Array:
+        """Of each source and of the drive (K + 1, ...); current : of the motor (...), A, by which
+        it drives where it lags.
+        """
+        lags = self.driver.lags
+        driving = self.driver.torque_of(current) if lags else self.driver.torque(speed)
         sources = self.equation.torques(columns, speed, driving, self.direction)
         return np.concatenate([sources, driving[None]])
 
@@ -289,7 +352,7 @@ class Integration:
             event.terminal = True
         events[0].direction = -1.0
         span = begin.time, min(until, begin.time + PATIENCE / self.usual)
-        state = [begin.angle, begin.speed, *begin.work]
+        state = [begin.angle, begin.speed, *begin.electric, *begin.work]
         done = solve_ivp(
             self._rates,
             span,
@@ -304,20 +367,29 @@ class Integration:
             raise ResponseError(Note("the motion cannot be followed beyond {t:g} s", t=done.t[-1]))
         shares = np.arange(1, BETWEEN + 1) / BETWEEN
         time = (done.t[:-1, None] + np.diff(done.t)[:, None] * shares).ravel()
-        self.track.append(np.column_stack([time, done.sol(time).T]))
+        rows = np.column_stack([time, done.sol(time).T])
+        end = np.append(done.t[-1], done.y[:, -1])
+        if not self.driver.lags:
+            rows[:, 3] = self.driver.current(rows[:, 2])
+            end[3] = float(self.driver.current(end[2]))
+        self.track.append(rows)
         kind = last if done.t[-1] >= until else "rest"
         for hit, (name, _) in zip(done.t_events, [("halt", 0.0), *marks], strict=True):
             kind = name if hit.size else kind
-        angle, speed, *work = done.y[:, -1].tolist()
-        angle = edge if kind == "edge" else angle
-        return self._happens(kind, Instant(float(done.t[-1]), angle, speed, np.array(work)))
+        found = self._instant(end)
+        return self._happens(kind, replace(found, angle=edge) if kind == "edge" else found)
 
     def _rates(self, _: float, state: Array) -> list[float]:
-        angle, speed = float(state[0]), float(state[1])
-        driving = float(self.driver.torque(np.asarray(speed)))
+        angle, speed, current = float(state[0]), float(state[1]), state[2]
+        driver = self.driver
+        if driver.lags:
+            driving = float(driver.torque_of(current))
+        else:
+            driving, current = float(driver.torque(np.asarray(speed))), driver.current(state[1])
         inertia, slope, torques = self.equation.at(angle, speed, driving, self.direction)
         change = (float(np.sum(torques)) + driving - 0.5 * slope * speed * speed) / inertia
-        return [speed, change, *(torques * speed).tolist(), driving * speed]
+        electric = driver.electric_rates(np.asarray(current), np.asarray(speed)).tolist()
+        return [speed, change, *electric, *(torques * speed).tolist(), driving * speed]
 
     # -- events ------------------------------------------------------------------------------------
 
@@ -334,8 +406,10 @@ class Integration:
         self._note(kind, now)
         if kind != "off":
             return None
+        left = float(self.driver.stored(now.electric[0]))
         self.driver.on = False
-        return now
+        current, supply, heat = now.electric
+        return replace(now, electric=np.array([0.0 * current, supply, heat + left]))
 
     def _passes(self, now: Instant) -> Instant | None:
         """Over the edge of a piece, with which a cycle may begin, and a steady state be there."""

@@ -42,6 +42,9 @@ from equipoise.signals import Array
 KNOWN = 3
 """Parts of what presses without friction: what stands still, by speed squared, by acceleration."""
 
+NOISE = 1e-14
+"""Of an inertia, per rad, below which its derivative is rounding, which no polynomial follows."""
+
 
 def plus(*demands: Demands) -> dict[str, Any]:
     """Demands of links, added up."""
@@ -83,7 +86,9 @@ class Friction(Source):
 
     def columns(self, motions: Motions) -> list[Array]:
         """J', then rates (J,), then parts (J, 2, 3 + J) of what presses."""
-        slope = sum(reduced_inertia(motion)[1] for motion in motions)
+        inertia, slope = np.sum([reduced_inertia(motion) for motion in motions], axis=0)
+        if np.max(np.abs(slope)) <= NOISE * np.max(inertia):  # of a crank alone, which is constant
+            slope = np.zeros_like(slope)
         rates, parts = [], []
         for motion in motions:
             own = rubbing_joints(motion.linkage)

@@ -18,7 +18,7 @@ from equipoise.results.result import Result
 from equipoise.running.drivers import Driver
 from equipoise.running.equation import CrankEquation
 from equipoise.running.flywheel import Flywheel, share_of_mean, size_flywheel
-from equipoise.running.integration import Event, Instant, Integration, Limits
+from equipoise.running.integration import ELECTRIC, Event, Instant, Integration, Limits
 from equipoise.signals import Array
 
 MOST_TURNS = 10_000
@@ -60,6 +60,24 @@ class LastCycle:
         return self.energy / self.time
 
 
+@dataclass(frozen=True, eq=False)
+class Electric:
+    """The circuit of a direct-current motor, at the M instants of a run.
+
+    current : (M,) A.  supply : work of its supply since the start (M,), J.  heat : of that, what
+    its resistance has turned into heat, and a switch with what the field held (M,), J.
+    """
+
+    current: Array
+    supply: Array
+    heat: Array
+
+    def columns(self) -> list[tuple[str, str, Array]]:
+        """Name, unit and values (M,) of every signal."""
+        units = {"current": "A", "supply": "J", "heat": "J"}
+        return [(f"electric.{name}", unit, getattr(self, name)) for name, unit in units.items()]
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class Run(Result):
     """How a machine runs from a start on, at M instants that are not equally spaced.
@@ -70,6 +88,7 @@ class Run(Result):
     events : what happened; the last one ended the run.
     begins : instants at which a cycle began.
     flywheel : the one that a wanted fluctuation needs, where it is asked for.
+    electric : circuit of a direct-current motor; None of any other.
     """
 
     machine: Machine
@@ -82,6 +101,7 @@ class Run(Result):
     events: tuple[Event, ...]
     begins: tuple[Instant, ...]
     flywheel: Flywheel | None = None
+    electric: Electric | None = None
     headline_in: ClassVar[str] = "running.blocks.run_headline"
 
     @property
@@ -105,7 +125,14 @@ class Run(Result):
         energy, work = self.kinetic_energy, np.array([*self.work.values()])
         missed = energy - energy[0] - np.sum(work, axis=0)
         size = max(float(np.max(energy)), float(np.max(np.abs(work))))
-        return float(np.max(np.abs(missed))) / size if size else 0.0
+        worst = float(np.max(np.abs(missed)))
+        if self.electric is not None:
+            of = self.electric
+            stored = Driver(self.machine).stored(of.current)
+            missed = of.supply - of.heat - (stored - stored[0]) - self.work[DRIVE]
+            worst = max(worst, float(np.max(np.abs(missed))))
+            size = max(size, float(np.max(np.abs(of.supply))))
+        return worst / size if size else 0.0
 
     @cached_property
     def last_cycle(self) -> LastCycle | None:
@@ -168,6 +195,7 @@ class Run(Result):
             ("drive_torque", "N m", self.drive_torque),
             ("kinetic_energy", "J", self.kinetic_energy),
             *((f"work.{name}", "J", values) for name, values in self.work.items()),
+            *(() if self.electric is None else self.electric.columns()),
         ]
 
     def to_dict(self) -> dict[str, Any]:
@@ -198,6 +226,7 @@ class Run(Result):
             "drive_torque": self.drive_torque,
             "kinetic_energy": self.kinetic_energy,
             "work": dict(self.work),
+            **({} if self.electric is None else {"electric": dict(vars(self.electric))}),
         }
 
 
@@ -269,8 +298,11 @@ def run(
     found = Integration(equation, driver, limits)
     found.follow(float(start[1]), float(start[0]))
     time, crank_angle, crank_speed, *work = np.vstack(found.track).T
+    electric, work = np.array(work[:ELECTRIC]), work[ELECTRIC:]
     switched = next((event.time for event in found.events if event.kind == "off"), inf)
-    torque = np.where(time <= switched, Driver(machine).torque(crank_speed), 0.0)
+    driver = Driver(machine)
+    driving = driver.torque_of(electric[0]) if driver.lags else driver.torque(crank_speed)
+    torque = np.where(time <= switched, driving, 0.0)
     names = [*(source.key for source in equation.sources), DRIVE]
     return Run(
         machine,
@@ -283,4 +315,5 @@ def run(
         tuple(found.events),
         tuple(found.begins),
         None if wanted is None else size_flywheel(machine, wanted),
+        None if driver.circuit is None else Electric(*electric),
     )

@@ -200,13 +200,25 @@ def torque_on_crank(drive: Drive, way: float) -> Torque:
     motor = drive.motor
     assert motor is not None
     sense = copysign(1.0, way)
-    speeds, torques = _rows(motor)
-    slopes = np.diff(torques) / np.diff(speeds)
+    smooth = motor.smooth_curve
+    curve = _straight(motor) if smooth is None else smooth.torque
 
     def torque(speed: Array, shift: Array) -> Array:
         own = sense * motor.ratio * speed - shift
+        value: Array = sense * motor.ratio * curve(own)
+        return value
+
+    return torque
+
+
+def _straight(motor: Motor) -> Callable[[Array], Array]:
+    """A curve of straight lines: torque by the motor's speed."""
+    speeds, torques = _rows(motor)
+    slopes = np.diff(torques) / np.diff(speeds)
+
+    def torque(own: Array) -> Array:
         k = np.clip(np.searchsorted(speeds, own.real, side="right") - 1, 0, len(slopes) - 1)
-        value: Array = sense * motor.ratio * (torques[k] + slopes[k] * (own - speeds[k]))
+        value: Array = torques[k] + slopes[k] * (own - speeds[k])
         return value
 
     return torque
@@ -220,7 +232,8 @@ def _rows(motor: Motor) -> tuple[Array, Array]:
 
 def fastest(motor: Motor) -> float:
     """Highest speed of a motor's curve, rad/s."""
-    return float(_rows(motor)[0][-1])
+    smooth = motor.smooth_curve
+    return float(_rows(motor)[0][-1]) if smooth is None else smooth.synchronous_speed
 
 
 def speed_at(motor: Motor, torque: float) -> float:
@@ -230,6 +243,21 @@ def speed_at(motor: Motor, torque: float) -> float:
     ------
     ResponseError : it never does.
     """
+    smooth = motor.smooth_curve
+    speed = _on_lines(motor, torque) if smooth is None else smooth.speed_at(torque)
+    if speed is not None:
+        return speed
+    raise ResponseError(
+        Note(
+            "drive.motor: its torque nowhere falls through {torque:g} N m, which the "
+            "machine takes in the mean; give a stronger motor, or a higher ratio",
+            torque=torque,
+        )
+    )
+
+
+def _on_lines(motor: Motor, torque: float) -> float | None:
+    """The same of a curve of straight lines; None where it never does."""
     speeds, torques = _rows(motor)
     for k in range(len(speeds) - 2, -1, -1):
         slope = (torques[k + 1] - torques[k]) / (speeds[k + 1] - speeds[k])
@@ -240,13 +268,7 @@ def speed_at(motor: Motor, torque: float) -> float:
         high = np.inf if k == len(speeds) - 2 else speeds[k + 1]
         if low <= speed <= high:
             return float(speed)
-    raise ResponseError(
-        Note(
-            "drive.motor: its torque nowhere falls through {torque:g} N m, which the "
-            "machine takes in the mean; give a stronger motor, or a higher ratio",
-            torque=torque,
-        )
-    )
+    return None
 
 
 ROUGH = 12

@@ -234,7 +234,7 @@ def _links(machine: Machine) -> Iterator[Field]:
         yield from _numbers(where, name, "", link, (*MASS_FIELDS,) if link.bodies else ())
         yield from _bodies(where, name, link)
         if link.section is not None:
-            yield from _numbers((*where, "section"), name, say("section"), link.section)
+            yield from _numbers(where / "section", name, say("section"), link.section)
         for side, length in link.sides.items():
             yield _field(where / "sides" / side, name, side, "length", length)
         for point, plane in link.planes.items():

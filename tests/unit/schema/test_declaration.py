@@ -38,6 +38,8 @@ from equipoise.mechanism.parts import (
 from equipoise.mechanism.parts.belts import Belt
 from equipoise.mechanism.parts.circular_slots import CircularSlot
 from equipoise.mechanism.parts.curved_slots import CurvedSlot
+from equipoise.mechanism.parts.dc_motors import DcMotor
+from equipoise.mechanism.parts.induction_motors import InductionMotor
 from equipoise.mechanism.parts.machine import Frame, Machine, Position
 from equipoise.mechanism.parts.racks import Rack
 from equipoise.mechanism.parts.rolling_bearings import RollingBearing
@@ -63,7 +65,8 @@ DOCUMENTED: dict[str, type[Frozen]] = {
     of.__name__: of
     for of in (
         Machine, shown_units.ShownUnits, drives.Drive, drives.FurtherDrive, laws.AngleLaw,
-        laws.AngleSegment, laws.LengthLaw, laws.LengthSegment, force_elements.Motor, Frame,
+        laws.AngleSegment, laws.LengthLaw, laws.LengthSegment, force_elements.Motor, DcMotor,
+        InductionMotor, Frame,
         links.Link, LinkSection,
         bodies.Body, bodies.Hole, sliders.Bearing, sliders.Slider, gears.Gear,
         joint_properties.JointProperties, RollingBearing,

@@ -18,6 +18,7 @@ from equipoise.keys import (
     Listing,
     Number,
     Quantity,
+    Table,
     Text,
     declared,
     inside,
@@ -31,7 +32,11 @@ from equipoise.mechanism.checks import (
     unknown_link,
     unknown_point,
 )
+from equipoise.mechanism.parts.dc_motors import DcMotor
+from equipoise.mechanism.parts.induction_motors import InductionMotor
 
+MOTOR_KINDS = (("no_load_speed", "stall_torque"), ("table",), ("torque",), ("dc",), ("induction",))
+"""Keys of a motor of which it has those of one kind."""
 MEAN_SPEEDS = ("held", "free")
 OUTSIDE = ("zero", "hold", "wrap")
 TURN = 2 * pi * (1 + 1e-12)
@@ -182,13 +187,13 @@ class Motor(Frozen):
     """
 
     called = to_say("{what} of the motor")
-    file_order = ("no_load_speed", "stall_torque", "torque", "table", "ratio", "inertia",
-                  "mean_speed")  # fmt: skip
+    file_order = ("no_load_speed", "stall_torque", "torque", "table", "dc", "induction", "ratio",
+                  "inertia", "mean_speed")  # fmt: skip
     conditions: ClassVar[Conditions] = {
         "oneOf": [
-            needs("no_load_speed", "stall_torque") | lacks("table", "torque"),
-            needs("table") | lacks("no_load_speed", "stall_torque", "torque"),
-            needs("torque") | lacks("no_load_speed", "stall_torque", "table"),
+            needs(*kind)
+            | lacks(*(name for other in MOTOR_KINDS if other != kind for name in other))
+            for kind in MOTOR_KINDS
         ]
     }
 
@@ -228,16 +233,32 @@ class Motor(Frozen):
         example="0.5 N m",
         above=0,
     )
+    dc: DcMotor | None = key(
+        Table(DcMotor, headed=True), "a direct-current motor, instead of a curve", default=None
+    )
+    induction: InductionMotor | None = key(
+        Table(InductionMotor, headed=True), "an induction motor, instead of a curve", default=None
+    )
 
     @property
     def rows(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """Speeds, rad/s, and torques, N m, between which and beyond its curve is straight."""
+        """Speeds, rad/s, and torques, N m, between which and beyond its curve is straight; of one
+        that has no `smooth_curve`.
+        """
         if self.table is not None:
             return self.table.speed, self.table.torque
         if self.torque is not None:
             return (0.0, 1.0), (self.torque, self.torque)
-        assert self.no_load_speed is not None and self.stall_torque is not None
-        return (0.0, self.no_load_speed), (self.stall_torque, 0.0)
+        line = self.dc or self
+        assert line.no_load_speed is not None and line.stall_torque is not None
+        return (0.0, line.no_load_speed), (line.stall_torque, 0.0)
+
+    @property
+    def smooth_curve(self) -> InductionMotor | None:
+        """Its curve where that is no sequence of straight lines: ``torque`` by speed, and
+        ``speed_at`` a torque, up to ``synchronous_speed``.
+        """
+        return self.induction
 
 
 # -- checks ----------------------------------------------------------------------------------------
@@ -350,10 +371,12 @@ def wrong_motor(where: str, motor: Motor) -> Iterator[ModelError]:
     line, table = (motor.no_load_speed, motor.stall_torque), motor.table
     where_table = f"{where}.table"
     given = [line.count(None) < 2, table is not None, motor.torque is not None]
+    given += [motor.dc is not None, motor.induction is not None]
     if sum(given) != 1 or line.count(None) == 1:
-        yield ModelError(
-            where, Note("give either no_load_speed and stall_torque, or torque, or table")
+        told = Note(
+            "give either no_load_speed and stall_torque, or torque, or table, or dc, or induction"
         )
+        yield ModelError(where, told)
     elif table is None:
         return
     elif len(table.speed) != len(table.torque):

@@ -1,0 +1,152 @@
+"""Motors in a run: closed forms of a direct-current motor, points of Kloss' curve, energy."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.linalg import expm
+
+import equipoise as eq
+from equipoise.errors import ModelError
+from equipoise.mechanism.parts.dc_motors import DcMotor
+from equipoise.mechanism.parts.force_elements import Load, Motor
+from equipoise.mechanism.parts.induction_motors import InductionMotor
+from equipoise.mechanism.parts.joint_properties import JointProperties
+from equipoise.schema.files import json_text
+from equipoise.vibration.steady import speed_at
+from laws.test_run import GRAVITY, INERTIA, WEIGHT, crank
+from surface.running import equipoise
+from unit.schema.samples import survives
+
+DC = DcMotor("24 V", "0.4 ohm", 0.5, "50 mH")
+RATIO, ROTOR = 2.0, 0.01
+WHOLE = INERTIA + RATIO**2 * ROTOR
+
+
+def driven(dc: DcMotor = DC, speed: float = 10.0, gravity: float = 0.0) -> eq.Machine:
+    return crank(Motor(dc=dc, ratio=RATIO, inertia=ROTOR), speed, gravity)
+
+
+@pytest.mark.parametrize("inductance", [0.05, 0.5])
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+def test_a_step_of_voltage(inductance: float, sense: float) -> None:
+    """Exactly: J dw/dt = n k i, L di/dt = U - R i - n k w by a matrix exponential; the larger
+    inductance lets the motor swing about its no-load speed.
+    """
+    found = eq.run(driven(replace(DC, inductance=inductance), 10.0 * sense), "2 s")
+    gear = RATIO * 0.5
+    rates = np.array([[0.0, gear / WHOLE], [-gear / inductance, -0.4 / inductance]])
+    end = np.linalg.solve(rates, [0.0, -24.0 / inductance])
+    some = slice(None, None, 40)
+    exact = np.array([end - expm(rates * time) @ end for time in found.time[some]])
+    assert found.electric is not None
+    assert np.max(np.abs(sense * found.crank_speed[some] - exact[:, 0])) < 1e-9 * 24 / gear
+    assert np.max(np.abs(found.electric.current[some] - exact[:, 1])) < 1e-9 * 60
+    assert found.energy_error < 1e-10
+    assert np.max(np.abs(found.drive_torque - sense * gear * found.electric.current)) < 1e-9
+
+
+def test_without_inductance_it_is_a_straight_line() -> None:
+    """And what it takes from its supply is work and heat."""
+    plain = eq.run(driven(replace(DC, inductance=0.0)), "1 s")
+    line = Motor(24 / 0.5, 0.5 * 24 / 0.4, ratio=RATIO, inertia=ROTOR)
+    other = eq.run(crank(line, 10.0, 0.0), "1 s")
+    assert plain.crank_speed[-1] == pytest.approx(other.crank_speed[-1], rel=1e-10)
+    assert plain.electric is not None and other.electric is None
+    current = (24 - 0.5 * RATIO * plain.crank_speed) / 0.4
+    np.testing.assert_allclose(plain.electric.current, current, atol=1e-9)
+    assert plain.energy_error < 1e-10
+
+
+def test_a_machine_runs_on_it_and_the_energies_balance() -> None:
+    """Switched off, the field of its current turns into heat."""
+    motor = Motor(dc=DcMotor("24 V", "0.2 ohm", 0.15, "2 mH"), ratio=5.0)
+    machine = eq.load("transplanter").with_drive(motor=motor)
+    found = eq.run(machine)
+    assert found.end.kind == "steady" and found.energy_error < 1e-10
+    off = eq.run(machine, "0.5 s", off="0.3 s")
+    assert off.electric is not None
+    after = off.time > 0.3 + 1e-12
+    assert np.all(off.electric.current[after] == 0) and np.all(off.drive_torque[after] == 0)
+    assert np.ptp(off.electric.supply[after]) == 0 and off.energy_error < 1e-10
+
+
+def test_a_weight_holds_the_crank_until_the_current_is_large_enough() -> None:
+    """Level at the start; the torque n k U / R (1 - exp(-t R / L)) has to reach the weight's."""
+    found = eq.run(driven(gravity=GRAVITY), "0.4 s")
+    moves = found.time[np.argmax(found.crank_speed > 0) - 1]
+    share = WEIGHT / (RATIO * 0.5 * 24 / 0.4)
+    assert moves == pytest.approx(-0.05 / 0.4 * np.log(1 - share), rel=1e-6)
+    assert found.energy_error < 1e-10
+    held = replace(driven(), joints=(JointProperties("joints.A", drag_torque=4.0),))
+    later = eq.run(held, "0.4 s")
+    moves = later.time[np.argmax(later.crank_speed > 0) - 1]
+    assert moves == pytest.approx(-0.05 / 0.4 * np.log(1 - 4.0 / 60.0), rel=1e-6)
+    assert later.energy_error < 1e-10
+
+
+KLOSS = InductionMotor("1500 rpm", 42.0, 0.22)
+
+
+def test_points_of_the_curve_of_kloss() -> None:
+    field = 1500 * 2 * np.pi / 60
+    assert KLOSS.torque(field) == 0.0
+    assert KLOSS.torque(field * (1 - 0.22)) == pytest.approx(42.0)
+    assert KLOSS.torque(0.0) == pytest.approx(2 * 42 * 0.22 / (1 + 0.22**2))
+    assert KLOSS.torque(field * 1.22) == pytest.approx(-42.0)
+    motor = Motor(induction=KLOSS)
+    for torque in (-10.0, 0.0, 3.0, 41.0):
+        assert KLOSS.torque(speed_at(motor, torque)) == pytest.approx(torque, abs=1e-12)
+    assert KLOSS.speed_at(43.0) is None
+
+
+def test_a_start_along_the_curve_takes_the_time_of_its_integral() -> None:
+    """J dw / T(w) = dt in closed form: with s = slip, J w_s / (2 T_b) ((1 - s^2) / (2 s_b) + s_b
+    ln(1 / s)).
+    """
+    machine = crank(Motor(induction=KLOSS, inertia=ROTOR), 10.0, 0.0)
+    found = eq.run(machine, turns=40)
+    field = 1500 * 2 * np.pi / 60
+    slip = 1 - found.crank_speed[1:] / field
+    time = (1 - slip**2) / (2 * 0.22) + 0.22 * np.log(1 / slip)
+    time = time * (INERTIA + ROTOR) * field / (2 * 42.0)
+    np.testing.assert_allclose(found.time[1:], time, rtol=1e-7, atol=1e-9)
+    assert found.energy_error < 1e-10
+
+
+def test_an_induction_motor_that_is_overloaded_stalls() -> None:
+    """Pulled down by more than its breakdown torque."""
+    loaded = replace(
+        crank(Motor(induction=KLOSS), 150.0, 0.0), loads=(Load("crank", torque=-45.0),)
+    )
+    found = eq.run(loaded, speed=150.0, turns=2000)
+    assert found.end.kind == "stall"
+
+
+def test_they_are_read_printed_and_written(tmp_path: Any) -> None:
+    for motor in (Motor(dc=DC, ratio=RATIO), Motor(induction=KLOSS)):
+        machine = crank(motor)
+        survives(machine)
+        eq.save(machine, tmp_path / "motor.toml")
+        out = equipoise("check", str(tmp_path / "motor.toml")).out
+        assert "direct current, " in out or "induction, 1500 rpm without slip" in out
+    found = eq.run(driven(), "2 s")
+    told = json.loads(json_text(found.to_dict()))["electric"]
+    assert told["current"][-1] == found.electric.current[-1]
+    names = [f"{name} [{unit}]" for name, unit, _ in found.columns()]
+    assert names[-3:] == ["electric.current [A]", "electric.supply [J]", "electric.heat [J]"]
+    shown = " ".join(map(str, found.blocks()))
+    assert "heat in the motor" in shown and "current of the motor" in shown
+
+
+@pytest.mark.parametrize(
+    "given",
+    [{"dc": DC, "torque": 1.0}, {"induction": KLOSS, "dc": DC}, {"no_load_speed": 3.0, "dc": DC}],
+)
+def test_a_motor_is_of_one_kind(given: dict[str, Any]) -> None:
+    with pytest.raises(ModelError, match=r"^drive\.motor: give either no_load_speed and stall_"):
+        crank(Motor(**given))
