@@ -240,6 +240,17 @@ class Integration:
             if roughness(smooth) > resolved * np.max(np.abs(smooth)):
                 return None
         rates = np.array([pace, *pace * self.driver.electric_rates(current, speed), *torques])
+        return self._dense(begin, k, ends, (start, began, rates))
+
+    def _dense(
+        self, begin: Instant, k: int, ends: tuple[float, float], found: tuple[float, float, Array]
+    ) -> tuple[Callable[[float], Instant], Callable[[Array], Array]]:
+        """The motion in a piece anywhere in it, as of `_by_angle`.
+
+        found : place of its begin, kinetic energy there, and rates by crank angle at the nodes of
+            time, of the motor's circuit and of works.
+        """
+        (start, began, rates), half = found, (ends[1] - ends[0]) / 2
 
         def rows(x: Array) -> Array:
             gained = half * integral_to(x, start) @ rates.T
