@@ -297,6 +297,13 @@ def run(
     equation, driver = CrankEquation(machine), Driver(machine)
     found = Integration(equation, driver, limits)
     found.follow(float(start[1]), float(start[0]))
+    flywheel = None if wanted is None else size_flywheel(machine, wanted)
+    return _result(equation, found, flywheel)
+
+
+def _result(equation: CrankEquation, found: Integration, flywheel: Flywheel | None) -> Run:
+    """The run that an integration has followed."""
+    machine = equation.machine
     time, crank_angle, crank_speed, *work = np.vstack(found.track).T
     electric, work = np.array(work[:ELECTRIC]), work[ELECTRIC:]
     switched = next((event.time for event in found.events if event.kind == "off"), inf)
@@ -314,6 +321,6 @@ def run(
         dict(zip(names, work, strict=True)),
         tuple(found.events),
         tuple(found.begins),
-        None if wanted is None else size_flywheel(machine, wanted),
+        flywheel,
         None if driver.circuit is None else Electric(*electric),
     )
