@@ -257,8 +257,10 @@ class _Adviser:
 
     def comparison(self, plan: Balance, rooms: tuple[Room, ...]) -> Comparison:
         """Shapes in some rooms beside each other."""
-        excess = self.before.excess_of(plan.objectives)
-        return Comparison(self.machine, plan, rooms, self.watched, excess)
+        aims = plan.objectives
+        values = {one.name: value for one, value in zip(aims, self.values(aims), strict=True)}
+        excess = self.before.excess_of(aims)
+        return Comparison(self.machine, plan, rooms, self.watched, excess, values)
 
     def counterweights(self, plan: Balance, rooms: tuple[Room, ...]) -> Iterator[Remedy]:
         """Sectors in some rooms, the best first."""

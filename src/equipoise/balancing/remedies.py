@@ -115,6 +115,7 @@ class Comparison:
 
     plan : whose objectives are the aims.
     excess : of the largest aim, over what is large of its kind.
+    before : value of each aim, by its name.
     """
 
     machine: Machine
@@ -122,6 +123,7 @@ class Comparison:
     rooms: tuple[Room, ...]
     watched: tuple[HeadlineLimit, ...]
     excess: float
+    before: Mapping[str, float]
 
     @cached_property
     def problem(self) -> Problem:
@@ -131,7 +133,8 @@ class Comparison:
             for room in self.rooms
         )
         limits = tuple(limit for one in self.watched for limit in one.limits())
-        return Problem.of(self.machine, replace(self.plan, masses=free, limits=limits))
+        asked = Problem.of(self.machine, replace(self.plan, masses=free, limits=limits))
+        return replace(asked, counts=self.before)
 
     @cached_property
     def _signals(self) -> dict[str, list[Signal]]:
@@ -257,7 +260,10 @@ def _ranked(
     """Score and sectors, one for each room, of those that are free."""
     turns = [180 * k * opposite for k in range(len(comparison.rooms))]
     each = [
-        [replace(one, direction=_turned(one.direction + turn)) for one in shapes] for turn in turns
+        [replace(one, direction=_turned(one.direction + turn)) for one in shapes]
+        if turn
+        else shapes
+        for turn in turns
     ]
     free = np.ones(len(shapes), bool)
     for room, own in zip(comparison.rooms, each, strict=True):
