@@ -122,6 +122,9 @@ def left_out(machine: Machine) -> list[Note | str]:
     if machine.support is not None and machine.support.planar and machine.has_planes:
         said = to_say("rocking moments do nothing: the support can neither roll nor yaw")
         found.append(Note(said))
+    if machine.rubs:
+        said = to_say("friction in joints is left out: the support is shaken as without it")
+        found.append(Note(said))
     return found
 
 

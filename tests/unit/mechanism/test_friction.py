@@ -327,3 +327,11 @@ def test_formats_say_that_they_leave_friction_out(ending: str, tmp_path: Any) ->
     left_out = eq.export(WORN, tmp_path / f"worn.{ending}")
     assert "friction in joints: forces are those without it" in left_out
     assert not any("friction" in one for one in eq.export(ENGINE, tmp_path / f"p.{ending}"))
+
+
+def test_a_response_says_that_it_leaves_friction_out() -> None:
+    machine = eq.load("yamashita-rig")
+    rubbing = replace(machine, joints=(JointProperties("joints.C", torsional_damping=0.01),))
+    left_out = "friction in joints is left out: the support is shaken as without it"
+    assert left_out in map(str, eq.respond(rubbing).notes)
+    assert left_out not in map(str, eq.respond(machine).notes)
