@@ -117,7 +117,11 @@ def out_of_memory(error: MemoryError) -> UsageError:
     shape: Any = getattr(error, "shape", None)
     kind: Any = getattr(error, "dtype", None)
     asked = 0 if shape is None or kind is None else prod(shape) * kind.itemsize
-    size = Note("{size} in one piece", size=size_text(asked)) if asked else Note("more")
+    size: Note = Note("more")
+    if asked > memory_limit():
+        size = Note("{size} in one piece", size=size_text(asked))
+    elif asked:
+        size = Note("{size} beside what it holds already", size=size_text(asked))
     return UsageError(
         Note(
             "not enough memory: needs {size}, and {limit} may be used; ask for fewer crank angles, "

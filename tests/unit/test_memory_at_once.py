@@ -13,6 +13,7 @@ from equipoise.balancing import box_bounds, multi_row
 from equipoise.balancing.box_bounds import largest_reading
 from equipoise.balancing.multi_row import Cost, RowSignals, Term
 from equipoise.balancing.phase_grid import Grid
+from equipoise.limits import memory_limit, out_of_memory
 from equipoise.mechanism.assembly.shared import least
 from equipoise.mechanism.parts.balance import Measure, Objective
 from equipoise.signals import Array, Periodic
@@ -86,3 +87,13 @@ def test_joint_forces_that_statics_leaves_open_at_many_crank_angles() -> None:
     random = np.random.default_rng(7)
     matrix, right = random.normal(size=(30_000, 12, 15)), random.normal(size=(30_000, 12, 1))
     assert peak_of(lambda: least(matrix, right)) < 30
+
+
+def test_a_small_array_that_finds_no_room_is_said_to_come_on_top() -> None:
+    """It was said that 22 MiB are needed, where 2 GiB may be used."""
+    error = MemoryError()
+    error.dtype = np.dtype(float)  # type: ignore[attr-defined]
+    for size, words in ((22 * 2**20, "22 MiB beside what it holds already"),
+                        (3 * memory_limit(), "in one piece")):  # fmt: skip
+        error.shape = (size // 8,)  # type: ignore[attr-defined]
+        assert words in str(out_of_memory(error))
