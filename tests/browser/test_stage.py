@@ -7,7 +7,7 @@ from collections.abc import Callable
 import pytest
 from playwright.sync_api import Locator, Page, expect
 
-from browser.live import FITS, SCREENSHOTS, Live
+from browser.live import FITS, ROOT, SCREENSHOTS, Live
 
 
 def box(part: Locator) -> tuple[float, float, float, float]:
@@ -203,3 +203,69 @@ def test_figures_are_pinned_on_the_drawing(live: Live) -> None:
     page.screenshot(path=SCREENSHOTS / "pinned-1280.png")
     page.get_by_role("button", name="Pin Shaking force on the drawing", exact=True).click()
     expect(pins).to_be_hidden()
+
+
+# -- forces of what is drawn -----------------------------------------------------------------------
+
+
+def test_a_stranger_makes_a_four_bar_with_forces_in_ten_actions(live: Live) -> None:
+    """A click or a drag is an action."""
+    page, actions = live.page, 0
+
+    def press(name: str) -> None:
+        nonlocal actions
+        actions += 1
+        page.get_by_role("button", name=name, exact=True).click()
+        live.settled()
+
+    def at(x: float, y: float) -> tuple[float, float]:
+        left, top, width, height = box(board(live))
+        return left + x * width, top + y * height
+
+    def click(x: float, y: float) -> None:
+        nonlocal actions
+        actions += 1
+        page.mouse.click(*at(x, y))
+        live.settled()
+
+    def drag(*ends: tuple[float, float]) -> None:
+        nonlocal actions
+        actions += 1
+        page.mouse.move(*at(*ends[0]))
+        page.mouse.down()
+        page.mouse.move(*at(*ends[1]), steps=5)
+        page.mouse.up()
+        live.settled()
+
+    press("New")
+    press("Point")
+    click(0.3, 0.7)
+    click(0.6, 0.7)
+    press("Link")
+    drag((0.3, 0.7), (0.35, 0.6))
+    drag((0.35, 0.6), (0.65, 0.4))
+    drag((0.65, 0.4), (0.6, 0.7))
+    press("Drive")
+    click(0.325, 0.65)
+    assert actions == 10
+    expect(page.locator(".making .status")).to_have_text("1 free motion; crank turns fully")
+    figures = page.get_by_role("table", name="Figures")
+    expect(figures.get_by_role("row", name="Shaking force", exact=False).first).to_contain_text("N")
+    expect(page.get_by_text("the masses of crank, coupler, rocker are assumed")).to_be_visible()
+    page.screenshot(path=SCREENSHOTS / "assumed-1280.png")
+    page.set_viewport_size({"width": 400, "height": 900})
+    page.screenshot(path=SCREENSHOTS / "assumed-400.png", full_page=True)
+    assert page.evaluate(FITS)
+    assert live.findings() == []
+    width = live.field("crank bar 1, assumed, width")
+    mass = live.machine().links["crank"].mass
+    live.type(width, "30 mm")
+    changed = live.machine().links["crank"]
+    assert changed.bodies[0].assumed and mass and changed.mass and changed.mass > mass
+
+
+def test_the_page_without_the_runtime_is_small() -> None:
+    """What a browser loads of the page itself, uncompressed."""
+    static = ROOT / "src" / "equipoise" / "web" / "static"
+    loaded = ("equipoise.js", "equipoise.css", "worker.js", "service.js")
+    assert sum((static / name).stat().st_size for name in loaded) < 400_000

@@ -17,6 +17,7 @@ from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.kinematics.outline import Pose, length_between, pose_between
 from equipoise.mechanism.parts.machine import FRAME, Drive, Link, Slider
 from equipoise.quantities import clean
+from equipoise.web.assuming import assumed_bar, assumed_block
 from equipoise.web.messages import Spot
 from equipoise.web.sketch import Sketch
 
@@ -115,7 +116,9 @@ def with_link(sketch: Sketch, start: Spot, end: Spot) -> Sketch:
         raise UsageError(
             Note("both ends of the link lie at one place; choose another place for one")
         )
-    link = Link(points={first: (0.0, 0.0), second: (length_between(begin, there), 0.0)})
+    length = length_between(begin, there)
+    points = {first: (0.0, 0.0), second: (length, 0.0)}
+    link = Link(points=points, bodies=(assumed_bar(sketch.links, length, first, second),))
     name = _named(sketch, first, second)
     return sketch.with_link(name, link, pose_between(begin, there))
 
@@ -140,7 +143,9 @@ def with_slider(
     way = phase(place - other)
     if link is None:
         link = _new_link(sketch, "slider")
-        sketch = sketch.with_link(link, Link(points={point: (0.0, 0.0)}), Pose(place, way))
+        block = assumed_block(sketch.links, abs(other - place))
+        points = {point: (0.0, 0.0)}
+        sketch = sketch.with_link(link, Link(points=points, bodies=(block,)), Pose(place, way))
     check_link(sketch, link)
     if point not in sketch.links[link].points:
         raise UsageError(

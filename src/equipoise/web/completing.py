@@ -9,6 +9,7 @@ from typing import Any
 
 from equipoise.errors import UsageError
 from equipoise.keys.paths import KeyPath
+from equipoise.mechanism.parts.links import MASS_FIELDS
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.quantities import clean, format_exact, parse
 from equipoise.schema.entries import Document
@@ -28,6 +29,8 @@ def completed(document: Document, entry: Entry, own: Machine) -> Document:
     own : the machine before.
     """
     place = entry.place
+    if place[:1] == ("links",) and (len(place) == 2 or place[2] == "bodies"):
+        return _as_given(document, entry)
     if place[:1] == ("bearings",):
         return _in_twos(document, entry, own)
     if len(place) > 2 and place[-2] == "segments":
@@ -35,6 +38,19 @@ def completed(document: Document, entry: Entry, own: Machine) -> Document:
             return _in_a_cycle(document, entry)
         except (KeyError, UsageError):
             return document  # its reader tells what is wrong
+    return document
+
+
+def _as_given(document: Document, entry: Entry) -> Document:
+    """Without what of a link was assumed, once its mass or a body is given."""
+    values: Mapping[str, Any] = entry.values or {}
+    of_link = len(entry.place) == 2
+    name = str(entry.name or entry.place[1]) if of_link else str(entry.place[1])
+    given = values.keys() & MASS_FIELDS if of_link else values and not values.get("assumed")
+    bodies = document.content.get("links", {}).get(name, {}).get("bodies", ())
+    for number in reversed(range(len(bodies))) if given else ():
+        if bodies[number].get("assumed"):
+            document = document.without(KeyPath(("links", name, "bodies", number)))
     return document
 
 

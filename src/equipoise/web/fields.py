@@ -23,7 +23,7 @@ from equipoise.quantities import (
     clean_place,
     format_exact,
     in_unit,
-    parse,
+    parse_expression,
     rounded,
     typeset,
 )
@@ -74,7 +74,7 @@ class Field:
         if not isinstance(to, str):
             return self.put(of, clean(to, self.dimension))
         typed = to.strip()
-        value = parse(typed, self.dimension)
+        value = parse_expression(typed, self.dimension)
         try:
             return self.put(of, value)
         except (ModelError, UsageError) as error:
@@ -253,6 +253,8 @@ def _bodies(where: KeyPath, name: str, link: Link) -> Iterator[Field]:
     for number, body in enumerate(link.bodies):
         path = where / "bodies" / number
         of = f"{say(body.shape)} {number + 1}"
+        if body.assumed:
+            of = say("{body}, assumed", body=of)
         known = quantities_of(body).items()
         left_out = (key for key, one in known if getattr(body, key) == one.default)
         yield from _numbers(path, name, of, body, (*left_out,))

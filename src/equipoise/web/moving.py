@@ -81,7 +81,8 @@ def straight(sketch: Sketch, links: Iterable[str], digits: int = DIGITS) -> Sket
     told = {body for key, one in sketch.entries() for body in _axes_of(key, one)}
     for name in links:
         link = sketch.links.get(name)
-        if link is None or link.has_mass or name in told or len(link.points) < 2:
+        given = link is not None and link.has_mass and not link.only_assumed
+        if link is None or given or name in told or len(link.points) < 2:
             continue
         places = {point: sketch.pose(name).out(at) for point, at in link.points.items()}
         first, second, *_ = places.values()

@@ -122,7 +122,8 @@ def without_slider(sketch: Sketch, name: str) -> Sketch:
     if found is None:
         raise UsageError(unknown(name, [one.name for one in sketch.sliders], "slider"))
     sketch = replace(sketch, sliders=tuple(one for one in sketch.sliders if one is not found))
-    bare = len(sketch.links[found.link].points) == 1 and not sketch.links[found.link].has_mass
+    block = sketch.links[found.link]
+    bare = len(block.points) == 1 and (not block.has_mass or block.only_assumed)
     if bare and all(one.link != found.link for one in sketch.sliders):
         return without_link(sketch, found.link)
     return _tidied(sketch)

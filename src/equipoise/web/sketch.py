@@ -11,6 +11,7 @@ from equipoise.mechanism.parts.element_kinds import part_kinds
 from equipoise.mechanism.parts.machine import FRAME, Link, Machine, Vector
 from equipoise.mechanism.parts.shown_units import ShownUnits
 from equipoise.quantities import clean_place
+from equipoise.web.assuming import rebuilt
 from equipoise.web.design import Counterweight, Design
 from equipoise.web.edits import Solved, solved
 
@@ -63,7 +64,7 @@ class Sketch(Outline):
             return replace(self, frame=dict(points))
         before = self.links[body]
         planes = {name: z for name, z in before.planes.items() if name in points}
-        link = before.altered(points=dict(points), planes=planes)
+        link = before.altered(points=dict(points), planes=planes, **rebuilt(before, points))
         return replace(self, links={**self.links, body: link})
 
     def with_place(self, body: str, point: str, place: complex, digits: int = 12) -> Sketch:

@@ -8,6 +8,7 @@ import numpy as np
 
 from equipoise.figures.points import traced
 from equipoise.i18n import said, say
+from equipoise.mechanism.dynamics.forces import assumed_masses
 from equipoise.mechanism.outputs.declared import GROUPS
 from equipoise.mechanism.outputs.poles import guided, pinned
 from equipoise.mechanism.parts.machine import Machine
@@ -80,6 +81,7 @@ def state_of(
         "orders": _orders(analysis),
         "notes": [
             *(said(note) for note in (found.along, found.swings) if note),
+            *(said(note) for note in (assumed_masses(machine),) if note),
             *([lacking] if lacking else []),
         ],
         "held": said(found.held) if found.held else None,

@@ -8,14 +8,15 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import Any
 
+from equipoise.errors import UsageError
 from equipoise.i18n import Worded, say, to_say
-from equipoise.keys import Frozen, Key, Named, Tables, Wording
+from equipoise.keys import Frozen, Key, Named, Quantity, Tables, Wording
 from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.outputs.declaring import declared
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.objectives import balanced_names
-from equipoise.quantities import told
-from equipoise.schema.entries import Document, entry_of, own_keys, tables_below
+from equipoise.quantities import clean, format_exact, parse_expression, pattern, told
+from equipoise.schema.entries import Document, entry_of, kind_at, own_keys, tables_below
 from equipoise.schema.writing import value_text
 from equipoise.web.completing import completed
 from equipoise.web.design import Design, pin_of
@@ -42,9 +43,25 @@ def entered(design: Design, entry: Entry) -> Design:
     if entry.values is None:
         document = document.without(entry.place)
     else:
-        document = document.put(entry.place, dict(entry.values), entry.name)
+        kind = kind_at(document.of, entry.place)
+        values = {name: _worked_out(kind.type, name, one) for name, one in entry.values.items()}
+        document = document.put(entry.place, values, entry.name)
     own = completed(document, entry, design.own).machine(entry.files)
     return replace(design, own=own, counterweights=_that_fit(design, own))
+
+
+def _worked_out(of: type[Frozen], name: str, value: Any) -> Any:
+    """A value of a form, where it is a sum or product of quantities as the quantity that it is."""
+    one = own_keys(of).get(name)
+    if one is None or not isinstance(one.kind, Quantity) or not isinstance(value, str):
+        return value
+    dimension = one.kind.dimension
+    try:
+        worked_out = parse_expression(value.strip(), dimension)
+    except UsageError:
+        return value  # its reader tells what is wrong
+    is_plain = re.fullmatch(pattern(dimension), value.strip())
+    return value if is_plain else format_exact(clean(worked_out, dimension), dimension)
 
 
 def _that_fit(design: Design, own: Machine) -> Mapping[str, Any]:
@@ -136,8 +153,16 @@ def _entry(of: type[Frozen], entry: Mapping[str, Any], place: KeyPath) -> Values
         "where": place.shown,
         "words": ", ".join(said[:MOST_WORDS]),
         "values": values,
-        "below": [name for name in entry if name in tables_below(of)],
-    }
+        "below": [
+            name for name, value in entry.items()
+            if name in tables_below(of) and not _is_assumed(value)
+        ],
+    }  # fmt: skip
+
+
+def _is_assumed(value: Any) -> bool:
+    """Whether tables are such that what is given takes their place."""
+    return isinstance(value, list) and all(one.get("assumed") for one in value)
 
 
 def _said(one: Key, value: Any) -> Any:

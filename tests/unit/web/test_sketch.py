@@ -400,7 +400,8 @@ def test_tables_of_a_file_are_added_while_a_machine_is_unfinished() -> None:
     values = {"points": {"A": ["0 mm", "0 mm"], "B": ["33.5 mm", "0 mm"]}, "mass": "200 g"}
     values |= {"center_of_mass": ["10 mm", "0 mm"], "inertia": "30 kg mm^2"}
     told = ask(page.session, "entry", place=["links", "crank"], values=values, label="mass")[0]
-    assert state(told).content["scene"]["mass_centers"] == ["crank"]
+    assert state(told).content["scene"]["mass_centers"] == ["crank", "coupler", "rocker"]
+    assert not page.session.base().design.links["crank"].bodies  # given, and not assumed
     assert page.do("drive", link="crank") == "1 free motion; crank turns fully"
     assert page.machine.links["crank"].mass == 0.2
 
@@ -532,3 +533,92 @@ def test_a_step_that_the_program_cannot_draw_is_no_step(monkeypatch: pytest.Monk
             ask(maker.session, "make", do="delete", what="link", name="rod")
     assert (maker.session.found, maker.session.history) == good
     assert "turns fully" in str(state(ask(maker.session, "ready")[1]).content["status"]["text"])
+
+
+# -- what is drawn weighs something ----------------------------------------------------------------
+
+
+def moving() -> Maker:
+    """The four-bar with its crank driven."""
+    page = four_bar()
+    page.do("drive", link="crank")
+    return page
+
+
+def test_a_drawn_link_is_a_steel_bar_that_is_marked_as_assumed() -> None:
+    machine = moving().machine
+    crank = machine.links["crank"]
+    (bar,) = crank.bodies
+    length = abs(complex(*crank.points["B"]) - complex(*crank.points["A"]))
+    assert bar.assumed and bar.density == 7850
+    assert bar.width and bar.thickness
+    assert crank.mass == pytest.approx(7850 * bar.width * bar.thickness * length, rel=1e-12)
+    sections = {(one.bodies[0].width, one.bodies[0].thickness) for one in machine.links.values()}
+    assert len(sections) == 1  # that of the first bar
+    text = eq.dumps(machine)
+    assert text.count("assumed = true") == 3
+    assert eq.loads(text).links["crank"].bodies[0].assumed
+
+
+def test_forces_of_what_is_drawn_are_there_at_once_and_a_note_says_what_is_assumed() -> None:
+    page = moving()
+    content = page.seen.content
+    assert any(one["name"].startswith("shaking_force") for one in content["figures"])
+    (note,) = [note for note in content["notes"] if "assumed" in note]
+    assert note == (
+        "the masses of crank, coupler, rocker are assumed, and with them all forces; give "
+        "masses or bodies of these links, or their sections"
+    )
+    assert note in [str(one) for one in eq.analyze(page.machine).notes]
+
+
+def test_a_section_slides_and_stays_assumed() -> None:
+    page = moving()
+    before = page.machine.links["crank"].mass
+    width = page.machine.links["crank"].bodies[0].width
+    edits = [{"set": "links.crank.bodies[1].width", "value": 3 * (width or 0)}]
+    ask(page.session, "edit", commit=True, label="width", edits=edits)
+    crank = page.machine.links["crank"]
+    assert crank.bodies[0].assumed and before
+    assert crank.mass == pytest.approx(3 * before, rel=1e-9)
+
+
+@pytest.mark.parametrize("what", ["mass", "bodies"])
+def test_masses_that_are_given_take_the_place_of_those_assumed(what: str) -> None:
+    page = moving()
+    if what == "mass":
+        values: Content = {"points": {"A": ["0 mm", "0 mm"], "B": ["33.5 mm", "0 mm"]}}
+        values |= {"mass": "200 g", "center_of_mass": ["10 mm", "0 mm"], "inertia": "30 kg mm^2"}
+        ask(page.session, "entry", place=["links", "crank"], values=values, label="mass")
+    else:
+        values = {"shape": "point", "at": "B", "mass": "200 g"}
+        place = ["links", "crank", "bodies", 1]
+        ask(page.session, "entry", place=place, values=values, label="body")
+    crank = page.machine.links["crank"]
+    assert crank.mass == 0.2
+    assert not any(body.assumed for body in crank.bodies)
+
+
+def test_bars_follow_their_points_when_these_are_separated_or_deleted() -> None:
+    page = moving()
+    page.do("separate", point="B")
+    page.do("delete", what="point", name="D")
+    links = page.session.base().design.links
+    for link in links.values():
+        for body in link.bodies:
+            assert {end for end in body.between if isinstance(end, str)} <= {*link.points}
+    assert not links["rocker"].bodies  # one point is left, and nothing for a bar to reach to
+
+
+def test_numbers_are_typed_as_sums_and_products() -> None:
+    page = moving()
+    edits = [{"set": "links.crank.bodies[1].width", "text": "=2*4 mm + 0.5 mm"}]
+    ask(page.session, "edit", commit=True, label="width", edits=edits)
+    assert page.machine.links["crank"].bodies[0].width == 0.0085
+    values: Content = {"shape": "point", "at": "B", "mass": "2*100 g"}
+    ask(page.session, "entry", place=["links", "crank", "bodies", 0], values=values, label="body")
+    assert page.machine.links["crank"].mass == 0.2
+    edits = [{"set": "links.crank.bodies[1].mass", "text": "2*100"}]
+    assert "has no unit" in refusal(
+        ask(page.session, "edit", commit=True, label="mass", edits=edits)
+    )

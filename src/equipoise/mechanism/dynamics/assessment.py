@@ -11,7 +11,7 @@ from equipoise.i18n import Note
 from equipoise.mechanism.assembly.linkage import Linkage, assemble
 from equipoise.mechanism.assembly.steps import Call, size_of_links
 from equipoise.mechanism.checks import bodies_at, numbered
-from equipoise.mechanism.dynamics.forces import massless
+from equipoise.mechanism.dynamics.forces import assumed_masses, massless
 from equipoise.mechanism.dynamics.statics import statics
 from equipoise.mechanism.dynamics.undecided import undecided
 from equipoise.mechanism.formulas import kernels
@@ -194,6 +194,8 @@ def remarks(linkage: Linkage) -> Iterator[Note | str]:
     machine = linkage.machine
     if missing := massless(machine):
         yield missing
+    if assumed := assumed_masses(machine):
+        yield assumed
     yield from undecided(linkage).told()
     if machine.has_planes:
         yield from statics(linkage).told()

@@ -305,6 +305,18 @@ def massless(machine: Machine) -> Note | str:
     )
 
 
+def assumed_masses(machine: Machine) -> Note | str:
+    """Say the masses of which links are assumed; empty where all are given."""
+    assumed = [name for name, link in machine.links.items() if any(b.assumed for b in link.bodies)]
+    if not assumed:
+        return ""
+    return Note(
+        "the masses of {links} are assumed, and with them all forces; give masses or bodies of "
+        "these links, or their sections",
+        links=", ".join(assumed),
+    )
+
+
 def inertia_about(body: Link, point: str) -> tuple[float, complex, float]:
     """Mass, first moment (complex) and moment of inertia of a link about one of its points.
 

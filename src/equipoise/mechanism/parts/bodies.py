@@ -16,6 +16,7 @@ from equipoise.i18n import Note, to_say
 from equipoise.keys import (
     NO_INERTIA,
     Conditions,
+    Flag,
     Frozen,
     Key,
     Keys,
@@ -56,14 +57,15 @@ NEEDS: Mapping[str, tuple[str, ...]] = {
     "point": ("at", "mass"),
 }
 """Keys that each shape has to have."""
-_CUT = ("thickness", "material", "density", "mass", "holes", "plane")
+_ANY = ("plane", "assumed")
+_CUT = ("thickness", "material", "density", "mass", "holes", *_ANY)
 _SECTION = ("width", "wall", "outer_diameter", "inner_diameter", "mass_per_length")
 TAKES: Mapping[str, tuple[str, ...]] = {
     "bar": ("overhang", *_SECTION, *_CUT),
     "plate": _CUT,
     "disc": _CUT,
     "ring": _CUT,
-    "point": ("inertia", "plane"),
+    "point": ("inertia", *_ANY),
 }
 """Keys that each may have."""
 MASSES = ("material", "density", "mass", "mass_per_length")
@@ -222,6 +224,12 @@ class Body(Frozen):
     holes: tuple[Hole, ...] = key(Tables(Table(Hole)), "round holes, all through", default=())
     plane: float | None = key(
         "length", "z of its middle; that of the link if left out", default=None, example="20 mm"
+    )
+    assumed: bool = key(
+        Flag(),
+        "its measures are assumed, as those of a link that is drawn on the live page; the results "
+        "say so",
+        default=False,
     )
 
     @classmethod

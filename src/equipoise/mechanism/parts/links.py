@@ -222,6 +222,11 @@ class Link(Frozen):
     def has_mass(self) -> bool:
         return self.mass is not None
 
+    @property
+    def only_assumed(self) -> bool:
+        """Whether it has a mass of which nothing is given: all its bodies are assumed."""
+        return bool(self.bodies) and all(body.assumed for body in self.bodies)
+
 
 def placed(
     names: Sequence[str], length: Any = None, sides: Mapping[str, Any] | None = None
