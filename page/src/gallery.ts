@@ -24,7 +24,8 @@ interface Wishes {
 
 export class Gallery {
   readonly root: HTMLDialogElement;
-  private readonly cards = h("div", { class: "cards" });
+  private readonly kinds = h("div", { class: "kinds" });
+  private readonly none = h("p", { class: "quiet", role: "status", hidden: true }, say("No machine has these words."));
   private readonly stores = h("section", { class: "stores", hidden: true });
   private readonly still = h("p", { class: "quiet", role: "status" }, say("Drawing the examples …"));
   private asked = false;
@@ -64,7 +65,8 @@ export class Gallery {
       ),
       this.stores,
       this.still,
-      this.cards,
+      this.none,
+      this.kinds,
     );
     this.root.addEventListener("click", (event) => event.target === this.root && this.root.close());
   }
@@ -103,13 +105,23 @@ export class Gallery {
         type: "button",
         class: "card",
         "data-name": one.name,
+        "data-words": one.words,
         onclick: () => this.take(() => this.wishes.example(one.name)),
       },
       h("b", {}, one.title),
       h("span", { class: "quiet" }, one.line),
     );
     card.prepend(picture(card, one, numbers));
-    this.cards.append(card);
+    this.cardsOf(one.kind).append(card);
+  }
+
+  /** The cards of a part of the gallery. */
+  private cardsOf(kind: string): Element {
+    const last = this.kinds.lastElementChild;
+    if (last?.getAttribute("aria-label") === kind) return last.lastElementChild as Element;
+    const cards = h("div", { class: "cards" });
+    this.kinds.append(h("section", { "aria-label": kind }, h("h3", {}, kind), cards));
+    return cards;
   }
 
   private take(then: () => void): void {
@@ -119,10 +131,13 @@ export class Gallery {
 
   private filter(text: string): void {
     const words = text.toLowerCase().split(/\s+/);
-    for (const card of this.cards.children as HTMLCollectionOf<HTMLElement>) {
-      const all = `${card.dataset.name} ${card.textContent}`.toLowerCase();
+    for (const card of this.kinds.querySelectorAll<HTMLElement>(".card")) {
+      const all = `${card.dataset.name} ${card.textContent} ${card.dataset.words}`.toLowerCase();
       card.hidden = !words.every((word) => all.includes(word));
     }
+    for (const kind of this.kinds.children as HTMLCollectionOf<HTMLElement>)
+      kind.hidden = !kind.querySelector(".card:not([hidden])");
+    this.none.hidden = this.still.isConnected || !!this.kinds.querySelector(".card:not([hidden])");
   }
 }
 

@@ -1,6 +1,7 @@
 /** The keys, in a dialog. */
 
 import { h } from "./dom";
+import { TOOLS } from "./palette";
 import { say, toSay } from "./words";
 
 /** Keys as they are labelled, or in words. */
@@ -27,6 +28,10 @@ export function helpDialog(version: () => string, tour: () => void): HTMLDialogE
   const rows = KEYS.map(([keys, what]) =>
     h("tr", {}, h("th", { scope: "row" }, h("kbd", {}, typeof keys === "string" ? keys : keys())), h("td", {}, say(what))),
   );
+  const tools = TOOLS.map(({ name, first, then }) => {
+    const what = [first, then].filter((one) => one).map((one) => say(one));
+    return h("tr", {}, h("th", { scope: "row" }, say(name)), h("td", {}, what.join(" → ")));
+  });
   const told = h("p", { class: "quiet" });
   const dialog = h(
     "dialog",
@@ -40,6 +45,9 @@ export function helpDialog(version: () => string, tour: () => void): HTMLDialogE
       " ",
       say("Numbers take any unit: 71.5 mm, 7.15 cm, 0.2 kg, 200 rpm, 30 deg."),
     ),
+    h("h3", {}, say("Tools")),
+    h("table", {}, h("tbody", {}, ...tools)),
+    documented(),
     told,
     h(
       "form",
@@ -56,4 +64,10 @@ export function helpDialog(version: () => string, tour: () => void): HTMLDialogE
   });
   dialog.addEventListener("toggle", () => told.replaceChildren(`Equipoise ${version()}`));
   return dialog;
+}
+
+/** The way to the documentation, where it lies beside the page. */
+function documented(): HTMLElement | null {
+  const link = document.querySelector<HTMLLinkElement>('link[rel="help"]');
+  return link && h("p", {}, h("a", { href: link.href, target: "_blank", rel: "noopener" }, say("Documentation")));
 }

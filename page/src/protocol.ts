@@ -88,6 +88,9 @@ export interface Pictured {
   name: string;
   title: string;
   line: string;
+  /** The part of the gallery that it stands in, and words that it is found by. */
+  kind: string;
+  words: string;
   /** Sample at which it is drawn where it stands still. */
   at: number;
   scene: Scene;

@@ -269,3 +269,54 @@ def test_the_page_without_the_runtime_is_small() -> None:
     static = ROOT / "src" / "equipoise" / "web" / "static"
     loaded = ("equipoise.js", "equipoise.css", "worker.js", "service.js")
     assert sum((static / name).stat().st_size for name in loaded) < 400_000
+
+
+# -- the gallery, and help -------------------------------------------------------------------------
+
+
+def test_the_gallery_is_by_kind_and_is_searched_by_words(live: Live) -> None:
+    page = live.page
+    page.get_by_role("button", name="Open", exact=True).click()
+    gallery = page.get_by_role("dialog", name="Open a machine")
+    expect(gallery.get_by_text("Drawing the examples")).to_be_hidden()
+    kinds = gallery.locator(".kinds").get_by_role("heading")
+    names = kinds.all_inner_texts()
+    assert names[:2] == ["Planting mechanisms", "Linkages"] and len(names) == 5
+    cards = gallery.locator(".card")
+    expected = {
+        "four-bar": ("yamashita-1", "watt-six-bar"),
+        "six-bar": ("watt-six-bar", "yamashita-1"),
+        "straight line": ("slider-crank-engine", "drag-link"),
+        "mount": ("yamashita-rig", "drag-link"),
+        "cylinder": ("hydraulic-loader", "drag-link"),
+    }
+    for text, (shown, hidden) in expected.items():
+        gallery.get_by_role("searchbox").fill(text)
+        expect(gallery.locator(f"[data-name={shown}]")).to_be_visible()
+        expect(gallery.locator(f"[data-name={hidden}]")).to_be_hidden()
+        for section in gallery.locator(".kinds > section").filter(visible=True).all():
+            assert section.locator(".card").filter(visible=True).count()
+    page.screenshot(path=SCREENSHOTS / "gallery-kinds-1280.png")
+    gallery.get_by_role("searchbox").fill("zeppelin")
+    expect(gallery.get_by_text("No machine has these words.")).to_be_visible()
+    expect(cards.filter(visible=True)).to_have_count(0)
+    assert live.findings() == []
+
+
+def test_help_tells_what_each_tool_does_and_leads_to_the_documentation(
+    new_page: Callable[..., Page], address: str
+) -> None:
+    page = new_page()
+    given = "document.head.insertAdjacentHTML('beforeend', '<link rel=help href=docs/index.html>')"
+    page.add_init_script(f"document.addEventListener('DOMContentLoaded', () => {given})")
+    live = Live.open(page, address)
+    page.keyboard.press("?")
+    keys = page.get_by_role("dialog", name="Keys")
+    row = keys.get_by_role("row", name="Separate click")
+    expect(row).to_contain_text("the last link at it gets a point of its own")
+    link = keys.get_by_role("link", name="Documentation")
+    assert (link.get_attribute("href") or "").endswith("docs/index.html")
+    assert live.findings() == []
+    page.set_viewport_size({"width": 400, "height": 900})
+    page.screenshot(path=SCREENSHOTS / "help-400.png")
+    assert page.evaluate(FITS)

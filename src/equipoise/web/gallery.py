@@ -6,12 +6,13 @@ import re
 from collections.abc import Iterator
 from functools import cache
 
-from equipoise.i18n import said
+from equipoise.i18n import said, say
 from equipoise.results.analysis import analyze
 from equipoise.symbols.clear import clear_angle
 from equipoise.symbols.scene import Scene
 from equipoise.web.block import Block, Values
 from equipoise.web.drawing import moves_of, stage_of
+from equipoise.web.kinds import KINDS, kind_of, search_words
 from equipoise.web.openings import opened_example, titles
 
 SAMPLES = 36
@@ -23,14 +24,18 @@ END = re.compile(r"(?<=。)|(?<=[^A-Z]\.)\s+")
 
 
 def pictured() -> Iterator[tuple[Values, bytes]]:
-    """Every machine: title and first sentence in the reader's language, drawing and arrays."""
+    """Every machine, by kind: title, first sentence, kind and words to search in the reader's
+    language, drawing and arrays.
+    """
     machines = {name: opened_example(name).machine for name in titles()}
-    # Those that only ask how to balance another come last.
-    for name, machine in sorted(machines.items(), key=lambda item: item[1].balance is not None):
+    for name, machine in sorted(machines.items(), key=lambda item: kind_of(item[1])):
         drawing, data = _drawn(name)
         text = ASIDE.sub("", " ".join(said(machine.description).split()))
         line = END.split(text, maxsplit=1)[0]
-        yield {"name": name, "title": said(machine.title), "line": line, **drawing}, data
+        told = {"name": name, "title": said(machine.title), "line": line}
+        told["kind"] = say(KINDS[kind_of(machine)])
+        told["words"] = f"{search_words(machine)} {text}"
+        yield {**told, **drawing}, data
 
 
 @cache

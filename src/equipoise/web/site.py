@@ -129,7 +129,8 @@ def write_site(
         (fresh / "site.json").write_text(json.dumps(about), encoding="utf-8")
         first = _first_load(fresh, about)
         body = BODY.format(size=first / 1e6, build=_build_of(fresh))
-        html = document(HEAD, body, policy=POLICY)
+        head = HEAD if docs is None else f'{HEAD}<link rel="help" href="docs/index.html">'
+        html = document(head, body, policy=POLICY)
         (fresh / "index.html").write_text(html, encoding="utf-8")
         shutil.rmtree(target, ignore_errors=True)
         fresh.rename(target)
