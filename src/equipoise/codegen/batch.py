@@ -43,7 +43,6 @@ from equipoise.mechanism.assembly.newton import LoopGroup
 from equipoise.mechanism.assembly.refusing import wrong
 from equipoise.mechanism.assembly.steps import size_of_bodies
 from equipoise.mechanism.kinematics.jumps import (
-    ACCELERATION,
     bends_of_rows,
     declared_jumps,
     jumps_of_rows,
@@ -73,7 +72,7 @@ SMOOTH = ("mean", "rms")
 """Figures that stand still for good once they do.  Extremes have to do so twice: crank angles may
 by chance come as close to the top as before."""
 STEP = 4
-"""Crank angles, over the tolerance, that laws of cams take whose acceleration jumps at each
+"""Crank angles, over the tolerance, that laws of couplings take whose acceleration jumps at each
 design's own crank angles: means over them come closer as 1 / N, and may by chance stand still
 before."""
 ROUNDING = 1e-12
@@ -89,8 +88,8 @@ def jumps_alike(linkage: Linkage, paths: Collection[str]) -> bool:
     """Whether forces of all designs in which these numbers vary jump at the same crank angles."""
     trace = Trace(linkage, paths)
     known = known_by_crank(trace).keys() - trace.shifted
-    cams = (cam for cam in linkage.machine.cams if len(cam.law.jumps(ACCELERATION)))
-    return all({cam.driver, cam.carrier} <= known for cam in cams)
+    jerking = (one for one in linkage.machine.couplings if one.jerks)
+    return all({one.driver, one.carrier} <= known for one in jerking)
 
 
 def _grid(theta: Array, turns: int) -> JumpSampling:
@@ -236,10 +235,10 @@ class Batch:
             return np.empty(0), FIRST
         if not jumps_alike(self.base, self.paths):
             if self.angles is not None:
-                raise UsageError("got cams whose laws jump at each design's own crank angles")
+                raise UsageError("got couplings whose laws jump at each design's own crank angles")
             return np.empty(0), STEP / self.tolerance
         machine = self.base.machine
-        if machine.cams:
+        if any(one.contact == "surface" for one in machine.couplings):
             return jumps_of_rows(self.base), FIRST
         every = np.concatenate([np.empty(0), *declared_jumps(machine, self.turns)])
         return of_rows(machine, every, self.turns), FIRST

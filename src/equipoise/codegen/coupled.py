@@ -157,11 +157,12 @@ def _start(found: Linkage, link: str) -> Any:
 
 def can_trace_followers(linkage: Linkage) -> bool:
     """Whether the pieces of all laws can be looked up."""
-    return all(bins(cam.law.curve.knots) <= MOST_BINS for cam in linkage.machine.cams)
+    laws = (step.law for step in linkage.motion if isinstance(step, Displacement))
+    return all(bins(law.curve.knots) <= MOST_BINS for law in laws)
 
 
 def trace_displacement(trace: Trace, step: Displacement) -> None:
-    """What a law says at the angle that a cam has turned against its carrier."""
+    """What a law says at the angle that its driver has turned against the carrier."""
     turnings = known_by_crank(trace)
     if {step.driver, step.carrier} <= turnings.keys() - trace.shifted:
         driver, carrier = turnings[step.driver], turnings[step.carrier]

@@ -222,7 +222,8 @@ def _straight(trace: Trace, link: str) -> Any:
 def _drives_on(machine: Machine) -> bool:
     """Whether the angle of a pinned follower is one that another coupling starts from."""
     asked = {body for one in machine.couplings for body in (one.driver, one.carrier)}
-    return any(cam.driven in asked for cam in machine.cams)
+    surfaces = (one for one in machine.couplings if one.contact == "surface")
+    return any(one.driven in asked for one in surfaces)
 
 
 def _counts(step: Step) -> bool:

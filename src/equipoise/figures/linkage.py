@@ -20,7 +20,6 @@ from equipoise.symbols.clear import clear_angle
 from equipoise.symbols.pieces import GROUND, pieces, placed
 from equipoise.symbols.scene import Scene
 from equipoise.symbols.shapes import Shape, line
-from equipoise.symbols.slots import SLOTS
 from equipoise.symbols.wheels import called
 
 if TYPE_CHECKING:
@@ -258,14 +257,10 @@ def keys_of(scene: Scene) -> Iterator[tuple[str, str]]:
         yield "mass", say("centre of mass")
     if scene.wheels:
         yield "wheel", called(scene.wheels)
-    if any(mark.shape.role == "cam" for mark in scene.marks):
-        yield "cam", say("cams")
-    if any(mark.shape.role in SLOTS for mark in scene.marks):
-        yield "path", say("slot")
     if scene.springs:
         yield "spring", say("spring")
-    if any(mark.shape.role == "spiral" for mark in scene.marks):
-        yield "spiral", say("torsion spring")
+    for role, text in dict.fromkeys(mark.legend for mark in scene.marks if mark.legend):
+        yield role, say(text)
     if scene.planned:
         yield "planned", say("spring to be found")
     if scene.carrier is not None:

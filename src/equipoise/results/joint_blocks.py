@@ -67,7 +67,8 @@ def contact_named(forces: Forces, name: str) -> str:
     """A joint or coupling, by the kind of its contact."""
     if name in forces.joints:
         return joint_named(name)
-    return say("cam") if name in forces.cams else say("teeth")
+    couplings = forces.motion.machine.couplings
+    return say(next(one.touch for one in couplings if one.name == name))
 
 
 def display_of_joints(analysis: Analysis) -> Display:

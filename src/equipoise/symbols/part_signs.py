@@ -51,7 +51,8 @@ def signs_of(table: str, part: PartKind, around: Surroundings) -> list[Mark]:
     """The signs of a part, if its kind has one.  table : key of its list."""
     kind: Any = type(part)
     sign = sign_of(kind)
-    return [replace(mark, table=table) for mark in sign(part, around)] if sign else []
+    marks = sign(part, around) if sign else ()
+    return [replace(mark, table=table, legend=part.legend) for mark in marks]
 
 
 def in_order(marks: Iterable[Mark]) -> tuple[Mark, ...]:

@@ -62,6 +62,7 @@ class Mark:
 
     part : list and name of what it tells, if a page can have that deleted by it.
     table : key of the list that has the numbers which shape it.
+    legend : role of what a legend shows of it, and what it calls that.
     """
 
     body: str
@@ -69,6 +70,7 @@ class Mark:
     shape: Shape
     part: tuple[str, str] | None = None
     table: str = ""
+    legend: tuple[str, str] | None = None
 
 
 def runs(shapes: Iterable[Shape]) -> Iterator[list[Shape]]:

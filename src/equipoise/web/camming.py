@@ -7,13 +7,13 @@ return and its next rise.
 from __future__ import annotations
 
 from cmath import phase
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from math import degrees, pi, radians, remainder
 from typing import Any
 
 from equipoise.errors import ModelError, UsageError
-from equipoise.i18n import Note
+from equipoise.i18n import Note, to_say
 from equipoise.mechanism.assembly.builder import Guide
 from equipoise.mechanism.assembly.cam_fits import check_shape, fitted
 from equipoise.mechanism.checks import unknown
@@ -24,7 +24,7 @@ from equipoise.mechanism.parts.laws import AngleLaw, AngleSegment, LengthLaw, Le
 from equipoise.mechanism.parts.machine import FRAME, Slider
 from equipoise.quantities import clean
 from equipoise.web.adding import TOGETHER, check_body, check_link, put, the
-from equipoise.web.messages import Spot
+from equipoise.web.messages import Message, Spot
 from equipoise.web.sketch import Sketch
 
 ROLLER = 0.25
@@ -202,3 +202,14 @@ def _degrees(value: float) -> float:
 def _tidy(value: float) -> float:
     """The nearest value of one digit."""
     return float(f"{value:.1g}")
+
+
+def _asked(sketch: Sketch, asked: Message) -> Sketch:
+    ends = asked.text("driver"), asked.text("driven")
+    return with_cam(sketch, *ends, asked.spot("spot"), asked.text("rides", RIDES[0]))
+
+
+OPERATIONS: Mapping[str, tuple[str, Callable[[Sketch, Message], Sketch]]] = {
+    "cam": (to_say("add a cam"), _asked)
+}
+"""Of `making`."""

@@ -8,17 +8,20 @@ to say.
 from __future__ import annotations
 
 from cmath import exp
+from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import partial
 from math import pi
 
 from equipoise.errors import UsageError
-from equipoise.i18n import Note
+from equipoise.i18n import Note, to_say
 from equipoise.mechanism.parts.belts import Belt
 from equipoise.mechanism.parts.couplings import Coupling
 from equipoise.mechanism.parts.machine import FRAME, Gear
 from equipoise.mechanism.parts.racks import Rack
 from equipoise.quantities import clean
 from equipoise.web.adding import TOGETHER, check_body, the
+from equipoise.web.messages import Message
 from equipoise.web.sketch import Sketch
 
 PITCHES = (0.014, 0.008, 0.005, 0.003, 0.002)
@@ -127,3 +130,21 @@ def _carrier(sketch: Sketch, driver: str, driven: str, told: str | None) -> str:
             carrier=the(carrier),
         )
     )
+
+
+def _wheels(make: Callable[..., Sketch], sketch: Sketch, asked: Message) -> Sketch:
+    """What two bodies have that turn on a carrier, as a page asks for it."""
+    teeth = asked.whole("teeth"), asked.whole("driven_teeth")
+    ends = asked.text("driver"), asked.text("driven")
+    return make(sketch, *ends, teeth, asked.optional("carrier"))
+
+
+OPERATIONS: Mapping[str, tuple[str, Callable[[Sketch, Message], Sketch]]] = {
+    "gears": (to_say("add a pair of gears"), partial(_wheels, with_gears)),
+    "belt": (to_say("add a belt"), partial(_wheels, with_belt)),
+    "rack": (
+        to_say("add a rack"),
+        lambda sketch, asked: with_rack(sketch, asked.text("driver"), asked.text("driven")),
+    ),
+}
+"""Of `making`."""

@@ -8,12 +8,10 @@ from functools import partial
 from equipoise.errors import UsageError
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.checks import unknown
-from equipoise.mechanism.parts.cams import RIDES
 from equipoise.mechanism.parts.couplings import coupling_kinds
 from equipoise.mechanism.parts.machine import FRAME, Machine
+from equipoise.web import camming, coupling
 from equipoise.web.adding import with_drive, with_link, with_point, with_slider
-from equipoise.web.camming import with_cam
-from equipoise.web.coupling import with_belt, with_gears, with_rack
 from equipoise.web.messages import Message
 from equipoise.web.remaking import (
     TABLES,
@@ -43,28 +41,6 @@ def _link(sketch: Sketch, asked: Message) -> Sketch:
 def _slider(sketch: Sketch, asked: Message) -> Sketch:
     spots = asked.spot("from"), asked.spot("to")
     return with_slider(sketch, *spots, asked.optional("on"), asked.optional("link"))
-
-
-def _gears(sketch: Sketch, asked: Message) -> Sketch:
-    teeth = asked.whole("teeth"), asked.whole("driven_teeth")
-    return with_gears(sketch, *_ends(asked), teeth, asked.optional("carrier"))
-
-
-def _belt(sketch: Sketch, asked: Message) -> Sketch:
-    teeth = asked.whole("teeth"), asked.whole("driven_teeth")
-    return with_belt(sketch, *_ends(asked), teeth, asked.optional("carrier"))
-
-
-def _rack(sketch: Sketch, asked: Message) -> Sketch:
-    return with_rack(sketch, *_ends(asked))
-
-
-def _cam(sketch: Sketch, asked: Message) -> Sketch:
-    return with_cam(sketch, *_ends(asked), asked.spot("spot"), asked.text("rides", RIDES[0]))
-
-
-def _ends(asked: Message) -> tuple[str, str]:
-    return asked.text("driver"), asked.text("driven")
 
 
 def _pin(sketch: Sketch, asked: Message) -> Sketch:
@@ -110,10 +86,8 @@ OPERATIONS: Mapping[str, tuple[str, Operation]] = {
     "point": (to_say("add a point"), _point),
     "link": (to_say("add a link"), _link),
     "slider": (to_say("add a slider"), _slider),
-    "gears": (to_say("add a pair of gears"), _gears),
-    "belt": (to_say("add a belt"), _belt),
-    "rack": (to_say("add a rack"), _rack),
-    "cam": (to_say("add a cam"), _cam),
+    **coupling.OPERATIONS,
+    **camming.OPERATIONS,
     "drive": (to_say("set the drive"), _drive),
     "pin": (to_say("pin"), _pin),
     "separate": (to_say("separate"), _separate),

@@ -11,6 +11,7 @@ from typing import Any
 from equipoise.errors import UsageError
 from equipoise.i18n import Note, all_of
 from equipoise.mechanism.kinematics.outline import Pose, length_between, pose_between
+from equipoise.mechanism.parts.element_kinds import PartKind
 from equipoise.mechanism.parts.machine import FRAME, Slider
 from equipoise.quantities import DIGITS, clean, clean_place
 from equipoise.web.adding import TOGETHER, check_point
@@ -110,5 +111,5 @@ def _axes_of(key: str, entry: Any) -> Iterator[str]:
         yield from (entry.link, entry.on)
     if key == "loads":
         yield entry.link
-    if key == "cams":  # the law counts from the axes of cam and carrier, a face stands in its own
-        yield from (entry.driver, entry.carrier, entry.driven)
+    if isinstance(entry, PartKind):
+        yield from entry.axed

@@ -195,11 +195,15 @@ def _orders(analysis: Analysis) -> list[float]:
 def first_of(machine: Machine) -> tuple[str, tuple[str, ...]]:
     """The charts that a page shows first, and the outputs that it draws: what a machine is for.
 
-    On mounts that is what its gauges read; of a cam the motion of its follower; of a planting
+    On mounts that is what its gauges read; of a follower its motion; of a planting
     finger, or of a machine that moves one thing, its path and the shaking force; of one that moves
     one thing by way of another, such as a six-bar with a dwell, the motion of its output.
     """
-    lifts = tuple(dict.fromkeys(_motion_of(machine, cam.driven) for cam in machine.cams))
+    lifts = tuple(
+        dict.fromkeys(
+            _motion_of(machine, one.driven) for one in machine.couplings if one.contact == "surface"
+        )
+    )
     moved = [link for link in pinned(machine) if len(machine.links[link].points) > 1]
     moved += guided(machine)
     if machine.support is not None and not forces_lack(machine):

@@ -25,6 +25,10 @@ from equipoise.mechanism.parts.joint_properties import JointProperties
 from equipoise.mechanism.parts.machine import Link, Position
 from equipoise.symbols.pieces import pieces
 from equipoise.symbols.scene import Scene
+from equipoise.web.design import Design
+from equipoise.web.drawn import sketch_of
+from equipoise.web.edits import solved
+from equipoise.web.moving import straight
 from equipoise.web.openings import opened_file
 from equipoise.web.session import Session
 from support import free_bodies, newton
@@ -463,3 +467,14 @@ def test_the_page_has_its_form_and_moves_it(tmp_path: Path) -> None:
     assert "give 4 to 400" in refusal(told)
     state(ask(session, "make", do="rename", what="point", name="D", to="M", at=0)[0])
     assert session.shown.design.machine.curved_slots[0].origin == "M"
+
+
+def test_a_body_with_a_slot_keeps_its_axes() -> None:
+    """The slot's direction counts from them, so that its points are not laid along a new x axis."""
+    bare = replace(PLATE, mass=None, center_of_mass=None, inertia=None)
+    machine = on_plate()
+    machine = replace(machine, links={**machine.links, "plate": bare})
+    sketch = sketch_of(solved(Design("mine", machine)), 0)
+    assert straight(sketch, ["plate"]).links["plate"].points == bare.points
+    straightened = straight(replace(sketch, rest={**sketch.rest, "curved_slots": ()}), ["plate"])
+    assert straightened.links["plate"].points["T"][1] == 0.0

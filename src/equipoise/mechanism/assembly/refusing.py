@@ -46,11 +46,15 @@ def _demands(machine: Machine, base: Linkage) -> Iterator[Any]:
         yield from link.demands()
     for coupling in machine.couplings:
         yield from coupling.demands(partial(_distance, machine, base, coupling))
-    fits = fits_of(machine, joints_of(machine, base)) if machine.cams else ()
+    fits = fits_of(machine, joints_of(machine, base)) if _has_surfaces(machine) else ()
     yield from (can_be_made(fit) for fit in fits if np.ndim(fit.rest))
     yield from demands_across(machine)
     for *_, element in machine.elements:
         yield from element.demands()
+
+
+def _has_surfaces(machine: Machine) -> bool:
+    return any(one.contact == "surface" for one in machine.couplings)
 
 
 def _distance(machine: Machine, base: Linkage, coupling: Coupling) -> Any:

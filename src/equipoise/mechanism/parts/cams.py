@@ -44,6 +44,8 @@ class Cam(Coupling):
     columns: ClassVar[Mapping[str, Set[str]]] = {"": {"base_radius", "roller_radius", "normal"}}
     special = "cam"
     contact = "surface"
+    touch = to_say("cam")
+    legend = ("cam", to_say("cams"))
     counted = to_say("{count} cam"), to_say("{count} cams")
     most = 100
     start: ClassVar[float] = 0.0
@@ -120,6 +122,15 @@ class Cam(Coupling):
     @property
     def idle_keys(self) -> tuple[str, ...]:
         return () if self.rides == "roller" else ("roller_radius",)
+
+    @property
+    def axed(self) -> tuple[str, ...]:
+        """The law counts from the axes of cam and carrier, a face stands in its own."""
+        return self.bodies
+
+    @property
+    def jerks(self) -> bool:
+        return len(self.law.jumps(2)) > 0
 
     @property
     def law(self) -> Law:

@@ -27,6 +27,7 @@ class CircularSlot(JointKind):
     file_order = ("link", "point", "on", "center", "radius", "arc", "label")
 
     base = "center"
+    legend = ("path", to_say("slot"))
     sign = "equipoise.symbols.slots:circular_sign"
     title = to_say("Circular slots, each with its crank angle; angles in the axes of their bodies")
     group = to_say("circular slots")
@@ -51,6 +52,10 @@ class CircularSlot(JointKind):
         default=(),
         example=["20 deg", "160 deg"],
     )
+
+    @property
+    def axed(self) -> tuple[str, ...]:
+        return (self.on,) if self.arc else ()
 
     def rider(self) -> Rider:
         """A link from the centre to the pin."""

@@ -121,6 +121,7 @@ class Coupling(PartKind):
     noun : what one is called.  counted : how one, and several, are
         counted.  pushes : whether it is one force at one place, told as a whole and in parts.
     preload : what its sides pull with where no torque is passed on, N.
+    touch : what touches where it pushes.
     contact : how it pushes: along the line that `line` tells, or square to a surface.
     grows : whether its pitch circles are as large as the distance of its pins sets them.
     columns : numbers that columns of designs may have, and of what is inside of it by its key.
@@ -135,6 +136,7 @@ class Coupling(PartKind):
     counted: ClassVar[tuple[str, str]]
     pushes: ClassVar[bool] = True
     preload: ClassVar[Any] = 0.0
+    touch: ClassVar[str] = to_say("teeth")
     contact: ClassVar[Literal["line", "surface"]] = "line"
     grows: ClassVar[bool] = False
     columns: ClassVar[Mapping[str, Set[str]]] = {}
@@ -209,6 +211,11 @@ class Coupling(PartKind):
     def unevenness(self) -> float:
         """How many times as fast as in the mean the driven body turns where it is fastest."""
         return 1.0
+
+    @property
+    def jerks(self) -> bool:
+        """Whether it makes accelerations jump at angles of its driver."""
+        return False
 
     @property
     def has_formula(self) -> bool:

@@ -74,6 +74,7 @@ class CurvedSlot(JointKind):
     still: ClassVar[tuple[str, ...]] = ("points", "table")
 
     base = "origin"
+    legend = ("path", to_say("slot"))
     sign = "equipoise.symbols.slots:curved_sign"
     title = to_say("Curved slots, each with its crank angle; distances along the curve")
     group = to_say("curved slots")
@@ -120,6 +121,10 @@ class CurvedSlot(JointKind):
         from equipoise.mechanism.formulas.plane_curves import curve_through
 
         return curve_through(self.places, self.closed)
+
+    @property
+    def axed(self) -> tuple[str, ...]:
+        return (self.on,)
 
     def rider(self) -> Rider:
         """A body at the pin, whose x axis goes along the curve."""

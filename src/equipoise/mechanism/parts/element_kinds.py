@@ -59,6 +59,7 @@ class PartKind(Frozen):
 
     most : that a machine may have.
     group : what several are called, above their outputs and their numbers.
+    legend : role among its signs, and what a picture's legend calls that; empty where none does.
     sign : ``module:function`` of the room of symbols that draws it, from the part and its
         surroundings to marks; empty where it has no sign of its own.
     special : what it is called by formats of other programs, some of which lack it; empty of what
@@ -69,6 +70,7 @@ class PartKind(Frozen):
     group: ClassVar[str]
     special: ClassVar[Any] = ""
     sign: ClassVar[str] = ""
+    legend: ClassVar[tuple[str, str] | None] = None
 
     @property
     @abstractmethod
@@ -78,6 +80,11 @@ class PartKind(Frozen):
     @property
     def points(self) -> tuple[tuple[str, str], ...]:
         """Bodies and points that it names."""
+        return ()
+
+    @property
+    def axed(self) -> tuple[str, ...]:
+        """Bodies whose own axes it counts angles or ways from, so that these have to stay."""
         return ()
 
     @property

@@ -59,6 +59,7 @@ class TorsionSpring(ForceElement):
         ]
     }
 
+    legend = ("spiral", to_say("torsion spring"))
     sign = "equipoise.symbols.torsion_springs:torsion_sign"
     title = to_say("Torsion springs, each with its crank angle; torques on the link")
     group = to_say("torsion springs")
@@ -104,6 +105,10 @@ class TorsionSpring(ForceElement):
         default=None,
         example="spring.csv",
     )
+
+    @property
+    def axed(self) -> tuple[str, ...]:
+        return self.bodies
 
     @property
     def bodies(self) -> tuple[str, str]:
