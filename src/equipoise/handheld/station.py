@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from itertools import pairwise
 from typing import Any, ClassVar
 
@@ -26,6 +26,8 @@ from equipoise.keys import (
     key,
     keys_of,
 )
+from equipoise.keys.csv_tables import CsvTable
+from equipoise.quantities import Dimension
 
 Both = tuple[float, float]
 """One number for bending in the vertical plane, one for the lateral one."""
@@ -51,13 +53,17 @@ class Absorber(Frozen):
 
 
 @declared
-class Impedance(Frozen):
+class Impedance(CsvTable):
     """Driving-point impedance of a hand against frequency, linear between its rows.
 
     frequency : Hz, rising.
     resistance, reactance : real and imaginary part, N s/m.
     file : name of the CSV file that it came from.
     """
+
+    sort = "impedance"
+    forms = (("frequency", "resistance", "reactance"), ("frequency", "magnitude", "phase"))
+    columns: ClassVar[Mapping[str, tuple[Dimension, str]]] = {"resistance": ("damping", "N s/m")}
 
     frequency: tuple[float, ...] = inside(ROW)
     resistance: tuple[float, ...] = inside(ROW)

@@ -20,13 +20,9 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 from equipoise.errors import ModelError, UsageError
 from equipoise.handheld.model import Impedance
-from equipoise.mechanism.parts.curved_slots import CurveTable
-from equipoise.mechanism.parts.field import SoilTable
-from equipoise.mechanism.parts.force_elements import MotorTable
-from equipoise.mechanism.parts.laws import AngleTable, LengthTable
+from equipoise.keys.csv_tables import CsvTable
 from equipoise.mechanism.parts.machine import LoadTable
 from equipoise.mechanism.parts.support import TIME_IN_PERIOD
-from equipoise.mechanism.parts.torsion_springs import TorsionTable
 from equipoise.quantities import (
     FACTORS,
     HUGE,
@@ -77,20 +73,12 @@ COLUMNS: dict[str, tuple[Dimension, str]] = {
 }
 TIMES = ("time", TIME_IN_PERIOD)
 """Columns of time: of any record, and of one that is whole periods of a steady vibration."""
-OTHERWISE: dict[tuple[str, str], tuple[Dimension, str]] = {
-    ("frequency", "resistance"): ("damping", "N s/m"),
-    ("x", "x"): ("length", "mm"),
-    ("x", "y"): ("length", "mm"),
-}
-"""Columns that are something else in a table with that first column."""
-IN_ORDER = ("x",)
-"""First columns of tables whose rows are in an order of their own."""
 
 
 def _column(name: str, forms: Forms) -> tuple[Dimension, str]:
     """Dimension of a column, and the unit that it is shown with."""
     first = forms[0][0] if forms else ""
-    return OTHERWISE.get((first, name)) or COLUMNS[name]
+    return CsvTable.like(first).columns.get(name) or COLUMNS[name]
 
 
 # -- what is wrong ---------------------------------------------------------------------------------
@@ -135,7 +123,7 @@ def columns_of(text: str, forms: Forms, taken: Taken = None) -> Columns:
     by_name = dict(zip(names, map(tuple, columns), strict=True))
     first = forms[0][0]
     for line, before, after in zip(lines[1:], by_name[first], by_name[first][1:], strict=False):
-        if after <= before and first not in IN_ORDER:
+        if after <= before and CsvTable.like(first).rises:
             plural = {"angle": "angles", "frequency": "frequencies"}
             what = plural.get(COLUMNS[first][0], f"{first}s")
             raise wrong(line, f"the {what} must rise from row to row", first)
@@ -176,7 +164,7 @@ def _whole(lines: Iterator[Row], forms: Forms) -> dict[str, Array] | None:
         return None
     found = dict(zip(names, values.T.copy(), strict=True))
     first = forms[0][0]
-    return found if first in IN_ORDER or np.all(np.diff(found[first]) > 0) else None
+    return found if not CsvTable.like(first).rises or np.all(np.diff(found[first]) > 0) else None
 
 
 def header_of(line: int, cells: list[str], forms: Forms) -> tuple[list[str], list[str]]:
@@ -186,7 +174,7 @@ def header_of(line: int, cells: list[str], forms: Forms) -> tuple[list[str], lis
     for cell in cells:
         match = re.fullmatch(r"(\w+)\s*\[([^\]]*)\]", cell)
         name = match[1] if match else cell
-        if name in TIMES and forms == FORMS["load"]:
+        if name in TIMES and forms == LoadTable.forms:
             raise wrong(line, f"got the column {name}; {OF_TIME}", name)
         if not any(name in form for form in forms):
             raise wrong(line, f"got the column {shortened(cell)}; {told_forms(forms)}")
@@ -225,37 +213,8 @@ def _is_number(cell: str) -> bool:
 
 # -- tables beside a model -------------------------------------------------------------------------
 
-Table: TypeAlias = (
-    LoadTable | AngleTable | LengthTable | SoilTable | MotorTable | TorsionTable | CurveTable
-    | Impedance
-)  # fmt: skip
-TABLES: dict[str, Any] = {
-    "load": LoadTable,
-    "angles": AngleTable,
-    "lengths": LengthTable,
-    "soil": SoilTable,
-    "motor": MotorTable,
-    "torsion": TorsionTable,
-    "curve": CurveTable,
-    "impedance": Impedance,
-}
-"""The class of each sort of table; but for a load's, its first fields are the columns."""
-FORMS: dict[str, Forms] = {
-    "load": (
-        ("crank_angle", "force_x", "force_y"),
-        ("crank_angle", "torque"),
-        ("crank_angle", "force_x"),
-        ("crank_angle", "force_y"),
-    ),
-    "angles": (("crank_angle", "angle"),),
-    "lengths": (("crank_angle", "length"),),
-    "soil": (("depth", "resistance"),),
-    "motor": (("speed", "torque"),),
-    "torsion": (("angle", "torque"),),
-    "curve": (("x", "y"),),
-    "impedance": (("frequency", "resistance", "reactance"), ("frequency", "magnitude", "phase")),
-}
-"""Columns of each sort of table."""
+TABLES = CsvTable.kinds
+"""The class of each sort of table."""
 OF_TIME = (
     "a load goes with the crank, at whatever speed that turns; give crank_angle [deg] instead, "
     "of which 100 rpm make 600 in a second"
@@ -264,7 +223,7 @@ HANDY = {"crank_angle": "deg", "angle": "deg", "length": "mm", "speed": "rpm", "
 """Units of columns that are written in them where they are exact, else in SI units."""
 
 
-def read_beside(sort: str, file: str, folder: Path) -> Table:
+def read_beside(sort: str, file: str, folder: Path) -> CsvTable:
     """Read a table of a sort such as ``load``.
 
     file : its name, relative to `folder`, which is that of the model file.  Of a file elsewhere,
@@ -280,9 +239,9 @@ def read_beside(sort: str, file: str, folder: Path) -> Table:
         return parse_table(sort, read_text(folder / file, within=folder), file)
 
 
-def parse_table(sort: str, text: str, file: str = "") -> Table:
+def parse_table(sort: str, text: str, file: str = "") -> CsvTable:
     """Read the text of a table; errors begin with the number of the line."""
-    columns = columns_of(text, FORMS[sort])
+    columns = columns_of(text, TABLES[sort].forms)
     if sort == "load":
         angles = columns.pop("crank_angle")
         if "torque" in columns:
@@ -294,16 +253,16 @@ def parse_table(sort: str, text: str, file: str = "") -> Table:
         pairs = zip(columns["magnitude"], columns["phase"], strict=True)
         resistance, reactance = zip(*(from_polar(*pair) for pair in pairs), strict=True)
         return Impedance(columns["frequency"], resistance, reactance, file)
-    found: Table = TABLES[sort](*(columns[name] for name in FORMS[sort][0]), file)
+    found: CsvTable = TABLES[sort](*(columns[name] for name in TABLES[sort].forms[0]), file)
     return found
 
 
-def format_table(table: Table) -> str:
+def format_table(table: CsvTable) -> str:
     """Write a table as CSV such that reading it gives exactly the same numbers."""
     if isinstance(table, LoadTable):
-        form = FORMS["load"][0 if len(table.values) == 2 else 1]
+        form: tuple[str, ...] = LoadTable.forms[0 if len(table.values) == 2 else 1]
         return _text(form, [table.crank_angle, *table.values])
-    form = next(FORMS[sort][0] for sort, of in TABLES.items() if of is type(table))
+    form = table.forms[0]
     columns = [getattr(table, one.name) for one in fields(table)]
     return _text(form, columns[: len(form)])
 

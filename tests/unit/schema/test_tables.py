@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from math import pi, radians
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import pytest
@@ -13,8 +13,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from equipoise import move
-from equipoise.errors import ModelError
+from equipoise.errors import EquipoiseError, ModelError
 from equipoise.handheld.model import Impedance
+from equipoise.keys import ROW, Text, declared, inside
+from equipoise.keys.csv_tables import CsvTable
 from equipoise.mechanism.parts.field import Soil, SoilTable
 from equipoise.mechanism.parts.force_elements import Motor, MotorTable
 from equipoise.mechanism.parts.laws import AngleLaw, AngleTable
@@ -359,3 +361,28 @@ def test_errors_name_model_and_table(tmp_path: Path) -> None:
     table.write_text("\ufeff" + FORCES, encoding="utf-8")
     assert load(path).loads[0].table == parse_table("load", FORCES, "f.csv")
     assert read_beside("load", "f.csv", tmp_path).file == "f.csv"
+
+
+def test_a_table_that_a_class_declares_is_read_written_and_refused() -> None:
+    """Its sort, its columns and what they mean there stand in its class alone."""
+
+    @declared
+    class Heights(CsvTable):
+        sort = "heights"
+        forms = (("depth", "x"),)
+        columns: ClassVar[Any] = {"x": ("torque", "N m")}
+        rises = False
+
+        depth: tuple[float, ...] = inside(ROW)
+        x: tuple[float, ...] = inside(ROW)
+        file: str = inside(Text(), default="", compare=False)
+
+    try:
+        text = "depth [mm],x [N m]\n20,1\n10,2\n"
+        table = parse_table("heights", text, "mine.csv")
+        assert table == Heights((0.02, 0.01), (1.0, 2.0))
+        assert parse_table("heights", format_table(table)) == table
+        with pytest.raises(EquipoiseError, match=r"the header is depth \[mm\],x \[N m\]"):
+            parse_table("heights", "depth [mm],y [N m]\n1,2\n")
+    finally:
+        del CsvTable.kinds["heights"]

@@ -17,7 +17,6 @@ from equipoise.keys import (
     Conditions,
     File,
     Flag,
-    Frozen,
     Listing,
     Point,
     Text,
@@ -25,6 +24,7 @@ from equipoise.keys import (
     inside,
     key,
 )
+from equipoise.keys.csv_tables import CsvTable
 from equipoise.mechanism.checks import Bodies
 from equipoise.mechanism.parts.element_kinds import Placed
 from equipoise.mechanism.parts.joint_kinds import BEYOND, JointKind, Rider, Track
@@ -41,11 +41,18 @@ NEAR = 1e-6
 
 
 @declared
-class CurveTable(Frozen):
+class CurveTable(CsvTable):
     """Points of a curve, in its axes, m.
 
     x, y : of the points, in their order.  file : name of the CSV file that they came from.
     """
+
+    sort = "curve"
+    forms = (("x", "y"),)
+    columns: ClassVar[Mapping[str, tuple[Dimension, str]]] = {
+        "x": ("length", "mm"), "y": ("length", "mm"),
+    }  # fmt: skip
+    rises = False
 
     x: tuple[float, ...] = inside(ROW)
     y: tuple[float, ...] = inside(ROW)

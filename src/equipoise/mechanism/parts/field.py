@@ -27,6 +27,7 @@ from equipoise.keys import (
     inside,
     key,
 )
+from equipoise.keys.csv_tables import CsvTable
 from equipoise.mechanism.checks import FRAME, Bodies, Vector, numbered, unknown
 
 WAYS = ("forward", "backward")
@@ -36,12 +37,15 @@ RESISTS = Note("soil resists, give 0 or more")
 
 
 @declared
-class SoilTable(Frozen):
+class SoilTable(CsvTable):
     """Resistance of the soil against depth: linear between its rows, constant beyond them.
 
     depth : m below the surface, rising from 0 or more.  resistance : N, as long as `depth`.
     file : name of the CSV file that it came from.
     """
+
+    sort = "soil"
+    forms = (("depth", "resistance"),)
 
     depth: tuple[float, ...] = inside(ROW)
     resistance: tuple[float, ...] = inside(ROW)

@@ -26,6 +26,7 @@ from equipoise.keys import (
     lacks,
     needs,
 )
+from equipoise.keys.csv_tables import CsvTable
 from equipoise.mechanism.checks import (
     Bodies,
     Vector,
@@ -55,13 +56,21 @@ MOST_TURNS = 100
 
 
 @declared
-class LoadTable(Frozen):
+class LoadTable(CsvTable):
     """A load over one turn or several, linear between its rows.
 
     crank_angle : rad, rising.
     values : force_x and force_y (N) or torque (N m), each as long as `crank_angle`.
     file : name of the CSV file that it came from.
     """
+
+    sort = "load"
+    forms = (
+        ("crank_angle", "force_x", "force_y"),
+        ("crank_angle", "torque"),
+        ("crank_angle", "force_x"),
+        ("crank_angle", "force_y"),
+    )
 
     crank_angle: tuple[float, ...] = inside(ROW)
     values: tuple[tuple[float, ...], ...] = inside(Listing(ROW))
@@ -165,13 +174,16 @@ class Load(Frozen):
 
 
 @declared
-class MotorTable(Frozen):
+class MotorTable(CsvTable):
     """Torque of a motor against its speed: linear between its rows, and beyond them as between
     the last two.
 
     speed : rad/s, rising.  torque : N m, as long as `speed`.
     file : name of the CSV file that it came from.
     """
+
+    sort = "motor"
+    forms = (("speed", "torque"),)
 
     speed: tuple[float, ...] = inside(ROW)
     torque: tuple[float, ...] = inside(ROW)

@@ -29,6 +29,7 @@ from equipoise.keys import (
     inside,
     key,
 )
+from equipoise.keys.csv_tables import CsvTable
 
 if TYPE_CHECKING:
     from equipoise.mechanism.formulas.curves import Array, Curve
@@ -80,7 +81,7 @@ class LengthSegment(Segment):
 
 
 @declared
-class LawTable(Frozen):
+class LawTable(CsvTable):
     """Values over the crank angle, or a cam's own, through which a spline goes.
 
     crank_angle : rad, rising.  values : rad or m, as long as `crank_angle`.
@@ -95,9 +96,15 @@ class LawTable(Frozen):
 class AngleTable(LawTable):
     """Angles."""
 
+    sort = "angles"
+    forms = (("crank_angle", "angle"),)
+
 
 class LengthTable(LawTable):
     """Lengths."""
+
+    sort = "lengths"
+    forms = (("crank_angle", "length"),)
 
 
 @declared

@@ -12,7 +12,6 @@ from equipoise.keys import (
     ROW,
     Conditions,
     File,
-    Frozen,
     Listing,
     Quantity,
     Text,
@@ -22,6 +21,7 @@ from equipoise.keys import (
     lacks,
     needs,
 )
+from equipoise.keys.csv_tables import CsvTable
 from equipoise.mechanism.checks import FRAME, Bodies, unknown_body, unknown_link
 from equipoise.mechanism.parts.element_kinds import Placed
 from equipoise.mechanism.parts.force_kinds import Action, ForceElement
@@ -32,13 +32,16 @@ MOST_ROWS = 200
 
 
 @declared
-class TorsionTable(Frozen):
+class TorsionTable(CsvTable):
     """Torque of a torsion spring against its angle: linear between rows, and beyond them as between
     the last two.
 
     angle : rad, rising.  torque : N m, as long as `angle`.
     file : name of the CSV file that it came from.
     """
+
+    sort = "torsion"
+    forms = (("angle", "torque"),)
 
     angle: tuple[float, ...] = inside(ROW)
     torque: tuple[float, ...] = inside(ROW)
