@@ -22,11 +22,12 @@ from equipoise.balancing import (
     room,
 )
 from equipoise.cli import COMMANDS, app, reports
+from equipoise.design import lifts
 from equipoise.figures import film
 from equipoise.handheld import design
 from equipoise.limits import THREAD, USUAL
 from equipoise.measured import fits
-from equipoise.planting import search, variables
+from equipoise.planting import search
 from equipoise.planting.figures import SAMPLES_OF_TURN
 from equipoise.schema.files import LARGEST
 from equipoise.studies import cloud, outcomes, searching, study, tolerances, variance
@@ -181,7 +182,7 @@ CLAIMS = {
     "planting.md": [
         f"| {search.GENERATIONS} | of the global search",
         f"| {search.POPULATION} | designs in a generation",
-        f"{variables.SHORTEST} to {variables.LONGEST} times as long",
+        f"{lifts.SHORTEST} to {lifts.LONGEST} times as long",
         f"at {SAMPLES_OF_TURN} crank angles",
     ],
     "studies.md": [

@@ -1,5 +1,5 @@
 from .lifts import Lift as Lift
-from .lifts import lifts as lifts
+from .lifts import lifts_of as lifts_of
 from .requirements import Requirement as Requirement
 from .spreads import Choices as Choices
 from .spreads import Normal as Normal

@@ -92,7 +92,7 @@ def dimension_of_lift(name: str) -> Dimension | None:
     return "angle" if name == "ground_angle" or name.endswith(".direction") else "length"
 
 
-def lifts(machine: Machine) -> Iterator[Lift]:
+def lifts_of(machine: Machine) -> Iterator[Lift]:
     """Every lift of a machine: lengths, the frame's direction, all coordinates, gears."""
     for kind in LIFTS:
         yield from kind(machine)
@@ -101,7 +101,7 @@ def lifts(machine: Machine) -> Iterator[Lift]:
 def lift_named(machine: Machine, name: str) -> Lift | None:
     """The lift of a machine by its name; None where there is none."""
     try:
-        known = {one.name: one for one in lifts(machine)}
+        known = {one.name: one for one in lifts_of(machine)}
     except EquipoiseError:  # what cannot be put together has no lifts
         return None
     return known.get(name) or joined(machine, name)

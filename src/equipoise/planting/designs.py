@@ -8,7 +8,7 @@ from typing import Literal
 
 import numpy as np
 
-from equipoise.design.lifts import Lift, joined, lifts, usual, with_lifts
+from equipoise.design.lifts import Lift, joined, lifts_of, usual, with_lifts
 from equipoise.design.spreads import Range
 from equipoise.design.variables import Variable
 from equipoise.errors import UsageError
@@ -35,7 +35,7 @@ class Designs:
         sense: Sense = "as given",
     ) -> None:
         self.machine, self.sense = machine, sense
-        known = {one.name: one for one in lifts(machine)}
+        known = {one.name: one for one in lifts_of(machine)}
         names = [name for name in known if usual(name)] if vary is None else list(vary)
         if not names:
             raise UsageError("vary: names nothing; name at least one number, or leave it out")
