@@ -37,8 +37,20 @@ export async function read(hash: string, largest: number): Promise<Shared> {
 async function unpacked(packed: string, largest: number): Promise<string> {
   const signs = atob(packed.replace(/-/g, "+").replace(/_/g, "/"));
   const bytes = Uint8Array.from(signs, (sign) => sign.charCodeAt(0));
-  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
-  return text(stream, largest);
+  return text(slowly(bytes).pipeThrough(new DecompressionStream("deflate")), largest);
+}
+
+/** Signs that are unpacked at a time: browsers unpack all that they are given, up to a thousandfold. */
+const PIECE = 1024;
+
+/** Bytes of which no more are handed on than are asked for. */
+function slowly(bytes: Uint8Array<ArrayBuffer>): ReadableStream<Uint8Array<ArrayBuffer>> {
+  let at = 0;
+  const pull = (to: ReadableStreamDefaultController<Uint8Array<ArrayBuffer>>) => {
+    to.enqueue(bytes.slice(at, (at += PIECE)));
+    if (at >= bytes.length) to.close();
+  };
+  return new ReadableStream({ pull }, { highWaterMark: 0 });
 }
 
 /** A few bytes can swell to any size: nothing is read beyond what a model may have. */
@@ -50,7 +62,10 @@ async function text(stream: ReadableStream<Uint8Array>, largest: number): Promis
     const { done, value } = await reader.read();
     if (done) return found + decoder.decode();
     size += value.length;
-    if (size > largest) throw new RangeError();
+    if (size > largest) {
+      await reader.cancel();
+      throw new RangeError();
+    }
     found += decoder.decode(value, { stream: true });
   }
 }

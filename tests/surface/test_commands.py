@@ -16,6 +16,7 @@ import threading
 import tomllib
 from functools import cache
 from importlib.resources import files
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 from unittest import mock
@@ -25,7 +26,7 @@ import numpy as np
 import pytest
 
 import equipoise as package
-from equipoise.cli import ONE_THREAD, main, run
+from equipoise.cli import ONE_THREAD, RAREST, _signs_of_life, main, run
 from equipoise.errors import UsageError
 from equipoise.schema.files import json_text
 from surface.running import (
@@ -785,18 +786,18 @@ def test_a_command_that_takes_long_says_so(monkeypatch: pytest.MonkeyPatch) -> N
 
 def test_long_work_between_two_steps_says_how_far_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
     """A line that was told long ago does not count."""
-    twice = threading.Event()
+    told = threading.Event()
 
     class Heard(io.StringIO):
         def write(self, text: str) -> int:
             done = super().write(text)
-            if self.getvalue().count("still computing") > 1:
-                twice.set()
+            if "program 3 of 40" in self.getvalue():
+                told.set()
             return done
 
     def balanced(*_: object, progress: Any, **__: object) -> None:
         progress(3, 40)
-        assert twice.wait(30)
+        assert told.wait(30)
 
     monkeypatch.delenv("EQUIPOISE_PROGRESS")
     monkeypatch.setattr("equipoise.cli.SIGN", 0.05)
@@ -805,6 +806,40 @@ def test_long_work_between_two_steps_says_how_far_it_is(monkeypatch: pytest.Monk
     with pytest.raises(AttributeError):  # there is nothing to show
         run(["balance", "balance-crank"])
     assert re.search(r"^still computing, \d+ s; program 3 of 40$", heard.getvalue(), re.MULTILINE)
+
+
+def test_no_silence_is_longer_than_the_longest_wait(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A line of progress shortly before a sign of life does not put that off for twice as long."""
+    now, moments = [0.0], [0.0]
+    lines, ended = [25.0, 110.0, 190.0, 400.0], threading.Event()
+
+    class Clock(threading.Event):
+        def wait(self, timeout: float | None = None) -> bool:
+            now[0] += timeout or 0.0
+            moments.extend(at for at in lines if moments[-1] < at <= now[0])
+            if now[0] > 600:
+                ended.set()
+            return ended.is_set()
+
+    class Heard(io.StringIO):
+        def write(self, text: str) -> int:
+            if "still computing" in text:
+                moments.append(now[0])
+            return super().write(text)
+
+    def last_line() -> float:
+        return max((at for at in lines if at <= now[0]), default=0.0)
+
+    monkeypatch.delenv("EQUIPOISE_PROGRESS")
+    monkeypatch.setattr("equipoise.cli.progress.last_line", last_line)
+    monkeypatch.setattr("equipoise.cli.monotonic", lambda: now[0])
+    monkeypatch.setattr("equipoise.cli.Event", Clock)
+    monkeypatch.setattr("sys.stderr", Heard())
+    with _signs_of_life(["check"]):
+        assert ended.wait(60)
+    gaps = [after - before for before, after in pairwise(moments)]
+    assert len(gaps) > 12
+    assert max(gaps) <= RAREST, moments
 
 
 def test_linear_algebra_takes_no_thread_beside_its_own(monkeypatch: pytest.MonkeyPatch) -> None:

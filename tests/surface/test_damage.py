@@ -161,6 +161,32 @@ def test_a_bit_that_flips_changes_no_figure(made: Path, seed: int) -> None:
         assert run(("best", "--json")).out == expected
 
 
+@pytest.mark.parametrize("name", ["torque", "links.crank.mass"])
+def test_a_chunk_of_one_array_that_is_lost_is_no_gap(name: str) -> None:
+    """Best designs were told of what was left, and tables had gaps, in silence."""
+    expected = run(("best", "--json")).out
+    (STORE / name / "c" / "0").unlink()
+    for words in COMMANDS[:3]:
+        assert f"{name} of designs 0 to 23 was damaged" in refused(run(words))
+    succeeded(run(("resume",)))
+    assert run(("best", "--json")).out == expected
+
+
+def test_reasons_that_have_changed_places_are_refused(folder: Path) -> None:
+    """Of the last chunk, which is filled up, and the first: a traceback of `resume`."""
+    Path("study.toml").write_text(LENGTHS.replace("designs = 200", "designs = 10000"))
+    shutil.rmtree(STORE)
+    succeeded(equipoise("sweep", "study.toml", "-o", STORE))
+    reasons = STORE / "reason" / "c"
+    (reasons / "0").rename(reasons / "way")
+    (reasons / "1").rename(reasons / "0")
+    (reasons / "way").rename(reasons / "1")
+    for words in COMMANDS[:3]:
+        assert "reason of designs 0 to " in refused(run(words))
+    succeeded(run(("resume",)))
+    told(run(("best",)))
+
+
 def test_a_store_without_checksums_is_read_and_gone_on_with_as_it_was(made: Path) -> None:
     """As versions before made them."""
     old = Path("old.zarr")

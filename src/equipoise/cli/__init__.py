@@ -180,14 +180,16 @@ def _signs_of_life(given: Sequence[str]) -> Iterator[None]:
     ended, begun = Event(), monotonic()
 
     def tell() -> None:
-        wait = SIGN
-        while not ended.wait(wait):
+        wait, told = SIGN, begun
+        while not ended.wait(max(told + wait - monotonic(), 0.0)):
             progress = sys.modules.get("equipoise.cli.progress")
-            share = "" if progress is None else progress.so_far(wait)
-            if share is not None:
-                words = f"still computing, {monotonic() - begun:.0f} s"
-                print("; ".join(filter(None, [words, share])), file=sys.stderr)
-            wait = min(2 * wait, RAREST)
+            if progress is not None and progress.last_line() > told:
+                told = progress.last_line()
+                continue
+            share = "" if progress is None else progress.so_far()
+            words = f"still computing, {monotonic() - begun:.0f} s"
+            print("; ".join(filter(None, [words, share])), file=sys.stderr)
+            wait, told = min(2 * wait, RAREST), monotonic()
 
     thread = Thread(target=tell, daemon=True)
     thread.start()

@@ -37,16 +37,21 @@ _shown_now: _Log | _Bar | None = None
 """What tells how far work is at the moment."""
 
 
-def so_far(seconds: float) -> str | None:
-    """How far work is, in words that may be empty; None where that was shown so many s ago or less,
-    so that nothing else need be.
-    """
+def last_line() -> float:
+    """Moment of the last line on how far work is, s, or 0; of a bar now."""
     shown = _shown_now
     if shown is None:
+        return 0.0
+    return monotonic() if isinstance(shown, _Bar) else shown.last
+
+
+def so_far() -> str:
+    """How far work is, in words that may be empty; they stand for the next line of a log."""
+    shown = _shown_now
+    if not isinstance(shown, _Log) or shown.step is None:
         return ""
-    if isinstance(shown, _Bar) or monotonic() - shown.last < seconds:
-        return None
-    return "" if shown.step is None else shown.step().share
+    shown.wait()
+    return shown.step().share
 
 
 @dataclass(frozen=True)
@@ -104,24 +109,29 @@ def _checking(show: Show) -> Show:
 
 
 class _Log:
-    """A line now and then.  last : moment of the last one, or of the beginning."""
+    """A line now and then.  last : moment of the last one, 0 before the first."""
 
     def __init__(self, first: float) -> None:
-        self.start = self.last = monotonic()
+        self.start, self.last = monotonic(), 0.0
         self.next = first
         self.step: Callable[[], Step] | None = None
 
     def add(self, step: Callable[[], Step], last: bool) -> None:
         self.step = step
-        after = monotonic() - self.start
-        if after < self.next and not last:
+        if monotonic() - self.start < self.next and not last:
             return
-        self.next = after + min(max(SECONDS, GROWTH * after), LONGEST)
-        told, self.last = step(), monotonic()
+        self.wait()
+        told = step()
         more = (f"{name}: {text}" for name, text in told.more.items() if text)
         line = "; ".join([", ".join(filter(None, [told.share, told.at])), *more])
         with suppress(OSError):  # who does not want to read it gets the result all the same
             print(line, file=sys.stderr)
+
+    def wait(self) -> None:
+        """A line is told now; the next comes after a while."""
+        self.last = monotonic()
+        after = self.last - self.start
+        self.next = after + min(max(SECONDS, GROWTH * after), LONGEST)
 
 
 class _Bar:

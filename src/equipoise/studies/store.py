@@ -37,7 +37,7 @@ from equipoise.i18n import worded
 from equipoise.partial import locked
 from equipoise.results.result import Result
 from equipoise.studies.design_space import Output
-from equipoise.studies.outcomes import Block, Outcome
+from equipoise.studies.outcomes import COMPUTED, Block, Outcome
 
 if TYPE_CHECKING:
     import zarr
@@ -123,7 +123,24 @@ class Store(Result):
         for table, names in ((values, self.numbers), (figures, self.outputs)):
             for column, name in enumerate(names):
                 table[:, column] = self._column(name, designs)
-        return Block(values, Outcome(figures, self._column(REASON, designs)))
+        block = Block(values, Outcome(figures, self._column(REASON, designs)))
+        self._check_whole(designs, block)
+        return block
+
+    def _check_whole(self, designs: range, block: Block) -> None:
+        """Refuse chunks of which a part was lost, which Zarr reads as never stored."""
+        reason = block.outcome.reason
+        known = reason != UNKNOWN
+        chunk = np.arange(designs.start, designs.stop) // self.chunk
+        half_known = np.isin(chunk, chunk[known]) & ~known
+        lost = {REASON: half_known}
+        lost |= dict(zip(self.numbers, (np.isnan(block.values) & known[:, None]).T, strict=True))
+        figures = np.isnan(block.outcome.figures) & (reason == COMPUTED)[:, None]
+        lost |= dict(zip(self.outputs, figures.T, strict=True))
+        for name, where in lost.items():
+            if where.any():
+                part = self.designs(int(chunk[where][0]))
+                raise DamagedError(self, name, part)
 
     def _column(self, name: str, designs: range) -> Array:
         with as_usage_error(self.path, "cannot be read", DAMAGED):
