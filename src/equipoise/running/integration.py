@@ -391,15 +391,17 @@ class Integration:
         return self._happens(kind, replace(found, angle=edge) if kind == "edge" else found)
 
     def _rates(self, _: float, state: Array) -> list[float]:
-        angle, speed, current = float(state[0]), float(state[1]), state[2]
-        driver = self.driver
-        if driver.lags:
-            driving = float(driver.torque_of(current))
+        angle, speed, driver = float(state[0]), float(state[1]), self.driver
+        electric: list[float] = [0.0] * ELECTRIC
+        if driver.circuit is None:
+            driving = float(driver.torque(np.asarray(speed)))
         else:
-            driving, current = float(driver.torque(np.asarray(speed))), driver.current(state[1])
+            current = state[2] if driver.lags else driver.current(state[1])
+            electric = driver.electric_rates(np.asarray(current), state[1]).tolist()
+            lags = driver.lags
+            driving = float(driver.torque_of(current) if lags else driver.torque(state[1]))
         inertia, slope, torques = self.equation.at(angle, speed, driving, self.direction)
         change = (float(np.sum(torques)) + driving - 0.5 * slope * speed * speed) / inertia
-        electric = driver.electric_rates(np.asarray(current), np.asarray(speed)).tolist()
         return [speed, change, *electric, *(torques * speed).tolist(), driving * speed]
 
     # -- events ------------------------------------------------------------------------------------
