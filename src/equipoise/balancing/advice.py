@@ -37,6 +37,7 @@ from equipoise.balancing.phasing import phasing_of
 from equipoise.balancing.problem import Problem
 from equipoise.balancing.remedies import (
     LEAST_GAIN,
+    LITTLE_MASS,
     MASS_PRICE,
     MOST_ADDED,
     Comparison,
@@ -76,6 +77,8 @@ CLEAR = 0.5
 AIMED = 0.5
 """Share of its yardstick from which something is tried against a figure that shakes: what costs
 little is worth building there too."""
+ENOUGH = 0.9
+"""Share of an aim that a change takes away from which nobody changes the mounts as well."""
 NOTICED = 0.01
 """Share of an aim from which a change of it is told."""
 LEVEL = 1e-4
@@ -123,7 +126,8 @@ def beside(found: Balanced, machine: Machine) -> Balanced:
     judged = replace(found, original=machine, objectives=objectives)
     old, new = assessed(machine), assessed(found.machine)
     share = max(judged.added_mass, 0.0) / (machine.mass or 1.0)
-    worth = found.helps and bool(is_worth(judged.gain, share))
+    figure = 1.0 if machine.balance and machine.balance.objectives else old.figure_gain(aims, new)
+    worth = found.helps and bool(is_worth(judged.gain, share, figure))
     worse = old.worse_in(new, _saving(old, judged))
     offered = worth and not worse
     return replace(
@@ -145,8 +149,6 @@ class _Adviser:
     def __init__(self, machine: Machine, own: Balance, solve: Solve) -> None:
         self.machine, self.own, self.solve = machine, own, solve
         self.before = assessed(machine)
-        given = own.added_mass
-        self.most_mass = MOST_ADDED * machine.mass if given is None else given
         self.known: dict[tuple[Objective, ...], list[float]] = {}
         values = self.values(tuple(one.objective for one in own.limits))
         limits = zip(own.limits, values, strict=True)
@@ -259,15 +261,24 @@ class _Adviser:
         """Shapes in some rooms beside each other."""
         aims = plan.objectives
         values = {one.name: value for one, value in zip(aims, self.values(aims), strict=True)}
-        excess = self.before.excess_of(aims)
-        return Comparison(self.machine, plan, rooms, self.watched, excess, values)
+        aim = self.before.largest_aim(aims)
+        asked = bool(self.own.objectives)
+        return Comparison(self.machine, plan, rooms, self.watched, aim, values, asked)
+
+    def most_mass(self, plan: Balance) -> float:
+        """What may be added, kg: little against what is not large."""
+        if self.own.added_mass is not None:
+            return self.own.added_mass
+        aim = self.before.largest_aim(plan.objectives)
+        much = bool(self.own.objectives) or aim is None or aim.is_large
+        return (MOST_ADDED if much else LITTLE_MASS) * self.machine.mass
 
     def counterweights(self, plan: Balance, rooms: tuple[Room, ...]) -> Iterator[Remedy]:
         """Sectors in some rooms, the best first."""
         comparison = self.comparison(plan, rooms)
         if not comparison.influences:
             return
-        for each in best_sectors(comparison, self.most_mass, opposite=len(rooms) > 1):
+        for each in best_sectors(comparison, self.most_mass(plan), opposite=len(rooms) > 1):
             masses = tuple(map(added_sector, rooms, each))
             yield (*with_sectors(self.machine, rooms, each), replace(plan, masses=masses))
 
@@ -306,16 +317,16 @@ class _Adviser:
         """With the bound of every sector in its room, round or not."""
         if not found.plan.masses:
             return found
-        excess = self.before.excess_of(found.plan.objectives)
+        saving = _saving(self.before, found)
         limits = tuple(
             limit
             for one in self.watched
-            for limit in one.limits(found.gain, excess)
+            for limit in one.limits(found.gain, saving.excess, saving.steadies)
             if not limit.objective.output.startswith(GAUGES)
         )
         kept = (Note("where no headline figure gets worse"),)
         for asked, scope in ((limits, kept), (self.own.limits, ())):
-            plan = replace(found.plan, limits=asked, added_mass=self.most_mass)
+            plan = replace(found.plan, limits=asked, added_mass=self.most_mass(found.plan))
             try:
                 proof = self.solve(self.machine, plan)
             except UsageError:  # the least that a limit allows is too much for the program
@@ -335,16 +346,21 @@ class _Adviser:
         after = assessed(found.machine)
         worse = self.before.worse_in(after, _saving(self.before, found))
         share = max(found.added_mass, 0.0) / (self.machine.mass or 1.0)
-        enough = bool(is_worth(found.gain, share)) and self.keeps_limits(found)
+        figure = self.figure_gain(found, after)
+        enough = bool(is_worth(found.gain, share, figure)) and self.keeps_limits(found)
         if self.mounts is not None:
             enough = enough and outweighs(found.gain, self.mounts)
         offered, before = enough and not worse, self.before.headline
         beyond = self.beyond
         if offered:  # what else helps is for the machine with the remedy
-            more = self.mounts is not None and self.mounts.gain > found.gain
-            mounts = self.mounts if more else None
-            beyond = beyond_masses(after.analysis, after.headline, mounts)
+            mounts = self.mounts if found.gain < ENOUGH else None
+            beyond = beyond_masses(after.analysis, after.headline, mounts, self.beyond)
         return replace(found, advice=Advice(before, after.headline, worse, offered, beyond))
+
+    def figure_gain(self, found: Balanced, after: AssessedMachine) -> float:
+        """Share that is gone of the figure that is large; 1 of aims that somebody asked for."""
+        aims = found.plan.objectives
+        return 1.0 if self.own.objectives else self.before.figure_gain(aims, after)
 
     @cached_property
     def beyond(self) -> Beyond:

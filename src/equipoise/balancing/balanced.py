@@ -12,6 +12,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from equipoise.balancing import compared
+from equipoise.balancing.beyond_masses import Beyond
 from equipoise.balancing.design_variables import Bound
 from equipoise.balancing.effects import ANGLES
 from equipoise.balancing.geared import geared_range
@@ -81,6 +82,16 @@ class MoreRoom:
     at: str
     assumed: float
     wanted: float
+
+    declared: ClassVar[Declarations] = {
+        "at": ResultOutput("the pivot"),
+        "assumed": ResultOutput("how far the room about it is taken to reach", "length"),
+        "wanted": ResultOutput("how far it would reach", "length"),
+        "gain": ResultOutput("share of the aims that is gone then", read="remedy.gain"),
+        "changes": ResultOutput(
+            "list of what to change, see below", read=lambda more: _changes(more.remedy)
+        ),
+    }
 
 
 WHY = "see [Balancing](balancing.md#why-nothing-is-better)"
@@ -303,15 +314,6 @@ class Balanced(Result):
         ]
         return phasing.to_dict() | {"objectives": objectives}
 
-    @property
-    def _with_room(self) -> dict[str, Any] | None:
-        """What more room would allow, as plain data."""
-        more = self.with_room
-        if more is None:
-            return None
-        room = {"at": more.at, "assumed": more.assumed, "wanted": more.wanted}
-        return room | {"gain": more.remedy.gain, "changes": _changes(more.remedy)}
-
     def to_dict(self, wanted: Collection[str] | None = None) -> dict[str, Any]:
         """The machine-readable output, SI units and radians.
 
@@ -402,59 +404,16 @@ class Balanced(Result):
             ],
             present="advice",
         ),
-        "flywheels": ResultOutput(
-            "there: flywheels that would keep the speed steady: list `choices` of `fluctuation`, "
-            "`inertia`, kg m^2, on a shaft that turns `ratio` times as fast as the crank, "
-            "`diameter` and `thickness`, m, and `mass`, kg, of a steel disc; `mean_torque` and "
-            "`largest_torque`, N m, with and without, and `power`, W; or null",
-            read=lambda found: _plain(found.advice.beyond.flywheels),
+        "beyond": ResultOutput(
+            "there: what helps beyond masses",
+            of=Beyond.declared,
+            read="advice.beyond",
             present="advice",
-        ),
-        "counterbalance": ResultOutput(
-            "there: a weight on a slow crank: `moment`, kg m, `direction`, rad, in the axes of the "
-            "crank, and `gain`; or null",
-            read=lambda found: _plain(found.advice.beyond.counterbalance),
-            present="advice",
-        ),
-        "shafts": ResultOutput(
-            "there: two balance shafts as fast as the crank, beside the change that is offered: "
-            "unbalances `forward` and `backward`, kg m, and `gain`; or null",
-            read=lambda found: _plain(found.advice.beyond.shafts),
-            present="advice",
-        ),
-        "piston": ResultOutput(
-            "there: the `share` of what reciprocates that is balanced, shaking force `along` and "
-            "`across` the stroke, N, and `half_along` and `half_across` with half of it balanced "
-            "by `moment`, kg m, at `direction`, rad, in the axes of the crank; or null",
-            read=lambda found: _plain(found.advice.beyond.piston),
-            present="advice",
-        ),
-        "cylinder": ResultOutput(
-            "there: the cylinder whose force is largest: `push` and `pull`, N, `closed` and "
-            "`open`, m, `bore` and `rod`, m, at `pressure`, Pa, `dead`, m, of its closed length, "
-            "`is_buildable`, `is_slender`, `pivot`, and `lever`, a longer one; or null",
-            read=lambda found: _plain(found.advice.beyond.cylinder),
-            present="advice",
-        ),
-        "transmission": ResultOutput(
-            "there: the `joint` whose transmission angle is poor: `transmission`, `crank_angle` "
-            "and `limit`, rad, `force`, N, and the `link` of which the length `between` two "
-            "points is to grow by `share` to `length`, m, for an angle of `mended`, rad; or null",
-            read=lambda found: _plain(found.advice.beyond.transmission),
-            present="advice",
-        ),
-        "mounts": ResultOutput(
-            "there: the resonance beside a speed at which the machine runs: `speed`, `near`, "
-            "`avoid` and `away`, rad/s, the `mounts` of it, and the `factor` of their stiffness "
-            "that takes the share `gain` off what the gauges read; or null",
-            read=lambda found: _plain(found.advice.beyond.mounts),
-            present="advice",
+            spliced=True,
         ),
         "with_room": ResultOutput(
-            "there: what a counterweight would do with twice the room that is assumed: the pivot "
-            "`at`, how far the room about it reaches as it is `assumed` and as it is `wanted`, m, "
-            "`gain` and `changes`; or null",
-            read="_with_room",
+            "there: what a counterweight would do with twice the room that is assumed, or null",
+            of=MoreRoom.declared,
             present="advice",
         ),
         "notes": NOTES,
@@ -567,8 +526,3 @@ def _notes(found: Solution) -> Iterator[Note]:
             "the search ended before it had proved that nothing better exists; "
             "the gap tells how far it came"
         )
-
-
-def _plain(answer: Any) -> dict[str, Any] | None:
-    """An answer beyond masses as plain data."""
-    return None if answer is None else asdict(answer)

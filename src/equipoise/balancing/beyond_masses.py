@@ -8,9 +8,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
+from equipoise.balancing.centered_arms import (
+    CenteredArms,
+    centered_arms_for,
+    centered_arms_sentence,
+)
 from equipoise.balancing.cylinder_sizes import Cylinder, cylinder_for, cylinder_sentences
 from equipoise.balancing.first_order import (
     WORTHWHILE,
@@ -22,6 +28,14 @@ from equipoise.balancing.first_order import (
     shafts_sentence,
 )
 from equipoise.balancing.flywheels import Flywheels, flywheel_sentences, flywheels_for
+from equipoise.balancing.opposite_arms import (
+    EndWeights,
+    OppositeArm,
+    arm_sentence,
+    end_sentences,
+    end_weights_for,
+    opposite_arm_for,
+)
 from equipoise.balancing.poor_transmission import (
     PoorTransmission,
     poor_transmission_for,
@@ -32,6 +46,7 @@ from equipoise.i18n import say
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.quantities import angle, percent, told
 from equipoise.results.analysis import Analysis
+from equipoise.results.declaring import Declarations, ResultOutput
 from equipoise.results.yardsticks import FigureAssessment
 
 
@@ -47,12 +62,19 @@ class Counterbalance:
     direction: float
     gain: float
 
+    declared: ClassVar[Declarations] = {
+        "moment": ResultOutput("of the weight about the crank's pivot", "unbalance"),
+        "direction": ResultOutput("in the axes of the crank", "angle"),
+        "gain": ResultOutput("share of the swing of the torque that is gone"),
+    }
+
 
 @dataclass(frozen=True)
 class Beyond:
     """What helps against what is large, beyond plates; None where it does not.
 
-    All of it is for the machine as it is advised: with the change that is offered, if one is.
+    It is for the machine as it is advised, with the change that is offered, if one is; but for
+    arms, a second arm opposite and weights at the ends of a shaft, which take its place.
     """
 
     flywheels: Flywheels | None
@@ -62,16 +84,62 @@ class Beyond:
     cylinder: Cylinder | None
     transmission: PoorTransmission | None
     mounts: ResonantMounts | None
+    arms: CenteredArms | None
+    opposite: OppositeArm | None
+    ends: EndWeights | None
+
+    declared: ClassVar[Declarations] = {
+        "flywheels": ResultOutput(
+            "there: that keep the speed steady, or null", of=Flywheels.declared
+        ),
+        "counterbalance": ResultOutput(
+            "there: a weight on a slow crank that evens the drive's torque, or null",
+            of=Counterbalance.declared,
+        ),
+        "shafts": ResultOutput(
+            "there: two balance shafts as fast as the crank, beside the change that is "
+            "offered, or null",
+            of=BalanceShafts.declared,
+        ),
+        "piston": ResultOutput(
+            "there: how much of a piston is balanced, or null", of=PistonBalance.declared
+        ),
+        "cylinder": ResultOutput(
+            "there: the cylinder whose force is the largest figure, or null", of=Cylinder.declared
+        ),
+        "transmission": ResultOutput(
+            "there: a poor transmission angle, and a length that mends it, or null",
+            of=PoorTransmission.declared,
+        ),
+        "mounts": ResultOutput(
+            "there: a resonance beside a speed at which the machine runs, or null",
+            of=ResonantMounts.declared,
+        ),
+        "arms": ResultOutput(
+            "there: arms that hang on one side of their pins, where that makes the largest force "
+            "in a joint, or null",
+            of=CenteredArms.declared,
+        ),
+        "opposite": ResultOutput(
+            "there: a second arm opposite on the carrier, or null", of=OppositeArm.declared
+        ),
+        "ends": ResultOutput(
+            "there: two weights at the ends of the shaft of several rows, or null",
+            of=EndWeights.declared,
+        ),
+    }
 
 
 def beyond_masses(
     analysis: Analysis,
     entries: tuple[FigureAssessment, ...],
     mounts: ResonantMounts | None = None,
+    as_it_is: Beyond | None = None,
 ) -> Beyond:
     """What helps a machine at constant speed, whose figures are ranked.
 
     mounts : of the machine, where a resonance lies beside its speed.
+    as_it_is : of the machine without the change, where one is offered.
     """
     return Beyond(
         flywheels_for(analysis, entries),
@@ -81,6 +149,9 @@ def beyond_masses(
         cylinder_for(analysis, entries),
         poor_transmission_for(analysis, entries),
         mounts,
+        as_it_is.arms if as_it_is else centered_arms_for(analysis, entries),
+        as_it_is.opposite if as_it_is else opposite_arm_for(analysis, entries),
+        as_it_is.ends if as_it_is else end_weights_for(analysis, entries),
     )
 
 
@@ -126,6 +197,12 @@ def sentences_beyond(beyond: Beyond, machine: Machine, changed: bool) -> Iterato
     changed : whether that is the machine with a change of masses that is offered.
     """
     crank = machine.drive.link
+    if beyond.opposite is not None:
+        yield arm_sentence(beyond.opposite, crank)
+    if beyond.ends is not None:
+        yield from end_sentences(beyond.ends, crank)
+    if beyond.arms is not None:
+        yield centered_arms_sentence(beyond.arms)
     if beyond.cylinder is not None:
         yield from cylinder_sentences(beyond.cylinder)
     if beyond.flywheels is not None:

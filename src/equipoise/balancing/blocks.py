@@ -10,6 +10,7 @@ from equipoise.balancing.compared import FAINT, WORSE
 from equipoise.balancing.objectives import unit_of as si_unit
 from equipoise.balancing.outcome import (
     advice_blocks,
+    beside_the_aim,
     large_figures,
     nothing_told,
     sentences_beyond_masses,
@@ -96,6 +97,8 @@ def balanced_headline(found: Balanced, alone: bool = False) -> Iterator[Block]:
     yield Facts(title, lines, is_whole=True)
     if aims[1:]:
         yield Facts(say("What else was made small"), aims[1:])
+    if found.advice is not None:
+        yield from map(Text, beside_the_aim(found))
     yield from (Text(line, "worse") for line in worst_told(found))
     yield from map(Text, sentences_beyond_masses(found))
     if found.notes:

@@ -10,12 +10,14 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import product
 from math import pi
+from typing import ClassVar
 
 import numpy as np
 
 from equipoise.i18n import say, to_say
 from equipoise.quantities import display, number, percent, told
 from equipoise.results.analysis import Analysis
+from equipoise.results.declaring import Declarations, ResultOutput
 from equipoise.results.yardsticks import FigureAssessment, pusher_of
 from equipoise.signals import Array
 
@@ -53,6 +55,14 @@ class LongerLever:
     closed: float
     open: float
 
+    declared: ClassVar[Declarations] = {
+        "point": ResultOutput("pin of the cylinder that moves"),
+        "distance": ResultOutput("of it from the pivot", "length"),
+        "force": ResultOutput("largest then", "force"),
+        "closed": ResultOutput("shortest length of the cylinder then", "length"),
+        "open": ResultOutput("longest length then", "length"),
+    }
+
 
 @dataclass(frozen=True)
 class Cylinder:
@@ -81,6 +91,22 @@ class Cylinder:
     pivot: str
     lever: LongerLever | None
     is_lever_stopped: bool
+
+    declared: ClassVar[Declarations] = {
+        "push": ResultOutput("largest force that pushes", "force"),
+        "pull": ResultOutput("largest force that pulls", "force"),
+        "closed": ResultOutput("shortest length", "length"),
+        "open": ResultOutput("longest length", "length"),
+        "pressure": ResultOutput("at which the bore holds the force", "modulus"),
+        "bore": ResultOutput("of the cylinder", "length"),
+        "rod": ResultOutput("diameter of a rod that does not buckle", "length"),
+        "dead": ResultOutput("of the closed length, for piston, gland and eyes", "length"),
+        "is_buildable": ResultOutput("whether its stroke fits beside that"),
+        "is_slender": ResultOutput("whether the rod is thicker than usual, so as not to buckle"),
+        "pivot": ResultOutput("about which it turns its link; empty where there is no single one"),
+        "lever": ResultOutput("a longer one that can be built, or null", of=LongerLever.declared),
+        "is_lever_stopped": ResultOutput("whether there is none because none can be built"),
+    }
 
 
 def cylinder_for(analysis: Analysis, entries: tuple[FigureAssessment, ...]) -> Cylinder | None:

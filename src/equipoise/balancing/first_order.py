@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from math import degrees, radians
+from typing import ClassVar
 
 import numpy as np
 
@@ -19,6 +20,7 @@ from equipoise.i18n import say, to_say
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.quantities import display, percent, told
 from equipoise.results.analysis import Analysis
+from equipoise.results.declaring import Declarations, ResultOutput
 from equipoise.results.yardsticks import FigureAssessment
 from equipoise.signals import Array
 
@@ -46,6 +48,12 @@ class BalanceShafts:
     backward: float
     gain: float
 
+    declared: ClassVar[Declarations] = {
+        "forward": ResultOutput("of the shaft that turns with the crank", "unbalance"),
+        "backward": ResultOutput("of the shaft that turns against it", "unbalance"),
+        "gain": ResultOutput("share of the shaking force that is gone"),
+    }
+
 
 @dataclass(frozen=True)
 class PistonBalance:
@@ -64,6 +72,16 @@ class PistonBalance:
     half_across: float
     moment: float
     direction: float
+
+    declared: ClassVar[Declarations] = {
+        "share": ResultOutput("of what reciprocates that is balanced"),
+        "along": ResultOutput("largest shaking force along the stroke", "force"),
+        "across": ResultOutput("and across it", "force"),
+        "half_along": ResultOutput("along the stroke, with half of it balanced", "force"),
+        "half_across": ResultOutput("and across it", "force"),
+        "moment": ResultOutput("of the counterweight that this takes", "unbalance"),
+        "direction": ResultOutput("of it in the axes of the crank", "angle"),
+    }
 
     @property
     def is_half(self) -> bool:

@@ -6,16 +6,19 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from itertools import groupby
 from math import ceil, floor, log10, pi
+from typing import ClassVar
 
 import numpy as np
 
+from equipoise.errors import EquipoiseError
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.assembly.steps import size_of_links
 from equipoise.mechanism.parts.balance import MATERIALS
+from equipoise.mechanism.parts.machine import Machine
 from equipoise.quantities import number, percent, told
 from equipoise.results.analysis import Analysis
+from equipoise.results.declaring import Declarations, ResultOutput
 from equipoise.results.yardsticks import FigureAssessment
-from equipoise.signals import Array
 
 STEADY, COARSE = 0.05, 0.2
 """Share of its mean by which a crank's speed may swing: of engines and pumps, and at most, as of
@@ -51,6 +54,15 @@ class Flywheel:
     thickness: float
     mass: float
 
+    declared: ClassVar[Declarations] = {
+        "fluctuation": ResultOutput("share of the mean speed that it allows"),
+        "inertia": ResultOutput("on its shaft", "inertia"),
+        "ratio": ResultOutput("turns of its shaft in one of the crank"),
+        "diameter": ResultOutput("of a steel disc", "length"),
+        "thickness": ResultOutput("of that disc", "length"),
+        "mass": ResultOutput("of that disc", "mass"),
+    }
+
 
 @dataclass(frozen=True)
 class Flywheels:
@@ -66,25 +78,32 @@ class Flywheels:
     largest_torque: float
     power: float
 
+    declared: ClassVar[Declarations] = {
+        "choices": ResultOutput("flywheels to choose from", of=Flywheel.declared, many=True),
+        "mean_torque": ResultOutput("of the drive, with a flywheel", "torque"),
+        "largest_torque": ResultOutput("without", "torque"),
+        "power": ResultOutput("of the mean torque", "power"),
+    }
+
 
 def flywheels_for(analysis: Analysis, entries: tuple[FigureAssessment, ...]) -> Flywheels | None:
     """Flywheels that keep the crank's speed near the mean, beside what turns with it already; None
     where the torque of the drive does not swing much about its mean, or nothing is missing.
 
-    The torque of the drive at constant speed, less its mean, does the work that speeds the crank
-    up: I = (largest less smallest work) / (fluctuation w^2).  Engines, which drive, get one that
-    keeps them steady; what a motor drives another that lets the speed swing as much as presses do.
+    They are those of `running.flywheel`, of the steady state itself.  Engines, which drive, get one
+    that keeps them steady; what a motor drives another that lets the speed swing as much as presses
+    do.
     """
     machine, motion = analysis.machine, analysis.resolved.motion
     large = (one for one in entries if one.is_swing_about_mean and one.is_large)
     if (entry := next(large, None)) is None or not machine.has_crank:
         return None
     output = analysis.outputs[entry.output]
-    torque, mean = output.resolved, output.figures.mean
+    mean = output.figures.mean
     power = mean * motion.speed
     choices: list[Flywheel] = []
     for share in (STEADY,) if power < 0 else (STEADY, COARSE):
-        missing = _missing(analysis, torque - mean, share)
+        missing = _missing(machine, share)
         ratios = [one.ratio for one in choices] or RATIOS  # all on one shaft, to be compared
         each = (_disc_of(analysis, missing, share, ratio) for ratio in ratios)
         choices += [*filter(None, each)][:1] if missing else []
@@ -93,15 +112,19 @@ def flywheels_for(analysis: Analysis, entries: tuple[FigureAssessment, ...]) -> 
     return Flywheels(tuple(choices), abs(mean), output.figures.peak, abs(power))
 
 
-def _missing(analysis: Analysis, swing: Array, share: float) -> float:
-    """Inertia on the crank beside what is there, kg m2; 0 where little is missing."""
-    machine, motion = analysis.machine, analysis.resolved.motion
-    shares = 1 / len(swing) if motion.shares is None else motion.shares
-    work = np.cumsum(swing * shares) * abs(2 * np.pi * motion.turns)
-    needed = float(np.ptp(work)) / (share * motion.speed**2)
+def _missing(machine: Machine, share: float) -> float:
+    """Inertia on the crank beside what is there, kg m2; 0 where little is missing, or no flywheel
+    brings about so even a speed.
+    """
+    from equipoise.running.flywheel import size_flywheel
+
+    try:
+        missing = size_flywheel(machine, share).inertia
+    except EquipoiseError:  # the crank does not go round by itself, or the motor stalls
+        return 0.0
     motor = machine.drive.motor
     there = machine.drive.flywheel + (motor.inertia * motor.ratio**2 if motor else 0.0)
-    return needed - there if needed - there >= LITTLE * needed else 0.0
+    return missing if missing >= LITTLE * (missing + there) else 0.0
 
 
 def _disc_of(analysis: Analysis, missing: float, share: float, ratio: int) -> Flywheel | None:

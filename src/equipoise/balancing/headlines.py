@@ -59,6 +59,7 @@ class Saving:
     gain : share of the aims that is gone.  excess : of the largest aim as it was, over what is
         large of its kind.  force, moment : RMS of what shakes that is gone, N and N m; None where
         that is not the aim.  force_yardstick : against which the force is large, N.
+    steadies : whether the aim is a torque: what makes that even may not shake the machine more.
     """
 
     gain: float = 0.0
@@ -66,6 +67,7 @@ class Saving:
     force: float | None = None
     moment: float | None = None
     force_yardstick: float = 0.0
+    steadies: bool = False
 
     def moment_against(self, couple: FigureAssessment) -> float:
         """What is gone as a moment, N m, RMS: a force at the arm that the couple acts at.
@@ -115,9 +117,20 @@ class AssessedMachine:
                     yield one, entries[name]
                     break
 
-    def excess_of(self, objectives: Iterable[Objective]) -> float:
-        """The largest excess of aims; 0 where none is a headline figure."""
-        return max((entry.excess for _, entry in self.aims(objectives)), default=0.0)
+    def largest_aim(self, objectives: Iterable[Objective]) -> FigureAssessment | None:
+        """The headline figure for which objectives stand; None where it is none."""
+        entries = (entry for _, entry in self.aims(objectives))
+        return max(entries, key=lambda one: one.excess, default=None)
+
+    def figure_gain(self, objectives: Iterable[Objective], after: AssessedMachine) -> float:
+        """Share of the largest figure of objectives, in its own measure, that is gone in another
+        machine; 1 where they are none.
+        """
+        aim = self.largest_aim(objectives)
+        if aim is None or not aim.ratio:
+            return 1.0
+        new = next((one for one in after.headline if one.family == aim.family), None)
+        return 1.0 if new is None else 1 - _ratio(aim, new) / aim.ratio
 
     def saving(self, objectives: Mapping[Objective, tuple[float, float]], gain: float) -> Saving:
         """What a remedy takes away of aims, each before and after in SI units."""
@@ -129,8 +142,10 @@ class AssessedMachine:
         forces = [(value, one.yardstick) for value, one in gone if one.dimension == "force"]
         moments = [value for value, one in gone if one.dimension == "torque"]
         force, yardstick = max(forces, default=(None, 0.0))
-        excess = self.excess_of(objectives)
-        return Saving(gain, excess, force, max(moments, default=None), yardstick)
+        largest = self.largest_aim(objectives)
+        excess = 0.0 if largest is None else largest.excess
+        steadies = largest is not None and not largest.is_shaking
+        return Saving(gain, excess, force, max(moments, default=None), yardstick, steadies)
 
 
 def assessed(machine: Machine) -> AssessedMachine:
@@ -173,11 +188,19 @@ def allowed_ratio(was: FigureAssessment, saving: Saving, growth: float = GROWTH)
     """The ratio that a figure may have after a change: what it was, and a little more; or more of
     what is small and stays small.
     """
-    return float(allowed_ratios(was, np.array(saving.gain), saving.excess, growth))
+    gain = np.array(saving.gain)
+    return float(allowed_ratios(was, gain, saving.excess, growth, saving.steadies))
 
 
-def allowed_ratios(was: FigureAssessment, gain: Array, excess: float, growth: float) -> Array:
-    """The same (...) of many changes, by the share (...) that each takes off aims of an excess."""
+def allowed_ratios(
+    was: FigureAssessment, gain: Array, excess: float, growth: float, steadies: bool = False
+) -> Array:
+    """Ratios (...) that a figure may have after many changes.
+
+    gain : share (...) that each takes off the aims.  excess : of the largest of them.
+    steadies : whether they are of a torque, for which nothing that shakes may grow.
+    """
+    excess = 0.0 if steadies and was.is_shaking else excess
     beside = was.excess + OF_GAIN * gain * min(was.excess, excess)
     grown = np.maximum(growth * was.excess, beside)
     small = np.minimum(SMALL, was.excess + OF_SAVED * gain * excess)
@@ -210,18 +233,20 @@ class HeadlineLimit:
     entry: FigureAssessment | None = None
     growth: float = GROWTH
 
-    def most(self, gain: Array, excess: float) -> Array:
+    def most(self, gain: Array, excess: float, steadies: bool = False) -> Array:
         """What the figure may become (...), SI units, where shares (...) of aims of an excess are
-        gone.
+        gone; steadies : whether these are of a torque.
         """
         if self.entry is None:
             return np.full(np.shape(gain), self.at_most)
-        ratio = allowed_ratios(self.entry, gain, excess, self.growth)
+        ratio = allowed_ratios(self.entry, gain, excess, self.growth, steadies)
         return np.asarray(ratio * abs(self.entry.value) / self.entry.ratio)
 
-    def limits(self, gain: float = 0.0, excess: float = 0.0) -> Iterator[Limit]:
+    def limits(
+        self, gain: float = 0.0, excess: float = 0.0, steadies: bool = False
+    ) -> Iterator[Limit]:
         """Limits of a plan where a share of aims of an excess is gone."""
-        at_most = float(self.most(np.array(gain), excess))
+        at_most = float(self.most(np.array(gain), excess, steadies))
         yield from (Limit(one, at_most=at_most) for one in self.objectives)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from equipoise.i18n import say
 from equipoise.mechanism.parts.support import Row
 from equipoise.quantities import percent, told
 from equipoise.results.analysis import Analysis, analyze
+from equipoise.results.declaring import Declarations, ResultOutput
 from equipoise.results.yardsticks import FigureAssessment
 
 
@@ -24,6 +26,10 @@ class OppositeArm:
 
     gain: float
 
+    declared: ClassVar[Declarations] = {
+        "gain": ResultOutput("share of the shaking force that is gone"),
+    }
+
 
 @dataclass(frozen=True)
 class EndWeights:
@@ -35,6 +41,12 @@ class EndWeights:
     moment: float
     apart: float
     gain: float
+
+    declared: ClassVar[Declarations] = {
+        "moment": ResultOutput("of each weight about the shaft", "unbalance"),
+        "apart": ResultOutput("from end to end", "length"),
+        "gain": ResultOutput("share of the couple of the rows that is gone"),
+    }
 
 
 def opposite_arm_for(

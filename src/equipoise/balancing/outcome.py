@@ -5,19 +5,14 @@ what may be changed, what is large, and why not more.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from itertools import groupby
 from typing import TYPE_CHECKING
 
 from equipoise.balancing.beyond_masses import sentences_beyond
 from equipoise.balancing.headlines import Advice
 from equipoise.balancing.objectives import unit_of
-from equipoise.balancing.opposite_arms import (
-    arm_sentence,
-    end_sentences,
-    end_weights_for,
-    opposite_arm_for,
-)
-from equipoise.balancing.remedies import LEAST_GAIN
+from equipoise.balancing.remedies import LEAST_GAIN, LEAST_NET, LEAST_OF_FIGURE
 from equipoise.balancing.resonant_mounts import mount_sentences, outweighs
 from equipoise.balancing.told import (
     aims_told,
@@ -29,8 +24,8 @@ from equipoise.balancing.told import (
 )
 from equipoise.balancing.workshop import in_its_plane, phases_told, sentences
 from equipoise.i18n import say, to_say
+from equipoise.mechanism.parts.objectives import GAUGES, ROWS
 from equipoise.quantities import change, display, percent, told
-from equipoise.results.analysis import analyze
 from equipoise.results.blocks import Block, Cell, Change, Column, Table, Text
 from equipoise.results.outputs import objective_named, shown_in
 from equipoise.results.yardsticks import FigureAssessment, sentence
@@ -64,7 +59,7 @@ def helps_told(balanced: Balanced) -> Iterator[str]:
             change=change(before, after) or percent(0),
         )
     if balanced.advice is not None:
-        yield from _stays_large(balanced)
+        yield from beside_the_aim(balanced)
     yield from worse_told(balanced)
     yield from proof_told(balanced)
     if balanced.planting_kept:
@@ -171,27 +166,55 @@ def sentences_beyond_masses(found: Balanced) -> Iterator[str]:
     if found.advice is not None:
         if found.helps:
             yield from _mounts_first(found.advice)
-        yield from _other_designs(found)
         machine = found.machine if found.helps else found.original
         yield from sentences_beyond(found.advice.beyond, machine, found.helps)
         yield from _with_more_room(found)
 
 
-def _stays_large(found: Balanced) -> Iterator[str]:
-    """What is largest still after a change that was advised, and large."""
+def beside_the_aim(found: Balanced) -> Iterator[str]:
+    """Of a change that was advised: which other figures that were large fall with it, and which
+    one is the largest after it, against the yardstick that it had before.
+    """
     assert found.advice is not None
-    for one in [one for one in found.advice.after if one.is_large][:1]:
-        yield say("Large after that: {figure}.", figure=sentence(one, found.original.crank_turns))
+    pairs = [*_before_and_after(found.advice)]
+    aims = {f"{rows}{one.output}" for one in found.plan.objectives for rows in ("", ROWS)}
+    fallen = [_from_to(was, new) for was, new in pairs
+              if was.is_large and was.output not in aims and not was.output.startswith(GAUGES)
+              and abs(new.value) <= (1 - LEAST_OF_FIGURE) * abs(was.value)
+              and not was.is_limit]  # fmt: skip
+    if fallen:
+        yield say("That also brings down {figures}.", figures=listed(fallen))
+    left = [_against(new, was) for was, new in pairs]
+    largest = max(left, key=lambda one: one.excess, default=None)
+    if largest is not None and largest.is_large:
+        yield say(
+            "Large after that: {figure}.", figure=sentence(largest, found.original.crank_turns)
+        )
 
 
-def _other_designs(found: Balanced) -> Iterator[str]:
-    """What a second arm, or weights at the ends of a shaft, do on the machine as it is."""
-    analysis, crank = analyze(found.original, acceleration=0.0), found.original.drive.link
-    assert found.advice is not None
-    if (opposite := opposite_arm_for(analysis, found.advice.before)) is not None:
-        yield arm_sentence(opposite, crank)
-    if (ends := end_weights_for(analysis, found.advice.before)) is not None:
-        yield from end_sentences(ends, crank)
+def _before_and_after(advice: Advice) -> Iterator[tuple[FigureAssessment, FigureAssessment]]:
+    old = {one.family: one for one in advice.before}
+    yield from ((old.get(new.family, new), new) for new in advice.after)
+
+
+def _against(new: FigureAssessment, was: FigureAssessment) -> FigureAssessment:
+    """A figure against the yardstick that it had before the mass that is added to it."""
+    if new.is_limit or not was.value:
+        return new
+    ratio = was.ratio * abs(new.value / was.value)
+    if was.yardstick_kind == "transmission":
+        ratio = new.ratio
+    return replace(new, yardstick=was.yardstick, against=was.against, ratio=ratio)
+
+
+def _from_to(was: FigureAssessment, new: FigureAssessment) -> str:
+    shown = display(was.dimension, [was.value, new.value], was.shown_unit)
+    return say(
+        "{what}, from {before} to {after}",
+        what=was.label.said(),
+        before=shown.text(was.value, max(was.value, new.value), 3),
+        after=shown.with_unit(shown.text(new.value, digits=3)),
+    )
 
 
 def _mounts_first(advice: Advice) -> Iterator[str]:
@@ -244,23 +267,12 @@ def why_not(found: Balanced) -> str:
     if mounts is not None and not outweighs(found.gain, mounts):
         return say("other mounts bring more")
     if advice.worse:
-        figures = [_grown(pair) for pair in advice.worse[:MOST_WORSE]]
+        figures = [_from_to(*pair) for pair in advice.worse[:MOST_WORSE]]
         if more := len(advice.worse) - len(figures):
             figures.append(say("{count} more", count=more))
         return say("{figures} would grow", figures=listed(figures))
     return say(
         "{mass} would be added, too much for that", mass=told(found.added_mass, "mass", digits=3)
-    )
-
-
-def _grown(pair: tuple[FigureAssessment, FigureAssessment]) -> str:
-    was, new = pair
-    shown = display(was.dimension, [was.value, new.value], was.shown_unit)
-    return say(
-        "{what}, from {before} to {after}",
-        what=was.label.said(),
-        before=shown.text(was.value, max(was.value, new.value), 3),
-        after=shown.with_unit(shown.text(new.value, digits=3)),
     )
 
 
@@ -289,13 +301,15 @@ def _asking_for_more(found: Balanced) -> Iterator[str]:
     """What is offered, and how to ask for something else."""
     if found.tried:
         yield say(
-            "A change is offered that takes away at least {least} % of its aim, and as large a "
-            "share of it as it adds to the mass of the moving links, and that makes no headline "
+            "A change is offered that takes away at least {least} % of its aim, and {net} % more "
+            "of it than the share that it adds to the mass of the moving links, with which the "
+            "figure that is large falls in its own measure too, and that makes no headline "
             "figure worse by more than 1 %, or a tenth of the share that is gone, no force in a "
             "single joint and no component of the shaking force by more than 5 %, but for what is "
             "small beside its yardstick and stays so; and no couple that was not there, larger "
             "than what is gone.",
             least=percent(LEAST_GAIN, 0),
+            net=percent(LEAST_NET, 0),
         )
         yield say(
             "How far the room about a pivot reaches where nothing is in the way is assumed from "

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import combinations
 from math import pi
+from typing import ClassVar
 
 from equipoise.errors import EquipoiseError
 from equipoise.i18n import say, to_say
@@ -14,6 +15,7 @@ from equipoise.mechanism.outputs.spoken import joint_named
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.quantities import angle, percent, told
 from equipoise.results.analysis import Analysis, analyze
+from equipoise.results.declaring import Declarations, ResultOutput
 from equipoise.results.yardsticks import TRANSMISSION, FigureAssessment
 
 POOR = 1.1
@@ -49,6 +51,19 @@ class PoorTransmission:
     share: float
     length: float
     mended: float
+
+    declared: ClassVar[Declarations] = {
+        "joint": ResultOutput("of which the transmission angle is the worst"),
+        "transmission": ResultOutput("that angle", "angle"),
+        "crank_angle": ResultOutput("at which it is so", "angle"),
+        "limit": ResultOutput("the usual one", "angle"),
+        "force": ResultOutput("largest in that joint; null where it is not known", "force"),
+        "link": ResultOutput("of which a length mends it; empty where no single length does"),
+        "between": ResultOutput("points of that length, or null"),
+        "share": ResultOutput("by which it grows"),
+        "length": ResultOutput("that it has then", "length"),
+        "mended": ResultOutput("the worst angle then", "angle"),
+    }
 
 
 def poor_transmission_for(

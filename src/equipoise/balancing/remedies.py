@@ -34,6 +34,7 @@ from equipoise.mechanism.parts.bodies import Body, Hole, place_of
 from equipoise.mechanism.parts.body_checks import fits, outlines
 from equipoise.mechanism.parts.links import Link
 from equipoise.mechanism.parts.machine import Machine
+from equipoise.results.yardsticks import FigureAssessment
 from equipoise.signals import Array
 
 STEEL = MATERIALS["steel"]
@@ -43,9 +44,16 @@ GRID, FINE_GRID, SMALL = 10e-3, 1e-3, 20e-3
 """m: steps of radii, and those of rooms that are smaller than this."""
 MOST_ADDED = 1 / 3
 """Over the mass of the moving links of a row: what is added at most unasked."""
-LEAST_GAIN, MASS_PRICE = 0.15, 1.0
-"""Share of the aim that has to go for a change to be worth it; and that which has to go for a mass
-as large as that of the moving links, for less in proportion."""
+LEAST_GAIN, MASS_PRICE, LEAST_NET = 0.15, 1.0, 0.05
+"""Share of the aim that has to go for a change to be worth it; that which has to go for a mass
+as large as that of the moving links, for less in proportion; and what has to be left of the share
+that goes, less that price: where both are about equal, nobody makes a drawing."""
+LEAST_OF_FIGURE, PRICE_OF_FIGURE = 0.1, 2 / 3
+"""Share of the figure that is large, in the measure in which it is, that has to go, and for a mass
+as large as that of the moving links: an RMS may fall while the peak, for which bearings and screws
+are chosen, hardly does."""
+LITTLE_MASS = 0.05
+"""Over the mass of the moving links: what may be added against a figure that is not large."""
 HUB = 0.25
 """Inner radius of a sector over its outer one: inside is the shaft."""
 SAMPLES, CHUNK = 120, 128
@@ -114,16 +122,18 @@ class Comparison:
     """What shapes about the pivots of some links do to aims and headline figures.
 
     plan : whose objectives are the aims.
-    excess : of the largest aim, over what is large of its kind.
+    aim : the headline figure that the aims stand for; None where there is none.
     before : value of each aim, by its name.
+    asked : whether somebody asked for the aims, so that it need not fall.
     """
 
     machine: Machine
     plan: Balance
     rooms: tuple[Room, ...]
     watched: tuple[HeadlineLimit, ...]
-    excess: float
+    aim: FigureAssessment | None
     before: Mapping[str, float]
+    asked: bool = False
 
     @cached_property
     def problem(self) -> Problem:
@@ -175,13 +185,32 @@ class Comparison:
         together = np.hypot.reduce(whole) if squares else np.sum(whole, axis=0)
         return np.asarray(1 - together / self.problem.whole)
 
+    @cached_property
+    def _of_aim(self) -> HeadlineLimit | None:
+        """The headline figure of the aims; None of gauges, whose velocity is no signal here, and of
+        aims that are no headline figure.
+        """
+        entries = (one for one in self.watched if one.entry is not None)
+        return next((one for one in entries if one.entry == self.aim), None)
+
+    def figure_gains(self, numbers: Array) -> Array:
+        """Share (M,) of the headline figure of the aims that is gone, in its measure."""
+        figure = self._of_aim
+        if figure is None or self.asked:
+            return np.ones(len(numbers))
+        both = np.vstack([np.zeros((1, numbers.shape[1])), numbers])
+        values = np.max([self._values(one, both) for one in figure.objectives], axis=0)
+        return np.asarray(1 - values[1:] / values[0])
+
     def harmless(self, numbers: Array, gain: Array) -> Array:
         """Whether (M,) no headline figure grows by more than it may beside a gain (M,)."""
         fine = np.ones(len(numbers), bool)
+        excess = 0.0 if self.aim is None else self.aim.excess
+        steadies = self.aim is not None and not self.aim.is_shaking
         for figure in self.watched:
             left = np.flatnonzero(fine)
             most = [self._values(one, numbers[left]) for one in figure.objectives]
-            fine[left] = np.max(most, axis=0) <= figure.most(gain[left], self.excess)
+            fine[left] = np.max(most, axis=0) <= figure.most(gain[left], excess, steadies)
         return fine
 
     def _values(self, one: Objective, numbers: Array) -> Array:
@@ -209,7 +238,10 @@ class Comparison:
         gain, share = self.gains(numbers), mass[light] / (self.machine.mass or 1.0)
         score = gain - MASS_PRICE * share
         order = np.argsort(-score, kind="stable")
-        worth = order[is_worth(gain[order], share[order])]
+        figure = np.ones(len(gain))
+        fair = is_worth(gain, share)
+        figure[fair] = self.figure_gains(numbers[fair])
+        worth = order[is_worth(gain, share, figure)[order]]
         found: list[int] = []
         for some in np.array_split(worth, 1 + len(worth) // CHUNK):
             found += some[self.harmless(numbers[some], gain[some])].tolist()
@@ -219,9 +251,14 @@ class Comparison:
         return [(float(score[k]), int(light[k])) for k in best]
 
 
-def is_worth(gain: Any, mass_share: Any) -> Any:
-    """Whether the share of the aim that is gone is worth a mass over that of the moving links."""
-    return gain >= np.maximum(LEAST_GAIN, MASS_PRICE * mass_share)
+def is_worth(gain: Any, mass_share: Any, figure_gain: Any = 1.0) -> Any:
+    """Whether what is gone is worth a mass over that of the moving links.
+
+    gain : share of the aim.  figure_gain : of the figure that is large, in its own measure.
+    """
+    price = MASS_PRICE * np.maximum(mass_share, 0.0)
+    enough = gain >= np.maximum(LEAST_GAIN, np.where(price > 0, price + LEAST_NET, 0.0))
+    return enough & (figure_gain >= np.maximum(LEAST_OF_FIGURE, PRICE_OF_FIGURE * price))
 
 
 # -- counterweights --------------------------------------------------------------------------------

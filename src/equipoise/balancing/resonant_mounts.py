@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import sqrt
+from typing import ClassVar
 
 import numpy as np
 
@@ -17,13 +18,18 @@ from equipoise.i18n import say, to_say
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.mounts import Mount
 from equipoise.quantities import PER_RPM, brief, number, percent
+from equipoise.results.declaring import Declarations, ResultOutput
 from equipoise.vibration.linear import Linear
 from equipoise.vibration.resonance import Resonance, around, resonances
 
-BESIDE = sqrt(2)
-"""A resonance lies beside a speed within this ratio, where it more than doubles the motion."""
+AMPLIFIED, DOUBLED = 1.5, 2.0
+"""A resonance lies beside a speed where its mode makes so many times the motion of it that stiff
+or soft mounts alone would leave: with less, a mass that halves the force does as much.  Other
+mounts, which have to bring something anyway, may come as near as doubles it."""
 FACTORS = (1 / 2, 1 / 3, 1 / 4, 2.0, 3.0, 4.0)
 """Times the stiffness of the mounts that are tried; softer ones isolate, and come first."""
+SAME_SPEED = 0.05
+"""Share of a speed within which two resonances are one: along and across on like mounts."""
 SHARE = 0.1
 """Of the energy of a mode, from which a mount takes part in it."""
 CLEAR = 0.5
@@ -40,20 +46,30 @@ class ResonantMounts:
     """A loud resonance beside a speed at which the machine runs, and what moves it away.
 
     speed : of the crank at the resonance, rad/s.  near : the speed beside it, at which it runs.
-    avoid : speeds to be kept away from, the slower one first; None without such.
+    avoid : speeds to be kept away from, the slower one first.
     mounts : names of those that its mode strains.
     factor : times their stiffness and damping that helps; None where none of those tried does.
     gain : share of what the gauges read that is gone with that; 0 without.
-    away : rad/s, speed from which on the resonance no longer doubles the motion.
+    away : rad/s, speed from which on the resonance no longer amplifies the motion.
     """
 
     speed: float
     near: float
-    avoid: tuple[float, float] | None
+    avoid: tuple[float, float]
     mounts: tuple[str, ...]
     factor: float | None
     gain: float
     away: float
+
+    declared: ClassVar[Declarations] = {
+        "speed": ResultOutput("of the crank at the resonance", "angular speed"),
+        "near": ResultOutput("the speed beside it at which the machine runs", "angular speed"),
+        "avoid": ResultOutput("speeds to be kept away from, the slower one first", "angular speed"),
+        "mounts": ResultOutput("those that its mode strains"),
+        "factor": ResultOutput("times their stiffness and damping that helps, or null"),
+        "gain": ResultOutput("share of what the gauges read that is gone with that"),
+        "away": ResultOutput("from which on it no longer amplifies", "angular speed"),
+    }
 
 
 def outweighs(gain: float, mounts: ResonantMounts) -> bool:
@@ -76,47 +92,74 @@ def resonant_mounts_for(
     ModelError, ResponseError : nothing holds the support, or there is no steady state.
     """
     linear = Linear.of(machine)
-    near = _loudest_beside(linear, speeds)
-    if near is None:
+    beside = _loud_beside(linear, speeds)
+    if not beside:
         return None
-    resonance, speed = near
-    names = _strained(linear, resonance)
+    resonance, speed = max(beside, key=lambda pair: pair[0].share)
+    names = _strained(linear, [one for one in beside if _is_near(one[0], resonance)])
     tried = [*_tried(machine, speeds, names, gain)]
     most = max((gone for gone, _ in tried), default=0.0)
     enough = (one for one in tried if one[0] >= CLEAR * most)
     gone, factor = next(enough, (0.0, None))
-    away = abs(resonance.speed) * BESIDE
-    return ResonantMounts(
-        abs(resonance.speed), abs(speed), resonance.avoid, names, factor, gone, away
-    )
+    edges = _amplified_between(linear.modes[resonance.mode - 1].damping_ratio)
+    assert edges is not None
+    low, high = (share * resonance.speed for share in edges)
+    avoid = resonance.avoid or (low, high)
+    return ResonantMounts(abs(resonance.speed), abs(speed), avoid, names, factor, gone, abs(high))
 
 
-def _loudest_beside(linear: Linear, speeds: Sequence[float]) -> tuple[Resonance, float] | None:
-    """The loudest resonance beside any of some speeds, and the speed nearest to it."""
+def _amplified_between(damping: float, times: float = AMPLIFIED) -> tuple[float, float] | None:
+    """Ratios of a speed to that of a resonance between which it amplifies; None where it nowhere
+    does so.
+
+    A mode of the damping ratio z moves by H = 1 / |1 - r^2 + 2 i z r| of what stiffness alone
+    would leave, and by r^2 H of what mass alone would: the edges are H = a below, r^2 H = a above,
+    with a the times.
+    """
+    half, square = 1 - 2 * damping**2, times**2
+    if half**2 <= 1 - 1 / square:  # the peaks of both, 1 / sqrt(1 - half^2), do not reach a
+        return None
+    low = half - sqrt(half**2 - 1 + 1 / square)
+    # r^2 H of r is H of 1 / r.
+    return sqrt(low), 1 / sqrt(low)
+
+
+def _loud_beside(
+    linear: Linear, speeds: Sequence[float], times: float = AMPLIFIED
+) -> list[tuple[Resonance, float]]:
+    """Loud resonances beside any of some speeds, and the speed nearest to each."""
     drive = linear.body.machine.drive
     low, high = around(drive, speeds[0])
-    loud = [one for one in resonances(linear, low, high) if one.is_loud and one.avoid is not None]
+    loud = [one for one in resonances(linear, low, high) if one.is_loud]
     slowest, fastest = min(map(abs, speeds)), max(map(abs, speeds))
     beside = []
     for one in loud:
         near = speeds[int(np.argmin([abs(np.log(speed / one.speed)) for speed in speeds]))]
         inside = slowest <= abs(one.speed) <= fastest
-        if inside or 1 / BESIDE < near / one.speed < BESIDE:
+        edges = _amplified_between(linear.modes[one.mode - 1].damping_ratio, times)
+        if edges is not None and (inside or edges[0] < near / one.speed < edges[1]):
             beside.append((one, near))
-    return max(beside, key=lambda pair: pair[0].share, default=None)
+    return beside
 
 
-def _strained(linear: Linear, resonance: Resonance) -> tuple[str, ...]:
-    """Mounts that have enough of the energy of a resonance's mode, in the order of the file."""
-    shape = linear.modes[resonance.mode - 1].shape
+def _is_near(one: Resonance, other: Resonance) -> bool:
+    return abs(one.speed / other.speed - 1) < SAME_SPEED
+
+
+def _strained(linear: Linear, met: Sequence[tuple[Resonance, float]]) -> tuple[str, ...]:
+    """Mounts that have enough of the energy of any mode that is met, in the order of the file."""
     body = linear.body
-    energy = {
-        name: mount.spring * abs(body.row(mount)[body.free] @ shape) ** 2
-        for name, mount in body.support.mounts.items()
-        if linear.rest.carries(name, mount)
-    }
-    whole = sum(energy.values())
-    return tuple(name for name, one in energy.items() if one >= SHARE * whole > 0)
+    found = set[str]()
+    for resonance, _ in met:
+        shape = linear.modes[resonance.mode - 1].shape
+        energy = {
+            name: mount.spring * abs(body.row(mount)[body.free] @ shape) ** 2
+            for name, mount in body.support.mounts.items()
+            if linear.rest.carries(name, mount)
+        }
+        whole = sum(energy.values())
+        found |= {name for name, one in energy.items() if one >= SHARE * whole > 0}
+    return tuple(name for name in body.support.mounts if name in found)
 
 
 def _tried(
@@ -131,7 +174,7 @@ def _tried(
         mounts = _scaled(machine.support.mounts, names, factor)
         changed = machine.with_support(mounts=mounts)
         try:
-            if _loudest_beside(Linear.of(changed), speeds) is not None:
+            if _loud_beside(Linear.of(changed), speeds, DOUBLED):
                 continue
             gone = gain(changed)
         except (ModelError, ResponseError):
@@ -158,7 +201,7 @@ def _scaled(mounts: Mapping[str, Mount], names: Sequence[str], factor: float) ->
 
 def mount_sentences(found: ResonantMounts) -> Iterator[str]:
     """Which resonance lies beside the speed, and what moves it away."""
-    low, high = sorted(map(abs, found.avoid or (found.speed, found.speed)))
+    low, high = sorted(map(abs, found.avoid))
     yield say(
         "First move the resonance at {speed} rpm (keep away from {low} to {high} rpm), beside "
         "which it runs at {near} rpm, or run above {away} rpm.",

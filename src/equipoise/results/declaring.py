@@ -103,6 +103,8 @@ class ResultOutput:
         """The value as plain data."""
         if self.nulls:
             return _with_nulls(value)
+        if value is None:
+            return None
         if self.of is None:
             return dict(value) if isinstance(value, Mapping) else value
         if self.family:

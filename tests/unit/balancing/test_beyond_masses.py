@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import fields, replace
 from functools import cache
 from math import pi
 from pathlib import Path
@@ -21,8 +21,8 @@ from equipoise.balancing.flywheels import COARSE, STEADY, Flywheel, flywheels_fo
 from equipoise.balancing.outcome import helps_told
 from equipoise.balancing.poor_transmission import poor_transmission_for
 from equipoise.balancing.problem import Problem
-from equipoise.balancing.resonant_mounts import BESIDE
 from equipoise.results.yardsticks import assess
+from equipoise.running.flywheel import size_flywheel
 from equipoise.vibration.linear import Linear
 from equipoise.vibration.resonance import around, resonances
 
@@ -62,20 +62,39 @@ def said(name: str) -> str:
 def test_a_flywheel_stores_the_work_that_the_torque_swings_by(
     name: str, shares: tuple[float, ...], ratio: int
 ) -> None:
-    """By the speed of a crank that a steady torque drives: it swings within the share told."""
+    """By the speed of a crank that a steady torque drives: it swings within the share told.
+
+    J(q) q.^2 / 2 is what the torque at constant speed leaves beside its mean, and J(q) w^2 / 2;
+    J(q) is the torque that one rad/s^2 more takes.
+    """
     machine = found_for(name).original
     flywheels = beyond(name).flywheels
     assert flywheels is not None
     assert tuple(one.fluctuation for one in flywheels.choices) == shares
     analysis = eq.analyze(machine, 7200, acceleration=0.0)
     torque, speed = analysis.forces.drive_torque, machine.drive.speed
+    faster = eq.analyze(machine.with_drive(flywheel=0.0), 7200, acceleration=1.0)
+    linkage = faster.forces.drive_torque - torque
     for one in flywheels.choices:
         assert one.ratio == ratio
         inertia = machine.drive.flywheel + one.inertia * one.ratio**2
         gained = np.cumsum(np.mean(torque) - torque) * 2 * pi * analysis.motion.turns / len(torque)
-        speeds = np.sqrt(speed**2 + 2 * (gained - np.mean(gained)) / inertia)
-        swing = float(np.ptp(speeds) / np.mean(speeds))
-        assert 0.93 * one.fluctuation < swing < 1.01 * one.fluctuation  # rounded up to two digits
+        energy = (inertia + np.mean(linkage)) * speed**2 / 2 + gained - np.mean(gained)
+        energy += (linkage - np.mean(linkage)) * speed**2 / 2
+        speeds = np.sqrt(2 * energy / (inertia + linkage))
+        swing = float(np.ptp(speeds) * np.mean(1 / speeds))
+        assert 0.9 * one.fluctuation < swing < 1.01 * one.fluctuation  # rounded up to two digits
+
+
+def test_a_flywheel_is_that_of_run() -> None:
+    """Beside a linkage whose own inertia counts: 0.0285 kg m2, not the 0.032 of a torque alone."""
+    machine = found_for("four-stroke-engine").original
+    flywheels = beyond("four-stroke-engine").flywheels
+    assert flywheels is not None
+    (one,) = flywheels.choices
+    exact = size_flywheel(machine, STEADY)
+    assert exact.inertia <= one.inertia < 1.1 * exact.inertia
+    assert one.inertia < 0.95 * exact.estimate
 
 
 def test_a_flywheel_is_a_disc_that_can_be_turned_and_run() -> None:
@@ -98,8 +117,7 @@ def test_engines_are_told_their_flywheel_though_the_force_is_larger() -> None:
     """The torque of the four-stroke engine swings by 16 times its mean; its force is first."""
     flywheels = beyond("four-stroke-engine").flywheels
     assert flywheels is not None
-    assert flywheels.choices[0].inertia == pytest.approx(0.03, rel=0.1)
-    assert "Flywheel on crank: 0.032 kg m²" in said("four-stroke-engine")
+    assert "Flywheel on crank: 0.029 kg m²" in said("four-stroke-engine")
 
 
 def test_a_press_is_told_what_its_motor_gives() -> None:
@@ -197,7 +215,6 @@ def test_a_resonance_beside_the_speed_is_moved_first() -> None:
     found, mounts = found_for("sieve"), beyond("sieve").mounts
     assert not found.helps and mounts is not None
     assert mounts.speed / RPM == pytest.approx(255, abs=1)
-    assert mounts.avoid is not None
     assert np.array(mounts.avoid) / RPM == pytest.approx([221, 277.5], abs=0.5)
     assert mounts.mounts == ("front_along", "back_along")
     assert said("sieve").index("First move") < said("sieve").index("Leave the masses")
@@ -225,7 +242,7 @@ def test_other_mounts_bring_what_is_told() -> None:
     assert 1 - np.mean(left) == pytest.approx(mounts.gain, rel=1e-3)
     for one in resonances(Linear.of(changed), *around(machine.drive, machine.drive.speed)):
         if one.is_loud and one.avoid is not None:
-            assert not 280 * RPM / BESIDE < abs(one.speed) < 360 * RPM * BESIDE
+            assert not 280 * RPM / np.sqrt(2) < abs(one.speed) < 360 * RPM * np.sqrt(2)
 
 
 def test_a_machine_far_from_its_resonances_keeps_its_mounts() -> None:
@@ -239,6 +256,22 @@ def test_where_phases_of_rows_bring_more_no_mounts_are_named() -> None:
     found = found_for("walking-transplanter")
     assert found.helps and found.gain > 0.95
     assert beyond("walking-transplanter").mounts is None
+
+
+def test_a_damped_resonance_that_amplifies_by_half_is_named_beside_a_counterweight() -> None:
+    """411 rpm with a damping of 0.2152, run at 300 rpm: 1.8 times what stiff mounts would leave;
+    along and across alike.  Its edges by the equation of a mass on a spring and a damper.
+    """
+    found, mounts = found_for("exudyn-slider-crank"), beyond("exudyn-slider-crank").mounts
+    assert found.helps and mounts is not None
+    assert mounts.mounts == ("along", "across") and mounts.factor == 2.0
+    assert "First move the resonance at 411 rpm" in said("exudyn-slider-crank")
+    mode = Linear.of(found.original).modes[0]
+    for speed, order in ((mounts.avoid[0], 0), (mounts.avoid[1], 2)):
+        ratio = speed / mode.natural_frequency
+        moved = 1 / abs(1 - ratio**2 + 2j * mode.damping_ratio * ratio)
+        assert ratio**order * moved == pytest.approx(1.5, rel=1e-9)
+    assert mounts.away == pytest.approx(mounts.avoid[1])
 
 
 # -- what is unbalanced ----------------------------------------------------------------------------
@@ -379,3 +412,52 @@ def test_values_of_aims_are_those_of_a_response() -> None:
     read = eq.respond(machine, first.speeds[0]).gauges[first.output.removeprefix("gauges.")]
     value = float(read.displacement.vibration_rms)
     assert Problem.value_of(machine, first) == pytest.approx(value, rel=1e-6)
+
+
+# -- arms ------------------------------------------------------------------------------------------
+
+
+def test_arms_that_hang_on_one_side_are_named_where_they_load_a_joint() -> None:
+    """Both arms of a rotary transplanter, at a hundredth of its speed and at its own: their weight
+    and their inertia on one side of the pins are a third of the force in B; not the idlers.
+    """
+    machine, arms = found_for("rotary-transplanter").original, beyond("rotary-transplanter").arms
+    assert arms is not None and arms.links == ("arm 1", "arm 2") and arms.pins == ("C", "E")
+    assert arms.distance == pytest.approx(np.hypot(0.038, 0.004))
+    before = eq.analyze(machine, 720, acceleration=0.0).summary["joints.B"].peak
+    for name in arms.links:
+        link = machine.links[name]
+        opposite = tuple(-one for one in link.center_of_mass)
+        twice = link.with_added(link.mass, opposite, 0.0)  # as heavy, with its mass on the pin
+        about = link.inertia * twice.mass / link.mass
+        machine = machine.with_link(name, mass=link.mass, center_of_mass=twice.center_of_mass,
+                                    inertia=about * link.mass / twice.mass)  # fmt: skip
+    after = eq.analyze(machine, 720, acceleration=0.0).summary["joints.B"].peak
+    assert 1 - after / before == pytest.approx(arms.gain, abs=2e-3)
+    assert "With the centre of mass of arm 1 and arm 2 on C and E" in said("rotary-transplanter")
+
+
+def test_a_machine_without_such_arms_is_not_told_of_any() -> None:
+    for name in ("hydraulic-loader", "yamashita-1", "planetary-planting-arm"):
+        assert beyond(name).arms is None
+
+
+@pytest.mark.parametrize(
+    ("name", "key"),
+    [
+        ("planetary-planting-arm", "opposite"),
+        ("inline-3-rows", "ends"),
+        ("rotary-transplanter", "arms"),
+        ("hydraulic-loader", "cylinder"),
+        ("quick-return", "flywheels"),
+        ("sieve", "mounts"),
+    ],
+)
+def test_every_answer_is_in_the_machine_readable_output(name: str, key: str) -> None:
+    """As it is declared, with nothing else and nothing missing; null elsewhere."""
+    answers = found_for(name).to_dict()
+    assert set(answers[key]) == set(Beyond.declared[key].of or {})
+    assert answers[key].get("gain", 1.0) > 0.0
+    others = found_for("straw-walker").to_dict()
+    assert key in others and others[key] is None
+    assert {*Beyond.declared} == {field.name for field in fields(Beyond)}
