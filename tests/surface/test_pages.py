@@ -17,9 +17,8 @@ from equipoise.balancing import (
     pareto,
     phase_bound,
     phase_grid,
+    policy,
     problem,
-    remedies,
-    room,
 )
 from equipoise.cli import COMMANDS, app, reports
 from equipoise.design import lifts
@@ -153,10 +152,13 @@ CLAIMS = {
         f"{reports.SVG_FRAMES} steps a turn",
     ],
     "balancing.md": [
-        f"at least {100 * remedies.LEAST_GAIN:.0f} % of its aim",
+        f"at least {100 * policy.LEAST_GAIN:.0f} % of its aim",
+        f"{100 * policy.LEAST_NET_GAIN:.0f} % more of it than the share that it adds",
+        f"by {100 * policy.LEAST_PEAK_GAIN:.0f} %, and by two thirds of the share of mass",
+        f"makes at least {policy.AMPLIFIED:g} times the motion",
         (
-            f"no thicker than {room.THICK:g} of the largest radius that is looked at, "
-            f"{1e3 * room.THICKEST:.0f} mm, and"
+            f"no thicker than {policy.THICKNESS_OF_REACH:g} of the largest radius that is looked "
+            f"at, {1e3 * policy.THICKEST_PLATE:.0f} mm, and"
         ),
         f"meet, {branch_and_bound.MOST_NODES} at the most",
         f"{geared.GRID} ratios, then",

@@ -19,7 +19,6 @@ import numpy as np
 from equipoise.balancing.balanced import Balanced, MoreRoom, Price
 from equipoise.balancing.beyond_masses import Beyond, beyond_masses
 from equipoise.balancing.headlines import (
-    NEAR_ZERO,
     Advice,
     AssessedMachine,
     HeadlineLimit,
@@ -34,12 +33,19 @@ from equipoise.balancing.optimisation import balance, in_phases
 from equipoise.balancing.phase_bound import Proof
 from equipoise.balancing.phase_search import PhaseSearch
 from equipoise.balancing.phasing import phasing_of
-from equipoise.balancing.problem import Problem
-from equipoise.balancing.remedies import (
+from equipoise.balancing.policy import (
+    AIMED_FROM,
+    ALL_BUT_GONE,
+    COUPLE_FROM_NOTHING,
+    ENOUGH_OF_BEST,
     LEAST_GAIN,
     LITTLE_MASS,
     MASS_PRICE,
-    MOST_ADDED,
+    MOST_ADDED_MASS,
+    NOTICED,
+)
+from equipoise.balancing.problem import Problem
+from equipoise.balancing.remedies import (
     Comparison,
     added_sector,
     best_cuts,
@@ -72,15 +78,6 @@ Solve = Callable[[Machine, Balance], Balanced]
 Remedy = tuple[Machine, tuple[Change, ...], Balance]
 """A changed machine, what is changed, and the plan that frees it."""
 
-CLEAR = 0.5
-"""Share of the most that any remedy scores from which a simpler one is offered."""
-AIMED = 0.5
-"""Share of its yardstick from which something is tried against a figure that shakes: what costs
-little is worth building there too."""
-ENOUGH = 0.9
-"""Share of an aim that a change takes away from which nobody changes the mounts as well."""
-NOTICED = 0.01
-"""Share of an aim from which a change of it is told."""
 LEVEL = 1e-4
 """Of the couples that phases make between the rows: what is left of them, they may keep."""
 ROUNDING = 1e-9
@@ -167,7 +164,7 @@ class _Adviser:
             tried += found
             if good := [one for one in found if one.helps]:
                 most = max(map(_score, good))
-                best = next(one for one in good if _score(one) >= CLEAR * most)
+                best = next(one for one in good if _score(one) >= ENOUGH_OF_BEST * most)
                 return self.with_more_room(replace(best, tried=tuple(tried)))
         if not tried:
             return self.unchanged()
@@ -215,7 +212,7 @@ class _Adviser:
         """What is tried, the simplest first; nothing more where half of the aim is gone."""
         for one in self._each(plan):
             yield one
-            if one.helps and one.gain >= CLEAR:
+            if one.helps and one.gain >= ENOUGH_OF_BEST:
                 return  # of which nothing brings twice as much
 
     def _each(self, plan: Balance) -> Iterator[Balanced]:
@@ -271,7 +268,7 @@ class _Adviser:
             return self.own.added_mass
         aim = self.before.largest_aim(plan.objectives)
         much = bool(self.own.objectives) or aim is None or aim.is_large
-        return (MOST_ADDED if much else LITTLE_MASS) * self.machine.mass
+        return (MOST_ADDED_MASS if much else LITTLE_MASS) * self.machine.mass
 
     def counterweights(self, plan: Balance, rooms: tuple[Room, ...]) -> Iterator[Remedy]:
         """Sectors in some rooms, the best first."""
@@ -353,7 +350,7 @@ class _Adviser:
         offered, before = enough and not worse, self.before.headline
         beyond = self.beyond
         if offered:  # what else helps is for the machine with the remedy
-            mounts = self.mounts if found.gain < ENOUGH else None
+            mounts = self.mounts if found.gain < ALL_BUT_GONE else None
             beyond = beyond_masses(after.analysis, after.headline, mounts, self.beyond)
         return replace(found, advice=Advice(before, after.headline, worse, offered, beyond))
 
@@ -415,7 +412,7 @@ def _twists_of(found: Balanced) -> tuple[Limit, ...]:
     made = (
         (Objective(new.output.removeprefix(ROWS)), new)
         for was, new in found.advice.worse
-        if abs(was.value) <= NEAR_ZERO * abs(new.value)
+        if abs(was.value) <= COUPLE_FROM_NOTHING * abs(new.value)
     )
     return tuple(
         Limit(couple, at_most=LEVEL * abs(new.value))
@@ -426,7 +423,7 @@ def _twists_of(found: Balanced) -> tuple[Limit, ...]:
 
 def _is_aim(one: FigureAssessment) -> bool:
     """Whether masses are tried against it: what shakes, and a torque, which weights may steady."""
-    return one.ratio >= AIMED if one.is_shaking else one.is_large and one.is_torque
+    return one.ratio >= AIMED_FROM if one.is_shaking else one.is_large and one.is_torque
 
 
 def _score(found: Balanced) -> float:

@@ -19,8 +19,8 @@ from equipoise.balancing.centered_arms import (
 )
 from equipoise.balancing.cylinder_sizes import Cylinder, cylinder_for, cylinder_sentences
 from equipoise.balancing.first_order import (
-    WORTHWHILE,
     BalanceShafts,
+    FirstOrder,
     PistonBalance,
     balance_shafts_for,
     piston_balance_for,
@@ -35,6 +35,10 @@ from equipoise.balancing.opposite_arms import (
     end_sentences,
     end_weights_for,
     opposite_arm_for,
+)
+from equipoise.balancing.policy import (
+    SLOW_CRANK,
+    WORTH_NAMING,
 )
 from equipoise.balancing.poor_transmission import (
     PoorTransmission,
@@ -155,10 +159,6 @@ def beyond_masses(
     )
 
 
-SLOW = 0.5
-"""Acceleration of the crank's end over gravity up to which a weight on it acts by being heavy."""
-
-
 def counterbalance_for(
     analysis: Analysis, entries: tuple[FigureAssessment, ...]
 ) -> Counterbalance | None:
@@ -173,16 +173,14 @@ def counterbalance_for(
     gravity = -machine.gravity[1]
     points = machine.links[machine.drive.link].points
     throw = max(abs(complex(*point)) for point in points.values())
-    if torque is None or not machine.has_crank or motion.speed**2 * throw > SLOW * gravity:
+    if torque is None or not machine.has_crank or motion.speed**2 * throw > SLOW_CRANK * gravity:
         return None
     values = analysis.outputs[torque.output].resolved
     angle = motion.links[machine.drive.link].angle
-    swing = values - motion.mean(values)
-    first = 2 * motion.mean(swing * np.exp(-1j * angle))
-    rest = swing - (first * np.exp(1j * angle)).real
-    gain = 1 - float(np.sqrt(motion.mean(rest**2) / motion.mean(swing**2)))
-    moment = -complex(first) / gravity
-    if gain < WORTHWHILE or abs(moment) > machine.mass * throw:
+    first = FirstOrder(motion, values - motion.mean(values), angle)
+    gain = first.gain(first.without())
+    moment = -2 * first.ahead / gravity  # of a real signal both parts are conjugate
+    if gain < WORTH_NAMING or abs(moment) > machine.mass * throw:
         return None
     return Counterbalance(abs(moment), float(np.angle(moment)), gain)
 

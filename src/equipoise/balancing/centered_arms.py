@@ -9,8 +9,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from equipoise.balancing.first_order import WORTHWHILE
-from equipoise.balancing.told import listed
+from equipoise.balancing.policy import (
+    WORTH_NAMING,
+)
 from equipoise.errors import EquipoiseError
 from equipoise.i18n import say
 from equipoise.mechanism.assembly.steps import size_of_links
@@ -75,7 +76,7 @@ def centered_arms_for(
     except EquipoiseError:  # a joint that the weight of an arm held
         return None
     values = [abs(one.value) for one in after if one.family == largest.family]
-    if not values or (gain := 1 - values[0] / abs(largest.value)) < WORTHWHILE:
+    if not values or (gain := 1 - values[0] / abs(largest.value)) < WORTH_NAMING:
         return None
     label = largest.label.said()
     links, pins, distance = tuple(arms), tuple(arms.values()), max(distances, default=0.0)
@@ -113,8 +114,8 @@ def centered_arms_sentence(found: CenteredArms) -> str:
         "With the centre of mass of {links} on {pins}, from which it is {distance} now, {what}, "
         "would go from {before} to {after} ({gain} % less): take mass off beyond the pin, or lay "
         "some behind it.",
-        links=listed(found.links),
-        pins=listed(found.pins),
+        links=say(", ").join(found.links),
+        pins=say(", ").join(found.pins),
         distance=told(found.distance, "length", digits=3),
         what=found.label,
         before=shown.with_unit(shown.text(found.before, digits=3)),

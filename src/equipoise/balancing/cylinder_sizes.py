@@ -14,6 +14,15 @@ from typing import ClassVar
 
 import numpy as np
 
+from equipoise.balancing.policy import (
+    BUCKLING_SAFETY,
+    CYLINDER_PRESSURE,
+    DEAD_BORES,
+    LEAST_GAIN,
+    LONGER_LEVERS,
+    THICK_ROD,
+    THIN_ROD,
+)
 from equipoise.i18n import say, to_say
 from equipoise.quantities import display, number, percent, told
 from equipoise.results.analysis import Analysis
@@ -21,24 +30,16 @@ from equipoise.results.declaring import Declarations, ResultOutput
 from equipoise.results.yardsticks import FigureAssessment, pusher_of
 from equipoise.signals import Array
 
-BAR = 1e5
-"""Pa."""
-PRESSURE = 200 * BAR
-"""Pa, at which a bore is sized: 200 bar, as of tractors and small hydraulic units."""
 STOCK = (8, 10, 12, 16, 20, 25, 32, 40, 50, 63, 80, 100, 125, 140, 160, 180, 200, 220, 250, 280,
          320, 360, 400, 450, 500)  # fmt: skip
 """Bores, mm, of ISO 3320; above 125 of its second choice, too."""
 RODS = (4, 5, 6, 8, 10, 12, 14, 16, 18, 20, 22, 25, 28, 32, 36, 40, 45, 50, 56, 63, 70, 80, 90,
         100, 110, 125, 140, 160, 180, 200, 220, 250, 280, 320, 360)  # fmt: skip
 """Diameters of rods, mm, of ISO 3320."""
-THIN_ROD, THICK_ROD = 0.45, 0.75
-"""Rod over bore: of the usual thin one, and the most that leaves an area to pull with."""
-MODULUS, SAFETY = 210e9, 3.5
-"""Pa, of steel; over the load at which a rod with pins at both ends buckles."""
-DEAD = 3.0
-"""Bores that piston, gland and both eyes take of the closed length."""
-LEVERS, LESS = (1.1, 1.2, 1.3), 0.15
-"""Times the distance of a pin from the pivot that are tried; share of the force that has to go."""
+BAR = 1e5
+"""Pa."""
+MODULUS = 210e9
+"""Pa, of steel."""
 
 
 @dataclass(frozen=True)
@@ -133,7 +134,8 @@ def cylinder_for(analysis: Analysis, entries: tuple[FigureAssessment, ...]) -> C
     built = [one for one, fits in levers if fits]
     return Cylinder(
         push=float(max(np.max(force), 0.0)), pull=float(max(-np.min(force), 0.0)),
-        closed=closed, open=most, pressure=PRESSURE, bore=bore, rod=rod, dead=DEAD * bore,
+        closed=closed, open=most, pressure=CYLINDER_PRESSURE, bore=bore, rod=rod,
+        dead=DEAD_BORES * bore,
         is_buildable=_fits(closed, most, bore), is_slender=rod > _usual_rod(bore),
         pivot=pivot, lever=min(built, key=lambda one: one.force, default=None),
         is_lever_stopped=bool(levers) and not built,
@@ -142,7 +144,7 @@ def cylinder_for(analysis: Analysis, entries: tuple[FigureAssessment, ...]) -> C
 
 def _fits(closed: float, most: float, bore: float) -> bool:
     """Whether a cylinder has room for its stroke while it is closed."""
-    return most - closed + DEAD * bore <= closed * (1 + 1e-9)
+    return most - closed + DEAD_BORES * bore <= closed * (1 + 1e-9)
 
 
 def _usual_rod(bore: float) -> float:
@@ -156,12 +158,12 @@ def _sized(force: Array, length: Array) -> tuple[float, float] | None:
     on; that the tube is stiffer is left to the safety.
     """
     pushed = float(np.max(np.maximum(force, 0.0) * length**2))
-    stiff = (64 * SAFETY * pushed / (pi**3 * MODULUS)) ** 0.25
+    stiff = (64 * BUCKLING_SAFETY * pushed / (pi**3 * MODULUS)) ** 0.25
     for bore in (size / 1e3 for size in STOCK):
         rod = next((d / 1e3 for d in RODS if d / 1e3 >= max(stiff, THIN_ROD * bore)), None)
         if rod is None or rod > THICK_ROD * bore:
             continue
-        push, pull = (PRESSURE * pi / 4 * area for area in (bore**2, bore**2 - rod**2))
+        push, pull = (CYLINDER_PRESSURE * pi / 4 * area for area in (bore**2, bore**2 - rod**2))
         if np.max(force) <= push and -np.min(force) <= pull:
             return bore, rod
     return None
@@ -180,12 +182,12 @@ def _longer(
     pins = [points[at].place - points[pivot].place for at in ends]
     before = float(np.max(np.abs(force)))
     moment = force * _arm(*pins)
-    for k, more in product(range(2), LEVERS):
+    for k, more in product(range(2), LONGER_LEVERS):
         moved = [pin * (more if j == k else 1.0) for j, pin in enumerate(pins)]
         length = np.abs(moved[1] - moved[0])
         needed = moment / _arm(*moved)
         most, sizes = float(np.max(np.abs(needed))), _sized(needed, length)
-        if sizes is not None and most <= (1 - LESS) * before:
+        if sizes is not None and most <= (1 - LEAST_GAIN) * before:
             low, high = float(np.min(length)), float(np.max(length))
             distance = float(np.max(np.abs(moved[k])))
             yield LongerLever(ends[k], distance, most, low, high), _fits(low, high, sizes[0])

@@ -15,8 +15,15 @@ from typing import ClassVar
 
 import numpy as np
 
+from equipoise.balancing.policy import (
+    ABOUT_HALF,
+    PISTON_SHARE,
+    WORTH_NAMING,
+    WORTH_SHAFTS,
+)
 from equipoise.balancing.workshop import direction_named
 from equipoise.i18n import say, to_say
+from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.quantities import display, percent, told
 from equipoise.results.analysis import Analysis
@@ -24,16 +31,8 @@ from equipoise.results.declaring import Declarations, ResultOutput
 from equipoise.results.yardsticks import FigureAssessment
 from equipoise.signals import Array
 
-SHAKES_SELF = 8.0
-"""Times its yardstick from which a force is worth two more shafts."""
-WORTHWHILE = 0.3
-"""Share of its aim from which what is not drawn here is named."""
-PISTON = 0.5
-"""Share of the shaking force (RMS) from which what turns against the crank is that of a piston."""
 CRANK_ROD_PISTON = 3
 """Links of a machine of which a counterweight on the crank balances the piston."""
-SAME = 0.1
-"""Of what reciprocates, by which a share of it is taken for half."""
 
 
 @dataclass(frozen=True)
@@ -86,34 +85,54 @@ class PistonBalance:
     @property
     def is_half(self) -> bool:
         """Whether half of what reciprocates is balanced already."""
-        return abs(self.share - 0.5) < SAME
+        return abs(self.share - 0.5) < ABOUT_HALF
 
 
 @dataclass(frozen=True, eq=False)
-class _FirstOrder:
-    """The shaking force (N,) of a machine with a crank, and its parts of order 1."""
+class FirstOrder:
+    """A complex signal of a machine with a crank, and its parts of order 1.
 
-    analysis: Analysis
+    whole : (N,), at the angles of the motion.  angle : (N,) rad, with which order 1 turns.
+    """
 
-    @cached_property
-    def whole(self) -> Array:
-        x, y = (self.analysis.outputs[f"shaking_force.{axis}"].resolved for axis in "xy")
-        return np.asarray(x + 1j * y)
+    motion: Motion
+    whole: Array
+    angle: Array
+
+    @classmethod
+    def of_shaking_force(cls, analysis: Analysis) -> FirstOrder:
+        """Of the shaking force, x + iy, N, by the angle that the crank has turned."""
+        x, y = (analysis.outputs[f"shaking_force.{axis}"].resolved for axis in "xy")
+        motion = analysis.resolved.motion
+        return cls(motion, np.asarray(x + 1j * y), np.asarray(motion.crank_angle))
 
     @cached_property
     def turned(self) -> Array:
-        return np.asarray(np.exp(1j * self.analysis.resolved.motion.crank_angle))
+        """e^(ia), (N,)."""
+        return np.asarray(np.exp(1j * self.angle))
 
     @cached_property
     def ahead(self) -> complex:
-        return complex(self.analysis.resolved.motion.mean(self.whole / self.turned))
+        """A of A e^(ia): what turns with the crank."""
+        return complex(self.motion.mean(self.whole / self.turned))
 
     @cached_property
     def against(self) -> complex:
-        return complex(self.analysis.resolved.motion.mean(self.whole * self.turned))
+        """B of B e^(-ia): what turns against it."""
+        return complex(self.motion.mean(self.whole * self.turned))
 
-    def rms(self, force: Array) -> float:
-        return float(np.sqrt(self.analysis.resolved.motion.mean(np.abs(force) ** 2)))
+    def without(self, ahead: bool = True, against: bool = True) -> Array:
+        """The rest (N,) without one of these or both."""
+        turned = ahead * self.ahead * self.turned + against * self.against / self.turned
+        return np.asarray(self.whole - turned)
+
+    def rms(self, signal: Array) -> float:
+        """RMS over a cycle."""
+        return float(np.sqrt(self.motion.mean(np.abs(signal) ** 2)))
+
+    def gain(self, rest: Array) -> float:
+        """Share of the RMS that is gone where a rest (N,) is left."""
+        return 1 - self.rms(rest) / self.rms(self.whole)
 
 
 def balance_shafts_for(
@@ -125,12 +144,11 @@ def balance_shafts_for(
     The unbalances are |A| / w^2 and |B| / w^2.
     """
     force = next((one for one in entries if one.output == "shaking_force"), None)
-    if force is None or not analysis.machine.has_crank or force.ratio < SHAKES_SELF:
+    if force is None or not analysis.machine.has_crank or force.ratio < WORTH_SHAFTS:
         return None
-    first = _FirstOrder(analysis)
-    rest = first.whole - first.ahead * first.turned - first.against / first.turned
-    gain = 1 - first.rms(rest) / first.rms(first.whole)
-    if gain < WORTHWHILE:
+    first = FirstOrder.of_shaking_force(analysis)
+    gain = first.gain(first.without())
+    if gain < WORTH_NAMING:
         return None
     square = analysis.resolved.motion.speed**2
     return BalanceShafts(abs(first.ahead) / square, abs(first.against) / square, gain)
@@ -151,13 +169,13 @@ def piston_balance_for(
     large = force is not None and force.is_large
     if not large or direction is None or not machine.has_crank or len(machine.rows) > 1:
         return None
-    first = _FirstOrder(analysis)
-    if np.sqrt(2) * abs(first.against) < PISTON * first.rms(first.whole):
+    first = FirstOrder.of_shaking_force(analysis)
+    if np.sqrt(2) * abs(first.against) < PISTON_SHARE * first.rms(first.whole):
         return None
     way = np.exp(1j * direction)
     mirrored = way**2 * np.conj(first.against)
     share = (1 - (first.ahead / mirrored).real) / 2
-    half = first.whole - first.ahead * first.turned
+    half = first.without(against=False)
     along, across = _peaks(first.whole / way)
     half_along, half_across = _peaks(half / way)
     crank = analysis.resolved.motion.links[machine.drive.link].angle[0]

@@ -10,6 +10,16 @@ from typing import ClassVar
 
 import numpy as np
 
+from equipoise.balancing.policy import (
+    COARSE,
+    HEAVIEST_ASIDE,
+    HEAVIEST_FLYWHEEL,
+    MISSED_INERTIA,
+    RIM_SPEED,
+    SHAFT_RATIOS,
+    STEADY,
+    THICKEST_DISC,
+)
 from equipoise.errors import EquipoiseError
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.assembly.steps import size_of_links
@@ -20,21 +30,10 @@ from equipoise.results.analysis import Analysis
 from equipoise.results.declaring import Declarations, ResultOutput
 from equipoise.results.yardsticks import FigureAssessment
 
-STEADY, COARSE = 0.05, 0.2
-"""Share of its mean by which a crank's speed may swing: of engines and pumps, and at most, as of
-presses and crushers (Norton, Design of Machinery, table 11-4)."""
-DIGITS, LITTLE = 2, 0.1
-"""Of a flywheel's inertia; share of it that nobody misses."""
-RATIOS = (1, 2, 3, 4, 5, 6, 8, 10)
-"""Turns of a flywheel's shaft in one of the crank: of a crank that turns slowly, as of a press, it
-sits on the shaft of the motor or of a belt, where the square of the ratio less will do."""
-RIM_SPEED = 40.0
-"""m/s, that a disc's edge may have: usual for cast iron, safe for steel."""
-GRID, THICKEST = 10e-3, 1 / 3
-"""m, to which a diameter is rounded down; most thickness over it."""
-HEAVIEST, HEAVIEST_ASIDE = 2.0, 1.0
-"""Mass of a flywheel over that of the moving links beyond which a faster shaft is looked at: on the
-crank, and on a shaft that the machine may have for it."""
+DIGITS = 2
+"""Of a flywheel's inertia."""
+GRID = 10e-3
+"""m, to which a diameter is rounded down."""
 STEEL = MATERIALS["steel"]
 
 
@@ -104,7 +103,7 @@ def flywheels_for(analysis: Analysis, entries: tuple[FigureAssessment, ...]) -> 
     choices: list[Flywheel] = []
     for share in (STEADY,) if power < 0 else (STEADY, COARSE):
         missing = _missing(machine, share)
-        ratios = [one.ratio for one in choices] or RATIOS  # all on one shaft, to be compared
+        ratios = [one.ratio for one in choices] or SHAFT_RATIOS  # all on one shaft, to be compared
         each = (_disc_of(analysis, missing, share, ratio) for ratio in ratios)
         choices += [*filter(None, each)][:1] if missing else []
     if not choices:
@@ -124,7 +123,7 @@ def _missing(machine: Machine, share: float) -> float:
         return 0.0
     motor = machine.drive.motor
     there = machine.drive.flywheel + (motor.inertia * motor.ratio**2 if motor else 0.0)
-    return missing if missing >= LITTLE * (missing + there) else 0.0
+    return missing if missing >= MISSED_INERTIA * (missing + there) else 0.0
 
 
 def _disc_of(analysis: Analysis, missing: float, share: float, ratio: int) -> Flywheel | None:
@@ -136,8 +135,8 @@ def _disc_of(analysis: Analysis, missing: float, share: float, ratio: int) -> Fl
     inertia = _rounded_up(missing / ratio**2)
     mass = 8 * inertia / diameter**2
     thickness = ceil(1e3 * mass / (STEEL * pi / 4 * diameter**2)) / 1e3
-    most = (HEAVIEST if ratio == 1 else HEAVIEST_ASIDE) * machine.mass
-    if mass > most or thickness > THICKEST * diameter:
+    most = (HEAVIEST_FLYWHEEL if ratio == 1 else HEAVIEST_ASIDE) * machine.mass
+    if mass > most or thickness > THICKEST_DISC * diameter:
         return None
     return Flywheel(share, inertia, ratio, diameter, thickness, mass)
 

@@ -8,6 +8,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from equipoise.balancing.beyond_masses import Beyond
+from equipoise.balancing.policy import (
+    COUPLE_FROM_NOTHING,
+    GROWTH_OF_GAIN,
+    GROWTH_OF_SAVED,
+    HEADLINE_GROWTH,
+    PART_GROWTH,
+    SMALL_FIGURE,
+    TRIFLE,
+)
 from equipoise.balancing.problem import Problem
 from equipoise.errors import ModelError, ResponseError
 from equipoise.mechanism.outputs.declared import declared
@@ -19,16 +28,6 @@ from equipoise.results.yardsticks import FigureAssessment, assess, assess_parts
 from equipoise.signals import Array
 from equipoise.vibration.forced import respond
 
-GROWTH, GROWTH_OF_PART, TRIFLE = 1.01, 1.05, 0.1
-"""Times its value before, a headline figure may be after, and that of a single joint or component,
-of which the life of a bearing falls by a seventh; share of its yardstick up to which a figure may
-grow."""
-OF_GAIN, SMALL, OF_SAVED = 0.1, 0.75, 0.5
-"""Growth of a figure that is as good as nothing beside the share of the aim that is gone, each over
-what is large of its kind; what stays so small, over that too, may grow more; by that part of what
-is saved."""
-NEAR_ZERO = 0.1
-"""Of a couple after a change: what it was less before, it was as good as nothing."""
 Assessment = tuple[FigureAssessment, ...]
 Pair = tuple[FigureAssessment, FigureAssessment]
 Pairs = tuple[Pair, ...]
@@ -105,7 +104,7 @@ class AssessedMachine:
         for new in after.headline:
             if new.is_shaking and new.dimension == "torque":
                 was, made = (_rms(one.analysis, new.output) for one in (self, after))
-                if was <= NEAR_ZERO * made and made - was > saving.moment_against(new):
+                if was <= COUPLE_FROM_NOTHING * made and made - was > saving.moment_against(new):
                     yield _before(self.headline, new), new
 
     def aims(self, objectives: Iterable[Objective]) -> Iterator[tuple[Objective, FigureAssessment]]:
@@ -180,11 +179,11 @@ def worse_parts(before: Assessment, after: Assessment, saving: Saving) -> Iterat
     old = {one.figure: one for one in before}
     for new in after:
         was = old.get(new.figure)
-        if was is not None and _ratio(was, new) > allowed_ratio(was, saving, GROWTH_OF_PART):
+        if was is not None and _ratio(was, new) > allowed_ratio(was, saving, PART_GROWTH):
             yield was, new
 
 
-def allowed_ratio(was: FigureAssessment, saving: Saving, growth: float = GROWTH) -> float:
+def allowed_ratio(was: FigureAssessment, saving: Saving, growth: float = HEADLINE_GROWTH) -> float:
     """The ratio that a figure may have after a change: what it was, and a little more; or more of
     what is small and stays small.
     """
@@ -201,9 +200,9 @@ def allowed_ratios(
     steadies : whether they are of a torque, for which nothing that shakes may grow.
     """
     excess = 0.0 if steadies and was.is_shaking else excess
-    beside = was.excess + OF_GAIN * gain * min(was.excess, excess)
+    beside = was.excess + GROWTH_OF_GAIN * gain * min(was.excess, excess)
     grown = np.maximum(growth * was.excess, beside)
-    small = np.minimum(SMALL, was.excess + OF_SAVED * gain * excess)
+    small = np.minimum(SMALL_FIGURE, was.excess + GROWTH_OF_SAVED * gain * excess)
     return np.asarray(np.maximum(np.maximum(grown, small) * was.large_from, TRIFLE))
 
 
@@ -231,7 +230,7 @@ class HeadlineLimit:
     objectives: tuple[Objective, ...]
     at_most: float = 0.0
     entry: FigureAssessment | None = None
-    growth: float = GROWTH
+    growth: float = HEADLINE_GROWTH
 
     def most(self, gain: Array, excess: float, steadies: bool = False) -> Array:
         """What the figure may become (...), SI units, where shares (...) of aims of an excess are
@@ -257,9 +256,9 @@ def watched_of(found: AssessedMachine) -> Iterator[HeadlineLimit]:
             yield from _watched_gauge(found.analysis.machine, one)
             continue
         members = [out.name for out in found.analysis.outputs if out.declared.name == one.family[0]]
-        yield from _watched(one, members, GROWTH)
+        yield from _watched(one, members, HEADLINE_GROWTH)
     for one in found.parts:
-        yield from _watched(one, [one.output], GROWTH_OF_PART)
+        yield from _watched(one, [one.output], PART_GROWTH)
 
 
 def _watched(one: FigureAssessment, outputs: list[str], growth: float) -> Iterator[HeadlineLimit]:
@@ -274,7 +273,7 @@ def _watched(one: FigureAssessment, outputs: list[str], growth: float) -> Iterat
 def _watched_gauge(machine: Machine, one: FigureAssessment) -> Iterator[HeadlineLimit]:
     """What a gauge reads at the machine's own speed."""
     for objective in (Objective(one.output, "ripple"), Objective(one.output, "peak_to_peak")):
-        yield HeadlineLimit((objective,), GROWTH * Problem.value_of(machine, objective))
+        yield HeadlineLimit((objective,), HEADLINE_GROWTH * Problem.value_of(machine, objective))
 
 
 def headline_objectives(entries: Assessment) -> tuple[Objective, ...]:

@@ -8,7 +8,10 @@ from typing import ClassVar
 
 import numpy as np
 
-from equipoise.balancing.first_order import WORTHWHILE
+from equipoise.balancing.first_order import FirstOrder
+from equipoise.balancing.policy import (
+    WORTH_NAMING,
+)
 from equipoise.i18n import say
 from equipoise.mechanism.parts.support import Row
 from equipoise.quantities import percent, told
@@ -66,7 +69,7 @@ def opposite_arm_for(
         return None
     both = analyze(machine.with_rows((Row(), Row(phase=np.pi))), acceleration=0.0).summary
     gain = 1 - both["rows.shaking_force"].rms / analysis.summary["shaking_force"].rms
-    return OppositeArm(float(gain)) if gain >= WORTHWHILE else None
+    return OppositeArm(float(gain)) if gain >= WORTH_NAMING else None
 
 
 def end_weights_for(analysis: Analysis, entries: tuple[FigureAssessment, ...]) -> EndWeights | None:
@@ -83,15 +86,12 @@ def end_weights_for(analysis: Analysis, entries: tuple[FigureAssessment, ...]) -
     x, y = (outputs[name].values for name in ("rows.roll_moment", "rows.yaw_moment"))
     planes = [row.lateral for row in machine.rows]
     apart = max(planes) - min(planes)
-    whole, turned = x + 1j * y, np.exp(1j * motion.crank_angle)
-    size = float(np.sqrt(motion.mean(abs(whole) ** 2)))
-    if not apart or not size:
+    couple = FirstOrder(motion, np.asarray(x + 1j * y), np.asarray(motion.crank_angle))
+    if not apart or not couple.rms(couple.whole):
         return None
-    ahead = motion.mean(whole / turned)
-    left = float(np.sqrt(motion.mean(abs(whole - ahead * turned) ** 2)))
-    gain = 1 - left / size
-    moment = float(abs(ahead)) / (motion.speed**2 * apart)
-    return EndWeights(moment, apart, gain) if gain >= WORTHWHILE else None
+    gain = couple.gain(couple.without(against=False))
+    moment = abs(couple.ahead) / (motion.speed**2 * apart)
+    return EndWeights(moment, apart, gain) if gain >= WORTH_NAMING else None
 
 
 def arm_sentence(opposite: OppositeArm, crank: str) -> str:

@@ -12,7 +12,12 @@ from typing import TYPE_CHECKING
 from equipoise.balancing.beyond_masses import sentences_beyond
 from equipoise.balancing.headlines import Advice
 from equipoise.balancing.objectives import unit_of
-from equipoise.balancing.remedies import LEAST_GAIN, LEAST_NET, LEAST_OF_FIGURE
+from equipoise.balancing.policy import (
+    HEAVY,
+    LEAST_GAIN,
+    LEAST_NET_GAIN,
+    LEAST_PEAK_GAIN,
+)
 from equipoise.balancing.resonant_mounts import mount_sentences, outweighs
 from equipoise.balancing.told import (
     aims_told,
@@ -32,9 +37,6 @@ from equipoise.results.yardsticks import FigureAssessment, sentence
 
 if TYPE_CHECKING:
     from equipoise.balancing.balanced import Balanced
-
-LARGE = 0.5
-"""Added mass over that of all links from which it is told."""
 
 
 def helps_told(balanced: Balanced) -> Iterator[str]:
@@ -75,7 +77,7 @@ def _heavy(balanced: Balanced) -> Iterator[str]:
         for change in balanced.changes
         if change.kind == "added mass"
     )
-    if added > LARGE * links > 0:
+    if added > HEAVY * links > 0:
         yield say(
             "That is a large mass for this linkage: all its links together have {links}, and "
             "{added} are added.",
@@ -180,7 +182,7 @@ def beside_the_aim(found: Balanced) -> Iterator[str]:
     aims = {f"{rows}{one.output}" for one in found.plan.objectives for rows in ("", ROWS)}
     fallen = [_from_to(was, new) for was, new in pairs
               if was.is_large and was.output not in aims and not was.output.startswith(GAUGES)
-              and abs(new.value) <= (1 - LEAST_OF_FIGURE) * abs(was.value)
+              and abs(new.value) <= (1 - LEAST_PEAK_GAIN) * abs(was.value)
               and not was.is_limit]  # fmt: skip
     if fallen:
         yield say("That also brings down {figures}.", figures=listed(fallen))
@@ -309,7 +311,7 @@ def _asking_for_more(found: Balanced) -> Iterator[str]:
             "small beside its yardstick and stays so; and no couple that was not there, larger "
             "than what is gone.",
             least=percent(LEAST_GAIN, 0),
-            net=percent(LEAST_NET, 0),
+            net=percent(LEAST_NET_GAIN, 0),
         )
         yield say(
             "How far the room about a pivot reaches where nothing is in the way is assumed from "

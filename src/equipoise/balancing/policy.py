@@ -66,8 +66,8 @@ COUPLE_FROM_NOTHING = 0.1
 # -- room and shapes -------------------------------------------------------------------------------
 
 CLEARANCE = 0.02
-"""Over the size of the largest link, and together with `LEAST_CLEARANCE`: a counterweight's from the
-edge of a body, and from the middle of a pin whose radius is not given."""
+"""Over the size of the largest link, and together with `LEAST_CLEARANCE`: a counterweight's from
+the edge of a body, and from the middle of a pin whose radius is not given."""
 LEAST_CLEARANCE = 2e-3
 """m; alone from a pin's edge."""
 REACH_OF_LARGEST_LINK = 0.25
@@ -142,7 +142,8 @@ LONGER_LEVERS = (1.1, 1.2, 1.3)
 # -- lengths, shafts and pistons -------------------------------------------------------------------
 
 POOR_TRANSMISSION = 1.1
-"""Over the yardstick of a transmission angle, from which it is poor: 35 deg."""
+"""Times the distance of the usual limit from 90 deg, from which a transmission angle is poor: at
+35 deg."""
 LENGTH_CHANGES = (-0.05, 0.05, -0.1, 0.1, -0.2, 0.2)
 """Shares by which a length is changed to mend it."""
 LEAST_MENDED = pi / 60

@@ -8,6 +8,11 @@ from itertools import combinations
 from math import pi
 from typing import ClassVar
 
+from equipoise.balancing.policy import (
+    LEAST_MENDED,
+    LENGTH_CHANGES,
+    POOR_TRANSMISSION,
+)
 from equipoise.errors import EquipoiseError
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.checks import bodies_at
@@ -18,12 +23,6 @@ from equipoise.results.analysis import Analysis, analyze
 from equipoise.results.declaring import Declarations, ResultOutput
 from equipoise.results.yardsticks import TRANSMISSION, FigureAssessment
 
-POOR = 1.1
-"""Times the usual limit, 35 degrees, from which a transmission angle is mentioned."""
-CHANGES = (-0.05, 0.05, -0.1, 0.1, -0.2, 0.2)
-"""Shares of a length that are tried, the smallest first."""
-LEAST = pi / 60
-"""Rad, by which a length has to mend the angle to be named."""
 ROUNDING = 1e-6
 """Rad, by which another transmission angle may be smaller after a change."""
 ANGLES = 120
@@ -70,7 +69,11 @@ def poor_transmission_for(
     analysis: Analysis, entries: tuple[FigureAssessment, ...]
 ) -> PoorTransmission | None:
     """The worst transmission angle, where it is poor; None where none is."""
-    poor = (one for one in entries if one.yardstick_kind == "transmission" and one.ratio >= POOR)
+    poor = (
+        one
+        for one in entries
+        if one.yardstick_kind == "transmission" and one.ratio >= POOR_TRANSMISSION
+    )
     worst = next(poor, None)
     if worst is None or worst.crank_angle is None:
         return None
@@ -100,7 +103,7 @@ def _mended(analysis: Analysis, joint: str) -> Mending | None:
     before = _worst_angles(analysis)
     found: list[tuple[float, Mending]] = []
     for link, between in _lengths(machine, joint):
-        for share in CHANGES:
+        for share in LENGTH_CHANGES:
             changed, length = _with_length(machine, link, between, share)
             try:
                 after = _worst_angles(analyze(changed, ANGLES, acceleration=0.0))
@@ -109,7 +112,7 @@ def _mended(analysis: Analysis, joint: str) -> Mending | None:
             others = all(after[name] >= min(before[name], TRANSMISSION) - ROUNDING
                          for name in before if name != joint)  # fmt: skip
             gain = after[joint] - before[joint]
-            if others and gain >= LEAST:
+            if others and gain >= LEAST_MENDED:
                 enough = after[joint] >= TRANSMISSION
                 score = 1 - abs(share) if enough else after[joint] - TRANSMISSION
                 found.append((score, (link, between, share, length, after[joint])))

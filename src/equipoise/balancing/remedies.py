@@ -19,6 +19,15 @@ import numpy as np
 from equipoise.balancing.effects import Signal
 from equipoise.balancing.headlines import HeadlineLimit
 from equipoise.balancing.objectives import measured_each
+from equipoise.balancing.policy import (
+    HUB,
+    LEAST_GAIN,
+    LEAST_NET_GAIN,
+    LEAST_PEAK_GAIN,
+    MASS_PRICE,
+    MOST_TAKEN,
+    PEAK_PRICE,
+)
 from equipoise.balancing.problem import Problem
 from equipoise.balancing.room import Room, outline_of
 from equipoise.balancing.weights import AddedWeight
@@ -42,20 +51,6 @@ PLATES = (1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0)
 """Thicknesses in stock, times a power of ten, mm."""
 GRID, FINE_GRID, SMALL = 10e-3, 1e-3, 20e-3
 """m: steps of radii, and those of rooms that are smaller than this."""
-MOST_ADDED = 1 / 3
-"""Over the mass of the moving links of a row: what is added at most unasked."""
-LEAST_GAIN, MASS_PRICE, LEAST_NET = 0.15, 1.0, 0.05
-"""Share of the aim that has to go for a change to be worth it; that which has to go for a mass
-as large as that of the moving links, for less in proportion; and what has to be left of the share
-that goes, less that price: where both are about equal, nobody makes a drawing."""
-LEAST_OF_FIGURE, PRICE_OF_FIGURE = 0.1, 2 / 3
-"""Share of the figure that is large, in the measure in which it is, that has to go, and for a mass
-as large as that of the moving links: an RMS may fall while the peak, for which bearings and screws
-are chosen, hardly does."""
-LITTLE_MASS = 0.05
-"""Over the mass of the moving links: what may be added against a figure that is not large."""
-HUB = 0.25
-"""Inner radius of a sector over its outer one: inside is the shaft."""
 SAMPLES, CHUNK = 120, 128
 """Crank angles in a turn at which shapes are compared; how many at once."""
 DIRECTIONS, WIDTHS = range(-180, 180, 10), (30, 60, 90, 120, 150, 180)
@@ -257,8 +252,8 @@ def is_worth(gain: Any, mass_share: Any, figure_gain: Any = 1.0) -> Any:
     gain : share of the aim.  figure_gain : of the figure that is large, in its own measure.
     """
     price = MASS_PRICE * np.maximum(mass_share, 0.0)
-    enough = gain >= np.maximum(LEAST_GAIN, np.where(price > 0, price + LEAST_NET, 0.0))
-    return enough & (figure_gain >= np.maximum(LEAST_OF_FIGURE, PRICE_OF_FIGURE * price))
+    enough = gain >= np.maximum(LEAST_GAIN, np.where(price > 0, price + LEAST_NET_GAIN, 0.0))
+    return enough & (figure_gain >= np.maximum(LEAST_PEAK_GAIN, PEAK_PRICE * price))
 
 
 # -- counterweights --------------------------------------------------------------------------------
@@ -522,8 +517,8 @@ def _taken_off(
 
 # -- mass that a link has too much of --------------------------------------------------------------
 
-SHARES, MOST_TAKEN = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0), 0.5
-"""Of the first moment that a link has towards a direction: what is taken off; and of its mass."""
+SHARES = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0)
+"""Of the first moment that a link has towards a direction: what is taken off."""
 
 
 def best_cuts(comparison: Comparison) -> Iterator[tuple[complex, float]]:

@@ -13,6 +13,15 @@ from typing import ClassVar
 
 import numpy as np
 
+from equipoise.balancing.policy import (
+    AMPLIFIED,
+    AMPLIFIED_LEFT,
+    ENOUGH_OF_BEST,
+    LEAST_GAIN,
+    MASSES_BESIDE_MOUNTS,
+    SHARE_OF_ENERGY,
+    STIFFNESS_FACTORS,
+)
 from equipoise.errors import ModelError, ResponseError
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.parts.machine import Machine
@@ -22,23 +31,8 @@ from equipoise.results.declaring import Declarations, ResultOutput
 from equipoise.vibration.linear import Linear
 from equipoise.vibration.resonance import Resonance, around, resonances
 
-AMPLIFIED, DOUBLED = 1.5, 2.0
-"""A resonance lies beside a speed where its mode makes so many times the motion of it that stiff
-or soft mounts alone would leave: with less, a mass that halves the force does as much.  Other
-mounts, which have to bring something anyway, may come as near as doubles it."""
-FACTORS = (1 / 2, 1 / 3, 1 / 4, 2.0, 3.0, 4.0)
-"""Times the stiffness of the mounts that are tried; softer ones isolate, and come first."""
 SAME_SPEED = 0.05
 """Share of a speed within which two resonances are one: along and across on like mounts."""
-SHARE = 0.1
-"""Of the energy of a mode, from which a mount takes part in it."""
-CLEAR = 0.5
-"""Share of the most that other mounts bring from which milder ones are enough."""
-WORTH_IT = 2 / 3
-"""Share of what other mounts bring from which a change of masses is worth it as well: beside a
-resonance mass moves the frequency too, so that less is a matter of luck."""
-LEAST = 0.15
-"""Share of what gauges read that has to go."""
 
 
 @dataclass(frozen=True)
@@ -74,7 +68,7 @@ class ResonantMounts:
 
 def outweighs(gain: float, mounts: ResonantMounts) -> bool:
     """Whether a change of masses is worth it beside what other mounts bring."""
-    return gain >= WORTH_IT * mounts.gain
+    return gain >= MASSES_BESIDE_MOUNTS * mounts.gain
 
 
 def resonant_mounts_for(
@@ -99,7 +93,7 @@ def resonant_mounts_for(
     names = _strained(linear, [one for one in beside if _is_near(one[0], resonance)])
     tried = [*_tried(machine, speeds, names, gain)]
     most = max((gone for gone, _ in tried), default=0.0)
-    enough = (one for one in tried if one[0] >= CLEAR * most)
+    enough = (one for one in tried if one[0] >= ENOUGH_OF_BEST * most)
     gone, factor = next(enough, (0.0, None))
     edges = _amplified_between(linear.modes[resonance.mode - 1].damping_ratio)
     assert edges is not None
@@ -158,7 +152,7 @@ def _strained(linear: Linear, met: Sequence[tuple[Resonance, float]]) -> tuple[s
             if linear.rest.carries(name, mount)
         }
         whole = sum(energy.values())
-        found |= {name for name, one in energy.items() if one >= SHARE * whole > 0}
+        found |= {name for name, one in energy.items() if one >= SHARE_OF_ENERGY * whole > 0}
     return tuple(name for name in body.support.mounts if name in found)
 
 
@@ -170,16 +164,16 @@ def _tried(
 ) -> Iterator[tuple[float, float]]:
     """Gain and factor of other mounts with which no loud resonance lies beside a speed."""
     assert machine.support is not None
-    for factor in FACTORS:
+    for factor in STIFFNESS_FACTORS:
         mounts = _scaled(machine.support.mounts, names, factor)
         changed = machine.with_support(mounts=mounts)
         try:
-            if _loud_beside(Linear.of(changed), speeds, DOUBLED):
+            if _loud_beside(Linear.of(changed), speeds, AMPLIFIED_LEFT):
                 continue
             gone = gain(changed)
         except (ModelError, ResponseError):
             continue
-        if gone >= LEAST:
+        if gone >= LEAST_GAIN:
             yield gone, factor
 
 

@@ -14,10 +14,22 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from itertools import combinations, pairwise
 
 import numpy as np
 
+from equipoise.balancing.policy import (
+    CLEARANCE,
+    LARGEST_PLATE,
+    LEAST_CLEARANCE,
+    REACH_OF_CRANK,
+    REACH_OF_LARGEST_LINK,
+    REACH_OF_LINK,
+    THICKEST_PLATE,
+    THICKNESS_OF_LINK,
+    THICKNESS_OF_REACH,
+)
 from equipoise.mechanism.assembly.steps import size_of_bodies, size_of_links
 from equipoise.mechanism.checks import bodies_at
 from equipoise.mechanism.kinematics.motion import Motion, move
@@ -31,16 +43,6 @@ from equipoise.symbols.wheels import wheels_of
 
 ANGLES, EDGE_SAMPLES, CIRCLE_SAMPLES = 120, 9, 24
 """Crank angles in a turn at which bodies are looked at; places on an edge, and on a circle."""
-CLEARANCE, LEAST_CLEARANCE = 0.02, 2e-3
-"""Over the size of the largest link, and m: both together keep a counterweight from the edge of a
-body, and from the middle of a pin whose radius is not given; the second alone from a pin's edge."""
-SIZE, LARGER, OF_CRANK = 0.25, 2.0, 2.5
-"""Over the size of the largest link, and over the reach of its own link, up to twice that share of
-the largest link: how far a counterweight is assumed to reach at most, where its link does not reach
-farther; and over the throw of a crank that turns, as webs and discs of cranks do, within what the
-machine sweeps."""
-LARGEST = 0.6
-"""m: beyond which nobody cuts a counterweight of plate."""
 DIRECTIONS = 360
 """In which the room is known: whole degrees."""
 
@@ -115,58 +117,127 @@ def rooms_about(machine: Machine, link: str, larger: float = 1.0) -> Iterator[Ro
     """
     yield room_about(machine, link, larger=larger)
     if not machine.has_planes:
-        apart = room_about(machine, link, larger=larger, alone=True)
+        apart = room_in_own_plane(machine, link, larger)
         if apart.beside:
             yield apart
 
 
 def room_about(
-    machine: Machine,
-    link: str,
-    plane: float | None = None,
-    larger: float = 1.0,
-    alone: bool = False,
+    machine: Machine, link: str, plane: float | None = None, larger: float = 1.0
 ) -> Room:
-    """The room about a link's pivot.
+    """The room about a link's pivot, beside all other links in the weight's plane.
 
     plane : z of the weight's middle, m; that of the link if None.  larger : times what is assumed,
-    that it reaches.  alone : in a plane in which no other link is.
+    that it reaches.
     """
-    motion, at, own = move(machine, ANGLES), pivots_of(machine)[link], machine.links[link]
-    clearance = CLEARANCE * size_of_links(machine) + LEAST_CLEARANCE
-    pivot = complex(*machine.frame[at])
-    turn = np.exp(-1j * motion.links[link].angle)
-    most = min(larger * _assumed(motion, link, at), LARGEST)
-    thick = _most_thick(machine, link, most)
-    free = np.full(DIRECTIONS, min(most, _over_ground(machine, pivot)))
-    own_wheels, wheels = _wheels(motion, link, at)
-    free = np.minimum(free, min(own_wheels, default=np.inf))
-    apart = _from_pins(motion)
-    fixed = _through_every_plane(machine)
-    pins = [*_pins(motion, link)]
-    passing = [pin for pin in pins if pin not in fixed] if alone else []
-    others = [*_bodies(motion, link, plane, thick)]
-    bodies = [] if alone else [track for _, track in others]
-    kept = [(motion.points[pin].place, apart.get(pin, clearance)) for pin in pins
-            if pin not in passing]  # fmt: skip
-    for places, clear in (*kept, *((track, clearance) for track in (*bodies, *wheels))):
-        seen = (np.broadcast_to(places, turn.shape) - pivot) * turn
-        _keep_clear(free, seen, clear)
-    free = np.maximum(free, 0.0)
-    most_near = float(np.max(free)) + clearance
-    ways = [(pin, motion.points[pin].place) for pin in passing]
-    beside = _nearer(ways, pivot, most_near)
-    beside_links = _nearer(others if alone else [], pivot, most_near)
+    around = _Surroundings.of(machine, link, larger)
+    bodies = [track for _, track in around.bodies(plane)]
+    reach = around.reach([*around.pins], bodies)
     # A weight in a plane of its own lies beyond the webs between which the link's pins are.
-    within = plane is None and not alone
-    names = sorted(_joined(machine) & own.points.keys() - {at}) if within else []
-    center = complex(*own.points[at])
+    own = machine.links[link]
+    names = sorted(_joined(machine) & own.points.keys() - {around.at}) if plane is None else []
+    center = complex(*own.points[around.at])
     own_pins = np.array([complex(*own.points[pin]) - center for pin in names], complex)
-    near = np.minimum(clearance, np.abs(own_pins) / 2)
+    near = np.minimum(around.clearance, np.abs(own_pins) / 2)
+    apart = _from_pins(around.motion)
     own_clear = np.array([apart.get(pin, near[k]) for k, pin in enumerate(names)])
-    return Room(
-        link, at, plane, free, own_pins, own_clear, thick, clearance, most, beside, beside_links
+    return around.room(reach, plane=plane, own_pins=own_pins, own_clearances=own_clear)
+
+
+def room_in_own_plane(machine: Machine, link: str, larger: float = 1.0) -> Room:
+    """The room about a link's pivot in a plane in which no other link is, which shafts and guided
+    pins cross.
+
+    larger : times what is assumed, that it reaches.
+    """
+    around = _Surroundings.of(machine, link, larger)
+    fixed = _through_every_plane(machine)
+    reach = around.reach([pin for pin in around.pins if pin in fixed], [])
+    most = float(np.max(reach)) + around.clearance
+    points = around.motion.points
+    pins = [(pin, points[pin].place) for pin in around.pins if pin not in fixed]
+    return around.room(
+        reach,
+        beside=_nearer(pins, around.pivot, most),
+        beside_links=_nearer(around.bodies(None), around.pivot, most),
     )
+
+
+@dataclass(frozen=True, eq=False)
+class _Surroundings:
+    """What is about a link's pivot, whatever plane a weight is in.
+
+    most : m, how far a room is taken to reach.  thick : m, thickest plate.
+    """
+
+    motion: Motion
+    link: str
+    at: str
+    most: float
+    thick: float
+
+    @classmethod
+    def of(cls, machine: Machine, link: str, larger: float) -> _Surroundings:
+        motion, at = move(machine, ANGLES), pivots_of(machine)[link]
+        most = min(larger * _assumed(motion, link, at), LARGEST_PLATE)
+        return cls(motion, link, at, most, _most_thick(machine, link, most))
+
+    @property
+    def clearance(self) -> float:
+        """From bodies, and pins whose radius is not given, m."""
+        return CLEARANCE * size_of_links(self.motion.machine) + LEAST_CLEARANCE
+
+    @property
+    def pivot(self) -> complex:
+        return complex(*self.motion.machine.frame[self.at])
+
+    @cached_property
+    def pins(self) -> tuple[str, ...]:
+        """Pins and shafts of others."""
+        return tuple(_pins(self.motion, self.link))
+
+    def bodies(self, plane: float | None) -> list[tuple[str, Array]]:
+        """Links in the plane of a weight, and where places on them go."""
+        return [*_bodies(self.motion, self.link, plane, self.thick)]
+
+    def reach(self, pins: Sequence[str], bodies: Sequence[Array]) -> Array:
+        """How far out (360,) a weight may lie beside pins and places on links, m."""
+        motion, machine = self.motion, self.motion.machine
+        turn = np.exp(-1j * motion.links[self.link].angle)
+        free = np.full(DIRECTIONS, min(self.most, _over_ground(machine, self.pivot)))
+        own_wheels, wheels = _wheels(motion, self.link, self.at)
+        free = np.minimum(free, min(own_wheels, default=np.inf))
+        apart = _from_pins(motion)
+        kept = [(motion.points[pin].place, apart.get(pin, self.clearance)) for pin in pins]
+        kept += [(track, self.clearance) for track in (*bodies, *wheels)]
+        for places, clear in kept:
+            seen = (np.broadcast_to(places, turn.shape) - self.pivot) * turn
+            _keep_clear(free, seen, clear)
+        return np.asarray(np.maximum(free, 0.0))
+
+    def room(
+        self,
+        reach: Array,
+        plane: float | None = None,
+        own_pins: Array | None = None,
+        own_clearances: Array | None = None,
+        beside: Mapping[str, float] | None = None,
+        beside_links: Mapping[str, float] | None = None,
+    ) -> Room:
+        """The room of a reach (360,)."""
+        return Room(
+            self.link,
+            self.at,
+            plane,
+            reach,
+            np.array([], complex) if own_pins is None else own_pins,
+            np.array([]) if own_clearances is None else own_clearances,
+            self.thick,
+            self.clearance,
+            self.most,
+            beside or {},
+            beside_links or {},
+        )
 
 
 def _nearer(tracks: Iterable[tuple[str, Array]], pivot: complex, most: float) -> dict[str, float]:
@@ -185,8 +256,14 @@ def _assumed(motion: Motion, link: str, at: str) -> float:
     size, reach = size_of_links(machine), _reach(machine.links[link], at)
     turned = motion.links[link].angle
     if abs(turned[-1] - turned[0]) > np.pi and machine.crank_turns:
-        return max(reach, SIZE * size, min(OF_CRANK * reach, _swept(motion, at)))
-    return max(reach, SIZE * size, min(LARGER * reach, LARGER * SIZE * size))
+        return max(
+            reach, REACH_OF_LARGEST_LINK * size, min(REACH_OF_CRANK * reach, _swept(motion, at))
+        )
+    return max(
+        reach,
+        REACH_OF_LARGEST_LINK * size,
+        min(REACH_OF_LINK * reach, REACH_OF_LINK * REACH_OF_LARGEST_LINK * size),
+    )
 
 
 def _swept(motion: Motion, at: str) -> float:
@@ -384,13 +461,10 @@ def reach_of(machine: Machine, link: str) -> float:
     return own or min(SMALLEST, float(size_of_bodies(machine)))
 
 
-THICK, THICKER, THICKEST = 0.3, 3.0, 0.03
-"""Of a plate: over the largest radius of its room; over the thickness of the link that carries it;
-and m, beyond which no workshop screws it on."""
-
-
 def _most_thick(machine: Machine, link: str, reach: float) -> float:
     """Thickest plate that a link can carry, m."""
     bodies = machine.links[link].bodies
     own = max((one.thickness or one.outer_diameter or 0.0 for one in bodies), default=0.0)
-    return float(min(THICK * reach, THICKER * own or THICKEST, THICKEST))
+    return float(
+        min(THICKNESS_OF_REACH * reach, THICKNESS_OF_LINK * own or THICKEST_PLATE, THICKEST_PLATE)
+    )

@@ -18,8 +18,9 @@ from equipoise.balancing.blocks import outcome_blocks
 from equipoise.balancing.headlines import Saving, worse_headlines
 from equipoise.balancing.opposite_arms import end_weights_for, opposite_arm_for
 from equipoise.balancing.outcome import helps_told
-from equipoise.balancing.remedies import LEAST_GAIN, is_worth, plate_of, sectors, with_sectors
+from equipoise.balancing.policy import LEAST_GAIN
 from equipoise.balancing.remedies import Sector as SectorShape
+from equipoise.balancing.remedies import is_worth, plate_of, sectors, with_sectors
 from equipoise.balancing.room import pivots_of, room_about, rooms_about
 from equipoise.balancing.told import aims_told, proof_told, worse_told
 from equipoise.balancing.workshop import in_short, sentences
