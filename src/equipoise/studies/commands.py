@@ -38,13 +38,14 @@ SPLIT = {"by_cause", "by_link"}
 def analyzed(machine: Machine, angles: int, wanted: Wanted) -> Values:
     """`equipoise analyze`, with ``--split`` and ``--orders`` where their keys are wanted."""
     from equipoise.results.analysis import LEAST_ANGLES, analyze, order_values
+    from equipoise.results.named_figures import NAMED_FIGURES
 
     analysis = analyze(machine, angles)
     split = analysis.solved is not None and (wanted is None or not SPLIT.isdisjoint(wanted))
     further: list[str] = []
     if wanted is None or "outputs" in wanted:  # those that are had by their names alone
         further = [one.name for one in analysis.outputs if one.declared.unbounded]
-    figures = wanted is None or not {"strokes", "cams"}.isdisjoint(wanted)
+    figures = wanted is None or not {"strokes", *NAMED_FIGURES}.isdisjoint(wanted)
     values = analysis.to_dict(split, further, figures)
     ordered = analysis.solved is not None and angles >= LEAST_ANGLES
     if ordered and (wanted is None or "by_order" in wanted):

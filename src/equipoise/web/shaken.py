@@ -272,7 +272,7 @@ def _gauges(found: Solved) -> _Figures:
 
 
 def _strokes(found: Solved) -> _Figures:
-    """Figures of every slider, rocker and cam, but for the crank angles at which they are."""
+    """Figures of strokes and of parts by name, but for the crank angles at which they are."""
     return dict(_strokes_of(found.analysis))
 
 
