@@ -133,12 +133,19 @@ export class Gallery {
     const words = text.toLowerCase().split(/\s+/);
     for (const card of this.kinds.querySelectorAll<HTMLElement>(".card")) {
       const all = `${card.dataset.name} ${card.textContent} ${card.dataset.words}`.toLowerCase();
-      card.hidden = !words.every((word) => all.includes(word));
+      card.hidden = !words.every((word) => begins(all, word));
     }
     for (const kind of this.kinds.children as HTMLCollectionOf<HTMLElement>)
       kind.hidden = !kind.querySelector(".card:not([hidden])");
     this.none.hidden = this.still.isConnected || !!this.kinds.querySelector(".card:not([hidden])");
   }
+}
+
+/** Whether a word of a text begins so; scripts without spaces have no words to begin. */
+function begins(text: string, start: string): boolean {
+  const plain = /^[\x20-\x7e]*$/.test(start);
+  const escaped = start.replace(/[.*+?^${}()|[\]\\/]/g, "\\$&");
+  return plain ? new RegExp(`(^|[^\\p{L}\\p{N}])${escaped}`, "u").test(text) : text.includes(start);
 }
 
 /** A machine, that turns while it is pointed at or has the focus. */

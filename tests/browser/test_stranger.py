@@ -29,7 +29,7 @@ def test_an_empty_page_shows_what_there_is_to_open(free_page: Page) -> None:
         for scheme in ("light", "dark"):
             page.emulate_media(color_scheme=scheme)  # type: ignore[arg-type]
             assert Live(page).findings() == []
-        gallery.get_by_role("searchbox").fill("quick ram")
+        gallery.get_by_role("searchbox").fill("quick lever ram")  # in title and description
         expect(cards.filter(visible=True)).to_have_count(1)
         cards.filter(visible=True).press("Enter")
         expect(page.get_by_role("heading", name=eq.load("quick-return").title)).to_be_visible()
