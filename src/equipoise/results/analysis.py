@@ -32,6 +32,7 @@ from equipoise.mechanism.parts.machine import Machine, Vector
 from equipoise.mechanism.parts.places import in_frame
 from equipoise.mechanism.parts.support import idle_parts
 from equipoise.quantities import Dimension, column_heading
+from equipoise.results.declaring import OWN, Declarations, ResultOutput, values_of
 from equipoise.results.lost_contacts import lost_contacts
 from equipoise.results.named_figures import figures_by_name
 from equipoise.results.outputs import Outputs
@@ -272,7 +273,7 @@ class Analysis(Result):
                     result[family] = ends
             result.update(_undecided(self.motion.linkage))
             result.update(_friction(self.losses))
-            result["about"] = {"x": found.about.real, "y": found.about.imag}
+            result |= values_of(found, ABOUT)
             if not self.machine.has_crank and self.motion.whole_cycle:
                 works = self.resolved.forces.work
                 result["drives"] = {link: {"work": work} for link, work in works.items()}
@@ -296,15 +297,13 @@ class Analysis(Result):
             for name, figure in self.summary.items()
         }
         if self.four_bar is not None:
-            summary["four_bar"] = dict(vars(self.four_bar))
+            summary["four_bar"] = values_of(self.four_bar, FOUR_BAR)
         return result | {"summary": summary}
 
     @property
     def _heading(self) -> Values:
-        motion = self.motion
-        heading: Values = {"title": self.machine.title}
-        heading |= {"speed": motion.speed, "acceleration": motion.acceleration}
-        return heading | ({"turns": motion.turns} if motion.whole_cycle else {})
+        heading: Values = {"title": self.machine.title, **values_of(self.motion, HEADING)}
+        return heading | (values_of(self.motion, CYCLE) if self.motion.whole_cycle else {})
 
     def to_dataset(self) -> xarray.Dataset:
         """Every array as an `xarray.Dataset` over crank angle (rad); loads xarray."""
@@ -339,6 +338,54 @@ def _of_one_row(found: Forces) -> Array:
     return np.array([force.x, force.y, found.shaking_moment, exerted, *rocked])
 
 
+HEADING: Declarations = {
+    "speed": ResultOutput("speed of the drive", "angular speed"),
+    "acceleration": ResultOutput("acceleration of the drive", "angular acceleration"),
+}
+CYCLE: Declarations = {"turns": ResultOutput("turns of the crank in a cycle")}
+ABOUT: Declarations = {
+    "about": ResultOutput(
+        "point of the frame about which moments are",
+        of={
+            "x": ResultOutput("to the right", "length", read="real"),
+            "y": ResultOutput("upward", "length", read="imag"),
+        },
+    )
+}
+FOUR_BAR: Declarations = {
+    **{name: ResultOutput(f"the {name}") for name in ("crank", "coupler", "rocker")},
+    "pins": ResultOutput("its joints, from that of the crank and the frame on"),
+    "a": ResultOutput("length of the frame", "length"),
+    "b": ResultOutput("length of the crank", "length"),
+    "c": ResultOutput("length of the coupler", "length"),
+    "d": ResultOutput("length of the rocker", "length"),
+    "grashof": ResultOutput("whether the shortest link can turn"),
+    "type": ResultOutput("its type, by the shortest link"),
+    "transmission_min": ResultOutput("smallest angle between coupler and rocker", "angle"),
+    "transmission_max": ResultOutput("largest angle between coupler and rocker", "angle"),
+    "swing": ResultOutput("angle through which the rocker swings", "angle"),
+    "time_ratio": ResultOutput("time of the slower swing over that of the faster"),
+    "condition_5": ResultOutput("whether the crank turns and the rocker is determined"),
+    "condition_6": ResultOutput("whether it stays on its branch"),
+}
+BESIDE_OUTPUTS: Declarations = {
+    **HEADING,
+    **CYCLE,
+    **ABOUT,
+    "crank_angle": ResultOutput("crank angles of all arrays", "angle"),
+    "four_bar": ResultOutput("the four-bar at the crank", of=FOUR_BAR),
+}
+"""What an analysis has that is no output of the machine."""
+BY_ORDER: Declarations = {
+    "orders": ResultOutput("events in one turn of the crank"),
+    "a": ResultOutput("amplitudes of the cosines", OWN, read=lambda one: one.amplitudes.real),
+    "b": ResultOutput("amplitudes of the sines", OWN, read=lambda one: -one.amplitudes.imag),
+    "harmonics": ResultOutput("amplitudes", OWN, read="sizes"),
+    "phases": ResultOutput("crank angles of the first top", "angle"),
+}
+"""What an analysis has of each output by order."""
+
+
 def order_values(analysis: Analysis, orders: int, zero: float) -> Values:
     """Outputs by order, as in `Analysis.by_order`, up to an order; SI units and rad.
 
@@ -348,13 +395,7 @@ def order_values(analysis: Analysis, orders: int, zero: float) -> Values:
     for name, whole in analysis.by_order.items():
         signal = whole.shifted(zero)
         kept = slice(0, signal.count_to(orders))
-        found[name] = {
-            "orders": signal.orders[kept],
-            "a": signal.amplitudes.real[kept],
-            "b": -signal.amplitudes.imag[kept],
-            "harmonics": signal.sizes[kept],
-            "phases": signal.phases[kept],
-        }
+        found[name] = {key: values[kept] for key, values in values_of(signal, BY_ORDER).items()}
     return found
 
 

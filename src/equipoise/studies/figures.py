@@ -33,6 +33,7 @@ from equipoise.signals import figures
 if TYPE_CHECKING:
     from equipoise.handheld.model import Tool
     from equipoise.mechanism.parts.machine import Machine
+    from equipoise.quantities import Dimension
 
 Array = np.ndarray[Any, Any]
 Values = Mapping[str, Any]
@@ -238,18 +239,6 @@ def _listed(names: Any, most: int = 12) -> str:
 
 # -- what it is ------------------------------------------------------------------------------------
 
-_AT = "|".join(PLACES)
-KINDS: dict[str, str | None] = {
-    r"four_bar\.[abcd]|about\..*": "length",
-    r"four_bar\.(transmission_min|transmission_max|swing)|crank_angle": "angle",
-    rf"by_order\..*\.phases|.*\.({_AT})": "angle",
-    r"four_bar\..*|turns|by_order\.(.*\.)?orders": None,
-    "speed": "angular speed",
-    "acceleration": "angular acceleration",
-    **dimensions_by_path(),
-}
-"""Of an analysis beside its outputs: paths without figures of lists, and their dimensions."""
-
 
 def dimension_of(model: Machine | Tool, of: str, value: str) -> str | None:
     """Dimension of the figure at a path of what a command gives; None of plain and unknown ones.
@@ -265,16 +254,34 @@ def dimension_of(model: Machine | Tool, of: str, value: str) -> str | None:
     if of != "analyze":
         kinds = (dimension_at(one, whole, model) for one in declarations(of))
         return next((kind for kind in kinds if kind), None)
-    path = _STATISTIC.sub("", whole)
-    for pattern, dimension in KINDS.items():
-        if re.fullmatch(pattern, path):
-            return dimension
+    return _of_analysis(cast("Machine", model), _STATISTIC.sub("", whole))
+
+
+def _of_analysis(machine: Machine, path: str) -> str | None:
+    from equipoise.results.analysis import BESIDE_OUTPUTS
+
     first, _, rest = path.partition(".")
+    if rest and path.rpartition(".")[2] in PLACES:
+        return "angle"
+    if first in BESIDE_OUTPUTS:
+        return dimension_at(BESIDE_OUTPUTS, path, machine)
     if first == "strokes":
-        return of_stroke(cast("Machine", model), rest)
+        return of_stroke(machine, rest)
     if first in ("by_cause", "by_link"):
         return _of_part(rest)
-    return _of_output(_LAST.sub("", rest) if first == "by_order" else path)
+    if first == "by_order":
+        return _by_order(rest)
+    named = (kind for way, kind in dimensions_by_path().items() if re.fullmatch(way, path))
+    return next(named, _of_output(path))
+
+
+def _by_order(path: str) -> str | None:
+    """Of what an output has by order."""
+    from equipoise.results.analysis import BY_ORDER
+
+    output, _, last = path.rpartition(".")
+    own = _of_output(output)
+    return BY_ORDER[last].kind(own, False) if last in BY_ORDER else own
 
 
 def declarations(of: str) -> Iterator[Declarations]:
@@ -309,10 +316,9 @@ def answers_about_tools() -> dict[str, Declarations]:
 
 
 _STATISTIC = re.compile(rf"\.({'|'.join(FIGURES_OF_LISTS)})$")
-_LAST = re.compile(r"\.[^.]*$")
 
 
-def _of_output(name: str) -> str | None:
+def _of_output(name: str) -> Dimension | None:
     found = declared(name)
     return None if found is None else found[0].dimension
 

@@ -16,6 +16,7 @@ from equipoise.design.spreads import Range
 from equipoise.design.variables import Variable
 from equipoise.errors import ModelError, UsageError
 from equipoise.quantities import SI
+from equipoise.results.analysis import ABOUT, BESIDE_OUTPUTS, BY_ORDER, FOUR_BAR, order_values
 from equipoise.results.outputs import unit_of
 from equipoise.schema.template import Template
 from equipoise.studies.commands import find_outputs
@@ -500,3 +501,19 @@ def test_figures_of_cams_stand_still_to_a_share_of_themselves() -> None:
     found = eq.analyze(eq.load("cam-pusher")).to_dict()
     steps = resolve(found, "cams.crank to pusher.lift_off_speed")
     assert scale(found, steps) == read(found, steps) > 50
+
+
+def test_what_an_analysis_has_beside_outputs_is_declared() -> None:
+    """Of each number that it gives a study knows the dimension from the declaration."""
+    analysis = eq.analyze(eq.load("yamashita-1"))
+    values = analysis.to_dict()
+    of_one = {*values["summary"]["four_bar"]}
+    assert of_one == {*FOUR_BAR} and {*values["about"]} == set(ABOUT["about"].of or ())
+    assert {*order_values(analysis, 3, 0.0)["shaking_force.x"]} == {*BY_ORDER}
+    for key, one in BESIDE_OUTPUTS.items():
+        assert key in values or key in values["summary"]
+        if one.of is None:
+            assert dimension_of(analysis.machine, "analyze", key) == one.dimension
+    for key, one in FOUR_BAR.items():
+        found = dimension_of(analysis.machine, "analyze", f"summary.four_bar.{key}")
+        assert found == one.dimension, key
