@@ -198,7 +198,8 @@ def words_of(line: str, file: str) -> list[str]:
     """A command with its file behind the name of the command."""
     words = shlex.split(line)
     plain = next((k for k, word in enumerate(words) if word.startswith("-")), len(words))
-    name = 2 if words[0] in {"balance", "tool"} and plain > 1 else 1
+    parted = words[0] in {"balance", "tool"} and plain > 1
+    name = 2 if parted or words[:2] in (["plant", "fit"], ["plot", "map"]) else 1
     return [*words[:name], file, *words[name:]]
 
 

@@ -9,6 +9,7 @@ import subprocess
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from math import exp, sin
 from pathlib import Path
 from typing import Any
 
@@ -17,13 +18,17 @@ from websockets.sync.client import ClientConnection, connect
 
 from equipoise.cli.tools import tools
 from equipoise.errors import EquipoiseError, UsageError
+from equipoise.exchange.formats import FORMATS
 from equipoise.folders import Folder
 from equipoise.schema.documents import load
 from equipoise.web import server as served_files
 from equipoise.web.disk import on_disk
 from equipoise.web.stores import StoreDesk, stores_in
+from support.chosen import few
 from surface.running import command, equipoise, example_text, refused, succeeded
 from surface.studies import LENGTHS, TOLERANCES
+from surface.test_commands import OPTIONS
+from surface.test_fuzz_commands import FIT, words_of
 from unit.web.pages import unpacked
 
 MODEL = example_text("yamashita-1")
@@ -177,7 +182,15 @@ def test_the_fence_is_asked_for_a_store(outside: Outside, made: Path) -> None:
 # -- a model ---------------------------------------------------------------------------------------
 
 LOADS = '\n[[loads]]\nlink = "crank"\ntable = "{}"\noutside = "hold"\n'
-COMMANDS = ("check", "analyze", "report", "export", "balance", "plot", "animate")
+COMMANDS = (
+    *("check", "analyze", "report", "balance", "plot", "animate", "respond", "modes", "run"),
+    *("plant", "export -o out.xml", "simulate '0.1 s'", "plant fit fit.toml"),
+    *("balance conditions", "balance arrangements 3", "balance --csv out.csv"),
+    *("balance sensitivities shaking_force.y", "plot -o pictures", "serve --no-browser"),
+    "balance trade-off shaking_force.y drive_torque",
+    "plot map 'links.crank.mass = 1 kg : 2 kg' 'drive.speed = 9 : 10 rpm' shaking_force.y",
+)
+"""Every command of a linkage, behind whose name its file goes."""
 
 
 @pytest.mark.parametrize("name", ["load.csv", "sub/load.csv", "way/load.csv"])
@@ -187,9 +200,9 @@ def test_a_model_reads_no_table_through_a_link_that_leads_out(name: str, outside
     for place in ("load.csv", "sub/load.csv"):
         Path(place).symlink_to(outside.folder / "load.csv")
     Path("model.toml").write_text(MODEL + LOADS.format(name))
-    for word in COMMANDS:
-        more = ("-o", "out.xml") if word == "export" else ()
-        assert "leads out of its folder" in refused(equipoise(word, "model.toml", *more))
+    Path("fit.toml").write_text(FIT)
+    for line in COMMANDS:
+        assert "leads out of its folder" in refused(equipoise(*words_of(line, "model.toml"))), line
 
 
 @pytest.mark.parametrize(
@@ -252,6 +265,17 @@ WRITING = {
     "simulate --csv": ("simulate", "yamashita-rig", "0.1 s", "--csv", "{}.csv"),
     "plant --csv": ("plant", "kim-chung-a", "--csv", "{}.csv"),
     "tool --csv": ("tool", "nagamine-irie", "--modes", "--csv", "{}.csv"),
+    "best --csv": ("best", str(STORE), "--csv", "{}.csv"),
+    "run --csv": ("run", "balance-crank", "0.1 s", "--csv", "{}.csv"),
+    "tool design": ("tool", "design", "brush-cutter", "--out", "{}.toml"),
+    "plant fit": ("plant", "fit", "kim-chung-a", "fit.toml", "--out", "{}.toml"),
+    "plant fit --csv": (
+        *("plant", "fit", "kim-chung-a", "fit.toml", "--out", "fitted.toml", "--csv", "{}.csv"),
+    ),
+    "balance trade-off --csv": (
+        *("balance", "trade-off", "balance-crank", "shaking_force.y", "drive_torque"),
+        *("--points", "2", "--csv", "{}.csv"),
+    ),
 }
 DRAWING = {
     "plot": ("plot", "mine.toml", "--only", "linkage", "-o", "pictures"),
@@ -260,7 +284,40 @@ DRAWING = {
     "best": ("best", str(STORE), "--plot", "pictures"),
     "exposure": ("exposure", "tasks.csv", "--plot", "pictures"),
     "modes": ("modes", "yamashita-rig", "--plot", "pictures"),
+    "plot map": (
+        *(
+            "plot",
+            "map",
+            "mine.toml",
+            "links.crank.mass = 1 kg : 2 kg",
+            "drive.speed = 60 rpm : 90 rpm",
+        ),
+        *("rms shaking_force.y", "--points", "5", "-o", "pictures"),
+    ),
+    "balance": ("balance", "balance-crank", "--plot", "pictures"),
+    "balance trade-off": (
+        *("balance", "trade-off", "balance-crank", "shaking_force.y", "drive_torque"),
+        *("--points", "2", "--plot", "pictures"),
+    ),
+    "decay": ("decay", "swing.csv", "--stiffness", "2 N/mm", "--plot", "pictures"),
+    "plant": ("plant", "kim-chung-a", "--plot", "pictures"),
+    "plant fit": (
+        *("plant", "fit", "kim-chung-a", "fit.toml", "--out", "fitted.toml", "--plot", "pictures"),
+    ),
+    "respond": ("respond", "yamashita-rig", "--plot", "pictures"),
+    "resume": ("resume", str(STORE), "--plot", "pictures"),
+    "run": ("run", "balance-crank", "0.1 s", "--plot", "pictures"),
+    "simulate": ("simulate", "yamashita-rig", "0.1 s", "--plot", "pictures"),
+    "sweep": ("sweep", "search.toml", "-o", "swept.zarr", "--plot", "pictures"),
+    "tool": ("tool", "nagamine-irie", "--modes", "--plot", "pictures"),
+    "tool design": ("tool", "design", "brush-cutter", "--plot", "pictures"),
+    "tool vary": (
+        *("tool", "vary", "nagamine-irie", "harness position = 0 mm : 410 mm"),
+        *("--plot", "pictures"),
+    ),
 }
+OFTEN = ("analyze --csv", "report", "export", "animate", "balance", "sweep", "plot", "best")
+"""What is tried on every change; all write by the same few functions."""
 
 
 def inputs() -> None:
@@ -269,37 +326,88 @@ def inputs() -> None:
     Path("study.toml").write_text(TOLERANCES)
     Path("search.toml").write_text(LENGTHS)
     Path("tasks.csv").write_text("task,acceleration [m/s^2],duration [h]\nbrush saw,4.6,2\n")
+    swing = (f"{k / 500},{30 * exp(-k / 200) * sin(k / 20)}" for k in range(800))
+    Path("swing.csv").write_text("\n".join(["time [s],displacement [mm]", *swing]))
+    Path("fit.toml").write_text(FIT)
+
+
+def unswept() -> None:
+    """Nothing is in the way of a command that runs a second time."""
+    shutil.rmtree("swept.zarr", ignore_errors=True)
+    Path("fitted.toml").unlink(missing_ok=True)
 
 
 @pytest.mark.parametrize("target", ["secret.txt", "nowhere", "folder"])
-@pytest.mark.parametrize("words", WRITING.values(), ids=WRITING)
+@pytest.mark.parametrize("name", few(WRITING, OFTEN))
 @pytest.mark.usefixtures("store")
 def test_what_is_written_goes_through_no_link_that_leads_out(
-    words: tuple[str, ...], target: str, outside: Outside
+    name: str, target: str, outside: Outside
 ) -> None:
+    words = WRITING[name]
     inputs()
     succeeded(equipoise("export", "mine.toml", "-o", "mine.mjcf.xml"))
-    name = next(one for one in words if "{}" in one).format("out")
-    Path(name).symlink_to(outside.folder / target)
+    place = next(one for one in words if "{}" in one).format("out")
+    Path(place).symlink_to(outside.folder / target)
     refused(equipoise(*(one.format("out") for one in words)))
-    assert Path(name).is_symlink()
+    assert Path(place).is_symlink()
+
+
+TABLES = {"csv", "parquet"}
+"""Kinds of files of a store."""
+KINDS_OF_FILES = [
+    *(
+        ("export", str(STORE) if name in TABLES else "mine.toml", "-o", f"out{one.ending}")
+        for name, one in FORMATS.items()
+        if name != "svg"  # which this machine has no outline for
+    ),
+    *(("animate", "mine.toml", "--width", "100", "-o", f"out.{end}") for end in ("gif", "mp4")),
+    ("report", "mine.toml", "--pdf", "-o", "out.pdf"),
+]
+
+
+@pytest.mark.parametrize("words", KINDS_OF_FILES, ids=lambda words: words[-1])
+@pytest.mark.usefixtures("store")
+def test_no_kind_of_file_is_written_through_a_link(
+    words: tuple[str, ...], outside: Outside
+) -> None:
+    """Whatever library makes it."""
+    inputs()
+    Path(words[-1]).symlink_to(outside.folder / "secret.txt")
+    assert "leads out of its folder" in refused(equipoise(*words))
+    assert Path(words[-1]).is_symlink()
+
+
+def test_every_option_that_writes_is_tried() -> None:
+    """A new one joins the tables."""
+    tried = [" ".join(words) for words in (*WRITING.values(), *DRAWING.values(), *KINDS_OF_FILES)]
+    lines = [line.replace(" -o ", " --out ") for line in tried]
+    left = {
+        (command, option)
+        for command, options in OPTIONS.items()
+        for option in {*options} & {"--out", "--csv", "--plot"}
+        if not any(line.startswith(f"{command} ") and f" {option} " in line for line in lines)
+    }
+    assert left == {("site", "--out")}  # which has tests of its own
 
 
 @pytest.mark.parametrize("kind", ["svg", "png"])
-@pytest.mark.parametrize("words", DRAWING.values(), ids=DRAWING)
+@pytest.mark.parametrize("name", few(DRAWING, OFTEN))
 @pytest.mark.usefixtures("store")
 def test_pictures_go_through_no_link_in_their_folder(
-    words: tuple[str, ...], kind: str, outside: Outside
+    name: str, kind: str, outside: Outside
 ) -> None:
+    words = DRAWING[name]
     inputs()
     succeeded(equipoise(*words, "--format", kind))
     first, *_, last = sorted(Path("pictures").iterdir()) * 2
     for picture in {first, last}:
         planted(picture, outside.folder / "secret.txt")
+        unswept()
         assert "leads out of its folder" in refused(equipoise(*words, "--format", kind))
         picture.unlink()
     shutil.rmtree("pictures")
     Path("pictures").symlink_to(outside.folder / "folder")
+    unswept()
     assert "leads out of its folder" in refused(equipoise(*words, "--format", kind))
 
 
@@ -332,15 +440,16 @@ def test_what_is_begun_beside_a_place_goes_through_no_link(
 
 
 @pytest.mark.parametrize("swap", ["file", "folder"])
-@pytest.mark.parametrize("words", WRITING.values(), ids=WRITING)
+@pytest.mark.parametrize("name", few(WRITING, OFTEN))
 @pytest.mark.usefixtures("store")
 def test_what_is_written_goes_through_no_link_that_comes_meanwhile(
-    words: tuple[str, ...], swap: str, outside: Outside, monkeypatch: pytest.MonkeyPatch
+    name: str, swap: str, outside: Outside, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    words = WRITING[name]
     """A link is put in the place of the file, or of its folder, once writing has begun."""
     inputs()
     succeeded(equipoise("export", "mine.toml", "-o", "mine.mjcf.xml"))
-    name = next(one for one in words if "{}" in one).format("here/out")
+    place = next(one for one in words if "{}" in one).format("here/out")
     Path("here").mkdir()
     opened, planted_there = Folder.open, []
 
@@ -349,7 +458,7 @@ def test_what_is_written_goes_through_no_link_that_comes_meanwhile(
         if flags & os.O_CREAT and not planted_there:
             planted_there.append(file)
             if swap == "file":
-                Path(name).symlink_to(outside.folder / "secret.txt")
+                Path(place).symlink_to(outside.folder / "secret.txt")
             else:
                 Path("here").rename("old")
                 Path("here").symlink_to(outside.folder)
@@ -377,6 +486,33 @@ def test_agents_write_through_no_link(outside: Outside) -> None:
         in_agents_server("plot", file="mine.toml", out=out, overwrite=True)
         in_agents_server("sweep", file="study.toml", out=f"{out}/new.zarr")
     in_agents_server("plot", file="mine.toml", overwrite=True)
+
+
+def test_no_tool_opens_or_writes_what_leads_out_of_the_fence(outside: Outside) -> None:
+    """Each place of each tool, by a link and by a path that goes up."""
+    inputs()
+    Path("way").symlink_to(outside.folder)
+    Path("way.toml").symlink_to(outside.folder / "model.toml")
+    away = (f"../{outside.folder.name}/model.toml", str(outside.folder / "model.toml"))
+    paths = {"file", "study", "store", "input", "targets", "out", "csv", "plot"}
+    usual = {"study": "study.toml", "targets": "fit.toml", "store": "none.zarr", "csv": "swing.csv"}
+    usual |= {"rows": 3, "points": 3, "input": ["tasks.csv"], "duration": "0.1 s"}
+    tried = set()
+    for name, tool in tools().items():
+        schema = tool.schema()
+        needed = {key: usual.get(key, "mine.toml") for key in schema["required"]}
+        for key in paths & schema["properties"].keys():
+            if schema["properties"][key]["type"] == "boolean":
+                continue
+            for place in ("way/model.toml", "way.toml", *away):
+                given = [place] if schema["properties"][key]["type"] == "array" else place
+                told = in_agents_server(name, **needed | {key: given, "overwrite": True})
+                if not tool.writes:
+                    told = in_agents_server(name, **needed | {key: given})
+                said = "without .. and not from the root" if place in away else "leads out of the f"
+                assert said in told, (name, key, place, told)
+                tried.add((name, key))
+    assert len(tried) > 60
 
 
 # -- saving in place -------------------------------------------------------------------------------
