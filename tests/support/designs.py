@@ -222,7 +222,7 @@ def drawn(numbers: Sequence[Number], count: int, seed: int) -> Array:
 def _places(machine: Machine, share: float, polar: bool) -> Iterator[Number]:
     reach = share * size_of(machine)
     pairs: list[tuple[str, tuple[str, ...], float]] = [
-        (f"frame.points.{name}", ("frame", name), reach) for name in machine.frame
+        (str(KeyPath(("frame", "points", name))), ("frame", name), reach) for name in machine.frame
     ]
     for link, body in machine.links.items():
         pairs += [
@@ -290,7 +290,9 @@ def _across(machine: Machine) -> Iterator[Number]:
             yield Number(path, z, _putter("links", name, *keys), _near(z, spread))
     for name, one in machine.bearings.items():
         put = _putter("bearings", name, "plane")
-        yield Number(f"bearings.{name}.plane", one.plane, put, _near(one.plane, spread / 5))
+        yield Number(
+            str(KeyPath(("bearings", name, "plane"))), one.plane, put, _near(one.plane, spread / 5)
+        )
 
 
 def _of_drive(machine: Machine) -> Iterator[Number]:

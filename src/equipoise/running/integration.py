@@ -216,7 +216,7 @@ class Integration:
         inertia, half = values[0], (ends[1] - ends[0]) / 2
         start = min(max((begin.angle - ends[0]) / half - 1, -1.0), 1.0)
         paths = half * (PATHS[start] if start in PATHS else integral_to(POINTS, start))
-        began = self._inertia_at(k, start) * begin.speed**2 / 2
+        began = float(self._inertia_at(k, start)) * begin.speed**2 / 2
         energy = np.full(len(POINTS), began)
         inverse = None
         for _ in range(MOST_ITERATIONS):

@@ -29,6 +29,7 @@ from typing import TYPE_CHECKING, Any, get_args
 import numpy as np
 
 import equipoise
+from equipoise.codegen.figures import COMPUTED
 from equipoise.design.requirements import Make
 from equipoise.errors import UsageError, needed
 from equipoise.fence import OutsideError, open_folder
@@ -37,7 +38,7 @@ from equipoise.i18n import worded
 from equipoise.partial import locked
 from equipoise.results.result import Result
 from equipoise.studies.design_space import Output
-from equipoise.studies.outcomes import COMPUTED, Block, Outcome
+from equipoise.studies.outcomes import Block, Outcome
 
 if TYPE_CHECKING:
     import zarr
