@@ -54,7 +54,7 @@ export class App {
   private readonly readings = new Readings();
   private readonly planted = new FigureTable(say("Figures of the planting finger"));
   private readonly gauges = new FigureTable(say("Figures of gauges"));
-  private readonly strokes = new FigureTable(say("Figures of sliders, rockers and cams"));
+  private readonly strokes = new FigureTable(say("Figures of sliders, rockers, cams and friction"));
   private readonly across = h("img", {
     class: "across",
     alt: say("The planes of links, masses and bearings, from the side and to scale."),

@@ -11,6 +11,8 @@ from playwright.sync_api import Page, expect
 
 import equipoise as eq
 from browser.live import NUMBER, Live
+from equipoise.quantities import number, typeset
+from surface.running import example_text
 
 SHOWN = 0.011
 """Places are shown to a hundredth of a millimetre."""
@@ -199,6 +201,37 @@ def test_a_field_and_a_slider_change_the_speed(live: Live) -> None:
     after = live.machine().drive.speed
     assert after > 1.02 * before
     expect(speed).to_have_value(f"{after * 30 / np.pi:.5g} rpm")
+
+
+RUBBING = """
+[[joints]]
+joint = "joints.piston on frame"
+friction = 0.08
+"""
+
+
+def test_a_coefficient_of_friction_is_slid_and_its_losses_follow(live: Live) -> None:
+    live.drop("engine.toml", example_text("slider-crank-engine") + RUBBING)
+    of_joint = live.page.get_by_role("row", name=re.compile("^Piston on frame: mean loss"))
+    everything = live.page.get_by_role("row", name=re.compile("^All joints: mean loss"))
+    expect(everything).to_contain_text("W")
+    field = live.page.get_by_role("textbox", name=re.compile("piston on frame, friction"))
+    expect(field).to_have_value("0.08")
+    slider = live.page.get_by_role("slider", name=re.compile("piston on frame, friction"))
+    slider.press("PageUp")
+    expect(live.button("Undo")).to_be_enabled()
+    live.settled()
+    machine = live.machine()
+    assert machine.joints[0].friction > 0.08
+    expect(field).to_have_value(f"{machine.joints[0].friction:.5g}")
+    losses = eq.analyze(machine).losses
+    assert losses is not None and losses.efficiency is not None
+    expect(everything).to_contain_text(typeset(number(losses.loss)))
+    expect(of_joint).to_contain_text(typeset(number(losses.loss)))
+    efficiency = live.page.get_by_role("row", name=re.compile("^Efficiency"))
+    expect(efficiency).to_contain_text(typeset(number(losses.efficiency)))
+    live.type(field, "much")
+    expect(live.page.get_by_text("give a plain number")).to_be_visible()
 
 
 def test_a_phase_of_a_row_changes_the_forces_of_all_rows(live: Live) -> None:

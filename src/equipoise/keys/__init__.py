@@ -33,6 +33,7 @@ from equipoise.keys.declaring import declared as declared
 from equipoise.keys.declaring import inside as inside
 from equipoise.keys.declaring import key as key
 from equipoise.keys.declaring import keys_of as keys_of
+from equipoise.keys.declaring import numbers_of as numbers_of
 from equipoise.keys.declaring import quantities_of as quantities_of
 from equipoise.keys.declaring import with_fields as with_fields
 from equipoise.keys.kinds import MOST_WHOLE as MOST_WHOLE

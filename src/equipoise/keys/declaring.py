@@ -19,6 +19,7 @@ from equipoise.keys.kinds import (
     Quantity,
     Table,
     Tables,
+    Told,
     Whole,
     innermost,
 )
@@ -276,6 +277,16 @@ def quantities_of(value: Frozen | type[Frozen]) -> Mapping[str, Key]:
     """Keys of an object or a class that are one quantity each, by name."""
     found = keys_of(value if isinstance(value, type) else type(value)).items()
     return {name: one for name, one in found if isinstance(one.kind, Quantity) and one.field}
+
+
+def numbers_of(value: Frozen | type[Frozen]) -> Mapping[str, Key]:
+    """Keys of an object or a class that are one number each, by name: quantities, and numbers
+    without a unit such as a coefficient of friction.
+    """
+    keys = keys_of(value if isinstance(value, type) else type(value)).items()
+    numbers = {name: one for name, one in keys if isinstance(one.kind, Number) and one.field}
+    # What a number that something else tells is of, such as a limit, is not known here.
+    return {name: one for name, one in numbers.items() if not isinstance(one.kind, Told)}
 
 
 def changed(

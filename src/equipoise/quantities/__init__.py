@@ -8,6 +8,7 @@ from equipoise.quantities.clean import DIGITS as DIGITS
 from equipoise.quantities.clean import clean as clean
 from equipoise.quantities.clean import clean_place as clean_place
 from equipoise.quantities.expressions import parse_expression as parse_expression
+from equipoise.quantities.expressions import parse_number as parse_number
 from equipoise.quantities.numbers import DEGREE as DEGREE
 from equipoise.quantities.numbers import PER_RPM as PER_RPM
 from equipoise.quantities.numbers import Display as Display

@@ -75,6 +75,36 @@ def parse_expression(text: str, dimension: Dimension) -> float:
     return number
 
 
+def parse_number(text: str) -> float:
+    """Read a number without a unit, or a sum or product of such numbers.
+
+    Parameters
+    ----------
+    text : such as ``"0.15"`` or ``"=0.3/2"``.
+
+    Raises
+    ------
+    UsageError
+        One sentence: what was given and what would be right.
+    """
+    shown = text if len(text) <= 60 else f"{text[:57]}..."
+    wrong = UsageError(Note('got {text!r}; give a plain number, such as "0.15"', text=shown))
+    if len(text) > LONGEST:
+        raise wrong
+    with localcontext() as context:
+        context.prec = DIGITS
+        try:
+            tree = ast.parse(text.strip().removeprefix("=").strip(), mode="eval").body
+            number = float(_value(tree, {})[0])
+        except (SyntaxError, ValueError, RecursionError, MemoryError, InvalidOperation) as error:
+            raise wrong from error
+        except ZeroDivisionError as error:
+            raise UsageError(Note("got {text!r}, which divides by 0", text=shown)) from error
+    if not isfinite(number) or abs(number) > HUGE or 0 < abs(number) < TINY:
+        raise UsageError(too_far(shown))
+    return number
+
+
 def _is_expression(text: str) -> bool:
     if len(text) > LONGEST or start_of_range(text):
         return False

@@ -10,7 +10,7 @@ from typing import Any
 
 from equipoise.errors import ModelError, UsageError
 from equipoise.i18n import listed, say, to_say
-from equipoise.keys import Frozen, Quantity, quantities_of
+from equipoise.keys import Frozen, Quantity, numbers_of, quantities_of
 from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.outputs.declared import GROUPS
 from equipoise.mechanism.parts.links import MASS_FIELDS
@@ -21,9 +21,11 @@ from equipoise.quantities import (
     chosen_unit,
     clean,
     clean_place,
+    display,
     format_exact,
     in_unit,
     parse_expression,
+    parse_number,
     rounded,
     typeset,
 )
@@ -47,13 +49,14 @@ class Field:
     """A number: its path, such as ``links.crank.mass``, the heading that it belongs under, its
     label, its value in SI units and radians, and the design with another value.
 
+    dimension : None of a number without a unit, such as a coefficient of friction.
     measure : the length or direction that it is, if it is one.
     """
 
     path: str
     group: str
     label: str
-    dimension: Dimension
+    dimension: Dimension | None
     value: float
     put: Put
     measure: Measure | None = None
@@ -74,7 +77,10 @@ class Field:
         if not isinstance(to, str):
             return self.put(of, clean(to, self.dimension))
         typed = to.strip()
-        value = parse_expression(typed, self.dimension)
+        if self.dimension is None:
+            value = parse_number(typed)
+        else:
+            value = parse_expression(typed, self.dimension)
         try:
             return self.put(of, value)
         except (ModelError, UsageError) as error:
@@ -114,7 +120,7 @@ class Scale:
         elif last in {"x", "y"}:
             low, high = start - FREE * self.length, start + FREE * self.length
         else:
-            usual = {"mass": self.mass, "length": self.length}.get(field.dimension, 1.0)
+            usual = {"mass": self.mass, "length": self.length}.get(field.dimension or "", 1.0)
             low, high = sorted((0.0, 2 * start or usual))
         return min(low, field.value), max(high, field.value)
 
@@ -122,7 +128,7 @@ class Scale:
         """A number as the page is sent it."""
         low, high = self.ends(field)
         start = self.values.get(field.path, field.value)
-        unit = in_unit(chosen_unit(field.dimension) or _unit(start, field.dimension))
+        unit = _display(start, field.dimension)
         return {
             "path": field.path,
             "group": field.group,
@@ -164,6 +170,13 @@ def _heading(field: Field) -> str:
     return say(SECTIONS.get(field.group) or GROUPS.get(field.group, field.group))
 
 
+def _display(start: float, dimension: Dimension | None) -> Display:
+    """How a number is shown that was `start` when its design was opened."""
+    if dimension is None:
+        return display(None)
+    return in_unit(chosen_unit(dimension) or _unit(start, dimension))
+
+
 @lru_cache(4096)
 def _unit(start: float, dimension: Dimension) -> str:
     """The unit in which a number is shown, whatever becomes of it: that of the file, if handy."""
@@ -174,6 +187,8 @@ def _unit(start: float, dimension: Dimension) -> str:
 @lru_cache(8192)
 def _text(value: float, unit: str) -> str:
     """Digits are looked for in decimal arithmetic, and most numbers are those of a moment ago."""
+    if not unit:
+        return f"{value:.{DIGITS}g}"
     return rounded(value, unit, DIGITS)
 
 
@@ -197,7 +212,9 @@ def fields_of(design: Design) -> dict[str, Field]:
     return {field.path: field for field in (*found, *_weights(design))}
 
 
-def _field(path: KeyPath, group: str, label: str, dimension: Dimension, value: float) -> Field:
+def _field(
+    path: KeyPath, group: str, label: str, dimension: Dimension | None, value: float
+) -> Field:
     """A number of the machine, which its path tells how to change."""
     return Field(str(path), group, label, dimension, value, partial(_put, path))
 
@@ -214,13 +231,14 @@ def _point(path: KeyPath, group: str, label: str, point: Vector) -> Iterator[Fie
 def _numbers(
     path: KeyPath, group: str, of: str, item: Frozen, without: tuple[str, ...] = ()
 ) -> Iterator[Field]:
-    """Those keys of an object that are quantities and are given, by their words after `of`."""
-    for key, one in quantities_of(item).items():
+    """Those keys of an object that are numbers and are given, by their words after `of`."""
+    for key, one in numbers_of(item).items():
         value = getattr(item, one.field)
-        if value is not None and key not in without and isinstance(one.kind, Quantity):
+        if value is not None and key not in without:
+            dimension = one.kind.dimension if isinstance(one.kind, Quantity) else None
             word = say(one.word or key.replace("_", " "))
             label = listed(of, word) if of else word
-            yield _field(path / key, group, label, one.kind.dimension, value)
+            yield _field(path / key, group, label, dimension, value)
 
 
 def _drive(machine: Machine) -> Iterator[Field]:
@@ -282,10 +300,14 @@ def _frame(machine: Machine) -> Iterator[Field]:
         yield from _point(KeyPath((FRAME, "points", point)), "frame", point, place)
 
 
+NOT_OF_PARTS = ("ratio",)
+"""A slider would pass through ratios whose motion repeats after thousands of turns."""
+
+
 def _parts(machine: Machine) -> Iterator[Field]:
     for table, number, part in machine.parts:
         path, of = KeyPath((table, number)), part.label.said()
-        yield from _numbers(path, table, of, part, part.idle_keys)
+        yield from _numbers(path, table, of, part, (*part.idle_keys, *NOT_OF_PARTS))
 
 
 def _joints(machine: Machine) -> Iterator[Field]:

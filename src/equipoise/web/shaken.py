@@ -182,7 +182,8 @@ def more(
     """
     if found.analysis.machine.has_planes and not outdated():
         yield {"type": "side", "svg": render(side(found.analysis)).decode()}, b""
-    if found.analysis.strokes and not outdated():
+    # Where there are none any more, such as losses of friction, the page hides those that it has.
+    if not outdated():
         yield _told_against("strokes", _strokes, found, against), b""
     if can_be_shaken(found.analysis.machine) and not outdated():
         yield _told_against("gauges", _gauges, found, against), b""
@@ -283,6 +284,21 @@ def _strokes_of(analysis: Analysis) -> Iterator[tuple[str, _Told]]:
         yield from _declared_of(f"strokes.{name}", joint_named(name), one, of_joint)
     for table, name, figures in figures_by_name(analysis):
         yield from _declared_of(f"{table}.{name}", name.replace(" to ", " → "), figures, _own)
+    yield from _losses_of(analysis)
+
+
+def _losses_of(analysis: Analysis) -> Iterator[tuple[str, _Told]]:
+    """What friction costs, joint by joint and altogether; nothing where no joint rubs."""
+    losses = analysis.resolved.losses
+    if losses is None:
+        return
+    word = say("mean loss")
+    for name, one in losses.joints.items():
+        label = f"{joint_named(name)}: {word}"
+        yield f"friction.joints.{name}.loss", _Told(label, one.loss, "power")
+    yield "friction.loss", _Told(f"{say('all joints')}: {word}", losses.loss, "power")
+    if losses.efficiency is not None:
+        yield "friction.efficiency", _Told(say("efficiency"), losses.efficiency, None)
 
 
 def _of_joint(machine: Machine, name: str, kind: Field[Any]) -> Dimension | None:

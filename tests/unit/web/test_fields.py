@@ -7,13 +7,18 @@ from dataclasses import replace
 import pytest
 
 import equipoise as eq
+from equipoise.errors import ModelError, UsageError
+from equipoise.mechanism.parts.joint_properties import JointProperties
 from equipoise.web.design import Design
 from equipoise.web.drawn import drawn, sketch_of
 from equipoise.web.edits import solved
 from equipoise.web.fields import Scale, fields_of
 from equipoise.web.openings import opened_example
 from equipoise.web.remaking import renamed, without_link
+from equipoise.web.session import Session
 from unit.web.pages import edit, opened
+
+RUBBING = (JointProperties("joints.piston on frame", friction=0.08),)
 
 
 def is_measure(path: str) -> bool:
@@ -54,6 +59,44 @@ def test_a_number_keeps_its_unit() -> None:
     assert shown.field("drive.speed")["text"] == "231.5991 rpm"
     assert shown.field("counterweights.crank.direction")["text"] == "180 deg"
     assert session.shown.design.machine.drive.speed == 24.253
+
+
+def test_a_number_without_a_unit_is_shown_typed_and_slid() -> None:
+    machine = replace(eq.load("slider-crank-engine"), joints=RUBBING)
+    design = Design("engine", machine)
+    field = fields_of(design)["joints[1].friction"]
+    shown = Scale.of(design).told(field)
+    assert (shown["text"], shown["shown"], shown["unit"]) == ("0.08", "0.08", "")
+    assert (shown["min"], shown["max"]) == (0.0, 0.16)
+    for text, value in (("0.15", 0.15), (" 0.15 ", 0.15), ("=0.3/2", 0.15), ("2*0.1", 0.2)):
+        assert field.typed(design, text).own.joints[0].friction == value
+    for text in ("0.1 mm", "much", "", "1e99", "0.1/0"):
+        with pytest.raises(UsageError, match="got '"):
+            field.typed(design, text)
+    with pytest.raises(ModelError, match=r"-0\.1"):
+        field.typed(design, "-0.1")
+
+
+def test_what_friction_costs_follows_its_coefficient() -> None:
+    """Told again after each change; nothing is left of it without friction."""
+    machine = replace(eq.load("slider-crank-engine"), joints=RUBBING)
+    session = Session()
+    session.open(Design("engine", machine))
+    for coefficient in (0.08, 0.16, 0.0):
+        edit(session, {"set": "joints[1].friction", "value": coefficient})
+        (table,) = [r.content for r in session.tell_more() if r.content["type"] == "strokes"]
+        figures = {one["name"]: one for one in table["figures"]}
+        losses = eq.analyze(machine.with_number("joints[1].friction", coefficient)).losses
+        if losses is None:
+            assert coefficient == 0.0 and "friction.loss" not in figures
+            continue
+        assert figures["friction.loss"]["value"] == pytest.approx(losses.loss, rel=1e-12)
+        assert figures["friction.efficiency"]["value"] == pytest.approx(losses.efficiency)
+        assert figures["friction.joints.piston on frame.loss"]["unit"] == "W"
+
+
+def test_a_ratio_of_gears_is_not_slid() -> None:
+    assert "gears[1].ratio" not in fields_of(opened_example("geared-counterweight"))
 
 
 def test_names_with_dots_are_names() -> None:
