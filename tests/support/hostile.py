@@ -11,7 +11,7 @@ from surface.running import example_text
 
 HOSTILE = (
     '"><script>window.x=1</script><img src=x onerror="window.x=1"> \'onload=x\' '
-    "javascript:window.x=1 ]]> </style></svg>&amp;"
+    "javascript:window.x=1 ]]> </style></svg>&amp; \\ ${x} %s */"
 )
 
 

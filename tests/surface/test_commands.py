@@ -702,6 +702,18 @@ def test_a_current_folder_that_was_deleted(
     assert said.startswith("the current folder does not exist any more; go to another")
 
 
+@pytest.mark.skipif(os.name != "posix", reason="a folder in use cannot be deleted elsewhere")
+@pytest.mark.parametrize("line", ["new m.toml", "site -o out"])
+def test_a_file_in_a_current_folder_that_was_deleted(
+    line: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (folder := tmp_path / "gone").mkdir()
+    monkeypatch.chdir(folder)
+    folder.rmdir()
+    said = refused(process(*line.split()))
+    assert "cannot be written (the current folder does not exist any more)" in said
+
+
 def test_other_mishaps_with_files_name_the_file(monkeypatch: pytest.MonkeyPatch) -> None:
     """Those of which no command says itself what they are; standard output has no name."""
     gone = Path("gone") / "x"
@@ -719,11 +731,13 @@ def test_help_in_a_narrow_terminal(columns: int, monkeypatch: pytest.MonkeyPatch
     assert max(map(len, lines)) <= 40
 
 
-@pytest.mark.parametrize("columns", ["0", "00", "\u00b2"])
-def test_help_where_the_width_of_the_terminal_is_no_width(columns: str) -> None:
-    without = {name: value for name, value in os.environ.items() if name != "COLUMNS"}
+@pytest.mark.parametrize("size", ["0", "\u00b2", "9" * 5000])
+@pytest.mark.parametrize("variable", ["COLUMNS", "LINES"])
+def test_help_where_the_size_of_the_terminal_is_no_size(variable: str, size: str) -> None:
+    """The last has more digits than Python takes as a number."""
+    without = {name: value for name, value in os.environ.items() if name != variable}
     usual = succeeded(process("--help", env=without))
-    assert succeeded(process("--help", env={**without, "COLUMNS": columns})) == usual
+    assert succeeded(process("--help", env={**without, variable: size})) == usual
 
 
 def test_names_of_files_are_printed_in_plain_signs() -> None:

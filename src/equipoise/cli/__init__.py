@@ -112,9 +112,11 @@ def _run(arguments: Sequence[str] | None) -> int:
 
 def _prepare(given: Sequence[str]) -> None:
     """Fit the output to the terminal, and load what the help lists."""
-    columns = shutil.get_terminal_size().columns
+    columns, lines = shutil.get_terminal_size()
     if columns > MOST or "COLUMNS" in os.environ:  # for every library that asks, and may take a 0
         os.environ["COLUMNS"] = str(min(columns, MOST))
+    if "LINES" in os.environ:  # Rich takes every sign that is called a digit, such as a superscript
+        os.environ["LINES"] = str(min(lines, MOST))
     app.console = _console(LEAST) if columns < LEAST else None
     if not given or given[0].startswith("-"):  # the help has a line of each command
         for name in COMMANDS:
@@ -143,19 +145,13 @@ def check_repeated(words: Sequence[str]) -> None:
 
 def _mishap(error: OSError) -> str:
     """What the system has refused, where nobody nearer to it says so."""
-    if isinstance(error, FileNotFoundError) and not _is_somewhere():
+    from equipoise.schema.files import is_nowhere
+
+    if isinstance(error, FileNotFoundError) and is_nowhere():
         return "the current folder does not exist any more; go to another, and run it again there"
     if error.filename is not None:
         return f"{error.filename!r} cannot be used ({error.strerror})"
     return f"the output cannot be written ({error.strerror})"
-
-
-def _is_somewhere() -> bool:
-    try:
-        os.getcwd()
-    except OSError:
-        return False
-    return True
 
 
 def _refuse(error: Exception) -> int:

@@ -36,13 +36,14 @@ def site(
     docs
         Folder of the documentation as HTML, to become docs in the site.
     """
+    from equipoise.schema.files import reason
     from equipoise.web.site import write_site
 
     folder = out or "site"
     try:
         written = write_site(folder, runtime or "node_modules/pyodide", wheels, docs)
     except OSError as error:
-        raise UsageError(f"{folder}: the site cannot be written ({error.strerror})") from error
+        raise UsageError(f"{folder}: the site cannot be written ({reason(error)})") from error
     wrote(f"{folder}/index.html")
     print(f"first load: {written.first / 1e6:.1f} MB, compressed")
     if written.missing:

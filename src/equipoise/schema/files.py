@@ -134,9 +134,20 @@ def printable(path: Name) -> str:
 
 def reason(error: Exception) -> str:
     """Say briefly why the system refused."""
+    if isinstance(error, FileNotFoundError) and is_nowhere():
+        return "the current folder does not exist any more"
     if isinstance(error, OSError) and error.strerror:
         return error.strerror.lower()
     return str(error).lower()
+
+
+def is_nowhere() -> bool:
+    """Whether the current folder was deleted."""
+    try:
+        os.getcwd()
+    except OSError:
+        return True
+    return False
 
 
 # -- results ---------------------------------------------------------------------------------------

@@ -18,7 +18,7 @@ from equipoise.errors import UsageError
 from equipoise.web.desk import Desk
 from equipoise.web.lanes import MOMENT, Lanes, Work, give_back
 from equipoise.web.messages import SLOW, Message, makes_way, read
-from equipoise.web.replies import Reply, packed, refused, told
+from equipoise.web.replies import Reply, packed, refused, told, unexpected
 
 if TYPE_CHECKING:
     from starlette.websockets import WebSocket
@@ -32,7 +32,6 @@ NEXT = 0.1
 SELDOM = 0.2
 """s after which that is told of a drag that never pauses."""
 BUSY = "questions that take long are still being answered; wait for them"
-MISTAKE = "this went wrong inside the program, and nothing was changed; please report it"
 FLOODED = "too many messages at once; load the page again"
 POLICY_VIOLATION, TRY_LATER = 1008, 1013
 
@@ -159,9 +158,10 @@ class Page:
                 if to is not None and to.preview and await self._overtaken(loop.time()):
                     break
         except Exception as error:  # whatever it is, the last good state is still there
-            traceback.print_exception(error, file=sys.stderr)
+            if not isinstance(error, MemoryError):
+                traceback.print_exception(error, file=sys.stderr)
             seq = None if to is None else to.seq
-            await self._send(refused(seq, UsageError(f"{MISTAKE} ({type(error).__name__})")))
+            await self._send(refused(seq, unexpected(error)))
 
     async def _overtaken(self, now: float) -> bool:
         """Whether a drag goes on, so that what else there is to tell of this move is left."""

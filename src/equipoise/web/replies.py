@@ -7,10 +7,12 @@ import struct
 from dataclasses import dataclass
 from typing import Any
 
-from equipoise.errors import EquipoiseError, ModelError, to_paste
+from equipoise.errors import EquipoiseError, ModelError, UsageError, to_paste
+from equipoise.limits import out_of_memory
 
 LONGEST = 800
 """Signs of a sentence."""
+MISTAKE = "this went wrong inside the program, and nothing was changed; please report it"
 
 
 @dataclass(frozen=True)
@@ -29,6 +31,15 @@ def refused(seq: int | None, error: EquipoiseError, language: str = "en") -> Rep
         what = EquipoiseError(error.what).told(language)
         content |= {"path": error.where, "what": _shortened(what)}
     return Reply(content)
+
+
+def unexpected(error: Exception) -> UsageError:
+    """The sentence for an error that nobody refuses: of memory that is used up, or of a mistake of
+    the program.
+    """
+    if isinstance(error, MemoryError):
+        return out_of_memory(error)
+    return UsageError(f"{MISTAKE} ({type(error).__name__}: {error})")
 
 
 def told(seq: int | None) -> Reply:

@@ -25,7 +25,7 @@ from equipoise.web.design import Design
 from equipoise.web.desk import Desk
 from equipoise.web.edits import Solved, solved
 from equipoise.web.messages import SLOW, Message, makes_way, read
-from equipoise.web.replies import Reply, packed, refused, told
+from equipoise.web.replies import Reply, packed, refused, told, unexpected
 from equipoise.web.session import Session
 from equipoise.web.shaken import more
 
@@ -33,7 +33,6 @@ OF_MACHINE = ("balance", "download")
 """Of the questions that take long, those about the machine that is open."""
 SELDOM = 0.2
 """s after which all that follows from an edit is computed in a drag that never pauses."""
-MISTAKE = "this went wrong inside the program, and nothing was changed; please report it"
 CANCELLED = Note("cancelled; nothing was changed")
 LACKING = to_say("this needs {package}, which this site does not have and could not load")
 
@@ -106,7 +105,7 @@ class Foreground:
         except EquipoiseError as error:
             reply = self._refuse(error)
         except Exception as error:  # whatever it is, the last good state is still there
-            reply = self._refuse(UsageError(f"{MISTAKE} ({type(error).__name__}: {error})"))
+            reply = self._refuse(unexpected(error))
         return None if reply is None else packed(reply)
 
     def lacks(self, package: str) -> None:
@@ -265,7 +264,7 @@ class Background:
                 return None
             return self._fail(UsageError(Note(LACKING, package=name)))
         except Exception as error:  # the next task is another one
-            return self._fail(UsageError(f"{MISTAKE} ({type(error).__name__}: {error})"))
+            return self._fail(unexpected(error))
 
     def _fail(self, error: UsageError) -> tuple[str, bytes]:
         """Refuse what the task was asked for; it ends after that."""

@@ -184,6 +184,26 @@ def test_nonsense_is_answered_with_a_sentence(here: Here) -> None:
             ask(page, "x" * 7_000_000)
 
 
+@pytest.mark.parametrize(
+    ("error", "message"),
+    [(MemoryError(), "not enough memory: needs more"), (KeyError("x"), "inside the program")],
+)
+def test_what_nobody_refuses_is_told_and_the_page_goes_on(
+    error: Exception, message: str, here: Here, monkeypatch: pytest.MonkeyPatch,
+    capfd: pytest.CaptureFixture[str],
+) -> None:  # fmt: skip
+    """Of memory that is used up nothing is to be reported, so no traceback is printed."""
+    change = {"type": "edit", "seq": 1, "edits": [{"set": "drive.speed", "text": "200 rpm"}]}
+    with here.page() as page:
+        hear(page)
+        with monkeypatch.context() as patch:
+            patch.setattr(Session, "_edit", mock.Mock(side_effect=error))
+            told = ask(page, change)
+        assert told["type"] == "refused" and message in told["message"]
+        assert ("Traceback" in capfd.readouterr().err) == isinstance(error, KeyError)
+        assert ask(page, change)["type"] == "state"
+
+
 def test_pages_do_not_disturb_each_other(here: Here) -> None:
     with here.page() as one, here.page() as other:
         assert hear(one)["type"] == hear(other)["type"] == "hello"

@@ -119,6 +119,25 @@ def test_nonsense_and_mistakes_leave_the_page_alive(page: Foreground) -> None:
     assert kinds(asked(page, "edit", label="mass", edits=[MASS]))[0] == "state"
 
 
+def test_memory_that_is_used_up_is_a_sentence_here_and_beside(
+    page: Foreground, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Not a mistake of the program that is to be reported."""
+
+    def large(*_: object) -> Any:
+        raise MemoryError
+        yield
+
+    monkeypatch.setattr("equipoise.web.balanced.computed", lambda *_: next(large()))
+    asked(page, "balance")
+    replies = done_beside(page)
+    monkeypatch.setattr(page.desk, "receive", large)
+    replies += asked(page, "edit", label="mass", edits=[MASS])
+    told = [reply["message"] for reply in replies if reply["type"] == "refused"]
+    assert len(told) == 2
+    assert all(one.startswith("not enough memory: needs more, and ") for one in told)
+
+
 def test_a_package_is_asked_for_and_the_message_begun_again(
     page: Foreground, monkeypatch: pytest.MonkeyPatch
 ) -> None:
