@@ -136,7 +136,7 @@ RPP = (ALONG, ACROSS, INNER, Unit(1.3), 0.21 + 0.13j)
 
 FORMULAS = {
     "point": Formula("point", _point, (0.7 - 0.4j,), ("point",), False),
-    "gear": Formula("gear", _gear, (-1.5, 0.3), ("angle",), False),
+    "gear": Formula("in_ratio", _gear, (-1.5, 0.3), ("angle",), False),
     "rolled": Formula("rolled", _gear, (0.3, -0.2), ("angle",), False),
     "wound": Formula("wound", _gear, (2.5, 0.4), ("angle",), False),
     "travelled": Formula("travelled", _pin_and_guide, (ALONG,), ("angle",), False),

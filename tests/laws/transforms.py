@@ -370,9 +370,14 @@ class Units:
         return self.of("N m")
 
     def of(self, unit: str) -> float:
-        """How many of the new units make one of these; what they are made of is pint's."""
+        """How many of the new units, with amperes, make one of these, as pint takes it apart."""
         powers = _powers(unit)
-        sizes = {"[length]": self.length, "[mass]": self.mass, "[time]": self.time}
+        sizes = {
+            "[length]": self.length,
+            "[mass]": self.mass,
+            "[time]": self.time,
+            "[current]": 1.0,
+        }
         return float(np.prod([sizes[name] ** power for name, power in powers.items()]))
 
 
