@@ -100,7 +100,8 @@ def balanced_headline(found: Balanced, alone: bool = False) -> Iterator[Block]:
     if found.advice is not None:
         yield from map(Text, beside_the_aim(found))
     yield from (Text(line, "worse") for line in worst_told(found))
-    yield from map(Text, sentences_beyond_masses(found))
+    beyond = sentences_beyond_masses(found)
+    yield from (Text(line, is_detail=found.advice is not None) for line in beyond)
     if found.notes:
         yield Notes(found.notes[:MOST_NOTES])
     yield look_at_next("balance --out FILE", "balance --full")

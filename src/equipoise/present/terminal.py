@@ -55,7 +55,8 @@ def print_blocks(
 
 def _shortened(blocks: list[Block | Section]) -> list[Block | Section]:
     """Blocks without the last item of the last list that has several, then without notes, then
-    without a whole list; empty where nothing is left to leave out.
+    without the last sentence of detail, then without a whole list; empty where nothing is left to
+    leave out.
     """
     for least in (1, 0):
         for k in reversed(range(len(blocks))):
@@ -68,6 +69,9 @@ def _shortened(blocks: list[Block | Section]) -> list[Block | Section]:
             else:
                 continue
             return [*blocks[:k], rest, *blocks[k + 1 :]]
+    details = [k for k, one in enumerate(blocks) if isinstance(one, Running) and one.is_detail]
+    if details:
+        return [*blocks[: details[-1]], *blocks[details[-1] + 1 :]]
     kinds = (block for block in enumerate(blocks) if isinstance(block[1], Notes | Facts))
     lists = [k for k, one in kinds if not getattr(one, "is_whole", False)]
     return [*blocks[: lists[-1]], *blocks[lists[-1] + 1 :]] if lists else []

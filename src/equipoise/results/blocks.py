@@ -112,11 +112,16 @@ class Column:
 
 @dataclass(frozen=True)
 class Text:
-    """Running text.  emphasis : why it stands out, if it does."""
+    """Running text.
+
+    emphasis : why it stands out, if it does.
+    is_detail : whether it may be left out where there is little room, as the tables have it too.
+    """
 
     kind: ClassVar[str] = "text"
     text: str
     emphasis: Emphasis | None = None
+    is_detail: bool = False
 
 
 @dataclass(frozen=True)
