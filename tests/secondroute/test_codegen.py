@@ -82,7 +82,7 @@ def compared(
 
 @pytest.mark.parametrize("name", few(EXAMPLES, DISTINCT))
 def test_example(name: str, numpy_engine: None) -> None:
-    base = eq.load(name)
+    base = eq.load(name).without_friction()  # what friction changes is not computed in loops
     assert compared(base, 3, 1)
     assert compared(base, 1, 2, polar=True)
 

@@ -66,7 +66,7 @@ def size(values: Any) -> Any:
 @pytest.mark.parametrize("name", few(written(), DISTINCT))
 def test_example(name: str, tmp_path: Path) -> None:
     """1e-13 of the same terms by NumPy; further from an analysis only where dyads are weak."""
-    machine = eq.load(name)
+    machine = eq.load(name).without_friction()
     linkage = assemble(machine)
     names = [one for one in signals_of(machine) if "." in one or one != "shaking_force"]
     script = javascript(linkage, names)
@@ -88,7 +88,7 @@ def test_example(name: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize("name", few(filter(has_forces, written()), DISTINCT))
 def test_numbers_that_are_changed(name: str, tmp_path: Path) -> None:
     """Lengths, masses and speed that are handed over, against a machine with these numbers."""
-    base = eq.load(name)
+    base = eq.load(name).without_friction()
     numbers = numbers_of(base, 1e-3)
     signals = ["shaking_force.x", "shaking_force.y", "shaking_moment", "drive_torque"]
     script = javascript(assemble(base), signals, {one.path: one.value for one in numbers})
@@ -126,7 +126,7 @@ def test_one_number_of_many(path: str, tmp_path: Path) -> None:
 def test_loops_start_from_the_base_and_tell_where_they_do_not_arrive(
     name: str, path: str, tmp_path: Path
 ) -> None:
-    base = eq.load(name)
+    base = eq.load(name).without_friction()
     (one,) = (one for one in numbers_of(base, 1e-3) if one.path == path)
     linkage = assemble(base)
     signals = ["drive_torque", "joints.B.force_x", "joints.B.force_y"]

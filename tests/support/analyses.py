@@ -73,10 +73,10 @@ def analysed(machine: Machine, case: Case | None = None) -> Subject:
 
 @cache
 def subject_of(name: str) -> Subject:
-    """Analyse an example or a random machine."""
+    """Analyse an example or a random machine; without friction, which has tests of its own."""
     kind, _, seed = name.partition(":")
     if not seed:
-        return analysed(eq.load(name))
+        return analysed(eq.load(name).without_friction())
     kind, soil, _ = kind.partition(" in soil")
     kind, apart, _ = kind.partition(" apart")
     kind, long, _ = kind.partition(" long")

@@ -335,3 +335,21 @@ def test_a_response_says_that_it_leaves_friction_out() -> None:
     left_out = "friction in joints is left out: the support is shaken as without it"
     assert left_out in map(str, eq.respond(rubbing).notes)
     assert left_out not in map(str, eq.respond(machine).notes)
+
+
+def test_the_pump_of_the_examples_loses_what_is_reckoned_by_hand() -> None:
+    """Of its packing, 45 N over 26 mm to and fro 15 times a second, and of what it delivers."""
+    machine = eq.load("plunger-pump")
+    losses = eq.analyze(machine).losses
+    assert losses is not None
+    assert losses.loads == pytest.approx(-1470 * 0.026 * 15, rel=1e-9)
+    assert losses.drive == pytest.approx(losses.loss - losses.loads, rel=1e-9)
+    packing = replace(machine, joints=(
+        JointProperties("joints.plunger on frame", drag_force=45.0),
+    ))  # fmt: skip
+    alone = eq.analyze(packing).losses
+    assert alone is not None and alone.loss == pytest.approx(45 * 2 * 0.026 * 15, rel=1e-9)
+    # its guide rubs by the force across: what remains is less than that of the rod's full slope
+    guide = losses.joints["plunger on frame"].loss - alone.loss
+    assert 0 < guide < 0.06 * 1500 * (0.013 / 0.065) * 2 * 0.026 * 15
+    assert losses.efficiency == pytest.approx(573.3 / 666.7, abs=2e-4)
