@@ -3,8 +3,8 @@
 One half grows dyad by dyad, gear by gear: any body may carry the next, so that inner joints share
 points, cranks stop and sides change.  The other half begins with a random machine of a kind of its
 own (`machines`, `machines_cams`, `machines_redundant`, `machines_strokes`).  Both are given drives,
-motions, motors, loads, springs, soils, supports, rows, bearings, further gears whose cycle is long,
-and a balance; what may stand in a table is read from a file now and then.
+motions, motors, loads, springs, soils, supports, rows, sections, bearings, further gears whose
+cycle is long, and a balance; what may stand in a table is read from a file now and then.
 Most can be analysed; what cannot has to be refused in a sentence.
 """
 
@@ -320,6 +320,12 @@ def dress(chance: random.Random, document: Document, wanted: str) -> Files:
         _twisted(twist, document)
     if twist.random() < 0.3 or "friction" in wanted:
         _rubbing(twist, document)
+    if "no_load_speed" in drive.get("motor", {}) and twist.random() < 0.5:
+        _other_motor(twist, drive["motor"])
+    if twist.random() < 0.3:
+        _sections(twist, document)
+    if twist.random() < 0.3:
+        _bearings(twist, document)
     if twist.random() < 0.05:
         document["units"] = {"length": "in", "force": "lbf", "angle": "rad", "speed": "ft/s"}
     if chance.random() < 0.3 or likely.get("planting"):
@@ -404,6 +410,70 @@ def _drive(chance: random.Random, drive: Document, wanted: str) -> Files:
             drive["motor"] = {"table": "motor.csv", "ratio": 5}
             return {"motor.csv": columns(chance, "speed [rpm],torque [N m]", 3000.0, c1=5.0)}
     return {}
+
+
+def _other_motor(chance: random.Random, motor: Document) -> None:
+    """One of another kind in the place of a straight line, some too weak to start."""
+    del motor["no_load_speed"], motor["stall_torque"]
+    size = 10 ** chance.uniform(-2, 2)
+    direct = {"voltage": f"{chance.choice((12, 24, 230))} V", "resistance": f"{1 / size:.4g} ohm",
+              "torque_constant": f"{10 ** chance.uniform(-2, 0):.4g} N m/A"}  # fmt: skip
+    alternating = {"synchronous_speed": f"{chance.choice((750, 1500, 3000))} rpm",
+                   "breakdown_torque": f"{size:.4g} N m",
+                   "breakdown_slip": round(chance.uniform(0.02, 0.9), 3)}  # fmt: skip
+    motor |= chance.choice(
+        [
+            {"torque": f"{size:.4g} N m"},
+            {"dc": direct},
+            {"dc": direct | {"inductance": f"{10 ** chance.uniform(-2, 2):.4g} mH"}},
+            {"induction": alternating},
+        ]
+    )
+
+
+def _sections(chance: random.Random, document: Document) -> None:
+    """Cross-sections of some links, some of which have no line, or no room for the wall."""
+    strengths = {"elastic_modulus": "206 GPa", "yield_strength": "355 MPa",
+                 "fatigue_limit": "180 MPa", "knee_cycles": 2e6, "slope": 6,
+                 "stress_concentration": 1.8, "effective_length": 0.7}  # fmt: skip
+    for link in document["links"].values():
+        points = [*link["points"]]
+        if chance.random() < 0.4 or (len(points) < 2 and chance.random() < 0.95):
+            continue
+        size = 10 ** chance.uniform(0.3, 1.7)
+        section: Document = chance.choice(
+            [{"height": mm(size), "width": mm(size / 2)}, {"diameter": mm(size)}]
+        )
+        if len(points) != 2 or chance.random() < 0.3:
+            section["between"] = chance.sample(points, min(2, len(points)))
+        if chance.random() < 0.3:
+            section["wall"] = mm(size * chance.uniform(0.02, 0.26))
+        section |= dict(chance.sample([*strengths.items()], chance.randint(0, len(strengths))))
+        if "fatigue_limit" in section and chance.random() < 0.5:
+            section["tensile_strength"] = "510 MPa"
+        link["section"] = section
+
+
+def _bearings(chance: random.Random, document: Document) -> None:
+    """Rolling and plain bearings in some pins, some of which a pin in a slot cannot have."""
+    held = [name for part in (*document["links"].values(), document["frame"])
+            for name in part["points"]]  # fmt: skip
+    joints = {one["joint"]: one for one in document.get("joints", ())}
+    rating = 10 ** chance.uniform(0, 2)
+    more = {"static_rating": f"{0.6 * rating:.4g} kN", "kind": chance.choice(("ball", "roller")),
+            "load_factor": 1.3, "life": "25000 h", "reliability": 0.95}  # fmt: skip
+    for point in sorted({name for name in held if held.count(name) > 1}):
+        name = f"joints.{point}"
+        if chance.random() < 0.4:
+            continue
+        one = joints.setdefault(name, {"joint": name})
+        if chance.random() < 0.5:
+            chosen = chance.sample([*more.items()], chance.randint(0, len(more)))
+            one["bearing"] = {"dynamic_rating": f"{rating:.4g} kN"} | dict(chosen)
+        else:
+            one |= {"radius": one.get("radius", "5 mm"), "width": mm(10 ** chance.uniform(0, 2))}
+    if joints:
+        document["joints"] = [*joints.values()]
 
 
 LAID = "crank_angle [deg],force_x [N],force_y [N]", "crank_angle [deg],torque [N m]"

@@ -431,8 +431,19 @@ def test_machines_from_nothing_have_every_table_of_a_model_file() -> None:
     schema = json.loads(equipoise("schema").out)
     every = [machines_any.files(seed)[0] for seed in range(400)]
     assert {*schema["properties"]} - {*chain(*every)} == {"description"}
-    joints = {*chain(*chain(*(document.get("joints", ()) for document in every)))}
-    assert {*schema["$defs"]["JointProperties"]["properties"]} == joints
+    joints = [*chain(*(document.get("joints", ()) for document in every))]
+    links = [*chain(*(document["links"].values() for document in every))]
+    motors = [document["drive"].get("motor", {}) for document in every]
+    made = {
+        "JointProperties": joints,
+        "RollingBearing": [one["bearing"] for one in joints if "bearing" in one],
+        "LinkSection": [one["section"] for one in links if "section" in one],
+        "Motor": motors,
+        "DcMotor": [one["dc"] for one in motors if "dc" in one],
+        "InductionMotor": [one["induction"] for one in motors if "induction" in one],
+    }
+    for table, entries in made.items():
+        assert {*schema["$defs"][table]["properties"]} == {*chain(*entries)}, table
 
 
 def test_every_command_is_tried() -> None:
