@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import tracemalloc
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,8 @@ from equipoise.balancing import box_bounds, multi_row
 from equipoise.balancing.box_bounds import largest_reading
 from equipoise.balancing.multi_row import Cost, RowSignals, Term
 from equipoise.balancing.phase_grid import Grid
+from equipoise.cli import run
+from equipoise.cli.worker import Call, reply_to
 from equipoise.limits import memory_limit, out_of_memory
 from equipoise.mechanism.assembly.shared import least
 from equipoise.mechanism.parts.balance import Measure, Objective
@@ -97,3 +100,19 @@ def test_a_small_array_that_finds_no_room_is_said_to_come_on_top() -> None:
                         (3 * memory_limit(), "in one piece")):  # fmt: skip
         error.shape = (size // 8,)  # type: ignore[attr-defined]
         assert words in str(out_of_memory(error))
+
+
+def test_memory_that_is_used_up_is_a_sentence_of_commands_and_of_agents_calls(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    def large(*_: object, **__: object) -> None:
+        raise MemoryError
+
+    monkeypatch.setattr("equipoise.results.analysis.analyze", large)
+    begin = "not enough memory: needs more, and 2 GiB may be used; ask for fewer crank angles"
+    monkeypatch.delenv("EQUIPOISE_MEMORY", raising=False)
+    assert run(["analyze", "yamashita-1"]) == 2
+    assert capsys.readouterr().err.startswith(f"equipoise: {begin}")
+    reply = reply_to(Call("analyze", {"file": "yamashita-1"}, str(tmp_path)))
+    assert reply.wrong
+    assert reply.text.startswith(begin)
