@@ -164,7 +164,12 @@ class PhaseSearch:
         if not self.cost.smooth:
             order = np.argsort(self.cost.values(cells), kind="stable")
             cells = distinct(cells[order], self.cost.period, [self.step / 2], MOST_KINKED)
-        return np.array([self.present, *map(self.polished, cells)])
+        polished = [self.present]
+        for done, phases in enumerate(cells):  # of long cycles each takes a minute
+            progress(done, len(cells))
+            polished.append(self.polished(phases))
+        progress(len(cells), len(cells))
+        return np.array(polished)
 
     def polished(self, phases: Array) -> Array:
         """Phases (m,) of the least next to these, on the grid where they nearly are."""
@@ -190,7 +195,6 @@ class PhaseSearch:
             guesses[:, 0] = 0.0
             first += list(guesses)
         if grid is None:
-            progress(len(first), len(first))
             return np.array(first)
         cells = grid.best(lambda done: progress(done, grid.count))
         most = CANDIDATES if grid.levels == self.levels else COARSE_CANDIDATES

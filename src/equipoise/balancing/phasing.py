@@ -92,7 +92,8 @@ def choose_phases(
     objectives : outputs with their measures; see `multi_row.Rows.signals`.
     phases : how finely to look; every 5 deg if None.
     combine : several objectives by their weighted sum, or the root of that of their squares.
-    progress : is told how many arrangements of the grid have been looked at.
+    progress : is called with how many arrangements of the grid are computed and how many there
+        are; then with these numbers of the best ones, which are refined.
     limits : what must be kept.
 
     Raises
