@@ -83,8 +83,10 @@ CASES = {
 }
 
 
-KINDS = ("193 rpm", "reversed", "rows apart", "free, reversed", "lifting off", "motor",
-         "motor on two rows", "motor, free", "springs on two rows, free")  # fmt: skip
+KINDS = (
+    *("193 rpm", "free, reversed", "lifting off"),
+    *("motor on two rows", "springs on two rows, free"),
+)
 """One of each kind of rig and drive."""
 EVERYTHING = "motion, gauge, mounts, drive, joints, work of a turn"
 

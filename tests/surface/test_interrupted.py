@@ -196,7 +196,7 @@ def started(way: str, line: str, moment: int, hooks: Path) -> subprocess.Complet
 
 
 @pytest.mark.parametrize("name", few(SHORT, ["analyze"]))
-@pytest.mark.parametrize("way", WAYS)
+@pytest.mark.parametrize("way", few(WAYS, ["command"]))
 def test_an_interrupt_at_any_import(way: str, name: str, folder: Path) -> None:
     """Of the first import of the command's own, no traceback and no other error is made."""
     (hooks := folder / "hooks").mkdir()

@@ -27,6 +27,7 @@ from equipoise.mechanism.parts.balance import (
     Weight,
 )
 from equipoise.mechanism.parts.planes import Bearing
+from support.chosen import few
 
 MACHINE = eq.load("yamashita-1")
 PLATE = {"thickness": 0.02, "density": 7850.0}
@@ -161,7 +162,7 @@ def test_orders_that_there_are_not(order: float) -> None:
         eq.balance(MACHINE, plan)
 
 
-@pytest.mark.parametrize("ratio", [0.45, 0.5])
+@pytest.mark.parametrize("ratio", few((0.45, 0.5), (0.45,)))
 def test_a_limit_on_a_gauge_is_kept_where_it_is_read(ratio: float) -> None:
     """Added mass makes the support heavier: what counts is the machine that comes out."""
     machine = eq.load("balance-rig")

@@ -15,7 +15,7 @@ from equipoise.balancing.phase_bound import CLOSE, Improve, prove
 from equipoise.balancing.phase_search import PhaseSearch
 from equipoise.balancing.phasing import choose_phases
 from equipoise.mechanism.parts.balance import MEASURES, Objective, Phases
-from support.chosen import few
+from support.chosen import EXHAUSTIVE
 from support.rows_in_time import side_by_side
 
 TYPE_II = eq.load("yamashita-2")
@@ -76,8 +76,14 @@ WISHES: dict[str, tuple[list[Objective], Combine]] = {
 }
 
 
-@pytest.mark.parametrize("case", few(WISHES, {*WISHES} - {"squares"}))
-@pytest.mark.parametrize("step", [4.0, 10.0])
+CASES = tuple((case, step) for step in (4.0, 10.0) for case in WISHES)
+CHOSEN = {(case, 4.0) for case in WISHES} - {("squares", 4.0)} | {("force", 10.0), ("area", 10.0)}
+
+
+@pytest.mark.parametrize(
+    ("case", "step"),
+    [pytest.param(*one, marks=() if one in CHOSEN else EXHAUSTIVE) for one in CASES],
+)
 def test_no_grid_is_below_the_bound(case: str, step: float) -> None:
     """Every arrangement of two rows at 4 deg, of three at 10 deg."""
     wishes, combine = WISHES[case]

@@ -19,6 +19,7 @@ from equipoise.planting.summary import plant
 from equipoise.present.findings import Findings, ToolFindings
 from equipoise.present.pictures import each
 from equipoise.results.charts import Chart
+from support.chosen import few
 from support.found import found
 from support.gallery import Kept, keep
 from unit.figures import balance_samples, samples, tool_samples, vibration_samples
@@ -75,7 +76,11 @@ def test_pictures_of_bundled_models(name: str, tmp_path: Path) -> None:
                 check(picture.draw())
 
 
-@pytest.mark.parametrize("name", ODD)
+BUNDLED = {f"vibration: {name}" for name in EXAMPLES}
+"""Of which the gallery has the pictures too."""
+
+
+@pytest.mark.parametrize("name", few(ODD, {*ODD} - BUNDLED))
 def test_charts_of_odd_machines(name: str) -> None:
     """With long and foreign names, many of everything, and nothing of what is usual."""
     for chart in of_odd(name).values():

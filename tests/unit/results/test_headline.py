@@ -103,10 +103,16 @@ def test_what_stands_first_has_fifteen_lines_and_begins_with_the_verdict(
 def test_changes_are_never_left_out(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Notes and what else is large may be, and that is said."""
+    """Notes and what else is large may be."""
     monkeypatch.setenv("COLUMNS", "60")
     lines = printed(capsys, "balance", "balance-shafts")
     assert sum(": add a sector of" in line for line in lines) == 3
+
+
+@EXHAUSTIVE
+def test_notes_that_are_left_out_are_counted(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setenv("COLUMNS", "80")
     text = "\n".join(printed(capsys, "balance", "balance-geared-b"))
     assert "counterweight: add a counterweight of" in text and "notes left out here: 1" in text
