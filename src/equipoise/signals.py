@@ -75,8 +75,9 @@ def first_below(angle: Array, values: Array, limit: float) -> float | None:
     """The angle at which values fall below a limit for the first time, between two of the angles;
     the first angle of values that are below it from there on; None where none is.
 
-    angle, values : (N,), the angles in order.
+    angle, values : (N,), the angles in order; a number where nothing moves.
     """
+    values = np.broadcast_to(values, angle.shape)
     low = values < limit
     falls = np.flatnonzero(low[1:] & ~low[:-1])
     if len(falls):

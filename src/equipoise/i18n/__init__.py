@@ -148,11 +148,17 @@ def all_of(parts: Sequence[Note | str], commas: bool = False) -> Note | str:
     *first, last = parts or [""]
     if not first:
         return last
-    before = first[0]
-    for one in first[1:]:
-        template = to_say("{first}, {last}") if commas else to_say("{first} and {last}")
-        before = Note(template, first=before, last=one)
-    return Note("{first} and {last}", first=before, last=last)
+    template = to_say("{first}, {last}") if commas else to_say("{first} and {last}")
+    return Note("{first} and {last}", first=_in_halves(template, first), last=last)
+
+
+def _in_halves(template: str, parts: Sequence[Note | str]) -> Note | str:
+    """Parts joined by a template of two, half with half, so that a thousand are ten Notes deep."""
+    if len(parts) == 1:
+        return parts[0]
+    middle = len(parts) // 2
+    first, last = _in_halves(template, parts[:middle]), _in_halves(template, parts[middle:])
+    return Note(template, first=first, last=last)
 
 
 def listed(first: str, last: str) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shutil
 from dataclasses import replace
+from math import pi
 from pathlib import Path
 
 import numpy as np
@@ -135,6 +136,27 @@ def test_a_pin_stays_between_the_ends_of_its_slot() -> None:
     for arc in ((low + 1e-3, high + 1e-3), (low - 1e-3, high - 1e-3)):
         with pytest.raises(ModelError, match=r"^circular_slots\[1\]: the pin reaches the end of"):
             eq.analyze(in_slot(BASE, replace(SLOT, arc=arc)))
+
+
+def test_a_pin_that_never_moves_is_held_in_its_slot_too() -> None:
+    """A bar between the frame and a slot of the frame, which nothing moves."""
+    place = complex(*BASE.frame["D"]) + 0.08 * np.exp(1j)
+    bar = replace(BASE.links["rocker"], points={"A": (0.0, 0.0), "R": (abs(place), 0.0)})
+
+    def standing(side: str, arc: tuple[float, float]) -> Machine:
+        slot = CircularSlot("bar", "R", "frame", "D", 0.08, arc=arc)
+        sides = {**BASE.assembly, slot.name: side}
+        links = {**BASE.links, "bar": bar}
+        return replace(BASE, links=links, circular_slots=(slot,), assembly=sides)
+
+    found = {
+        side: eq.move(standing(side, (-pi, 3.0))).element_values("circular_slots", 0)["angle"]
+        for side in ("left", "right")
+    }
+    side = next(side for side, angle in found.items() if abs(angle[0] - 1) < 1e-9)
+    assert found[side] == pytest.approx(np.full(360, 1.0))
+    with pytest.raises(ModelError, match="the pin reaches the end of"):
+        eq.move(standing(side, (2.0, 3.0)))
 
 
 def test_designs_vary_its_radius_and_its_ends() -> None:

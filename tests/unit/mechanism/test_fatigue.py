@@ -61,6 +61,14 @@ def test_a_mean_in_tension_counts() -> None:
                   400e6) == pytest.approx(33e-6)  # fmt: skip
 
 
+def test_a_part_that_breaks_at_once_has_used_up_any_life() -> None:
+    """A mean above the tensile strength, and an amplitude whose power is no number."""
+    once = LoadCycles(np.array([2e6, 20e6]), np.array([500e6, 0.0]), np.ones(2))
+    assert damage(once, WoehlerLine(100e6), 400e6) == inf
+    huge = LoadCycles(np.array([1e90]), np.zeros(1), np.ones(1))
+    assert damage(huge, WoehlerLine(100e6)) == inf
+
+
 @pytest.mark.parametrize("load", [[], [1.0, float("nan")], [[1.0, 2.0]]])
 def test_what_cannot_be_counted_is_refused(load: list[float]) -> None:
     with pytest.raises(UsageError, match="needs a list of finite numbers"):

@@ -56,6 +56,29 @@ def test_a_double_rocker_has_two_ranges() -> None:
     same_angles(sorted(found), [(near, far), (2 * pi - far, 2 * pi - near)])
 
 
+def test_of_hundreds_of_ranges_the_first_are_listed() -> None:
+    """Crank and wheel turn 60 and 61 times, and the bars between their pins are too short."""
+    parted = machine(
+        {"A": ORIGIN, "E": (0.5, 0.0)},
+        {
+            "crank": heavy(A=ORIGIN, B=(0.3, 0.0)),
+            "wheel": heavy(E=ORIGIN, F=(0.3, 0.0)),
+            "bar": heavy(B=ORIGIN, C=(0.3, 0.0)),
+            "rod": heavy(F=ORIGIN, C=(0.2, 0.0)),
+        },
+        gears=(eq.Gear("crank", "wheel", teeth=(61, 60)),),
+        assembly={"C": "left"},
+    )
+    with pytest.raises(RangeError) as caught:
+        eq.move(parted)
+    count = len(caught.value.ranges)
+    assert count > 50
+    assert f"reach each other only in {count} ranges of crank angle, the first from" in str(
+        caught.value
+    )
+    assert len(str(caught.value)) < 400
+
+
 def test_the_frame_turned_turns_the_range() -> None:
     limit, lean = opposite(1.0, 0.9, 0.5 + 0.55), 2.5
     same_angles(

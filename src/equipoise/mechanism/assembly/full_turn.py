@@ -18,6 +18,8 @@ from equipoise.signals import EQUAL, highest_at
 
 MOST_DIPS = 6
 """Lowest dips of a dyad's margin that are looked at between the points of the grid."""
+MOST_RANGES = 4
+"""Ranges of crank angle that a sentence lists; a cycle of many turns may have hundreds."""
 WITHOUT_CURE = Note("{reason}; change a length or direction")
 CHANGE_POINT = 1e-10
 """Squared sine of a transmission angle below which a dyad counts as stretched out or folded."""
@@ -120,20 +122,7 @@ class FullTurn:
             ranges.append((begin, min(later)) if later else (begin - period, min(stops)))
         if not self.machine.crank_turns:
             return RangeError(self.beyond(dip, names), tuple(ranges))
-        told = all_of(
-            [
-                Note("from {low} to {high}", low=_in_degrees(a), high=_in_degrees(b))
-                for a, b in ranges
-            ]
-        )
-        return RangeError(
-            Note(
-                "the crank cannot turn fully: {names} reach each other only {told} of crank angle",
-                names=names,
-                told=told,
-            ),
-            tuple(ranges),
-        )
+        return RangeError(_only_between(ranges, names), tuple(ranges))
 
     def beyond(self, dip: float, names: Note | str) -> Note:
         """Tell that the drive's own motion leads where a dyad cannot be closed."""
@@ -158,6 +147,29 @@ class FullTurn:
                 break
             low, high = float(near[k - 1]), float(near[k])
         return 0.5 * (low + high)
+
+
+def _only_between(ranges: Sequence[tuple[float, float]], names: Note | str) -> Note:
+    """Tell between which crank angles, rad, a dyad can be closed; the first of many."""
+    told = all_of(
+        [
+            Note("from {low} to {high}", low=_in_degrees(a), high=_in_degrees(b))
+            for a, b in ranges[:MOST_RANGES]
+        ]
+    )
+    if len(ranges) > MOST_RANGES:
+        return Note(
+            "the crank cannot turn fully: {names} reach each other only in {count} ranges of "
+            "crank angle, the first {told}",
+            names=names,
+            count=len(ranges),
+            told=told,
+        )
+    return Note(
+        "the crank cannot turn fully: {names} reach each other only {told} of crank angle",
+        names=names,
+        told=told,
+    )
 
 
 def bifurcation(angle: float, dead: Note | str) -> Note:

@@ -140,6 +140,9 @@ class WoehlerLine:
 
 
 def damage(cycles: LoadCycles, line: WoehlerLine, tensile_strength: float | None = None) -> float:
-    """Share of its life that a part has used up after these cycles, by Miner's rule."""
+    """Share of its life that a part has used up after these cycles, by Miner's rule; infinite where
+    it does not outlast the first of them.
+    """
     amplitudes = amplitudes_about_zero(cycles, tensile_strength)
-    return float(np.sum(cycles.counts / line.cycles(amplitudes)))
+    with np.errstate(divide="ignore"):
+        return float(np.sum(cycles.counts / line.cycles(amplitudes)))
