@@ -6,7 +6,8 @@ import pint
 import pytest
 
 from equipoise.errors import UsageError
-from equipoise.quantities import Dimension, parse_expression
+from equipoise.quantities import Dimension, parse_amount, parse_expression
+from equipoise.quantities.expressions import parse_number
 
 REGISTRY = pint.UnitRegistry()
 
@@ -57,3 +58,42 @@ def test_sums_are_rounded_once() -> None:
 def test_what_is_no_length_is_refused_in_a_sentence(text: str, what: str) -> None:
     with pytest.raises(UsageError, match=what):
         parse_expression(text, "length")
+
+
+CRANK, COUNT = parse_amount("33.5 mm"), parse_amount("3")
+
+
+@pytest.mark.parametrize(
+    ("text", "length"),
+    [("=crank", 0.0335), ("=2*crank + 3 mm", 0.07), ("=count*crank/(33.5 mm) * 1 cm", 0.03)],
+)
+def test_names_stand_for_amounts(text: str, length: float) -> None:
+    names = {"crank": CRANK, "count": COUNT}
+    assert parse_expression(text, "length", names) == length
+
+
+def test_an_amount_tells_its_dimension() -> None:
+    assert parse_amount("=crank/2", {"crank": CRANK}).dimension == "length"
+    assert parse_amount("=crank/(1 mm)", {"crank": CRANK}).dimension is None
+    assert parse_number("=count*crank/(67 mm)", {"crank": CRANK, "count": COUNT}) == 1.5
+
+
+@pytest.mark.parametrize(
+    ("text", "what"),
+    [
+        ("=crnk/2", "no parameter is called 'crnk'; did you mean 'crank'"),
+        ("=count", "no sum or product that gives a length"),
+        ("=crank*crank", "no sum or product that gives a length"),
+        ("=crank + 2", "no sum or product that gives a length"),
+        ("=crank.real", "no sum or product that gives a length"),
+        ("=crank/(count - 3)", "divides by 0"),
+    ],
+)
+def test_what_names_cannot_give_is_refused(text: str, what: str) -> None:
+    with pytest.raises(UsageError, match=what):
+        parse_expression(text, "length", {"crank": CRANK, "count": COUNT})
+
+
+def test_products_of_quantities_are_no_amount() -> None:
+    with pytest.raises(UsageError, match="neither a quantity nor a number"):
+        parse_amount("=2 mm * 3 mm")

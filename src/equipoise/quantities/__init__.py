@@ -7,6 +7,8 @@ and `numbers` is the one formatter of numbers, in the units in which they are sh
 from equipoise.quantities.clean import DIGITS as DIGITS
 from equipoise.quantities.clean import clean as clean
 from equipoise.quantities.clean import clean_place as clean_place
+from equipoise.quantities.expressions import Amount as Amount
+from equipoise.quantities.expressions import parse_amount as parse_amount
 from equipoise.quantities.expressions import parse_expression as parse_expression
 from equipoise.quantities.expressions import parse_number as parse_number
 from equipoise.quantities.numbers import DEGREE as DEGREE

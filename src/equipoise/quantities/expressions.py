@@ -1,4 +1,4 @@
-"""Quantities that are typed as sums and products: ``2*100 g``, ``=33.5 mm + 2 mm``.
+"""Quantities given as sums and products: ``2*100 g``, ``=33.5 mm + 2 mm``, ``=crank/2``.
 
 Python's own grammar is read, with every quantity as one name in it; only numbers, names, brackets
 and + - * / are taken.  Arithmetic is decimal, so that 33.5 mm + 2 mm is the float nearest to
@@ -9,33 +9,87 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from decimal import Decimal, InvalidOperation, localcontext
+from functools import cache
 from math import isfinite
+from types import MappingProxyType
 
-from equipoise.errors import UsageError
+from equipoise.errors import UsageError, meant
 from equipoise.i18n import Note
-from equipoise.quantities.reading import NUMBER, parse, pattern, plain_unit, start_of_range, too_far
-from equipoise.quantities.units import FACTORS, HUGE, KINDS, TINY, Dimension
+from equipoise.quantities.reading import (
+    NUMBER,
+    parse,
+    pattern,
+    plain_unit,
+    start_of_range,
+    too_far,
+    unit_pattern,
+)
+from equipoise.quantities.units import FACTORS, HUGE, KINDS, OF_UNIT, TINY, Dimension
 
 LONGEST = 200
-"""Signs of an expression."""
+"""Characters of an expression."""
 DIGITS = 60
 """Digits carried: enough that only the last step, to a float, rounds."""
 OPERATORS = re.compile(r"[*/()=]|(?<![eE])[+-]")
 """What a plain quantity does not have: signs between its parts."""
 
-Amount = tuple[Decimal, int]
-"""A number, and how many times the dimension is in it: 0 of a plain number, 1 of a quantity."""
+
+@dataclass(frozen=True)
+class Amount:
+    """A number in SI units with all its digits.
+
+    powers : how often each dimension is in it; empty of a plain number.
+    """
+
+    number: Decimal
+    powers: Mapping[Dimension, int] = field(default_factory=dict)
+
+    @property
+    def dimension(self) -> Dimension | None:
+        """Of a quantity; None of a plain number.
+
+        Raises
+        ------
+        ValueError : it is neither, such as a product of two lengths.
+        """
+        match [*self.powers.items()]:
+            case []:
+                return None
+            case [(dimension, 1)]:
+                return dimension
+        raise ValueError
+
+    def times(self, other: Amount, power: int) -> Amount:
+        """The product with another amount (`power` 1), or the quotient by it (-1)."""
+        number = self.number * other.number if power == 1 else self.number / other.number
+        powers = dict(self.powers)
+        for dimension, count in other.powers.items():
+            powers[dimension] = powers.get(dimension, 0) + power * count
+        return Amount(number, {dimension: count for dimension, count in powers.items() if count})
+
+    def plus(self, other: Amount, sign: int) -> Amount:
+        """The sum with another amount of the same dimension, or the difference (`sign` -1)."""
+        if self.powers != other.powers:
+            raise ValueError
+        return Amount(self.number + sign * other.number, self.powers)
 
 
-def parse_expression(text: str, dimension: Dimension) -> float:
+Names = Mapping[str, Amount]
+"""What names in an expression stand for."""
+NO_NAMES: Names = MappingProxyType({})
+
+
+def parse_expression(text: str, dimension: Dimension, names: Names = NO_NAMES) -> float:
     """Read a quantity, or a sum or product of quantities and numbers that is one.
 
     Parameters
     ----------
-    text : such as ``"33.5 mm"``, ``"2*100 g"`` or ``"=(33.5 mm + 2 mm)/2"``.
-    dimension : of each quantity in it, and of the result.
+    text : such as ``"33.5 mm"``, ``"2*100 g"`` or ``"=(33.5 mm + crank)/2"``.
+    dimension : of the result.
+    names : amounts that the text may name.
 
     Returns
     -------
@@ -47,72 +101,79 @@ def parse_expression(text: str, dimension: Dimension) -> float:
     UsageError
         One sentence: what was given and what would be right.
     """
-    if re.fullmatch(pattern(dimension), text) or not _is_expression(text):
+    if re.fullmatch(pattern(dimension), text) or not is_expression(text):
         return parse(text, dimension)
-    shown = text if len(text) <= 60 else f"{text[:57]}..."
-    with localcontext() as context:
-        context.prec = DIGITS
-        try:
-            value, times = _value(_tree(text, dimension), _amounts(text, dimension))
-        except (SyntaxError, ValueError, RecursionError, MemoryError, InvalidOperation) as error:
-            raise UsageError(_wrong(shown, dimension)) from error
-        except ZeroDivisionError as error:
-            raise UsageError(Note("got {text!r}, which divides by 0", text=shown)) from error
-    if times == 0:
+    amount = _amount(text, names, lambda shown: _no_quantity(shown, dimension))
+    if not amount.powers and not names.keys() & _names_in(_tree(text)[0]):
         raise UsageError(
             Note(
                 "got {text!r}, which has no unit; give {noun}, such as {example!r}",
-                text=shown,
+                text=_short(text),
                 noun=Note(KINDS[dimension].noun),
                 example=KINDS[dimension].example,
             )
         )
-    number = float(value)
-    if times != 1:
-        raise UsageError(_wrong(shown, dimension))
-    if not isfinite(number) or abs(number) > HUGE or 0 < abs(number) < TINY:
-        raise UsageError(too_far(shown))
-    return number
+    if amount.powers != {dimension: 1}:
+        raise UsageError(_no_quantity(_short(text), dimension))
+    return _float(amount, text)
 
 
-def parse_number(text: str) -> float:
+def parse_number(text: str, names: Names = NO_NAMES) -> float:
     """Read a number without a unit, or a sum or product of such numbers.
 
     Parameters
     ----------
     text : such as ``"0.15"`` or ``"=0.3/2"``.
+    names : amounts that the text may name.
 
     Raises
     ------
     UsageError
         One sentence: what was given and what would be right.
     """
-    shown = text if len(text) <= 60 else f"{text[:57]}..."
-    wrong = UsageError(Note('got {text!r}; give a plain number, such as "0.15"', text=shown))
-    if len(text) > LONGEST:
-        raise wrong
-    with localcontext() as context:
-        context.prec = DIGITS
-        try:
-            tree = ast.parse(text.strip().removeprefix("=").strip(), mode="eval").body
-            number = float(_value(tree, {})[0])
-        except (SyntaxError, ValueError, RecursionError, MemoryError, InvalidOperation) as error:
-            raise wrong from error
-        except ZeroDivisionError as error:
-            raise UsageError(Note("got {text!r}, which divides by 0", text=shown)) from error
-    if not isfinite(number) or abs(number) > HUGE or 0 < abs(number) < TINY:
-        raise UsageError(too_far(shown))
-    return number
+    amount = _amount(text, names, _no_number)
+    if amount.powers:
+        raise UsageError(_no_number(_short(text)))
+    return _float(amount, text)
 
 
-def _is_expression(text: str) -> bool:
+def parse_amount(text: str, names: Names = NO_NAMES) -> Amount:
+    """Read a quantity of any dimension or a plain number, or a sum or product that is either.
+
+    Parameters
+    ----------
+    text : such as ``"33.5 mm"``, ``"0.15"`` or ``"=2*crank + 3 mm"``.
+    names : amounts that the text may name.
+
+    Raises
+    ------
+    UsageError
+        One sentence: what was given and what would be right.
+    """
+    amount = _amount(text, names, _no_amount)
+    try:
+        _ = amount.dimension
+    except ValueError as error:
+        raise UsageError(_no_amount(_short(text))) from error
+    _ = _float(amount, text)
+    return amount
+
+
+def is_expression(text: str) -> bool:
+    """Whether a text is meant as a sum or product, and not as one quantity."""
     if len(text) > LONGEST or start_of_range(text):
         return False
     return bool(OPERATORS.search(text.strip()[1:]) or text[:1] in "=(")
 
 
-def _wrong(text: str, dimension: Dimension) -> Note:
-    """What is wrong with an expression, and what would be right."""
+# -- what is wrong ---------------------------------------------------------------------------------
+
+
+def _short(text: str) -> str:
+    return text if len(text) <= 60 else f"{text[:57]}..."
+
+
+def _no_quantity(text: str, dimension: Dimension) -> Note:
     unit = KINDS[dimension].example.partition(" ")[2]
     return Note(
         'got {text!r}, which is no sum or product that gives {noun}; write it as "2*100 {unit}" or '
@@ -123,56 +184,113 @@ def _wrong(text: str, dimension: Dimension) -> Note:
     )
 
 
-def _pieces(text: str, dimension: Dimension) -> list[tuple[str, str]]:
-    """The text in pieces: quantities and units behind brackets, and what is between them."""
-    units = pattern(dimension).partition(") +(")[2].removesuffix(")$")
-    quantity = re.compile(rf"(?P<number>{NUMBER.removeprefix('[+-]?')}) *(?P<unit>{units})(?![\w^])"
-                          rf"|(?<=\)) *(?P<bare>{units})(?![\w^])")  # fmt: skip
-    found, end = [], 0
-    for match in quantity.finditer(text):
-        found.append((text[end : match.start()], ""))
-        number = match["number"] or ""
-        found.append((number, plain_unit(match["unit"] or match["bare"])))
-        end = match.end()
-    return [*found, (text[end:], "")]
+def _no_number(text: str) -> Note:
+    return Note('got {text!r}; give a plain number, such as "0.15"', text=text)
 
 
-def _tree(text: str, dimension: Dimension) -> ast.expr:
-    """The expression, each quantity in it a name: ``_0``, ``_1`` and so on."""
-    written = ""
-    for number, (piece, unit) in enumerate(_pieces(text.strip().removeprefix("="), dimension)):
-        written += piece if not unit else f"_{number}" if piece else f"*_{number}"
-    return ast.parse(written.strip(), mode="eval").body
+def _no_amount(text: str) -> Note:
+    return Note(
+        "got {text!r}, which is neither a quantity nor a number; give such as "
+        '"33.5 mm", "0.15" or "=2*33.5 mm"',
+        text=text,
+    )
 
 
-def _amounts(text: str, dimension: Dimension) -> Mapping[str, Amount]:
-    """The quantities by these names, in SI units."""
-    pieces = _pieces(text.strip().removeprefix("="), dimension)
-    return {
-        f"_{number}": (Decimal(piece or 1) * Decimal(FACTORS[unit]), 1)
-        for number, (piece, unit) in enumerate(pieces)
-        if unit
-    }
+def _float(amount: Amount, text: str) -> float:
+    number = float(amount.number)
+    if not isfinite(number) or abs(number) > HUGE or 0 < abs(number) < TINY:
+        raise UsageError(too_far(_short(text)))
+    return number
 
 
-def _value(node: ast.expr, amounts: Mapping[str, Amount]) -> Amount:
+# -- reading ---------------------------------------------------------------------------------------
+
+
+def _amount(text: str, names: Names, wrong: Callable[[str], Note]) -> Amount:
+    """What an expression comes to; `wrong` says what is wrong where it is none."""
+    shown = _short(text)
+    if len(text) > LONGEST:
+        raise UsageError(wrong(shown))
+    with localcontext() as context:
+        context.prec = DIGITS
+        try:
+            tree, quantities = _tree(text)
+            for name in sorted(_names_in(tree) - quantities.keys() - names.keys()):
+                raise UsageError(_unknown(shown, name, names, wrong))
+            return _value(tree, {**names, **quantities})
+        except (SyntaxError, ValueError, RecursionError, MemoryError, InvalidOperation) as error:
+            raise UsageError(wrong(shown)) from error
+        except ZeroDivisionError as error:
+            raise UsageError(Note("got {text!r}, which divides by 0", text=shown)) from error
+
+
+def _unknown(text: str, name: str, names: Names, wrong: Callable[[str], Note]) -> Note:
+    """What is said of a name that stands for nothing."""
+    if not names:
+        return wrong(text)
+    right = meant(name, names) or Note("there are {names}", names=", ".join(sorted(names)))
+    return Note(
+        "got {text!r}, but no parameter is called {name!r}; {right}",
+        text=text,
+        name=name,
+        right=right,
+    )
+
+
+@cache
+def _quantities() -> re.Pattern[str]:
+    """A quantity of any dimension, or a unit behind a bracket."""
+    units = unit_pattern(OF_UNIT)
+    number = NUMBER.removeprefix("[+-]?")
+    return re.compile(
+        rf"(?<![\w.])(?P<number>{number}) *(?P<unit>{units})(?![\w^])"
+        rf"|(?<=\)) *(?P<bare>{units})(?![\w^])"
+    )
+
+
+def _tree(text: str) -> tuple[ast.expr, dict[str, Amount]]:
+    """The expression, each quantity in it as a name, ``_0``, ``_1`` and so on; and these names."""
+    quantities: dict[str, Amount] = {}
+
+    def as_name(match: re.Match[str]) -> str:
+        name, unit = f"_{len(quantities)}", plain_unit(match["unit"] or match["bare"])
+        number = Decimal(match["number"] or 1) * Decimal(FACTORS[unit])
+        quantities[name] = Amount(number, {OF_UNIT[unit]: 1})
+        return name if match["number"] else f"*{name}"
+
+    written = _quantities().sub(as_name, text.strip().removeprefix("="))
+    return ast.parse(written.strip(), mode="eval").body, quantities
+
+
+def _names_in(tree: ast.expr) -> set[str]:
+    return {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
+
+
+def _value(node: ast.expr, names: Names) -> Amount:
     """The amount of a part of an expression; a ValueError where it has none."""
-    if isinstance(node, ast.Name) and node.id in amounts:
-        return amounts[node.id]
-    if isinstance(node, ast.Constant) and type(node.value) in (int, float):
-        return Decimal(repr(node.value)), 0
-    if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.UAdd | ast.USub):
-        value, times = _value(node.operand, amounts)
-        return (-value if isinstance(node.op, ast.USub) else value), times
-    if not isinstance(node, ast.BinOp):
-        raise ValueError(ast.dump(node)[:60])  # noqa: TRY004 - of what was typed
-    (one, of_one), (other, of_other) = (_value(part, amounts) for part in (node.left, node.right))
-    if isinstance(node.op, ast.Mult):
-        return one * other, of_one + of_other
-    if isinstance(node.op, ast.Div):
-        if other == 0:
+    match node:
+        case ast.Name(id=name) if name in names:
+            return names[name]
+        case ast.Constant(value=number) if type(number) in (int, float):
+            return Amount(Decimal(repr(number)))
+        case ast.UnaryOp(op=ast.UAdd() | ast.USub() as sign, operand=operand):
+            value = _value(operand, names)
+            return Amount(-value.number, value.powers) if isinstance(sign, ast.USub) else value
+        case ast.BinOp(left=left, op=sign, right=right):
+            return _joined(_value(left, names), sign, _value(right, names))
+    raise ValueError(ast.dump(node)[:60])
+
+
+def _joined(left: Amount, sign: ast.operator, right: Amount) -> Amount:
+    match sign:
+        case ast.Mult():
+            return left.times(right, 1)
+        case ast.Div() if right.number == 0:
             raise ZeroDivisionError
-        return one / other, of_one - of_other
-    if not isinstance(node.op, ast.Add | ast.Sub) or of_one != of_other:
-        raise ValueError
-    return (one + other if isinstance(node.op, ast.Add) else one - other), of_one
+        case ast.Div():
+            return left.times(right, -1)
+        case ast.Add():
+            return left.plus(right, 1)
+        case ast.Sub():
+            return left.plus(right, -1)
+    raise ValueError(ast.dump(sign))

@@ -8,6 +8,7 @@ What is wrong with a text is said in one sentence: what was given and what would
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from decimal import Decimal, localcontext
 from functools import cache
 from math import isfinite
@@ -29,11 +30,16 @@ POWERS = {"2": "\N{SUPERSCRIPT TWO}", "3": "\N{SUPERSCRIPT THREE}"}
 @cache
 def pattern(dimension: Dimension) -> str:
     """Regular expression of exactly the texts that `parse` reads, in ECMA 262 syntax."""
-    units = [unit.replace(" ", _SEPARATOR) for unit in KINDS[dimension].units]
+    return f"^({NUMBER}) +({unit_pattern(KINDS[dimension].units)})$"
+
+
+def unit_pattern(units: Iterable[str]) -> str:
+    """Regular expression of the ways in which units can be written, the longest first."""
+    written = [unit.replace(" ", _SEPARATOR) for unit in units]
     for digit, raised in POWERS.items():
         power = f"(?:(?:\\^|\\*\\*){digit}|{raised})"
-        units = [unit.replace(f"^{digit}", power) for unit in units]
-    return f"^({NUMBER}) +({'|'.join(sorted(units, key=len, reverse=True))})$"
+        written = [unit.replace(f"^{digit}", power) for unit in written]
+    return "|".join(sorted(written, key=len, reverse=True))
 
 
 def plain_unit(unit: str) -> str:

@@ -345,6 +345,10 @@ FACTORS: dict[str, str] = {
     unit: factor for kind in KINDS.values() for unit, factor in kind.units.items()
 }
 """SI units in one unit, as decimal text."""
+OF_UNIT: dict[str, Dimension] = {
+    unit: dimension for dimension, kind in KINDS.items() for unit in kind.units
+}
+"""Dimension of each unit: none belongs to two, which a test looks after."""
 SI: dict[Dimension, str] = {dimension: kind.si for dimension, kind in KINDS.items()}
 """SI unit of each dimension."""
 

@@ -24,6 +24,7 @@ from equipoise.quantities import (
     rounded,
 )
 from equipoise.quantities.reading import described, too_far
+from equipoise.quantities.units import OF_UNIT
 
 SHARE = rf"({NUMBER}) +%"
 _DIGITS = 60
@@ -105,10 +106,6 @@ def _reads_as(point: tuple[float, float], distance: str, direction: str) -> bool
 
 # -- numbers that can be others --------------------------------------------------------------------
 
-OF_UNIT: dict[str, Dimension] = {
-    unit: dimension for dimension, kind in KINDS.items() for unit in kind.units
-}
-"""No unit belongs to two dimensions; a test looks after that."""
 XYZ, POLAR = ("x", "y", "z"), ("distance", "direction")
 VECTORS = ("length", "force", "acceleration")
 """Dimensions of pairs that are x and y."""
