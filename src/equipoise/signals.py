@@ -275,10 +275,19 @@ def harmonics(samples: Array, orders: int | None = None) -> Array:
     return wanted
 
 
+def present(amplitudes: Array) -> Array:
+    """Places of the orders (P,) of complex amplitudes (..., K + 1) that are not all zero."""
+    return np.flatnonzero(np.any(amplitudes, axis=tuple(range(amplitudes.ndim - 1))))
+
+
 def synthesis(amplitudes: Array, theta: Array) -> Array:
-    """Values at angles theta (M,), rad, of complex amplitudes Y_0 ... Y_n; shape (..., M)."""
-    orders, theta = np.arange(amplitudes.shape[-1]), np.asarray(theta)
-    step = max(1, AT_ONCE // len(orders))
+    """Values at angles theta (M,), rad, of complex amplitudes Y_0 ... Y_n; shape (..., M).
+
+    Orders of which nothing has an amplitude cost nothing: of a long cycle most are such.
+    """
+    orders, theta = present(amplitudes), np.asarray(theta)
+    amplitudes = amplitudes[..., orders]
+    step = max(1, AT_ONCE // max(len(orders), 1))
     parts = [
         (amplitudes @ np.exp(1j * np.outer(orders, theta[k : k + step]))).real
         for k in range(0, max(len(theta), 1), step)
@@ -321,6 +330,15 @@ class Periodic(Brief):
         sizes = np.max(np.abs(found), axis=tuple(range(found.ndim - 1)), initial=0.0)
         above = np.flatnonzero(sizes > scale * np.max(sizes))
         return cls(found[..., : (int(above[-1]) if above.size else 0) + 1], turns)
+
+    def without_rounding(self, scale: float = 1e-14) -> Periodic:
+        """The signals without orders that are a share of the largest of each signal at most.
+
+        A cycle of many turns has hundreds of them between those of its parts.
+        """
+        sizes = self.sizes
+        kept = sizes > scale * np.max(sizes, axis=-1, keepdims=True)
+        return Periodic(np.where(kept, self.amplitudes, 0.0), self.turns)
 
     def amplitude(self, place: int) -> Array:
         """Complex amplitude (...) of one order by its place; 0 above the last."""

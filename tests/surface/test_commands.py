@@ -805,7 +805,7 @@ def test_long_work_between_two_steps_says_how_far_it_is(monkeypatch: pytest.Monk
     class Heard(io.StringIO):
         def write(self, text: str) -> int:
             done = super().write(text)
-            if "program 3 of 40" in self.getvalue():
+            if "step 3 of 40" in self.getvalue():
                 told.set()
             return done
 
@@ -819,7 +819,7 @@ def test_long_work_between_two_steps_says_how_far_it_is(monkeypatch: pytest.Monk
     monkeypatch.setattr("sys.stderr", heard := Heard())
     with pytest.raises(AttributeError):  # there is nothing to show
         run(["balance", "balance-crank"])
-    assert re.search(r"^still computing, \d+ s; program 3 of 40$", heard.getvalue(), re.MULTILINE)
+    assert re.search(r"^still computing, \d+ s; step 3 of 40$", heard.getvalue(), re.MULTILINE)
 
 
 def test_no_silence_is_longer_than_the_longest_wait(monkeypatch: pytest.MonkeyPatch) -> None:

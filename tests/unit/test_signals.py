@@ -10,7 +10,15 @@ import pytest
 import equipoise as eq
 from equipoise import signals
 from equipoise.errors import UsageError
-from equipoise.signals import Periodic, figures, harmonics, highest_at, synthesis, within_period
+from equipoise.signals import (
+    Periodic,
+    figures,
+    harmonics,
+    highest_at,
+    present,
+    synthesis,
+    within_period,
+)
 
 THETA = 2 * pi * np.arange(24) / 24
 
@@ -420,6 +428,19 @@ def test_signals_in_parts_are_those_of_the_whole(monkeypatch: pytest.MonkeyPatch
     assert signal.values(theta) == pytest.approx(values, abs=1e-12)
     assert np.array_equal(signal.extreme(1)[0], extremes[0])
     assert signal.values(np.empty(0)).shape == (3, 2, 0)
+
+
+def test_orders_that_are_rounding_of_each_signal_are_left_out() -> None:
+    """A small signal keeps what is large in it, beside a large one."""
+    amplitudes = np.zeros((3, 40), complex)
+    amplitudes[0, [0, 7, 30]] = 1.0, 2j, 1e-15
+    amplitudes[1, [7, 31]] = 1e-20, 1e-35
+    found = Periodic(amplitudes, 5).without_rounding()
+    assert present(found.amplitudes).tolist() == [0, 7]
+    theta = np.linspace(0, 31, 60)
+    waves = np.array([1 + (2j * np.exp(1.4j * theta)).real, 1e-20 * np.cos(1.4 * theta)])
+    assert found.values(theta)[:2] == pytest.approx(waves, rel=1e-12, abs=1e-33)
+    assert not found.values(theta)[2].any()
 
 
 def test_orders_above_the_last_are_nothing() -> None:

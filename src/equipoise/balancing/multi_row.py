@@ -29,7 +29,7 @@ from equipoise.mechanism.parts.balance import Measure, Objective, cost_factor
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.objectives import GAUGES, output_of, wrong_objective
 from equipoise.results.analysis import Analysis
-from equipoise.signals import AT_ONCE, Array, Periodic
+from equipoise.signals import AT_ONCE, Array, Periodic, present
 from equipoise.vibration.forced import chosen_model, steady_speed
 from equipoise.vibration.linear import Linear, gauges_of, motion_of
 from equipoise.vibration.linkages import rows_of
@@ -147,7 +147,8 @@ class Rows:
     def _one(self) -> Periodic:
         """Signals of one row (8, K + 1), each cut off where its own rounding begins."""
         motion = self._motion
-        each = [motion.periodic(one).amplitudes for one in signals_of_row(motion)]
+        rows = signals_of_row(motion)
+        each = [motion.periodic(one).without_rounding().amplitudes for one in rows]
         return Periodic(_padded(each), motion.turns)
 
     def _alike(self, output: str) -> Periodic | None:
@@ -155,7 +156,7 @@ class Rows:
         one = output_of(output, self.machine)
         if one.needs == "rows" or one.about or one.part:
             return None
-        return self._motion.periodic(self._read(output, self._motion))
+        return self._motion.periodic(self._read(output, self._motion)).without_rounding()
 
     def _read(self, output: str, motion: Motion) -> Array:
         """An output (1, N) of one row that is the same wherever the row is."""
@@ -396,10 +397,12 @@ def followed(flat: Periodic, owner: Array, start: Array, reach: float) -> Array:
 
 def _at(signal: Periodic, owner: Array, theta: Array) -> Array:
     """Values (T,) of signals `owner` (T,) at crank angles (T,)."""
-    step = max(1, AT_ONCE // len(signal.orders))
+    places = present(signal.amplitudes)
+    orders, amplitudes = signal.orders[places], signal.amplitudes[:, places]
+    step = max(1, AT_ONCE // max(len(orders), 1))
     values = np.empty(len(theta))
     for k in range(0, len(theta), step):
         some = slice(k, k + step)
-        turning = np.exp(1j * np.outer(theta[some], signal.orders))
-        values[some] = np.sum((signal.amplitudes[owner[some]] * turning).real, axis=1)
+        turning = np.exp(1j * np.outer(theta[some], orders))
+        values[some] = np.sum((amplitudes[owner[some]] * turning).real, axis=1)
     return values

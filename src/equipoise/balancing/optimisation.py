@@ -44,7 +44,9 @@ def balance(
     Parameters
     ----------
     plan : what may be changed and what is to become small; that of the machine if None.
-    progress : is called with how many programs of a scan are solved, and how many there are.
+    progress : is called with how many steps of a part of the work are done, and how many that
+        part has at most: programs of a scan or a branch and bound, arrangements of rows, steps of
+        refining the best of them, boxes of the proof.
 
     Returns
     -------

@@ -56,6 +56,7 @@ def prove(
     least: float | None = None,
     close: float = CLOSE,
     prices: tuple[float, ...] = (),
+    progress: Callable[[int, int], None] = lambda done, total: None,
 ) -> Proof:
     """Bound the cost from below over all phases, and over all numbers; row 1 is at 0.
 
@@ -64,11 +65,12 @@ def prove(
     cost : where all numbers are 0.
     phases : (m,) the best known, rad.  least : cost there, with the best numbers known.
     prices : of each limit, where they are known; see `Bounder`.
+    progress : is called with the boxes looked at, and how many these are at most.
     """
     prices = prices or (0.0,) * len(cost.limits)
     bounder = Bounder.of(cost, numbers, prices)
     known = float(cost.values(phases)) if least is None else least
-    return _Search(cost, bounder, improve, close).run(phases, known)
+    return _Search(cost, bounder, improve, close).run(phases, known, progress)
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,7 +80,7 @@ class _Search:
     improve: Improve
     close: float
 
-    def run(self, phases: Array, least: float) -> Proof:
+    def run(self, phases: Array, least: float, progress: Callable[[int, int], None]) -> Proof:
         best, looked, room = phases, 1, self.close * self.cost.whole
         most = MOST_BOXES // (2 if len(self.numbers.low) else 1)
         batch = min(BATCH, self.bounder.most_at_once)
@@ -87,6 +89,7 @@ class _Search:
         while len(boxes.bounds) and np.min(boxes.bounds) < least - room:
             if looked >= (most if np.min(boxes.bounds) > 0 else HOPELESS):
                 break
+            progress(looked, most)
             order = np.argsort(boxes.bounds, kind="stable")
             cut, values, slopes = self.bounder.bounded(self._halves(boxes.of(order[:batch])))
             looked += len(values)

@@ -9,7 +9,9 @@ phases, since the signal is level there.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -26,6 +28,8 @@ from equipoise.balancing.multi_row import (
 )
 from equipoise.signals import Array, Periodic
 
+Step = Callable[[], None]
+"""Is called after each step of what may take minutes."""
 Pieces = tuple[Array, Array]
 """Values (P,) and their slopes (P, m) by the phases."""
 
@@ -33,25 +37,37 @@ SMOOTHING = (1e-1, 1e-2, 1e-3, 1e-5, 1e-7, 1e-9, 1e-11)
 """e over the value that counts as one."""
 ROUNDS, SMALLEST, GAIN = 40, 1e-4, 1e-12
 """Linear programs; trust region, rad, and relative gain at which they end."""
-CURVED, LEAP = 6, 0.05
-"""Times that tops are looked for anew and followed; change of a phase meanwhile, rad."""
+CURVED, CURVED_ROUNDS, LEAP = 6, 100, 0.05
+"""Times that tops are looked for anew and followed; programs meanwhile, and change of a phase, rad.
+"""
+NEWTON_ROUNDS = 200
+"""Steps of Newton's method for each e."""
 REACH = 0.1
 """How far a top may move meanwhile, rad."""
-FINEST, MORE_WAYS = 1e-6, 6
-"""rad: least step of a search without slopes; ways by chance that it tries."""
+FINEST, MORE_WAYS, MOST_MOVES = 1e-6, 6, 2000
+"""rad: least step of a search without slopes; ways by chance that it tries; its steps."""
 TINY = 1e-300
 
 
-def polished(cost: Cost, phases: Array, step: float) -> Array:
+def most_steps(cost: Cost) -> int:
+    """Steps that `polished` takes at most, whatever the machine."""
+    if cost.smooth:
+        return NEWTON_ROUNDS * len(_smoothing(cost))
+    jumps = any(term.jumping is not None for term in cost.measured)
+    return ROUNDS + CURVED * CURVED_ROUNDS + (2 * MOST_MOVES if jumps else 0)
+
+
+def polished(cost: Cost, phases: Array, step: float, after: Step = lambda: None) -> Array:
     """Phases (m,) of the minimum next to these, rad; that of row 1 is kept.
 
     step : of the grid, rad.
+    after : is called after each step, of which there are `most_steps` at most.
     """
     if any(term.jumping is not None for term in cost.measured):
-        phases = _compass(cost, phases, step)
-        phases = _compass(cost, _better(cost, phases, _by_tops(cost, phases, step)), step / 8)
-        return phases
-    found = _newton(cost, phases) if cost.smooth else _by_tops(cost, phases, step)
+        phases = _compass(cost, phases, step, after)
+        better = _better(cost, phases, _by_tops(cost, phases, step, after))
+        return _compass(cost, better, step / 8, after)
+    found = _newton(cost, phases, after) if cost.smooth else _by_tops(cost, phases, step, after)
     return _better(cost, phases, found)
 
 
@@ -62,7 +78,7 @@ def _better(cost: Cost, phases: Array, found: Array) -> Array:
 # -- jumps -----------------------------------------------------------------------------------------
 
 
-def _compass(cost: Cost, phases: Array, size: float) -> Array:
+def _compass(cost: Cost, phases: Array, size: float, after: Step) -> Array:
     """Phases (m,) from which no step leads to anything better, in ever smaller steps from a size,
     rad: of one row, of two, and some by chance.
 
@@ -73,7 +89,10 @@ def _compass(cost: Cost, phases: Array, size: float) -> Array:
     pairs = [a + sign * b for k, a in enumerate(each) for b in each[:k] for sign in (1, -1)]
     known = np.vstack([each, *(one[None] for one in pairs)])
     best, here = phases, float(cost.values(phases))
-    while size > FINEST:
+    for _ in range(MOST_MOVES):
+        if size <= FINEST:
+            break
+        after()
         ways = np.vstack([known, chance.normal(size=(MORE_WAYS, free))])
         moves = np.pad(size * np.vstack([ways, -ways]), ((0, 0), (1, 0)))
         values = cost.values(best + moves)
@@ -88,12 +107,16 @@ def _compass(cost: Cost, phases: Array, size: float) -> Array:
 # -- mean squares ----------------------------------------------------------------------------------
 
 
-def _newton(cost: Cost, phases: Array) -> Array:
+def _smoothing(cost: Cost) -> tuple[float, ...]:
+    """Values of e, one after the other; a single 0 where there are no kinks."""
+    return SMOOTHING if len(cost.terms) > 1 and cost.combine == "sum" else (0.0,)
+
+
+def _newton(cost: Cost, phases: Array, after: Step) -> Array:
     from scipy.optimize import minimize
 
-    kinks = len(cost.terms) > 1 and cost.combine == "sum"
     free = phases[1:]
-    for smoothing in SMOOTHING if kinks else (0.0,):
+    for smoothing in _smoothing(cost):
         result = minimize(
             lambda x, e: _slopes(cost, x, e)[0],
             free,
@@ -101,7 +124,8 @@ def _newton(cost: Cost, phases: Array) -> Array:
             method="trust-exact",
             jac=lambda x, e: _slopes(cost, x, e)[1],
             hess=lambda x, e: _slopes(cost, x, e)[2],
-            options={"gtol": 1e-14, "maxiter": 200, "initial_trust_radius": 0.1},
+            options={"gtol": 1e-14, "maxiter": NEWTON_ROUNDS, "initial_trust_radius": 0.1},
+            callback=lambda _: after(),
         )
         free = result.x
     return np.concatenate([phases[:1], free])
@@ -148,21 +172,22 @@ def square_with_slopes(term: Term, phases: Array) -> tuple[float, Array, Array]:
 # -- peaks -----------------------------------------------------------------------------------------
 
 
-def _by_tops(cost: Cost, phases: Array, step: float) -> Array:
+def _by_tops(cost: Cost, phases: Array, step: float, after: Step) -> Array:
     """Linear programs, which cross from one set of tops to another, then curved ones."""
-    best = _linear_programs(cost, phases, step)
+    best = _linear_programs(cost, phases, step, after)
     for _ in range(CURVED):
-        found = _curved(cost, best)
+        found = _curved(cost, best, after)
         if not cost.values(found) < cost.values(best) * (1 - GAIN):
             break
         best = found
     return best
 
 
-def _linear_programs(cost: Cost, phases: Array, step: float) -> Array:
+def _linear_programs(cost: Cost, phases: Array, step: float, after: Step) -> Array:
     best, here, region = phases, float(cost.values(phases)), step
     for _ in range(ROUNDS):
         move, gain = _step(cost, best, region)
+        after()
         if gain <= GAIN * here:
             break
         there = best + np.concatenate([[0.0], move])
@@ -208,7 +233,7 @@ def _below(found: list[Pieces], unit: Array) -> Array:
     return np.hstack([slopes, -np.diag(unit)[owner]])
 
 
-def _curved(cost: Cost, phases: Array) -> Array:
+def _curved(cost: Cost, phases: Array, after: Step) -> Array:
     """Phases (m,) of the minimum over the same tops, by sequential quadratic programs.
 
     Where fewer tops tie than there are phases, linear programs come near it only.
@@ -219,9 +244,10 @@ def _curved(cost: Cost, phases: Array) -> Array:
     now = np.array([np.max(each.pieces(phases)[0]) for each in tops])
     unit, free = np.where(now > 0, now, 1.0), len(phases) - 1
 
+    at_phases = partial(_pieces_at, tops, {})  # values and slopes are asked for one by one
+
     def pieces(x: Array) -> list[Pieces]:
-        turned = np.concatenate([phases[:1], phases[1:] + x[:free]])
-        return [each.pieces(turned) for each in tops]
+        return at_phases(np.concatenate([phases[:1], phases[1:] + x[:free]]))
 
     def room(x: Array) -> Array:
         found = zip(pieces(x), x[free:] * unit, unit, strict=True)
@@ -245,9 +271,19 @@ def _curved(cost: Cost, phases: Array) -> Array:
         method="SLSQP",
         bounds=[(-LEAP, LEAP)] * free + _kept(cost, unit),
         constraints={"type": "ineq", "fun": room, "jac": slopes},
-        options={"ftol": 1e-16, "maxiter": 100},
+        options={"ftol": 1e-16, "maxiter": CURVED_ROUNDS},
+        callback=lambda _: after(),
     )
     return np.concatenate([phases[:1], phases[1:] + result.x[:free]])
+
+
+def _pieces_at(tops: list[Tops], known: dict[bytes, list[Pieces]], phases: Array) -> list[Pieces]:
+    """Pieces of all tops at phases (m,); those of the last phases are `known`."""
+    key = phases.tobytes()
+    if key not in known:
+        known.clear()
+        known[key] = [each.pieces(phases) for each in tops]
+    return known[key]
 
 
 def _weights(cost: Cost, now: Array) -> Array:

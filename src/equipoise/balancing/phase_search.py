@@ -9,6 +9,7 @@ twist.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -26,7 +27,7 @@ from equipoise.balancing.phase_grid import (
     distinct,
     first_least,
 )
-from equipoise.balancing.phase_polish import polished
+from equipoise.balancing.phase_polish import Step, most_steps, polished
 from equipoise.errors import ModelError, UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism.parts.balance import Limit, Objective, Phases
@@ -34,7 +35,9 @@ from equipoise.mechanism.parts.machine import Machine
 from equipoise.signals import Array
 
 Progress = Callable[[int, int], None]
-"""Is called with the arrangements looked at, and how many there are to look at."""
+"""Is called with the steps done of a part of the work, and how many that part has at most: the
+arrangements of the grid, steps of refining the best of them, boxes of the proof.
+"""
 
 CANDIDATES, COARSE_CANDIDATES = 16, 40
 """Cells that are polished of each distance apart; where the first grid had to be coarse."""
@@ -46,6 +49,20 @@ WIDE = pi / 6
 """rad, apart from which cells are in different valleys of the first orders."""
 MOST_BEST = 8
 """Arrangements that are as good, among which the twist decides."""
+
+
+def stepped(progress: Progress, begin: int, most: int, total: int) -> Step:
+    """What is called after each of at most so many steps, which follow others that are done.
+
+    It is called once here, where nothing is done yet.
+    """
+    done = itertools.count()
+
+    def after() -> None:
+        progress(begin + min(next(done), most), total)
+
+    after()
+    return after
 
 
 @dataclass(frozen=True, eq=False)
@@ -164,16 +181,16 @@ class PhaseSearch:
         if not self.cost.smooth:
             order = np.argsort(self.cost.values(cells), kind="stable")
             cells = distinct(cells[order], self.cost.period, [self.step / 2], MOST_KINKED)
-        polished = [self.present]
-        for done, phases in enumerate(cells):  # of long cycles each takes a minute
-            progress(done, len(cells))
-            polished.append(self.polished(phases))
-        progress(len(cells), len(cells))
-        return np.array(polished)
+        most, found = most_steps(self.cost), [self.present]
+        for k, phases in enumerate(cells):  # of long cycles each takes seconds, or a minute
+            after = stepped(progress, k * most, most, len(cells) * most)
+            found.append(self.polished(phases, after))
+        progress(len(cells) * most, len(cells) * most)
+        return np.array(found)
 
-    def polished(self, phases: Array) -> Array:
+    def polished(self, phases: Array, after: Step = lambda: None) -> Array:
         """Phases (m,) of the least next to these, on the grid where they nearly are."""
-        return self._snapped(polished(self.cost, phases, self.step))
+        return self._snapped(polished(self.cost, phases, self.step, after))
 
     def improved(self, phases: Array, known: float) -> tuple[Array, float]:
         """The same with its cost, where phases are better than what is known; else no better.

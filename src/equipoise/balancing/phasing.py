@@ -93,7 +93,8 @@ def choose_phases(
     phases : how finely to look; every 5 deg if None.
     combine : several objectives by their weighted sum, or the root of that of their squares.
     progress : is called with how many arrangements of the grid are computed and how many there
-        are; then with these numbers of the best ones, which are refined.
+        are; then with the steps of refining the best ones, and with the boxes of the proof, and
+        how many these are at most.
     limits : what must be kept.
 
     Raises
@@ -103,10 +104,11 @@ def choose_phases(
     MassError, MotionError, ResponseError : the machine cannot be computed.
     """
     search = PhaseSearch(machine, tuple(objectives), phases or Phases(), combine, tuple(limits))
-    pool = search.pool(progress or (lambda done, total: None))
+    told = progress or (lambda done, total: None)
+    pool = search.pool(told)
     found = search.best(pool)
     known = float(search.cost.values(found))
-    proof = prove(search.cost, found, search.improved, least=known)
+    proof = prove(search.cost, found, search.improved, least=known, progress=told)
     if proof.phases is not found:
         found = search.best(np.vstack([pool, proof.phases]))
     for term in search.cost.limits:

@@ -23,8 +23,8 @@ from equipoise.balancing.multi_row import Cost, RowSignals, Term
 from equipoise.balancing.objectives import Near, of_rows_alone, read, reading_of
 from equipoise.balancing.phase_bound import Proof, prove
 from equipoise.balancing.phase_grid import distinct
-from equipoise.balancing.phase_polish import polished
-from equipoise.balancing.phase_search import PhaseSearch, Progress, with_phases
+from equipoise.balancing.phase_polish import Step, most_steps, polished
+from equipoise.balancing.phase_search import PhaseSearch, Progress, stepped, with_phases
 from equipoise.balancing.phasing import Phasing, phasing_of
 from equipoise.balancing.problem import WITHOUT_EFFECT, Problem
 from equipoise.balancing.program import NoSolutionError, Program
@@ -67,6 +67,7 @@ class Together:
         self.problem, self.search = _counting_alike(problem, search), search
         self.best: Found | None = None
         self.tries, self.turns = TRIES, problem.effects.motion.turns
+        self.after: Step = lambda: None
         self.period = 2 * pi * self.turns
 
     def run(self, first: Solution | None, progress: Progress) -> tuple[Solution | None, Phasing]:
@@ -90,6 +91,8 @@ class Together:
         order = np.argsort(self.search.cost.values(pool[2:]), kind="stable") + 2
         pool = np.vstack([pool[:2], pool[order]])
         count = FEW if self._bent else BEGINNINGS
+        most = (count * FIRST_ROUNDS + ROUNDS) * most_steps(self.search.cost)
+        self.after = stepped(progress, 0, most, most)
         error = self._from_any(distinct(pool, self.period, [0.1], count), first)
         if self.best is None:  # limits that few phases keep
             shape = (GUESSES, len(pool[0]))
@@ -97,7 +100,7 @@ class Together:
         if self.best is None:
             raise error or UsageError("no phases were found with which masses keep the limits")
         self._in_turn(self.best.phases, self.best.solution, ROUNDS, NO_GAIN)
-        proof, cost = self._proof(), self.search.cost
+        proof, cost = self._proof(progress), self.search.cost
         needed = len(self._measured) < len(self.problem.asked)  # for limits in joints
         if needed or np.min(cost.values(alone)) > self.best.cost + NO_GAIN * cost.whole:
             return self._laid_out(proof)
@@ -120,7 +123,7 @@ class Together:
                 error = refused
         return error
 
-    def _proof(self) -> Proof:
+    def _proof(self, progress: Progress) -> Proof:
         assert self.best is not None
         known = self.best
         try:
@@ -133,12 +136,15 @@ class Together:
         prices = tuple(max(paid.get(one.name, 0.0), 0.0) * at / scale for one, scale, at in most)
         count = len(start.terms)
         prices = prices[count:]
-        found = prove(start, known.phases, self._improved, numbers, known.cost, CLOSE, prices)
+        found = prove(
+            start, known.phases, self._improved, numbers, known.cost, CLOSE, prices, progress
+        )
         if found.complete or not start.limits:
             return found
         # Without limits more rows may be alike, which leaves fewer boxes.
         free, numbers = replace(start, limits=()), numbers.of_terms(count)
-        other = prove(free, found.phases, _no_better, numbers, self.best.cost, CLOSE)
+        best = self.best.cost
+        other = prove(free, found.phases, _no_better, numbers, best, CLOSE, progress=progress)
         return other if other.bound > found.bound else found
 
     def _laid_out(self, proof: Proof) -> tuple[Solution, Phasing]:
@@ -186,7 +192,7 @@ class Together:
             if not cost < last - gain * self.problem.whole:
                 break
             last = cost
-            phases = polished(self._cost(solution), phases, self.search.step)
+            phases = polished(self._cost(solution), phases, self.search.step, self.after)
             phases = phases - phases[0]
 
     def _turned(self, phases: Array) -> Problem:
@@ -355,5 +361,5 @@ def of_each_row(effects: Effects, objective: Objective, near: Near) -> Array:
     parts = [samples.real, samples.imag] if np.iscomplexobj(samples) else [samples]
     whole = np.moveaxis(np.stack(parts, axis=2), 3, 0)
     if (sampling := found[0][0].sampling) is not None:
-        return sampling.periodic(whole).amplitudes
-    return Periodic.of(whole, found[0][0].turns).amplitudes
+        return sampling.periodic(whole).without_rounding().amplitudes
+    return Periodic.of(whole, found[0][0].turns).without_rounding().amplitudes

@@ -71,7 +71,7 @@ def balance(
         check_new(machine, out)
     with naming(file):
         plan = plan_of(machine, freed, objective, limit)
-        with counted("program") as progress:
+        with counted("step") as progress:
             solve = partial(optimisation.balance, progress=progress)
             asked = freed.any or objective or limit
             found = solve(machine, plan) if asked else advice.advise(machine, solve)

@@ -95,5 +95,5 @@ def _balanced(machine: Machine) -> Balanced:
     from equipoise.balancing.optimisation import balance
     from equipoise.cli.progress import counted
 
-    with counted("program") as progress:
+    with counted("step") as progress:
         return advise(machine, partial(balance, progress=progress))

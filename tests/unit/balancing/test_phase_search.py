@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
+from itertools import groupby
 from math import pi, radians
 
 import numpy as np
@@ -22,12 +23,15 @@ from equipoise.balancing.patterns import (
 )
 from equipoise.balancing.phase_bound import CLOSE
 from equipoise.balancing.phase_grid import Grid, alike, coarsened, distinct, sorted_choices
-from equipoise.balancing.phase_search import PhaseSearch
+from equipoise.balancing.phase_polish import most_steps
+from equipoise.balancing.phase_search import MOST_KINKED, PhaseSearch
 from equipoise.balancing.phasing import choose_phases
 from equipoise.errors import EquipoiseError, UsageError
-from equipoise.mechanism.parts.balance import Objective, Phases
+from equipoise.mechanism.dynamics.forces import forces
+from equipoise.mechanism.parts.balance import Measure, Objective, Phases
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.support import Row
+from equipoise.signals import Periodic, present
 from support.printing import printed, words
 
 MACHINE = eq.load("yamashita-2")
@@ -299,14 +303,62 @@ def test_many_equal_rows_are_laid_out_too() -> None:
     assert twist < 0.5 * np.hypot(*(before for before, _ in again.lateral.values()))
 
 
-def test_progress_is_told() -> None:
+def parts_told(objective: Objective) -> list[list[tuple[int, int]]]:
+    """What a search of 3 rows tells, by the parts of the work: each has a total of its own."""
     told: list[tuple[int, int]] = []
-    found = choose_phases(rows(3), [FORCE], progress=lambda done, total: told.append((done, total)))
-    whole = told.index((found.combinations, found.combinations))
-    refined = told[whole + 1 :]
-    count = len(refined) - 1
-    assert refined == [(done, count) for done in range(count + 1)]
-    assert count > 0
+    choose_phases(rows(3), [objective], progress=lambda done, total: told.append((done, total)))
+    return [[*part] for _, part in groupby(told, key=lambda step: step[1])]
+
+
+@pytest.mark.parametrize("measure", ["rms", "peak"])
+def test_progress_is_told(measure: Measure) -> None:
+    """Of the grid, of the refining and of the proof; each goes on and never back."""
+    grid, refining, proof = parts_told(replace(FORCE, measure=measure))
+    for part in (grid, refining, proof):
+        done = [step for step, _ in part]
+        assert done == sorted(done)
+        assert done[-1] <= part[0][1]
+    assert grid[-1][0] == grid[-1][1]
+    assert refining[0][0] == 0
+    assert refining[-1][0] == refining[-1][1]
+
+
+def test_each_arrangement_tells_of_its_steps() -> None:
+    """Which takes a minute where a cycle has many turns and peaks count."""
+    _, refining, _ = parts_told(replace(FORCE, measure="peak"))
+    cost = PhaseSearch(rows(3), (replace(FORCE, measure="peak"),), Phases(), "sum").cost
+    cells = refining[-1][1] // most_steps(cost)
+    assert 1 <= cells <= MOST_KINKED
+    assert len(refining) >= 3 * cells
+
+
+def test_refining_is_interrupted_between_two_steps() -> None:
+    heard = []
+
+    def interrupt(done: int, total: int) -> None:
+        heard.append(total)
+        if heard.count(total) == 3 and total == heard[-2]:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        choose_phases(rows(3), [replace(FORCE, measure="peak")], progress=interrupt)
+
+
+def test_a_long_cycle_of_few_orders_is_computed_from_these() -> None:
+    """The other orders of 60 turns are rounding, thousands of them."""
+    machine = replace(rows(2), frame={**rows(2).frame, "L": (0.8, 0.0)})
+    wheel = replace(machine.links["crank"], points={"L": (0.0, 0.0)}, center_of_mass=(0.01, 0.0))
+    turned = eq.Gear("crank", "wheel", teeth=(61, 60))
+    long = replace(machine, links={**machine.links, "wheel": wheel}, gears=(turned,))
+    signals = Rows(long).signals(FORCE)
+    assert signals.turns == 60
+    whole = signals.amplitudes.shape[-1]
+    assert whole > 1000
+    assert len(present(signals.amplitudes)) < whole / 30
+    theta = np.linspace(0, signals.turns * 2 * pi, 50, endpoint=False)
+    there = forces(eq.move(long, theta, acceleration=0.0)).shaking_force.value
+    got = Periodic(signals.alone(0).amplitudes[0, 0], signals.turns).values(theta)
+    assert got == pytest.approx(np.array([there.real, there.imag]), abs=1e-9 * np.max(abs(there)))
 
 
 def test_values() -> None:
