@@ -9,23 +9,30 @@ from __future__ import annotations
 import re
 import tomllib
 from collections.abc import Collection, Mapping
+from functools import cache
 from typing import Any, NamedTuple
 
 from lessons import TABLE, lessons
 from pictures import command_of
 
-from equipoise.schema.opening import bundled
+from equipoise.i18n import speaking
+from equipoise.schema.opening import bundled, kind_of
+from equipoise.web import kinds
+from equipoise.web.openings import opened_example
 
 
 class Words(NamedTuple):
-    """What a card says in a language, and what stands between that and the rest."""
+    """What a card says in a language, and what stands between that and the rest.
+
+    others : headings of tools and of studies, which the live page has no gallery of.
+    """
 
     teaches: str
     picture: str
     to_try: str
     live: str
     page: str
-    kinds: tuple[str, ...]
+    others: tuple[str, str]
     colon: str = ": "
 
 
@@ -36,15 +43,7 @@ WORDS = {
         "To try",
         "open live",
         "open in the live page",
-        (
-            "Planting mechanisms",
-            "Linkages",
-            "Gears, belts, racks and cams",
-            "On mounts",
-            "Balancing",
-            "Hand-held tools",
-            "Studies",
-        ),
+        ("Hand-held tools", "Studies"),
     ),
     "ja": Words(
         "学べること",
@@ -52,15 +51,7 @@ WORDS = {
         "試すコマンド",
         "動かして開く",
         "ライブページで開く",
-        (
-            "植付機構",
-            "リンク機構",
-            "歯車、ベルト、ラック、カム",
-            "マウントの上の機械",
-            "釣合わせ",
-            "手持ち工具",
-            "スタディ",
-        ),
+        ("手持ち工具", "スタディ"),
         "：",
     ),
     "ko": Words(
@@ -69,41 +60,34 @@ WORDS = {
         "해 볼 명령",
         "움직이며 열기",
         "라이브 페이지에서 열기",
-        (
-            "식부 기구",
-            "링크 기구",
-            "기어, 벨트, 랙, 캠",
-            "마운트 위의 기계",
-            "균형 잡기",
-            "손공구",
-            "스터디",
-        ),
+        ("손공구", "스터디"),
     ),
 }
-KEYS = (
-    {"planting"},
-    set(),
-    {"gears", "belts", "racks", "cams"},
-    {"support"},
-    {"balance"},
-    {"shaft"},
-    {"vary"},
-)
-"""What a file of each kind has, in the order of `Words.kinds`; of several the last counts."""
 
 
-def kind_of(content: Mapping[str, Any]) -> int:
-    """Which of `Words.kinds` a file is."""
-    return max((at for at, keys in enumerate(KEYS) if keys & content.keys()), default=1)
+@cache
+def section_of_machine(name: str) -> int:
+    """Which section of the gallery a bundled machine is in."""
+    return kinds.section_of(opened_example(name).machine)
+
+
+def section_of(name: str, content: Mapping[str, Any]) -> int:
+    """Which heading of the page an example of linkages, tools or studies stands below."""
+    kind = kind_of(content)
+    if kind == "linkage":
+        return section_of_machine(name)
+    return len(kinds.sections()) + ("tool", "study").index(kind)
 
 
 def grid(language: str, contents: Mapping[str, Mapping[str, Any]]) -> str:
     """Thumbnails by kind, each of which leads to its example below."""
     parts = []
-    for at, kind in enumerate(WORDS[language].kinds):
+    with speaking(language):
+        headings = (*kinds.sections(), *WORDS[language].others)
+    for at, kind in enumerate(headings):
         parts += [f"## {kind}", "::::{grid} 2 3 4 4", ":gutter: 2"]
         for name, content in contents.items():
-            if kind_of(content) == at:
+            if section_of(name, content) == at:
                 title = plain(content["title"][language])
                 parts += [
                     f"\n:::{{grid-item-card}} {title}",

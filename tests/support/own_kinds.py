@@ -27,6 +27,7 @@ from equipoise.symbols.pieces import pieces
 from equipoise.symbols.scene import Scene
 from equipoise.web.design import Design
 from equipoise.web.fields import fields_of
+from equipoise.web.kinds import search_words
 from equipoise.web.tables import tables_of
 from secondroute.test_javascript import run
 
@@ -113,6 +114,13 @@ def on_the_page(machine: Machine, table: str, keys: Sequence[str], numbers: Sequ
     for number in numbers:
         value = getattr(getattr(machine, table)[0], number)
         assert found[f"{table}[1].{number}"].value == value
+
+
+def found_in_the_gallery(machine: Machine, words: str) -> None:
+    """The words that the gallery finds the machine by have those of its kind, and of no other."""
+    base = Machine(**{one.name: getattr(machine, one.name) for one in fields(Machine)})
+    assert words in search_words(machine)
+    assert words not in search_words(base)
 
 
 def refused_by_formats(machine: Machine, table: str, special: str, folder: Path) -> None:

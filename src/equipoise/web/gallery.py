@@ -6,13 +6,13 @@ import re
 from collections.abc import Iterator
 from functools import cache
 
-from equipoise.i18n import said, say
+from equipoise.i18n import said
 from equipoise.results.analysis import analyze
 from equipoise.symbols.clear import clear_angle
 from equipoise.symbols.scene import Scene
 from equipoise.web.block import Block, Values
 from equipoise.web.drawing import moves_of, stage_of
-from equipoise.web.kinds import KINDS, kind_of, search_words
+from equipoise.web.kinds import search_words, section_of, sections
 from equipoise.web.openings import opened_example, titles
 
 SAMPLES = 36
@@ -28,12 +28,13 @@ def pictured() -> Iterator[tuple[Values, bytes]]:
     language, drawing and arrays.
     """
     machines = {name: opened_example(name).machine for name in titles()}
-    for name, machine in sorted(machines.items(), key=lambda item: kind_of(item[1])):
+    headings = sections()
+    for name, machine in sorted(machines.items(), key=lambda item: section_of(item[1])):
         drawing, data = _drawn(name)
         text = ASIDE.sub("", " ".join(said(machine.description).split()))
         line = END.split(text, maxsplit=1)[0]
         told = {"name": name, "title": said(machine.title), "line": line}
-        told["kind"] = say(KINDS[kind_of(machine)])
+        told["kind"] = headings[section_of(machine)]
         told["words"] = f"{search_words(machine)} {text}"
         yield {**told, **drawing}, data
 

@@ -5,16 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from equipoise.i18n import say, speaking, to_say
+from equipoise.mechanism.parts.couplings import coupling_kinds
+from equipoise.mechanism.parts.element_kinds import part_kinds
 from equipoise.mechanism.parts.machine import Machine
+from equipoise.mechanism.parts.sliders import Slider
 
-KINDS = (
-    to_say("Planting mechanisms"),
-    to_say("Linkages"),
-    to_say("Gears, belts, racks and cams"),
-    to_say("Machines on mounts"),
-    to_say("Machines to balance"),
-)
-"""Parts of the gallery, in their order."""
 BARS = {
     4: to_say("four-bar linkage"),
     6: to_say("six-bar linkage"),
@@ -23,16 +18,31 @@ BARS = {
 """Linkages without sliding joints by the number of their bars, the frame among them."""
 
 
-def kind_of(machine: Machine) -> int:
-    """Return which of `KINDS` a machine is; of several the last."""
-    has = (
+def sections(of: type[Machine] = Machine) -> tuple[str, ...]:
+    """Return the headings of the gallery in their order, in the language that is spoken.
+
+    of : class of machines whose kinds of couplings have a section of their own.
+    """
+    coupled = say(", ").join(say(kind.group) for kind in coupling_kinds(of).values())
+    return (
+        say("Planting mechanisms"),
+        say("Linkages"),
+        coupled[:1].upper() + coupled[1:],
+        say("Machines on mounts"),
+        say("Machines to balance"),
+    )
+
+
+def section_of(machine: Machine) -> int:
+    """Return which of `sections` a machine is in; of several the last."""
+    fits = (
         machine.planting is not None,
         True,
         bool(machine.couplings),
         machine.support is not None,
         machine.balance is not None,
     )
-    others = [at for at, found in enumerate(has) if found and at != 1]
+    others = [index for index, fit in enumerate(fits) if fit and index != 1]
     return max(others, default=1)
 
 
@@ -40,34 +50,30 @@ def search_words(machine: Machine) -> str:
     """Return the words that a machine is found by beside its title and description, in English and
     in the language that is spoken.
     """
-    texts = [*_features(machine)]
-    spoken = [say(text) for text in texts]
+    spoken = [*_features(machine)]
     with speaking("en"):
-        english = [say(text) for text in texts]
+        english = [*_features(machine)]
     return " ".join(dict.fromkeys((*spoken, *english)))
 
 
 def _features(machine: Machine) -> Iterator[str]:
-    """What a machine has, and what it is by its build."""
-    yield KINDS[kind_of(machine)]
+    """What a machine has, and what it is by its build, in the language that is spoken."""
+    yield sections(type(machine))[section_of(machine)]
     couplings = bool(machine.couplings)
-    if not machine.sliders and not couplings:
-        bars = BARS.get(len(machine.links) + 1)
-        if bars is not None:
-            yield bars
+    bars = BARS.get(len(machine.links) + 1)
+    if bars is not None and not machine.sliders and not couplings:
+        yield say(bars)
     if machine.sliders:
-        yield to_say("slider on a straight line")
+        yield say(Slider.group)
     if len(machine.sliders) == 1 and len(machine.links) == 3 and not couplings:
-        yield to_say("slider-crank")
-    for has, text in (
-        (machine.gears, to_say("gears")),
-        (machine.belts, to_say("belts")),
-        (machine.racks, to_say("racks")),
-        (machine.cams, to_say("cams")),
-        (machine.springs, to_say("springs")),
-        (machine.support, to_say("mounts and gauges")),
-        (machine.drive.between, to_say("hydraulic cylinder")),
-        (machine.rows, to_say("several rows")),
-    ):
-        if has:
-            yield text
+        yield say("slider-crank")
+    for table, kind in part_kinds(type(machine)).items():
+        if getattr(machine, table):
+            yield say(kind.group)
+    for drive in machine.driven:
+        if drive.group:
+            yield say(drive.group)
+    if machine.support is not None:
+        yield say("mounts and gauges")
+    if machine.rows:
+        yield say("several rows")

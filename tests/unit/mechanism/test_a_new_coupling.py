@@ -29,9 +29,11 @@ from equipoise.mechanism.outputs.declared import CONTACT, FORCES, GROUPS, of_cou
 from equipoise.mechanism.parts.couplings import Line, Pushed, Relation, Seat, Turning
 from equipoise.results.machine_blocks import model_blocks
 from equipoise.symbols.pieces import pieces
+from equipoise.web.kinds import sections
 from support.own_kinds import (
     designs_by_numbers,
     drawn,
+    found_in_the_gallery,
     on_the_page,
     own_outputs,
     read_back,
@@ -200,6 +202,11 @@ def test_the_documentation_has_its_keys() -> None:
     rows = key_table(Rollers)
     assert "`radii`" in rows
     assert "of the push from the line square" in rows
+
+
+def test_the_gallery_is_searched_by_its_word() -> None:
+    found_in_the_gallery(MACHINE, "rollers")
+    assert sections(Rolled)[2].lower() == "gears, belts, racks, cams, rollers"
 
 
 def test_formats_without_it_say_so(tmp_path: Path) -> None:

@@ -29,6 +29,7 @@ from equipoise.symbols.shapes import Mark, circle
 from support.own_kinds import (
     designs_by_numbers,
     drawn,
+    found_in_the_gallery,
     on_the_page,
     own_outputs,
     read_back,
@@ -174,6 +175,10 @@ def test_drawings_have_the_sign_that_it_names() -> None:
 def test_the_page_has_its_form_and_its_numbers() -> None:
     keys = ["link", "point", "on", "label", "through", "direction", "shift"]
     on_the_page(MACHINE, "straight_slots", keys, ["direction", "shift"])
+
+
+def test_the_gallery_is_searched_by_its_word() -> None:
+    found_in_the_gallery(MACHINE, "straight slots")
 
 
 def test_formats_without_it_say_so(tmp_path: Path) -> None:

@@ -39,6 +39,11 @@ class Pushing:
         return self.stroke is not None
 
     @property
+    def group(self) -> str:
+        """What machines with such a drive are found by; empty for a crank."""
+        return to_say("hydraulic cylinder") if self.between else ""
+
+    @property
     def effort_in(self) -> Literal["force", "torque"]:
         """What it exerts."""
         return "force" if self.pushes else "torque"

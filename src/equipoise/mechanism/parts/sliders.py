@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Protocol
+from typing import ClassVar, Protocol
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, to_say
@@ -26,6 +26,7 @@ class Slider(Frozen):
     """A sliding joint: `point` of `link` stays on a line of the body `on`, without turning."""
 
     called = to_say("{what} of the guide of the {link}")
+    group: ClassVar[str] = to_say("slider on a straight line")
 
     link: str = key(Text(of="link"), "the sliding link", example="piston")
     point: str = key(Text(of="point", on="link"), "its point on the line", example="C")
