@@ -407,15 +407,6 @@ def test_arrangements() -> None:
 RATIO = "ratio = [0.2, 3]"
 PAIR = f'{RATIO}\npitch_radius = "50 mm"'
 POINT = 'shape = "point"\nmass = "1145 g"'
-SECOND = """[[balance.geared]]
-driver = "rocker"
-ratio = 1
-pitch_radius = "30 mm"
-radius = "30 mm"
-name = "second"
-
-[[balance.objectives]]"""
-
 MACHINES = {
     # example, what is replaced, by what, what is said
     "into a link": ("balance-geared-a", RATIO,
@@ -434,8 +425,6 @@ MACHINES = {
                     "has no ratio from 0.1 to 0.3 that brings it back within 3 turns; give anoth"),
     "taken": ("balance-geared-a", RATIO, 'ratio = 1\nname = "rocker"', "model.toml: balance.geared"
               "[1].name: 'rocker' is taken already; give another name"),
-    "two scans": ("balance-geared-a", "[[balance.objectives]]", SECOND, "only the last of "
-                  "[[balance.geared]] may have several ratios; give the others one ratio each"),
     "larger than its room": ("balance-crank", POINT, 'shape = "disc"\nradius = "40 mm"\nthickness '
                              '= "5 mm"\nmaterial = "steel"\nmass = "1145 g"', "model.toml: balance."
                              "masses[1].mass: a disc of 1145 g and 5 mm steel has a radius of"),

@@ -453,7 +453,7 @@ def proved_of(found: Solution) -> Iterator[Note]:
         yield Note("for the flanks of teeth and strands of chains that bear here")
     if problem.rubs:
         yield Note("without friction in joints")
-    if any(geared_range(geared) for geared in problem.plan.geared):
+    if found.gears_left or any(geared_range(geared) for geared in problem.plan.geared):
         yield Note("for each of the gears tried")
 
 

@@ -201,9 +201,12 @@ class Gearing:
                 )
         return ""
 
-    def added(self, mesh: Mesh) -> tuple[Machine, AddedWeight]:
-        """The machine with shaft and gears, and the weight that is free on the shaft."""
-        machine, geared = self.machine, self.geared
+    def added(self, mesh: Mesh, to: Machine | None = None) -> tuple[Machine, AddedWeight]:
+        """A machine with shaft and gears, and the weight that is free on the shaft.
+
+        to : the machine with what else is added to it, that of the gearing where not given.
+        """
+        machine, geared = self.machine if to is None else to, self.geared
         place: Vector = (self.axis(mesh).real, self.axis(mesh).imag)
         mass, inertia = self._gear(mesh.shaft)
         plane = geared.weight.plane

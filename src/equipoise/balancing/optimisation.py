@@ -2,27 +2,23 @@
 
 Plan -> shafts -> free numbers -> cone program -> best numbers -> new machine -> what it does.
 
-Of gears, numbers of teeth are tried one and all; of ratios and directions a grid, whose best are
-followed as far down as they go.  Where phases of rows are free, they and the masses are searched
-together, after the gears.
+Gears are searched around the program (`gear_search`).  Where phases of rows are free, they and the
+masses are searched together, after the gears.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
-from math import inf
-
-import numpy as np
+from dataclasses import replace
 
 from equipoise.balancing.balanced import Balanced, result_of
-from equipoise.balancing.geared import Gearing, Mesh, with_shafts
+from equipoise.balancing.gear_search import GearSearch, WithShafts
+from equipoise.balancing.geared import with_shafts
 from equipoise.balancing.phase_search import PhaseSearch
 from equipoise.balancing.phasing import Phasing, choose_phases
 from equipoise.balancing.problem import Problem
 from equipoise.balancing.rows_and_masses import Together
-from equipoise.balancing.solution import Solution, solve_problem
-from equipoise.balancing.weights import AddedWeight
+from equipoise.balancing.solution import Solution
 from equipoise.balancing.workshop import Change
 from equipoise.errors import MassError, UsageError
 from equipoise.i18n import Note
@@ -30,7 +26,6 @@ from equipoise.mechanism.dynamics.forces import massless
 from equipoise.mechanism.parts.balance import Balance
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.objectives import WITHIN
-from equipoise.signals import Array
 from equipoise.vibration.forced import check_moving
 
 Progress = Callable[[int, int], None]
@@ -88,128 +83,15 @@ def _checked(machine: Machine, plan: Balance | None) -> Balance:
     return plan
 
 
-LARGE = 1e300
-"""A cost that every solution is below, while none is known."""
-CLOSER, NEARER = 1e-10, 1e-6
-"""Of the cost, and of a ratio or direction, to which the best ones of a range are followed."""
-TIE, MOST_TIES, LIGHT_TIES = 5e-9, 24, 8
-"""Difference in cost that is none; choices, all over the range, among which the lightest is looked
-for; and those beside them that looked lightest at first.
-"""
-BEST_CHOICES, STEPS, MOST_STEPS = 3, 40, 80
-"""Choices that are followed; first steps over a range; programs that are solved for each."""
-
-
-@dataclass(frozen=True, eq=False)
-class _WithShafts:
-    """A machine with shafts that its plan adds: the weights on them, and their gears."""
-
-    machine: Machine
-    plan: Balance
-    base: Machine
-    weights: tuple[AddedWeight, ...] = ()
-    gears: tuple[Change, ...] = ()
-
-    def with_gears(self, gearing: Gearing, mesh: Mesh) -> _WithShafts:
-        base, weight = gearing.added(mesh)
-        gears = (*self.gears, gearing.change(mesh))
-        return replace(self, base=base, weights=(*self.weights, weight), gears=gears)
-
-    def solved(self, progress: Progress | None = None, above: float = inf) -> Solution:
-        problem = Problem.of(self.machine, self.plan, self.base, self.weights)
-        return replace(solve_problem(problem, progress, above), meshes=self.gears)
-
-
 def solve_plan(machine: Machine, plan: Balance, progress: Progress | None = None) -> Solution:
-    """The best of all choices of gears, of which only the last shaft may have several."""
-    found = _WithShafts(machine, plan, machine)
+    """The best of all choices of gears, with the best numbers for these."""
+    start = WithShafts(machine, plan, machine)
     for shafts in plan.shafts:
-        base, more = with_shafts(found.base, shafts)
-        found = replace(found, base=base, weights=(*found.weights, *more))
-    for geared in plan.geared:
-        gearing = Gearing(found.base, geared)
-        meshes = gearing.meshes()
-        if len(meshes) == 1:
-            found = found.with_gears(gearing, meshes[0])
-        elif geared is plan.geared[-1]:
-            return _scan(found, gearing, meshes, progress)
-        else:
-            raise UsageError(
-                Note(
-                    "only the last of [[balance.geared]] may have several ratios; give the "
-                    "others one ratio each"
-                )
-            )
-    return found.solved(progress)
-
-
-def _scan(
-    start: _WithShafts, gearing: Gearing, meshes: list[Mesh], progress: Progress | None
-) -> Solution:
-    """Solve for every choice of gears; over a range of ratios, follow the best to their tops."""
-    found: list[tuple[Mesh, Solution]] = []
-    problems: list[UsageError] = []
-    most = len(meshes) + (BEST_CHOICES * MOST_STEPS if gearing.ranges else 0)
-
-    def at(mesh: Mesh) -> float:
-        least = min((one.best.value for _, one in found), default=LARGE)
-        try:
-            one = start.with_gears(gearing, mesh).solved(None, least)
-        except UsageError as error:
-            problems.append(error)
-            return inf
-        found.append((mesh, one))
-        if progress is not None:
-            progress(min(len(found), most), most)
-        return one.best.value
-
-    values = [at(mesh) for mesh in meshes]
-    if not found:
-        raise problems[0]
-    for k in np.argsort(values)[:BEST_CHOICES]:
-        if gearing.ranges and np.isfinite(values[k]):
-            _follow(gearing, meshes[k], at)
-    least = min(one.best.value for _, one in found)
-    ties = {
-        mesh: one.problem.mass_added(one.numbers)
-        for mesh, one in found
-        if one.best.value <= least + TIE
-    }
-    equal = sorted(ties, key=lambda mesh: (mesh.ratio, mesh.direction))
-    light = sorted(equal, key=ties.__getitem__)[:LIGHT_TIES]
-    tried = dict.fromkeys([*equal[:: max(1, len(equal) // MOST_TIES)], *light])
-    lightest = min(
-        (start.with_gears(gearing, mesh).solved() for mesh in tried),
-        key=lambda one: one.problem.mass_added(one.numbers),
-    )
-    count = sum(one.best.nodes for _, one in found)
-    method = Note(
-        "{method}, for each of {count} choices of gears", method=lightest.method, count=len(found)
-    )
-    best = replace(lightest.best, nodes=count)
-    return replace(lightest, method=method, best=best, ties=len(equal), weighed=len(tried))
-
-
-def _follow(gearing: Gearing, start: Mesh, cost: Callable[[Mesh], float]) -> None:
-    """Go down from a choice of gears, along all that may be any number between two."""
-    from scipy.optimize import minimize
-
-    first = {"ratio": start.ratio, "direction": start.direction}
-    ranges = gearing.ranges
-
-    def at(numbers: Array) -> float:
-        here = {name: float(x) for name, x in zip(ranges, numbers, strict=True)}
-        mesh = gearing.near(start, here)
-        return cost(mesh) if gearing.is_clear(mesh) else inf
-
-    begin = np.array([first[name] for name in ranges])
-    steps = [(high - low) / STEPS for low, high in ranges.values()]
-    simplex = np.vstack([begin, *(begin + step for step in np.diag(steps))])
-    limits = np.array(list(ranges.values()))
-    over = simplex > limits[:, 1]
-    simplex[over] = (2 * begin - simplex)[over]
-    options = {"initial_simplex": simplex, "xatol": NEARER, "fatol": CLOSER, "maxfev": MOST_STEPS}
-    minimize(at, begin, method="Nelder-Mead", bounds=limits, options=options)
+        base, more = with_shafts(start.base, shafts)
+        start = replace(start, base=base, weights=(*start.weights, *more))
+    if not plan.geared:
+        return start.solved(progress)
+    return GearSearch(start, progress).run()
 
 
 def balance_rows(machine: Machine, plan: Balance, progress: Progress | None = None) -> Balanced:

@@ -44,7 +44,7 @@ class Solution:
     """Best numbers of one problem, the machine that they make, and the gears it has.
 
     ties : choices of gears that are as good.  weighed : how many of these were made as light as can
-        be.
+        be.  gears_left : whether some gears of several shafts were not tried together.
     """
 
     problem: Problem
@@ -55,6 +55,7 @@ class Solution:
     meshes: tuple[Change, ...] = ()
     ties: int = 1
     weighed: int = 1
+    gears_left: bool = False
 
 
 def solve_problem(

@@ -1,0 +1,233 @@
+"""Gears of the shafts that a plan adds, searched around the cone program.
+
+Ratios, directions and numbers of teeth are no numbers of a cone program.  They are chosen outside
+of it, for all shafts together, and the program answers with the best weights for each choice.
+Of one shaft numbers of teeth are tried one and all, and of ratios and directions a grid.  Where
+several shafts have more choices together than can be tried, some of each are, and from the best of
+these one shaft after the other tries all of its own.  Ratios and directions are then followed, all
+at once, as far down as they go.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from itertools import product
+from math import inf, prod
+
+import numpy as np
+
+from equipoise.balancing.geared import Gearing, Mesh
+from equipoise.balancing.problem import Problem
+from equipoise.balancing.solution import Solution, solve_problem
+from equipoise.balancing.weights import AddedWeight
+from equipoise.balancing.workshop import Change
+from equipoise.errors import UsageError
+from equipoise.i18n import Note
+from equipoise.mechanism.parts.balance import Balance
+from equipoise.mechanism.parts.machine import Machine
+from equipoise.signals import Array
+
+Progress = Callable[[int, int], None]
+Choice = tuple[Mesh, ...]
+"""The gears of all shafts, in the order of the plan."""
+
+LARGE = 1e300
+"""A cost that every solution is below, while none is known."""
+CLOSER, NEARER = 1e-10, 1e-6
+"""Of the cost, and of a ratio or direction, to which the best ones of a range are followed."""
+TIE, MOST_TIES, LIGHT_TIES = 5e-9, 24, 8
+"""Difference in cost that is none; choices, all over the range, among which the lightest is looked
+for; and those beside them that looked lightest at first.
+"""
+BEST_CHOICES, STEPS, MOST_STEPS = 3, 40, 80
+"""Choices that are followed; first steps over a range; programs that are solved for each and for
+each shaft with a range.
+"""
+MOST_CHOICES, MOST_ROUNDS = 640, 4
+"""Choices of several shafts together that are all tried: some 20 s, and 25 of each of two; rounds
+over the shafts where there are more, of which the second seldom finds anything.
+"""
+
+
+@dataclass(frozen=True, eq=False)
+class WithShafts:
+    """A machine with shafts that its plan adds: the weights on them, and their gears."""
+
+    machine: Machine
+    plan: Balance
+    base: Machine
+    weights: tuple[AddedWeight, ...] = ()
+    gears: tuple[Change, ...] = ()
+
+    def with_gears(self, gearing: Gearing, mesh: Mesh) -> WithShafts:
+        """With one more geared shaft."""
+        base, weight = gearing.added(mesh, self.base)
+        gears = (*self.gears, gearing.change(mesh))
+        return replace(self, base=base, weights=(*self.weights, weight), gears=gears)
+
+    def solved(self, progress: Progress | None = None, above: float = inf) -> Solution:
+        """The best numbers with these gears; less closely where they cost more than `above`."""
+        problem = Problem.of(self.machine, self.plan, self.base, self.weights)
+        return replace(solve_problem(problem, progress, above), meshes=self.gears)
+
+
+class GearSearch:
+    """The search of the gears of every geared shaft of a plan.
+
+    start : the machine with all that is added to it but these shafts.
+
+    Raises
+    ------
+    UsageError : no gears of a shaft mesh, or leave room for its counterweight.
+    """
+
+    def __init__(self, start: WithShafts, progress: Progress | None = None) -> None:
+        self.start, self.progress = start, progress
+        self.gearings = [Gearing(start.base, geared) for geared in start.plan.geared]
+        self.options = [gearing.meshes() for gearing in self.gearings]
+        self.ranges = [
+            (k, name, *limits)
+            for k, gearing in enumerate(self.gearings)
+            for name, limits in gearing.ranges.items()
+        ]
+        self.found: list[tuple[Choice, Solution]] = []
+        self.costs: dict[Choice, float] = {}
+        self.problems: list[UsageError] = []
+        self.most = 0
+
+    def run(self) -> Solution:
+        """The best choice of gears, the lightest of those that are as good, with its weights.
+
+        Raises
+        ------
+        UsageError : limits clash, whatever the gears.
+        """
+        choices = self._first_choices()
+        everything = prod(map(len, self.options))
+        if everything == 1:
+            return self._with(choices[0]).solved(self.progress)
+        ranged = len({k for k, *_ in self.ranges})
+        self.most = len(choices) + BEST_CHOICES * MOST_STEPS * ranged
+        for choice in choices:
+            self._cost(choice)
+        if not self.found:
+            raise self.problems[0]
+        if thinned := len(choices) < everything:
+            self.most += BEST_CHOICES * sum(map(len, self.options))
+            for choice in self._best_choices():
+                self._by_turns(choice)
+        if self.ranges:
+            for choice in self._best_choices():
+                self._follow(choice)
+        return replace(self._lightest(), gears_left=thinned)
+
+    def _with(self, choice: Choice) -> WithShafts:
+        made = self.start
+        for gearing, mesh in zip(self.gearings, choice, strict=True):
+            made = made.with_gears(gearing, mesh)
+        return made
+
+    def _cost(self, choice: Choice) -> float:
+        """Cost with these gears, not closely where others cost less; infinite where none do."""
+        least = min((one.best.value for _, one in self.found), default=LARGE)
+        try:
+            solution = self._with(choice).solved(None, least)
+        except UsageError as error:
+            self.problems.append(error)
+            self.costs[choice] = inf
+            return inf
+        self.found.append((choice, solution))
+        if self.progress is not None:
+            self.progress(min(len(self.found), self.most), self.most)
+        self.costs[choice] = solution.best.value
+        return solution.best.value
+
+    def _first_choices(self) -> list[Choice]:
+        """All choices; of several shafts with too many together, some of each."""
+        kept = self.options
+        several = sum(len(own) > 1 for own in kept) > 1
+        while several and prod(map(len, kept)) > MOST_CHOICES:
+            longest = max(map(len, kept))
+            kept = [_some(own, min(len(own), longest - 1)) for own in self.options]
+        return list(product(*kept))
+
+    def _best_choices(self) -> list[Choice]:
+        """The first among equals, so that the same search ends at the same gears everywhere."""
+        there = [choice for choice, cost in self.costs.items() if np.isfinite(cost)]
+        return sorted(there, key=self.costs.__getitem__)[:BEST_CHOICES]
+
+    def _by_turns(self, best: Choice) -> None:
+        """Try all gears of one shaft after the other, until none is better."""
+        for _ in range(MOST_ROUNDS):
+            before = best
+            for k, own in enumerate(self.options):
+                ways = [(*best[:k], mesh, *best[k + 1 :]) for mesh in own]
+                for way in ways:
+                    if way not in self.costs:
+                        self._cost(way)
+                best = min((best, *ways), key=self.costs.__getitem__)
+            if best == before:
+                return
+
+    def _follow(self, start: Choice) -> None:
+        """Go down from a choice of gears, along all that may be any number between two."""
+        from scipy.optimize import minimize
+
+        def at(numbers: Array) -> float:
+            here: list[dict[str, float]] = [{} for _ in start]
+            for (k, name, *_), number in zip(self.ranges, numbers, strict=True):
+                here[k][name] = float(number)
+            choice = tuple(
+                gearing.near(mesh, own) if own else mesh
+                for gearing, mesh, own in zip(self.gearings, start, here, strict=True)
+            )
+            clear = all(
+                gearing.is_clear(mesh)
+                for gearing, mesh, own in zip(self.gearings, choice, here, strict=True)
+                if own
+            )
+            return self._cost(choice) if clear else inf
+
+        begin = np.array([getattr(start[k], name) for k, name, *_ in self.ranges])
+        limits = np.array([ends for _, _, *ends in self.ranges])
+        steps = (limits[:, 1] - limits[:, 0]) / STEPS
+        simplex = np.vstack([begin, *(begin + step for step in np.diag(steps))])
+        over = simplex > limits[:, 1]
+        simplex[over] = (2 * begin - simplex)[over]
+        most = MOST_STEPS * len({k for k, *_ in self.ranges})
+        options = {"initial_simplex": simplex, "xatol": NEARER, "fatol": CLOSER, "maxfev": most}
+        minimize(at, begin, method="Nelder-Mead", bounds=limits, options=options)
+
+    def _lightest(self) -> Solution:
+        """The lightest of those that cost least."""
+        least = min(one.best.value for _, one in self.found)
+        ties = {
+            choice: one.problem.mass_added(one.numbers)
+            for choice, one in self.found
+            if one.best.value <= least + TIE
+        }
+        equal = sorted(ties, key=lambda choice: [(one.ratio, one.direction) for one in choice])
+        light = sorted(equal, key=ties.__getitem__)[:LIGHT_TIES]
+        tried = dict.fromkeys([*equal[:: max(1, len(equal) // MOST_TIES)], *light])
+        lightest = min(
+            (self._with(choice).solved() for choice in tried),
+            key=lambda one: one.problem.mass_added(one.numbers),
+        )
+        method = Note(
+            "{method}, for each of {count} choices of gears",
+            method=lightest.method,
+            count=len(self.found),
+        )
+        return replace(
+            lightest,
+            method=method,
+            best=replace(lightest.best, nodes=sum(one.best.nodes for _, one in self.found)),
+            ties=len(equal),
+            weighed=len(tried),
+        )
+
+
+def _some(own: list[Mesh], count: int) -> list[Mesh]:
+    """So many of the gears of a shaft, all over their range, both ends among them."""
+    return [own[k] for k in np.rint(np.linspace(0, len(own) - 1, count)).astype(int)]

@@ -1,0 +1,113 @@
+"""Several geared shafts, each with a choice of gears, against all choices one by one."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import product
+from math import radians
+
+import pytest
+
+import equipoise as eq
+from equipoise.balancing import gear_search
+from equipoise.errors import UsageError
+from equipoise.mechanism.parts.balance import Balance, GearedWeight, Limit, Objective, Weight
+from unit.mechanism.build import crank_rocker
+
+MACHINE = crank_rocker()
+ROCKER = GearedWeight(
+    "rocker", Weight(radius=0.2, at_most=2.0), ratio=(0.5, 2.0), pitch_radius=0.3, name="first"
+)
+TOOTHED = replace(ROCKER, ratio=None, pitch_radius=None, teeth=(17, 19), module=0.02)
+CRANK = GearedWeight(
+    "crank",
+    Weight(radius=0.1, at_most=1.0),
+    ratio=(1.0, 2.0),
+    pitch_radius=0.2,
+    direction=(radians(90), radians(90)),
+    name="second",
+)
+FORCE = (Objective("shaking_moment"),)
+FRACTIONS = (1.0, 4 / 3, 1.5, 5 / 3, 2.0)
+"""Ratios of CRANK: p/q with q up to 3."""
+
+
+def plan(*geared: GearedWeight) -> Balance:
+    return Balance(geared=geared, objectives=FORCE)
+
+
+def cost(*geared: GearedWeight) -> float:
+    return eq.balance(MACHINE, plan(*geared)).cost
+
+
+def each(geared: GearedWeight, ratios: Sequence[float]) -> list[GearedWeight]:
+    return [replace(geared, ratio=(ratio, ratio)) for ratio in ratios]
+
+
+def by_brute_force() -> dict[tuple[int, int, float], float]:
+    """Cost of every pair of teeth, each with every ratio: one plan with given gears each."""
+    found = {}
+    for a, b in product(range(17, 20), repeat=2):
+        pitch = {"pitch_radius": 0.01 * a, "ratio": (a / b, a / b)}
+        first = replace(ROCKER, **pitch)
+        for ratio, second in zip(FRACTIONS, each(CRANK, FRACTIONS), strict=True):
+            found[a, b, ratio] = cost(first, second)
+    return found
+
+
+def test_two_shafts_with_choices_each(monkeypatch: pytest.MonkeyPatch) -> None:
+    """All 45 together; and where not all are tried, one shaft after the other gets there too."""
+    brute = by_brute_force()
+    least = min(brute.values())
+    assert max(brute.values()) > 1.01 * least  # the gears count
+    found = eq.balance(MACHINE, plan(TOOTHED, CRANK))
+    assert found.cost == pytest.approx(least, rel=1e-6)
+    assert found.bound == pytest.approx(found.cost, rel=1e-6)
+    assert str(found.method).endswith("for each of 45 choices of gears")
+    gears = [change.values for change in found.changes if change.kind == "gears"]
+    assert [one["driver"] for one in gears] == ["rocker", "crank"]
+    (a, b), ratio = gears[0]["teeth"], gears[1]["ratio"]
+    key = min(brute, key=lambda one: abs(one[2] - ratio) + abs(one[0] - a) + abs(one[1] - b))
+    assert brute[key] == pytest.approx(least, rel=1e-6)
+    monkeypatch.setattr(gear_search, "MOST_CHOICES", 9)
+    fewer = eq.balance(MACHINE, plan(TOOTHED, CRANK))
+    assert fewer.cost == pytest.approx(least, rel=1e-6)
+
+
+def test_what_is_proved_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The best of all teeth where all were tried; else of those that were."""
+    teeth = {"teeth": (17, 18), "module": 0.02, "ratio": None, "pitch_radius": None}
+    both = plan(replace(TOOTHED, teeth=(17, 18)), replace(CRANK, **teeth))
+    every = eq.balance(MACHINE, both)
+    assert not every.scope
+    monkeypatch.setattr(gear_search, "MOST_CHOICES", 4)
+    some = eq.balance(MACHINE, both)
+    assert "for each of the gears tried" in map(str, some.scope)
+    assert some.cost == pytest.approx(every.cost, rel=1e-6)
+
+
+def test_two_shafts_with_ranges(monkeypatch: pytest.MonkeyPatch) -> None:
+    """No pair of ratios and directions of a grid is better; the search uses far fewer."""
+    monkeypatch.setattr(gear_search, "MOST_CHOICES", 16)
+    monkeypatch.setattr(gear_search, "MOST_ROUNDS", 1)
+    first = replace(ROCKER, ratio=(0.8, 1.6))
+    second = replace(CRANK, ratio=(2.0, 2.0), direction=(radians(30), radians(150)))
+    found = cost(first, second)
+    ratios = [0.8 + 0.1 * k for k in range(9)]
+    ways = [radians(30 + 20 * k) for k in range(7)]
+    grid = [
+        cost(one, replace(second, direction=(way, way)))
+        for one, way in product(each(first, ratios), ways)
+    ]
+    assert found <= min(grid) * (1 + 1e-6)
+
+
+def test_order_of_shafts_does_not_count() -> None:
+    assert cost(TOOTHED, CRANK) == pytest.approx(cost(CRANK, TOOTHED), rel=1e-6)
+
+
+def test_limits_that_no_gears_keep() -> None:
+    limits = (Limit(Objective("shaking_moment"), ratio=1e-6),)
+    with pytest.raises(UsageError, match="at most"):
+        eq.balance(MACHINE, replace(plan(TOOTHED, CRANK), limits=limits))
