@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import itertools
+import re
 from math import acos, pi
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,11 +13,13 @@ from scipy.integrate import solve_ivp
 from scipy.special import ellipk
 
 import equipoise as eq
-from equipoise.errors import UsageError
+from equipoise.errors import ResponseError, UsageError
 from equipoise.mechanism.parts.force_elements import Motor
+from equipoise.running import integration
 from equipoise.running.blocks import verdict
 from equipoise.running.drivers import Driver
 from equipoise.running.equation import CrankEquation
+from equipoise.running.integration import Instant, Integration
 from support.analyses import subject_of
 
 MASS, ARM, OWN, GRAVITY = 2.0, 0.3, 0.05, 9.81
@@ -148,6 +153,34 @@ def test_values_that_cannot_be_used() -> None:
         eq.run(crank(), speed=float("inf"))
     with pytest.raises(UsageError, match="one crank"):
         eq.run(eq.load("hydraulic-loader"))
+
+
+@pytest.mark.parametrize(
+    ("asked", "sentence"),
+    [({"duration": "30000 s"}, "got 30000 s"), ({"turns": 10_000}, "got 10000 turns")],
+)
+def test_what_takes_too_long_is_refused_when_it_goes_on_evenly(
+    asked: dict[str, Any], sentence: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """And not after all the pieces that can be followed, which takes a minute."""
+    count, piece = itertools.count(), Integration._piece
+
+    def counted(self: Integration, begin: Instant) -> Instant | None:
+        assert next(count) < 4000
+        return piece(self, begin)
+
+    monkeypatch.setattr(Integration, "_piece", counted)
+    monkeypatch.setattr(integration, "MOST_PIECES", 8000)
+    monkeypatch.setattr(integration, "LOOKED", 500)
+    with pytest.raises(ResponseError) as caught:
+        eq.run(crank(Motor(300.0, 400.0)), **asked)
+    most, turns = re.search(
+        rf"{sentence}, give about (\S+) s or (\S+) turns of the crank at most$", str(caught.value)
+    ).groups()
+    assert float(turns) == pytest.approx(float(most) * 300.0 / (2 * pi), rel=0.1)
+    monkeypatch.undo()
+    monkeypatch.setattr(integration, "MOST_PIECES", 8000)
+    assert eq.run(crank(Motor(300.0, 400.0)), 0.95 * float(most)).end.kind == "time"
 
 
 def test_nothing_is_switched_off_that_is_not_there() -> None:

@@ -459,6 +459,29 @@ def test_csv_does_not_take_the_place_of_a_pipe_or_device() -> None:
         assert Path("pipe").is_fifo()
 
 
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("plot", FOUR_BAR, "-o", "p.png"),
+        ("plot", FOUR_BAR, "--out", "deep/p.SVG"),
+        ("balance", FOUR_BAR, "--phases", "--objective", "drive_torque", "--plot", "p.pdf/"),
+        ("plot", "map", FOUR_BAR, "links.crank.mass = 1 kg : 2 kg", "drive.speed = 60 rpm : 90 rpm",
+         "rms shaking_force.y", "-o", "map.gif"),
+        ("site", "-o", "site.html"),
+    ],
+)  # fmt: skip
+def test_a_folder_is_not_called_as_a_file(words: tuple[str, ...], folder: Path) -> None:
+    sentence = refused(equipoise(*words))
+    assert f"got {words[-1]!r}, the name of a file; give a folder, into which all" in sentence
+    assert list(folder.iterdir()) == []
+
+
+def test_a_folder_that_is_there_may_be_called_as_a_file(folder: Path) -> None:
+    folder.joinpath("p.png").mkdir()
+    assert equipoise("plot", FOUR_BAR, "--only", "linkage", "-o", "p.png").status == 0
+    assert [path.name for path in folder.joinpath("p.png").iterdir()] == ["linkage.svg"]
+
+
 @pytest.mark.skipif(os.geteuid() == 0, reason="root may write everywhere")
 def test_unwritable_folder(folder: Path) -> None:
     folder.chmod(0o555)

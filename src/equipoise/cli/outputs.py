@@ -324,8 +324,24 @@ def default_name(file: str, ending: str) -> str:
     return f"{os.path.basename(file).removesuffix('.toml')}{ending}"
 
 
+PICTURE_ENDINGS = (".svg", ".png", ".pdf", ".jpg", ".jpeg", ".gif", ".webp", ".mp4")
+FILE_ENDINGS = frozenset((*PICTURE_ENDINGS, ".csv", ".json", ".toml", ".html"))
+"""Of names that nobody means for a folder that is to be made."""
+
+
+def refuse_file_name(option: str, path: str, what: str) -> None:
+    """Refuse the name of a file for a folder that is not there.
+
+    what : goes into the folder.
+    """
+    ending = os.path.splitext(path.rstrip(os.sep))[1].lower()
+    if ending in FILE_ENDINGS and not os.path.isdir(path):
+        raise UsageError(f"{option}: got {path!r}, the name of a file; give a folder, {what}")
+
+
 def check_folder(option: str, path: str) -> None:
     """Pictures need a folder, or a place where one can be made."""
+    refuse_file_name(option, path, "into which all pictures go, and their kind by --format")
     above = os.path.abspath(path)
     while not os.path.lexists(above) and os.path.dirname(above) != above:
         above = os.path.dirname(above)

@@ -7,7 +7,7 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from equipoise.cli.options import NewFolder, wants
-from equipoise.cli.outputs import wrote
+from equipoise.cli.outputs import refuse_file_name, wrote
 from equipoise.errors import UsageError
 
 InFolder = Annotated[str | None, wants("FOLDER")]
@@ -40,6 +40,7 @@ def site(
     from equipoise.web.site import write_site
 
     folder = out or "site"
+    refuse_file_name("--out", folder, "into which all files of the site go")
     try:
         written = write_site(folder, runtime or "node_modules/pyodide", wheels, docs)
     except OSError as error:

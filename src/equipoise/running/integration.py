@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
 from math import copysign, inf, pi
 from typing import Any
 
@@ -42,6 +43,10 @@ NUDGE = 1e-6
 STEADY = 1e-6
 """Share by which the speed may differ from that a cycle before, in a steady state."""
 MOST_PIECES, MOST_REVERSALS = 200_000, 200
+LOOKED, EVEN, BEYOND = 1000, 0.01, 1.2
+"""Pieces after which it is foreseen how many there will be; share by which two such spans may
+differ while the motion goes on evenly; share of the most pieces, from which it is refused then.
+"""
 AT_REST = 1e-9
 """Share of the largest torque below which nothing sets the crank in motion."""
 SAMPLES = 72
@@ -54,6 +59,7 @@ AT_EDGE = 1e-11
 """rad, by which what is to happen has to be ahead."""
 SAME = 1e-9
 """Of a cycle, within which a crank angle is its begin."""
+TINY = 1e-300
 ELECTRIC = 3
 """Values of a motor's circuit in a row of the track: its current, and two works."""
 BETWEEN = 6
@@ -141,13 +147,48 @@ class Integration:
         if speed == 0.0 and not self._sets_off(now):
             return
         now = self._switched_on(now)
-        for _ in range(MOST_PIECES):
+        marks = [now]
+        for k in range(1, MOST_PIECES + 1):
             now = self._piece(now)
             if now is None:
                 return
+            if k % LOOKED == 0:
+                marks = [*marks[-2:], now]
+                self._foresee(marks, k)
         raise ResponseError(
             Note("the motion takes too long to be followed; give a shorter time or fewer turns")
         )
+
+    def _foresee(self, marks: list[Instant], done: int) -> None:
+        """Refuse what a motor keeps going evenly for far more pieces than can be followed.
+
+        marks : the last instants, `LOOKED` pieces apart.  done : pieces so far.
+        """
+        limits, now = self.limits, marks[-1]
+        stays_on = min(limits.off_time, limits.off_turns) == inf
+        if len(marks) < 3 or limits.steady or not (self.driver.on and stays_on):
+            return
+        before, last = (
+            [second.time - first.time, abs(second.angle - first.angle) / (2 * pi)]
+            for first, second in pairwise(marks)
+        )
+        if any(abs(a - b) > EVEN * b for a, b in zip(before, last, strict=True)):
+            return
+        per_piece = [each / LOOKED for each in last]
+        to_come = (limits.time - now.time, limits.turns - abs(now.angle - self.start) / (2 * pi))
+        needed = done + min(a / max(b, TINY) for a, b in zip(to_come, per_piece, strict=True))
+        if needed > BEYOND * MOST_PIECES:
+            time, turns = (float(f"{MOST_PIECES * each:.2g}") for each in per_piece)
+            asked = f"{limits.time:.6g} s" if limits.time < inf else f"{limits.turns:.6g} turns"
+            raise ResponseError(
+                Note(
+                    "the motion takes too long to be followed; got {asked}, give about {time} or "
+                    "{turns} turns of the crank at most",
+                    asked=asked,
+                    time=f"{time:g} s",
+                    turns=f"{turns:g}",
+                )
+            )
 
     def _record(self, *instants: Instant) -> None:
         rows = [[one.time, one.angle, one.speed, *one.electric, *one.work] for one in instants]
