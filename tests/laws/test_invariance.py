@@ -174,6 +174,21 @@ def test_other_names(name: str) -> None:
         assert bodies == [{j.on, j.by} - {FRAME} for j in getattr(moved, family).values()]
 
 
+def test_other_names_of_joints_with_properties() -> None:
+    """What joints of the model file have of their own stays with sliders and with pins."""
+    machine = eq.load("plunger-pump")
+
+    def other(old: str) -> str:
+        return f"{old}-2"
+
+    moved = transforms.renamed(machine, other)
+    assert [joint.joint for joint in moved.joints] == [
+        "joints.A-2", "joints.B-2", "joints.C-2", "joints.plunger-2 on frame"
+    ]  # fmt: skip
+    same(forces(moved).drive_torque, forces(machine).drive_torque, 1e-14)
+    assert np.ptp(forces(machine).drive_torque - forces(machine.without_friction()).drive_torque)
+
+
 @every_subject
 def test_other_order_in_the_file(name: str) -> None:
     moved, found = forces(transforms.reordered(machine_of(name))), forces_of(name)

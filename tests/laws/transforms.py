@@ -23,6 +23,7 @@ from equipoise.mechanism.parts.field import Planting
 from equipoise.mechanism.parts.machine import FRAME, FurtherDrive, Vector
 from equipoise.mechanism.parts.objectives import quantity_of
 from equipoise.mechanism.parts.racks import Rack
+from equipoise.mechanism.parts.sliders import Slider
 from equipoise.mechanism.parts.torsion_springs import TorsionSpring
 from equipoise.quantities import SI
 
@@ -530,6 +531,17 @@ def renamed(machine: eq.Machine, names: Callable[[str], str]) -> eq.Machine:
     def keys(given: Mapping[str, Value]) -> dict[str, Value]:
         return {names(key): value for key, value in given.items()}
 
+    def slid(slider: Slider) -> Slider:
+        return replace(slider, link=body(slider.link), point=names(slider.point),
+                       on=body(slider.on), through=names(slider.through))  # fmt: skip
+
+    own = {slider.name: slid(slider).name for slider in machine.sliders}
+
+    def joint(name: str) -> str:
+        """A slider by its bodies, a link's share of a pin by both, others as they are called."""
+        point, slash, link = name.partition("/")
+        return own.get(name) or names(point) + (slash and f"/{body(link)}")
+
     def driven(drive: Driven) -> Driven:
         between = drive.between and (names(drive.between[0]), names(drive.between[1]))
         return replace(drive, link=body(drive.link), between=between)
@@ -556,12 +568,8 @@ def renamed(machine: eq.Machine, names: Callable[[str], str]) -> eq.Machine:
         bearings={
             name: replace(one, link=body(one.link)) for name, one in machine.bearings.items()
         },
-        assembly=keys(machine.assembly),
-        sliders=tuple(
-            replace(s, link=body(s.link), point=names(s.point), on=body(s.on),
-                    through=names(s.through))
-            for s in machine.sliders
-        ),
+        assembly={joint(name): side for name, side in machine.assembly.items()},
+        sliders=tuple(map(slid, machine.sliders)),
         gears=tuple(
             replace(g, driver=body(g.driver), driven=body(g.driven), carrier=body(g.carrier))
             for g in machine.gears
@@ -595,7 +603,7 @@ def renamed(machine: eq.Machine, names: Callable[[str], str]) -> eq.Machine:
             for slot in machine.curved_slots
         ),
         joints=tuple(
-            replace(one, joint=f"joints.{names(one.joint.removeprefix('joints.'))}")
+            replace(one, joint=f"joints.{joint(one.joint.removeprefix('joints.'))}")
             for one in machine.joints
         ),
         torsion_springs=tuple(
