@@ -17,6 +17,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.schema.study_units import study_of
+from equipoise.studies.selection import NothingBestError
 from equipoise.studies.store import checksum_of
 from surface.running import (
     command,
@@ -151,6 +152,15 @@ def test_a_study_without_an_aim() -> None:
     assert "equipoise best new.zarr --by vertical" in shown
     said = refused(equipoise("best", "new.zarr"))
     assert "no output of the study is to become small or large; name one to go by" in said
+
+
+def test_the_note_does_not_depend_on_the_wording_of_a_refusal(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    study = written(LENGTHS, ("13000 mN", "1 N"))
+    monkeypatch.setattr(NothingBestError, "__str__", lambda error: "another sentence")
+    shown = succeeded(equipoise("sweep", study, "-o", "new.zarr"))
+    assert re.search(r"^note: none of \d+ designs keeps every limit; kept is vert", shown, re.M)
 
 
 def test_no_design_keeps_the_limits() -> None:

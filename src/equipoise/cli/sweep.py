@@ -158,15 +158,14 @@ def _going_on(store: str) -> Iterator[None]:
 def _summary(store: Store, last: Progress) -> Summary:
     """Counts and best designs, as far as the study has a word for what is best."""
     from equipoise.studies.blocks import Summary
-    from equipoise.studies.selection import best
+    from equipoise.studies.selection import NothingBestError, best
 
     outputs, title = store.wishes, store.title
     aimed = any(output.make for output in outputs)
     try:
         found = best(store, TOLD, None if aimed else {store.numbers[0]: None})
-    except UsageError as error:  # no design keeps every limit, or none has figures
-        note = str(error).removeprefix(f"{store.path}: ")
-        return Summary(title, store, outputs, last.failures, 0, None, note)
+    except NothingBestError as error:  # no design keeps every limit, or none has figures
+        return Summary(title, store, outputs, last.failures, 0, None, error.reason)
     kept = found.kept
     return Summary(title, store, outputs, last.failures, kept, found if aimed else None, "")
 

@@ -41,6 +41,20 @@ COUNT = 10
 """Designs that are told, if not told otherwise."""
 
 
+class NothingBestError(UsageError):
+    """A store has no design that is best: nothing is stored, or none keeps every limit.
+
+    store : its path.  reason : the sentence without that path.
+    """
+
+    def __init__(self, store: Path | str, reason: str) -> None:
+        super().__init__(f"{store}: {reason}")
+        self.store, self.reason = store, reason
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self.store, self.reason)
+
+
 @dataclass(frozen=True, repr=False)
 class Best(Result):
     """The best designs of a store, K of them.
@@ -185,15 +199,14 @@ class _Choice:
         """The best of all, else the nearest; `UsageError` says why there is none."""
         where, stored = self.store.path, int(np.sum(self.reasons[list(REASONS)]))
         if not stored:
-            raise UsageError(
-                f"{where}: nothing is computed yet; go on with: equipoise resume {where}"
-            )
+            reason = f"nothing is computed yet; go on with: equipoise resume {where}"
+            raise NothingBestError(where, reason)
         note = ""
         if not self.kept:
             units = [self.store.units.get(output.name, "") for output in self.outputs]
             note = why_none(self.outputs, self.reasons, self.limits, units)
             if not (nearest and len(self.near)):
-                raise UsageError(f"{where}: {note}")
+                raise NothingBestError(where, note)
             self.designs, self.rows = self.near[:, 1].astype(np.int64), self.near[:, 2:]
         front, trade_off = 1, None
         if self.kept and len(self.ways) > 1:
