@@ -132,10 +132,11 @@ class Template:
             return self._linkage(found.place).unit(found.rest)
         return unit_in(self._content, found)
 
-    def words(self, path: str, others: Collection[str] = ()) -> Note | str:
+    def words(self, path: str, others: Collection[str] = (), known: int = 0) -> Note | str:
         """A number of the file in words, such as ``mass of the crank``; its path where it has none.
 
         others : paths of the numbers beside which it is told.
+        known : how many tables of its path, from the top, a heading names already.
 
         Raises
         ------
@@ -147,7 +148,7 @@ class Template:
         if found.rest:
             return self._linkage(found.place).words(found.rest)
         numbers = [one for one in others if self._lift(one) is None]
-        return words_of(self._content, self.kind, found, numbers) or path
+        return words_of(self._content, self.kind, found, numbers, known) or path
 
     def key(self, path: str) -> Key | None:
         """The declared key of a number of a machine, with its limits; None where it has none.

@@ -61,18 +61,22 @@ def plain_word(key: Key) -> str:
 
 
 def words_of(
-    content: Content, kind: Kind, found: Found, others: Collection[str] = ()
+    content: Content, kind: Kind, found: Found, others: Collection[str] = (), known: int = 0
 ) -> Note | None:
     """The number that stands at a place in words; None where its keys have none.
 
     Of a point on the x axis of a body, or told by its distance, it is the length from the point in
     the origin of that body, where there is one, and the other coordinate is not among the `others`
     beside which it is told.
+
+    known : how many tables on the way to it, from the top, are named by a heading, so that the
+        words leave them out.
     """
     layers = _layers(content, kind, found.place)
     if not layers:
         return None
     *around, last = layers
+    around = around[known:]
     other = found.place / "y"
     length = None if other in map(KeyPath.parse, others) else _length(content, found)
     what = length or Note(last.word, **last.names)

@@ -227,12 +227,12 @@ class ToolDesk:
             low, high = sorted((0.0, 2 * usual or 1.0))
             if path.endswith(".position"):
                 low, high = 0.0, length
-            group = _group(self.first.tool, path)
+            group, known = _group(self.first.tool, path)
             told = {
                 "path": path,
                 "group": group,
                 "heading": group,
-                "label": said(self.template.words(path)).replace(f" of the {group}", ""),
+                "label": said(self.template.words(path, known=known)),
                 "value": value,
                 "min": min(low, value),
                 "max": max(high, value),
@@ -242,17 +242,17 @@ class ToolDesk:
             yield {**told, **_written(number, value, self.template.unit(path))}
 
 
-def _group(tool: Tool, path: str) -> str:
-    """The heading that a number belongs under."""
+def _group(tool: Tool, path: str) -> tuple[str, int]:
+    """The heading that a number belongs under, and how many tables of its path that names."""
     parts = path.replace("[", ".").replace("]", "").split(".")
     if parts[:2] == ["shaft", "stations"]:
-        return tool.stations[int(parts[2]) - 1].name
+        return tool.stations[int(parts[2]) - 1].name, 2
     if parts[0] == "excitations":
-        one = tool.excitations[int(parts[1]) - 1]
-        return one.name or one.file or one.station
+        excitation = tool.excitations[int(parts[1]) - 1]
+        return excitation.name or excitation.file or excitation.station, 1
     if parts[0] == "work":
-        return tool.work[int(parts[1]) - 1].name
-    return say("shaft") if parts[0] == "shaft" else parts[0]
+        return tool.work[int(parts[1]) - 1].name, 1
+    return (say("shaft"), 1) if parts[0] == "shaft" else (parts[0], 0)
 
 
 def _written(number: Number, value: float, unit: str) -> Values:

@@ -10,8 +10,10 @@ import pytest
 
 import equipoise as eq
 from equipoise.handheld.modes import vibrate_tool
+from equipoise.i18n import said, speaking
 from equipoise.web.desk import Desk, begun
 from equipoise.web.messages import message_of
+from equipoise.web.tools import tool_of_file
 from surface.running import TOOLS, example_text
 
 PATH = "shaft.outer_diameter"
@@ -173,3 +175,14 @@ def test_a_tool_that_is_dropped_takes_its_tables_along() -> None:
     setting(desk, "30 mm")
     (file,) = ask(desk, "download", kind="model")
     assert list(file.content["files"]) == ["hand.csv"]
+
+
+@pytest.mark.parametrize("language", ["en", "ja", "ko"])
+def test_numbers_do_not_say_again_what_their_heading_names(language):
+    """In any language, whatever its words for what a number is of."""
+    with speaking(language):
+        tool = tool_of_file("brush-cutter")
+        for field in shown([tool.told(1)])["fields"]:
+            if field["path"].startswith(("shaft.", "work", "excitations")):
+                assert field["group"] not in field["label"].split()
+                assert len(field["label"]) < len(said(tool.template.words(field["path"])))
