@@ -291,12 +291,12 @@ ANSWERS = {
     "excavator": r"force of the cylinder E to F.* 140 mm bore .* F 905 mm from Q .* built",
     "inline-3": r"Rocking moment, RMS: 3240 → .* z = -111.5 mm.* z = 111.5 mm",
     "inline-3-rows": r"All rows: roll moment, RMS: 1665 → ",
-    "press": r"drive torque.* 3 times as fast as crank: .* 5 %; .* 20 %.* motor .* 100 N m",
+    "press": r"drive torque.* 3 times as fast as crank, such .* 5 %; .* 20 %.* motor .* 100 N m",
     "pump-jack": r"A weight of 9\d\d kg m on crank.* off the swing of the drive torque",
     "sieve-eccentric": r"Shaking force, RMS: 547 → .* eccentric: add a ",
     "sieve-short": r"Shaking force, RMS: 500 → .* shaft: drill a hole of ",
-    "transplanter-close": r"Leave the masses .* transmission angle at C comes to 28",
-    "walking-beam": r"Drive torque, RMS about the mean: 70\.2 → .* second: .* angle at F .* beam",
+    "transplanter-close": r"Leave the masses .* Transmission angle at C: 28",
+    "walking-beam": r"Drive torque, RMS about the mean: 70\.2 → .* second: .* angle at F: .* beam",
 }
 """What a designer would say of each."""
 
@@ -306,7 +306,7 @@ OF_BUNDLED = {
     "brush-cutter-engine": r"Flywheel on crank.* Half of what reciprocates .* 423 N along",
     "four-stroke-engine": r"Flywheel on crank: 0\.029.* 95 % of what reciprocates .* 831 N across",
     "hydraulic-loader": r"bore holds that; 1050 mm long, it takes a rod of 32.* has no room",
-    "quick-return": r"Flywheel on a shaft \d times .* 5 %; .* 20 %.* A motor",
+    "quick-return": r"Flywheel, assuming a shaft \d times .* 5 %; .* 20 %.* A motor",
     "sieve": r"First move the resonance at 255 rpm .* 2 times softer",
     "slider-crank-engine": r"Flywheel on crank.* Half of what reciprocates is balanced .* 1383 N",
     "straw-walker": r"Leave the machine as it is: nothing is large",

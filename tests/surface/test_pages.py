@@ -154,7 +154,7 @@ CLAIMS = {
     "balancing.md": [
         f"at least {100 * policy.LEAST_GAIN:.0f} % of its aim",
         f"{100 * policy.LEAST_NET_GAIN:.0f} % more of it than the share that it adds",
-        f"by {100 * policy.LEAST_PEAK_GAIN:.0f} %, and by two thirds of the share of mass",
+        f"of what adds mass {100 * policy.LEAST_GAIN_OF_ADDED:.0f} %",
         f"makes at least {policy.AMPLIFIED:g} times the motion",
         (
             f"no thicker than {policy.THICKNESS_OF_REACH:g} of the largest radius that is looked "

@@ -347,12 +347,22 @@ class _Adviser:
         enough = bool(is_worth(found.gain, share, figure)) and self.keeps_limits(found)
         if self.mounts is not None:
             enough = enough and outweighs(found.gain, self.mounts)
+        if found.added_mass > 0:
+            enough = enough and not self.is_for_more_arms(found)
         offered, before = enough and not worse, self.before.headline
         beyond = self.beyond
         if offered:  # what else helps is for the machine with the remedy
             mounts = self.mounts if found.gain < ALL_BUT_GONE else None
             beyond = beyond_masses(after.analysis, after.headline, mounts, self.beyond)
         return replace(found, advice=Advice(before, after.headline, worse, offered, beyond))
+
+    def is_for_more_arms(self, found: Balanced) -> bool:
+        """Whether more arms on a carrier, which make up for each other, take off more of what is
+        not large, against which nobody builds a weight then.
+        """
+        arms, aim = self.beyond.spaced, self.before.largest_aim(found.plan.objectives)
+        small = aim is not None and not aim.is_large and not self.own.objectives
+        return small and arms is not None and arms.gain >= found.gain
 
     def figure_gain(self, found: Balanced, after: AssessedMachine) -> float:
         """Share that is gone of the figure that is large; 1 of aims that somebody asked for."""

@@ -18,6 +18,7 @@ from equipoise.balancing.centered_arms import (
     centered_arms_sentence,
 )
 from equipoise.balancing.cylinder_sizes import Cylinder, cylinder_for, cylinder_sentences
+from equipoise.balancing.end_weights import EndWeights, end_sentences, end_weights_for
 from equipoise.balancing.first_order import (
     BalanceShafts,
     FirstOrder,
@@ -28,24 +29,19 @@ from equipoise.balancing.first_order import (
     shafts_sentence,
 )
 from equipoise.balancing.flywheels import Flywheels, flywheel_sentences, flywheels_for
-from equipoise.balancing.opposite_arms import (
-    EndWeights,
-    OppositeArm,
-    arm_sentence,
-    end_sentences,
-    end_weights_for,
-    opposite_arm_for,
-)
 from equipoise.balancing.policy import (
+    AIMED_FROM,
     SLOW_CRANK,
     WORTH_NAMING,
 )
 from equipoise.balancing.poor_transmission import (
     PoorTransmission,
+    mending_sentences,
     poor_transmission_for,
-    transmission_sentences,
+    transmission_sentence,
 )
 from equipoise.balancing.resonant_mounts import ResonantMounts
+from equipoise.balancing.spaced_arms import SpacedArms, arms_sentences, spaced_arms_for
 from equipoise.i18n import say
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.quantities import angle, percent, told
@@ -78,7 +74,7 @@ class Beyond:
     """What helps against what is large, beyond plates; None where it does not.
 
     It is for the machine as it is advised, with the change that is offered, if one is; but for
-    arms, a second arm opposite and weights at the ends of a shaft, which take its place.
+    arms, more of them on a carrier and weights at the ends of a shaft, which take its place.
     """
 
     flywheels: Flywheels | None
@@ -89,7 +85,7 @@ class Beyond:
     transmission: PoorTransmission | None
     mounts: ResonantMounts | None
     arms: CenteredArms | None
-    opposite: OppositeArm | None
+    spaced: SpacedArms | None
     ends: EndWeights | None
 
     declared: ClassVar[Declarations] = {
@@ -124,8 +120,8 @@ class Beyond:
             "in a joint, or null",
             of=CenteredArms.declared,
         ),
-        "opposite": ResultOutput(
-            "there: a second arm opposite on the carrier, or null", of=OppositeArm.declared
+        "spaced": ResultOutput(
+            "there: more arms, evenly spaced on the carrier, or null", of=SpacedArms.declared
         ),
         "ends": ResultOutput(
             "there: two weights at the ends of the shaft of several rows, or null",
@@ -151,10 +147,10 @@ def beyond_masses(
         balance_shafts_for(analysis, entries),
         piston_balance_for(analysis, entries),
         cylinder_for(analysis, entries),
-        poor_transmission_for(analysis, entries),
+        poor_transmission_for(analysis, entries, as_it_is.transmission if as_it_is else None),
         mounts,
         as_it_is.arms if as_it_is else centered_arms_for(analysis, entries),
-        as_it_is.opposite if as_it_is else opposite_arm_for(analysis, entries),
+        as_it_is.spaced if as_it_is else spaced_arms_for(analysis, entries, AIMED_FROM),
         as_it_is.ends if as_it_is else end_weights_for(analysis, entries),
     )
 
@@ -195,8 +191,8 @@ def sentences_beyond(beyond: Beyond, machine: Machine, changed: bool) -> Iterato
     changed : whether that is the machine with a change of masses that is offered.
     """
     crank = machine.drive.link
-    if beyond.opposite is not None:
-        yield arm_sentence(beyond.opposite, crank)
+    if beyond.spaced is not None:
+        yield from arms_sentences(beyond.spaced, crank)
     if beyond.ends is not None:
         yield from end_sentences(beyond.ends, crank)
     if beyond.arms is not None:
@@ -213,7 +209,9 @@ def sentences_beyond(beyond: Beyond, machine: Machine, changed: bool) -> Iterato
     if beyond.counterbalance is not None and not changed:
         yield _weight_sentence(beyond.counterbalance, crank)
     if beyond.transmission is not None:
-        yield from transmission_sentences(beyond.transmission, machine.crank_turns)
+        if not changed:  # else it stands with what is large after the change
+            yield transmission_sentence(beyond.transmission, machine.crank_turns)
+        yield from mending_sentences(beyond.transmission)
 
 
 def _weight_sentence(weight: Counterbalance, crank: str) -> str:

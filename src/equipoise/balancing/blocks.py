@@ -11,6 +11,7 @@ from equipoise.balancing.objectives import unit_of as si_unit
 from equipoise.balancing.outcome import (
     advice_blocks,
     beside_the_aim,
+    large_besides,
     large_figures,
     nothing_told,
     sentences_beyond_masses,
@@ -100,8 +101,10 @@ def balanced_headline(found: Balanced, alone: bool = False) -> Iterator[Block]:
     if found.advice is not None:
         yield from map(Text, beside_the_aim(found))
     yield from (Text(line, "worse") for line in worst_told(found))
-    beyond = sentences_beyond_masses(found)
-    yield from (Text(line, is_detail=found.advice is not None) for line in beyond)
+    details = [*sentences_beyond_masses(found)]  # of which the last are left out first
+    if found.advice is not None:
+        details += large_besides(found)
+    yield from (Text(line, is_detail=found.advice is not None) for line in details)
     if found.notes:
         yield Notes(found.notes[:MOST_NOTES])
     yield look_at_next("balance --out FILE", "balance --full")

@@ -43,12 +43,14 @@ class Flywheel:
 
     fluctuation : share of the mean speed, from slowest to fastest, that it allows.
     inertia : kg m2, on a shaft that turns `ratio` times as fast as the crank.
+    is_shaft_assumed : whether the file gives no motor whose shaft that is.
     diameter, thickness : m.  mass : kg.
     """
 
     fluctuation: float
     inertia: float
-    ratio: int
+    ratio: float
+    is_shaft_assumed: bool
     diameter: float
     thickness: float
     mass: float
@@ -57,6 +59,10 @@ class Flywheel:
         "fluctuation": ResultOutput("share of the mean speed that it allows"),
         "inertia": ResultOutput("on its shaft", "inertia"),
         "ratio": ResultOutput("turns of its shaft in one of the crank"),
+        "is_shaft_assumed": ResultOutput(
+            "whether that is another shaft than those of the crank and of the motor that the file "
+            "gives"
+        ),
         "diameter": ResultOutput("of a steel disc", "length"),
         "thickness": ResultOutput("of that disc", "length"),
         "mass": ResultOutput("of that disc", "mass"),
@@ -103,7 +109,7 @@ def flywheels_for(analysis: Analysis, entries: tuple[FigureAssessment, ...]) -> 
     choices: list[Flywheel] = []
     for share in (STEADY,) if power < 0 else (STEADY, COARSE):
         missing = _missing(machine, share)
-        ratios = [one.ratio for one in choices] or SHAFT_RATIOS  # all on one shaft, to be compared
+        ratios = [one.ratio for one in choices] or _ratios(machine)  # all on one shaft, to compare
         each = (_disc_of(analysis, missing, share, ratio) for ratio in ratios)
         choices += [*filter(None, each)][:1] if missing else []
     if not choices:
@@ -126,9 +132,19 @@ def _missing(machine: Machine, share: float) -> float:
     return missing if missing >= MISSED_INERTIA * (missing + there) else 0.0
 
 
-def _disc_of(analysis: Analysis, missing: float, share: float, ratio: int) -> Flywheel | None:
+def _ratios(machine: Machine) -> tuple[float, ...]:
+    """Turns in one of the crank: of the crank itself, of the motor, and of shafts of which the file
+    does not say whether they are there.
+    """
+    motor = machine.drive.motor
+    faster = (motor.ratio,) if motor is not None and motor.ratio > 1 else ()
+    return tuple(dict.fromkeys((1.0, *faster, *map(float, SHAFT_RATIOS))))
+
+
+def _disc_of(analysis: Analysis, missing: float, share: float, ratio: float) -> Flywheel | None:
     """The disc on a shaft; None where it is too heavy there, or too thick for its diameter."""
     machine = analysis.machine
+    motor = machine.drive.motor
     fastest = abs(ratio * analysis.motion.speed)
     widest = min(2 * size_of_links(machine), 2 * RIM_SPEED / fastest)
     diameter = floor(widest / GRID) * GRID or widest
@@ -138,7 +154,8 @@ def _disc_of(analysis: Analysis, missing: float, share: float, ratio: int) -> Fl
     most = (HEAVIEST_FLYWHEEL if ratio == 1 else HEAVIEST_ASIDE) * machine.mass
     if mass > most or thickness > THICKEST_DISC * diameter:
         return None
-    return Flywheel(share, inertia, ratio, diameter, thickness, mass)
+    is_assumed = ratio != 1 and (motor is None or ratio != motor.ratio)
+    return Flywheel(share, inertia, ratio, is_assumed, diameter, thickness, mass)
 
 
 def _rounded_up(value: float) -> float:
@@ -154,12 +171,16 @@ def flywheel_sentences(found: Flywheels, crank: str, links: float) -> Iterator[s
 
     links : mass of the moving links, kg.
     """
-    for ratio, same in groupby(found.choices, key=lambda one: one.ratio):
+    for (ratio, is_assumed), same in groupby(found.choices, key=_shaft):
         on_crank = to_say("Flywheel on {crank}: {discs}.")
-        geared = to_say("Flywheel on a shaft {ratio} times as fast as {crank}: {discs}.")
+        on_motor = to_say("Flywheel on the shaft of the motor: {discs}.")
+        assumed = to_say(
+            "Flywheel, assuming a shaft {ratio} times as fast as {crank}, such as a motor's, which "
+            "the file does not give: {discs}."
+        )
         discs = say("; ").join(_disc(one, links) for one in same)
-        template = on_crank if ratio == 1 else geared
-        yield say(template, crank=crank, ratio=ratio, discs=discs)
+        template = on_crank if ratio == 1 else assumed if is_assumed else on_motor
+        yield say(template, crank=crank, ratio=f"{ratio:.4g}", discs=discs)
     if _lets_swing(found.choices):
         yield say(
             "A motor that lets the speed swing so far then gives {mean} ({power}) instead of up to "
@@ -168,6 +189,10 @@ def flywheel_sentences(found: Flywheels, crank: str, links: float) -> Iterator[s
             power=told(found.power, "power", digits=3),
             most=told(found.largest_torque, "torque", digits=3),
         )
+
+
+def _shaft(one: Flywheel) -> tuple[float, bool]:
+    return one.ratio, one.is_shaft_assumed
 
 
 def _lets_swing(choices: Iterable[Flywheel]) -> bool:

@@ -13,11 +13,14 @@ from equipoise.balancing.beyond_masses import sentences_beyond
 from equipoise.balancing.headlines import Advice
 from equipoise.balancing.objectives import unit_of
 from equipoise.balancing.policy import (
+    FALLEN,
     HEAVY,
     LEAST_GAIN,
+    LEAST_GAIN_OF_ADDED,
     LEAST_NET_GAIN,
-    LEAST_PEAK_GAIN,
 )
+from equipoise.balancing.poor_transmission import transmission_sentence
+from equipoise.balancing.remedies import least_gain
 from equipoise.balancing.resonant_mounts import mount_sentences, outweighs
 from equipoise.balancing.told import (
     aims_told,
@@ -67,6 +70,8 @@ def helps_told(balanced: Balanced) -> Iterator[str]:
     if balanced.planting_kept:
         yield say("The planting figures stay as they are.")
     yield from sentences_beyond_masses(balanced)
+    if balanced.advice is not None:
+        yield from large_besides(balanced)
 
 
 def _heavy(balanced: Balanced) -> Iterator[str]:
@@ -182,16 +187,36 @@ def beside_the_aim(found: Balanced) -> Iterator[str]:
     aims = {f"{rows}{one.output}" for one in found.plan.objectives for rows in ("", ROWS)}
     fallen = [_from_to(was, new) for was, new in pairs
               if was.is_large and was.output not in aims and not was.output.startswith(GAUGES)
-              and abs(new.value) <= (1 - LEAST_PEAK_GAIN) * abs(was.value)
+              and abs(new.value) <= (1 - FALLEN) * abs(was.value)
               and not was.is_limit]  # fmt: skip
     if fallen:
         yield say("That also brings down {figures}.", figures=listed(fallen))
-    left = [_against(new, was) for was, new in pairs]
-    largest = max(left, key=lambda one: one.excess, default=None)
-    if largest is not None and largest.is_large:
-        yield say(
-            "Large after that: {figure}.", figure=sentence(largest, found.original.crank_turns)
-        )
+    poor = found.advice.beyond.transmission
+    for one in _left(found.advice)[:1]:
+        if poor is not None and one.yardstick_kind == "transmission":
+            break
+        yield say("Large after that: {figure}.", figure=sentence(one, found.original.crank_turns))
+    if poor is not None:
+        yield transmission_sentence(poor, found.original.crank_turns)
+
+
+def large_besides(found: Balanced) -> Iterator[str]:
+    """Of a change that was advised: what else is large after it, but for a transmission angle that
+    has a sentence of its own.
+    """
+    assert found.advice is not None
+    told_of = found.advice.beyond.transmission is not None
+    others = [one for one in _left(found.advice)[1:]
+              if not (told_of and one.yardstick_kind == "transmission")]  # fmt: skip
+    if others:
+        figures = listed(map(_valued, others[: MOST_LARGE - 1]))
+        yield say("Large besides: {figures}.", figures=figures)
+
+
+def _left(advice: Advice) -> list[FigureAssessment]:
+    """What is large after a change, the largest first, against the yardstick before."""
+    left = (_against(new, was) for was, new in _before_and_after(advice))
+    return sorted((one for one in left if one.is_large), key=lambda one: -one.excess)
 
 
 def _before_and_after(advice: Advice) -> Iterator[tuple[FigureAssessment, FigureAssessment]]:
@@ -207,6 +232,12 @@ def _against(new: FigureAssessment, was: FigureAssessment) -> FigureAssessment:
     if was.yardstick_kind == "transmission":
         ratio = new.ratio
     return replace(new, yardstick=was.yardstick, against=was.against, ratio=ratio)
+
+
+def _valued(one: FigureAssessment) -> str:
+    shown = display(one.dimension, [one.value], one.shown_unit)
+    value = shown.with_unit(shown.text(one.value, digits=3))
+    return say("{what}: {value}", what=one.label.said(), value=value)
 
 
 def _from_to(was: FigureAssessment, new: FigureAssessment) -> str:
@@ -263,19 +294,24 @@ def why_not(found: Balanced) -> str:
     assert advice is not None
     if advice.offered:
         return ""
+    mounts, arms = advice.beyond.mounts, advice.beyond.spaced
+    figures = [_from_to(*pair) for pair in advice.worse[:MOST_WORSE]]
+    if more := len(advice.worse) - len(figures):
+        figures.append(say("{count} more", count=more))
     if found.gain < LEAST_GAIN:
-        return say("that is too little")
-    mounts = advice.beyond.mounts
-    if mounts is not None and not outweighs(found.gain, mounts):
-        return say("other mounts bring more")
-    if advice.worse:
-        figures = [_from_to(*pair) for pair in advice.worse[:MOST_WORSE]]
-        if more := len(advice.worse) - len(figures):
-            figures.append(say("{count} more", count=more))
-        return say("{figures} would grow", figures=listed(figures))
-    return say(
-        "{mass} would be added, too much for that", mass=told(found.added_mass, "mass", digits=3)
-    )
+        reason = say("that is too little")
+    elif mounts is not None and not outweighs(found.gain, mounts):
+        reason = say("other mounts bring more")
+    elif figures:
+        reason = say("{figures} would grow", figures=listed(figures))
+    elif found.gain < least_gain(found.added_mass):
+        reason = say("that is too little")
+    elif arms is not None and arms.gain >= found.gain:
+        reason = say("more arms bring more")
+    else:
+        mass = told(found.added_mass, "mass", digits=3)
+        reason = say("{mass} would be added, too much for that", mass=mass)
+    return reason
 
 
 # -- what was tried --------------------------------------------------------------------------------
@@ -303,14 +339,16 @@ def _asking_for_more(found: Balanced) -> Iterator[str]:
     """What is offered, and how to ask for something else."""
     if found.tried:
         yield say(
-            "A change is offered that takes away at least {least} % of its aim, and {net} % more "
-            "of it than the share that it adds to the mass of the moving links, with which the "
+            "A change is offered that takes away at least {least} % of its aim, of what adds mass "
+            "{added} % and {net} % more than the share that it adds to the mass of the moving "
+            "links, with which the "
             "figure that is large falls in its own measure too, and that makes no headline "
             "figure worse by more than 1 %, or a tenth of the share that is gone, no force in a "
             "single joint and no component of the shaking force by more than 5 %, but for what is "
             "small beside its yardstick and stays so; and no couple that was not there, larger "
             "than what is gone.",
             least=percent(LEAST_GAIN, 0),
+            added=percent(LEAST_GAIN_OF_ADDED, 0),
             net=percent(LEAST_NET_GAIN, 0),
         )
         yield say(

@@ -22,24 +22,30 @@ MOST_ADDED_MASS = 1 / 3
 
 LEAST_GAIN = 0.15
 """Share of an aim that has to go for any change of masses, mounts or levers to be worth a drawing;
-less drowns in what is not known of masses."""
+less drowns in what is not known of masses.  So much has to go of the figure that is large too, in
+the measure in which it is: an RMS may fall while the peak, for which bearings and screws are
+chosen, hardly does."""
+LEAST_GAIN_OF_ADDED = 0.25
+"""The same where mass is added: a part more, with screws and clearance of its own.  Bearings,
+screws and feet come in steps of a quarter (the preferred numbers R 10 of ISO 3), so that less
+changes none of them, and a person hardly feels it."""
 MASS_PRICE = 1.0
 """Share of the aim that has to go for a mass as large as that of the moving links, for less in
 proportion: which frame, bearings and drive carry as well."""
 LEAST_NET_GAIN = 0.05
 """What has to be left of the share that goes, less the price of mass: where both are about equal,
 nobody makes a drawing."""
-LEAST_PEAK_GAIN = 0.1
-"""Share that has to go of the figure that is large, in the measure in which it is: an RMS may fall
-while the peak, for which bearings and screws are chosen, hardly does."""
 PEAK_PRICE = 2 / 3
-"""The same for a mass as large as that of the moving links: peaks fall less than RMS."""
+"""Share of a peak that has to go for a mass as large as that of the moving links: peaks fall less
+than RMS."""
 WORTH_NAMING = 0.3
 """Share of its aim from which what is not drawn here, such as a shaft more, is named."""
 ENOUGH_OF_BEST = 0.5
 """Share of the most that any remedy brings from which a simpler one is offered."""
 ALL_BUT_GONE = 0.9
 """Share of an aim that a change takes away from which nobody changes the mounts as well."""
+FALLEN = 0.1
+"""Share that is gone of another large figure from which it is said that it falls as well."""
 NOTICED = 0.01
 """Share of an aim from which a change of it is told."""
 HEAVY = 0.5
@@ -115,7 +121,8 @@ MISSED_INERTIA = 0.1
 """Share of a flywheel's inertia that nobody misses."""
 SHAFT_RATIOS = (1, 2, 3, 4, 5, 6, 8, 10)
 """Turns of a flywheel's shaft in one of the crank: of a crank that turns slowly, as of a press, it
-sits on the shaft of the motor or of a belt, where the square of the ratio less will do."""
+sits on the shaft of the motor or of a belt, where the square of the ratio less will do.  The shaft
+of a motor that the file gives comes first of those that are faster than the crank."""
 RIM_SPEED = 40.0
 """m/s, that a disc's edge may have: usual for cast iron, safe for steel."""
 THICKEST_DISC = 1 / 3
@@ -150,6 +157,8 @@ LEAST_MENDED = pi / 60
 """rad, 3 deg, by which a transmission angle has to get better."""
 WORTH_SHAFTS = 8.0
 """Times its yardstick from which a shaking force is worth two more shafts."""
+ARMS = (2, 3, 4)
+"""Arms on a carrier that are looked at, the fewest first."""
 PISTON_SHARE = 0.5
 """Share of the shaking force (RMS) from which what turns against the crank is that of a piston."""
 ABOUT_HALF = 0.1

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 from math import pi
 from typing import ClassVar
@@ -16,10 +16,11 @@ from equipoise.balancing.policy import (
 from equipoise.errors import EquipoiseError
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.checks import bodies_at
+from equipoise.mechanism.kinematics.motion import Motion, move
 from equipoise.mechanism.outputs.spoken import joint_named
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.quantities import angle, percent, told
-from equipoise.results.analysis import Analysis, analyze
+from equipoise.results.analysis import Analysis
 from equipoise.results.declaring import Declarations, ResultOutput
 from equipoise.results.yardsticks import TRANSMISSION, FigureAssessment
 
@@ -66,9 +67,14 @@ class PoorTransmission:
 
 
 def poor_transmission_for(
-    analysis: Analysis, entries: tuple[FigureAssessment, ...]
+    analysis: Analysis,
+    entries: tuple[FigureAssessment, ...],
+    as_it_is: PoorTransmission | None = None,
 ) -> PoorTransmission | None:
-    """The worst transmission angle, where it is poor; None where none is."""
+    """The worst transmission angle, where it is poor; None where none is.
+
+    as_it_is : of the machine with other masses, whose lengths are the same.
+    """
     poor = (
         one
         for one in entries
@@ -79,7 +85,9 @@ def poor_transmission_for(
         return None
     force = analysis.outputs[f"joints.{worst.item}"] if _has_force(analysis, worst.item) else None
     peak = None if force is None else float(force.figures.peak)
-    best = _mended(analysis, worst.item)
+    if as_it_is is not None and as_it_is.joint == worst.item:
+        return replace(as_it_is, force=peak)
+    best = _mended(analysis.motion, worst.item)
     link, between, share, length, mended = best or ("", None, 0.0, 0.0, worst.value)
     return PoorTransmission(
         worst.item, worst.value, worst.crank_angle, worst.yardstick, peak,
@@ -95,18 +103,18 @@ Mending = tuple[str, tuple[str, str], float, float, float]
 """Link, its points, share, length (m), and the worst angle then (rad)."""
 
 
-def _mended(analysis: Analysis, joint: str) -> Mending | None:
+def _mended(motion: Motion, joint: str) -> Mending | None:
     """The smallest change of a length that brings all transmission angles within the usual limit;
     else that which helps most.  None where none helps, or the machine no longer goes round.
     """
-    machine = analysis.machine
-    before = _worst_angles(analysis)
+    machine = motion.machine
+    before = _worst_angles(motion)
     found: list[tuple[float, Mending]] = []
     for link, between in _lengths(machine, joint):
         for share in LENGTH_CHANGES:
             changed, length = _with_length(machine, link, between, share)
             try:
-                after = _worst_angles(analyze(changed, ANGLES, acceleration=0.0))
+                after = _worst_angles(move(changed, ANGLES))
             except EquipoiseError:  # it no longer goes round
                 continue
             others = all(after[name] >= min(before[name], TRANSMISSION) - ROUNDING
@@ -119,10 +127,12 @@ def _mended(analysis: Analysis, joint: str) -> Mending | None:
     return max(found, key=lambda one: one[0], default=(0.0, None))[1]
 
 
-def _worst_angles(analysis: Analysis) -> dict[str, float]:
-    """Smallest transmission angle of each joint, from stretched or folded, rad."""
-    each = (one for one in analysis.outputs if one.group == "transmission")
-    return {one.item: min(one.figures.min, pi - one.figures.max) for one in each}
+def _worst_angles(motion: Motion) -> dict[str, float]:
+    """Smallest transmission angle of each joint, from stretched or folded, rad; of motion alone, as
+    no forces are needed for many lengths.
+    """
+    each = ((joint, motion.figures(angles)) for joint, angles in motion.transmission.items())
+    return {joint: min(figures.min, pi - figures.max) for joint, figures in each}
 
 
 def _lengths(machine: Machine, joint: str) -> Iterator[tuple[str, tuple[str, str]]]:
@@ -147,39 +157,48 @@ def _with_length(
 # -- sentences -------------------------------------------------------------------------------------
 
 
-def transmission_sentences(found: PoorTransmission, crank_turns: bool) -> Iterator[str]:
-    """Where the angle is poor, what the joint bears, and which length mends it."""
-    of_crank = to_say("at crank angle {angle}")
-    of_cycle = to_say("at {angle} of the cycle")
-    words = {
-        "joint": joint_named(found.joint),
-        "value": angle(found.transmission),
-        "at": say(of_crank if crank_turns else of_cycle, angle=angle(found.crank_angle)),
-        "limit": angle(found.limit, 0),
-    }
-    if found.force is None:
-        plain = to_say("The transmission angle at {joint} comes to {value} {at} (usual: {limit}).")
-        yield say(plain, **words)
-    else:
-        yield say(
-            "The transmission angle at {joint} comes to {value} {at} (usual: {limit}), and the "
-            "joint bears up to {force}.",
-            force=told(found.force, "force", digits=3),
-            **words,
-        )
+def transmission_sentence(found: PoorTransmission, crank_turns: bool) -> str:
+    """Where the angle is poor."""
+    of_crank = to_say(
+        "Transmission angle at {joint}: {value} at crank angle {angle} (usual: {limit})."
+    )
+    of_cycle = to_say(
+        "Transmission angle at {joint}: {value} at {angle} of the cycle (usual: {limit})."
+    )
+    return say(
+        of_crank if crank_turns else of_cycle,
+        joint=joint_named(found.joint),
+        value=angle(found.transmission),
+        angle=angle(found.crank_angle),
+        limit=angle(found.limit, 0),
+    )
+
+
+def mending_sentences(found: PoorTransmission) -> Iterator[str]:
+    """Which length mends the angle, and what the joint bears."""
+    yield _length_sentence(found)
+    if found.force is not None:
+        force = told(found.force, "force", digits=3)
+        yield say("Joint {joint} bears up to {force}.", joint=joint_named(found.joint), force=force)
+
+
+def _length_sentence(found: PoorTransmission) -> str:
+    """Which length mends it."""
     if found.between is None:
-        yield say("Masses do not mend that, nor any single length by a fifth: change several.")
-        return
+        return say(
+            "No mass mends that transmission angle, nor any single length by a fifth: change "
+            "several."
+        )
     first, second = found.between
     longer = to_say(
-        "Masses do not mend that: {link} {share} % longer from {first} to {second} ({length}) "
-        "brings it to {mended}, with other strokes."
+        "No mass mends that transmission angle: {link} {share} % longer from {first} to "
+        "{second} ({length}) brings it to {mended}, with other strokes."
     )
     shorter = to_say(
-        "Masses do not mend that: {link} {share} % shorter from {first} to {second} ({length}) "
-        "brings it to {mended}, with other strokes."
+        "No mass mends that transmission angle: {link} {share} % shorter from {first} to "
+        "{second} ({length}) brings it to {mended}, with other strokes."
     )
-    yield say(
+    return say(
         longer if found.share > 0 else shorter,
         link=found.link,
         share=percent(abs(found.share)),

@@ -22,8 +22,8 @@ from equipoise.balancing.objectives import measured_each
 from equipoise.balancing.policy import (
     HUB,
     LEAST_GAIN,
+    LEAST_GAIN_OF_ADDED,
     LEAST_NET_GAIN,
-    LEAST_PEAK_GAIN,
     MASS_PRICE,
     MOST_TAKEN,
     PEAK_PRICE,
@@ -234,9 +234,10 @@ class Comparison:
         score = gain - MASS_PRICE * share
         order = np.argsort(-score, kind="stable")
         figure = np.ones(len(gain))
-        fair = is_worth(gain, share)
+        least = LEAST_GAIN  # less than is offered: shapes beside one that is nearly good may be
+        fair = is_worth(gain, share, least=least)
         figure[fair] = self.figure_gains(numbers[fair])
-        worth = order[is_worth(gain, share, figure)[order]]
+        worth = order[is_worth(gain, share, figure, least)[order]]
         found: list[int] = []
         for some in np.array_split(worth, 1 + len(worth) // CHUNK):
             found += some[self.harmless(numbers[some], gain[some])].tolist()
@@ -246,14 +247,21 @@ class Comparison:
         return [(float(score[k]), int(light[k])) for k in best]
 
 
-def is_worth(gain: Any, mass_share: Any, figure_gain: Any = 1.0) -> Any:
+def least_gain(mass_share: Any) -> Any:
+    """Share of the aim that has to go, by the mass that is added over that of the moving links."""
+    return np.where(np.asarray(mass_share) > 0, LEAST_GAIN_OF_ADDED, LEAST_GAIN)
+
+
+def is_worth(gain: Any, mass_share: Any, figure_gain: Any = 1.0, least: Any = None) -> Any:
     """Whether what is gone is worth a mass over that of the moving links.
 
     gain : share of the aim.  figure_gain : of the figure that is large, in its own measure.
+    least : of both; what `least_gain` says if None.
     """
     price = MASS_PRICE * np.maximum(mass_share, 0.0)
-    enough = gain >= np.maximum(LEAST_GAIN, np.where(price > 0, price + LEAST_NET_GAIN, 0.0))
-    return enough & (figure_gain >= np.maximum(LEAST_PEAK_GAIN, PEAK_PRICE * price))
+    least = least_gain(mass_share) if least is None else least
+    enough = gain >= np.maximum(least, np.where(price > 0, price + LEAST_NET_GAIN, 0.0))
+    return enough & (figure_gain >= np.maximum(least, PEAK_PRICE * price))
 
 
 # -- counterweights --------------------------------------------------------------------------------

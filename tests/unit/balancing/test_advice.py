@@ -15,13 +15,14 @@ import support.found
 from equipoise.balancing.advice import advise, running_speeds
 from equipoise.balancing.balanced import Balanced
 from equipoise.balancing.blocks import outcome_blocks
+from equipoise.balancing.end_weights import end_weights_for
 from equipoise.balancing.headlines import Saving, worse_headlines
-from equipoise.balancing.opposite_arms import end_weights_for, opposite_arm_for
-from equipoise.balancing.outcome import helps_told
-from equipoise.balancing.policy import LEAST_GAIN
+from equipoise.balancing.outcome import helps_told, why_not
+from equipoise.balancing.policy import LEAST_GAIN, LEAST_GAIN_OF_ADDED
 from equipoise.balancing.remedies import Sector as SectorShape
 from equipoise.balancing.remedies import is_worth, plate_of, sectors, with_sectors
 from equipoise.balancing.room import pivots_of, room_about, rooms_about
+from equipoise.balancing.spaced_arms import spaced_arms_for
 from equipoise.balancing.told import aims_told, proof_told, worse_told
 from equipoise.balancing.workshop import in_short, sentences
 from equipoise.errors import EquipoiseError, MassError
@@ -31,6 +32,7 @@ from equipoise.mechanism.parts.machine import Drive, Link, Slider
 from equipoise.mechanism.parts.sliders import Bearing
 from equipoise.results.blocks import Text as TextBlock
 from equipoise.results.yardsticks import assess
+from equipoise.signals import Array
 from equipoise.vibration.linear import Linear
 
 RIG, RIDING = eq.load("yamashita-rig"), eq.load("riding-transplanter")
@@ -426,10 +428,20 @@ def test_a_couple_larger_than_what_is_saved_is_not_made() -> None:
     assert "without couples between the rows" in " ".join(proof_told(found))
 
 
-def test_what_is_worth_it_is_offered_though_trifles_grow() -> None:
-    """A torque by 2 %."""
+def test_a_weight_that_takes_off_less_than_a_quarter_is_not_offered() -> None:
+    """A seventh of the links' mass, for 22 % of an RMS and 15 % of the peak that is large."""
     found = advise(bare("watt-six-bar"))
-    assert found.helps and found.gain >= LEAST_GAIN
+    assert not found.helps
+    aims = (Objective("shaking_force"),)
+    about_crank = [one for one in found.tried if one.plan.objectives == aims
+                   and one.changes[0].link == "crank" and not one.advice.worse]  # fmt: skip
+    assert about_crank
+    for one in about_crank:
+        assert one.added_mass > 0 and LEAST_GAIN < one.gain < LEAST_GAIN_OF_ADDED
+        before, after = (eq.analyze(of).summary["shaking_force"].peak
+                         for of in (one.original, one.machine))  # fmt: skip
+        assert 1 - after / before < LEAST_GAIN_OF_ADDED
+        assert why_not(one) == "that is too little"
 
 
 def test_what_evens_a_torque_may_not_shake_the_machine_more() -> None:
@@ -459,7 +471,8 @@ def test_the_figure_that_is_large_falls_in_its_own_measure() -> None:
     arm, and 18 % off its peak.
     """
     assert is_worth(0.41, 0.30, 0.29) and not is_worth(0.41, 0.30, 0.19)
-    assert is_worth(0.2, 0.0, 0.11) and not is_worth(0.2, 0.0, 0.09)
+    assert is_worth(0.2, 0.0, 0.16) and not is_worth(0.2, 0.0, 0.14)
+    assert is_worth(0.26, 0.1, 0.26) and not is_worth(0.26, 0.1, 0.24)
     assert not is_worth(0.27, 0.24)  # about as much as it costs
     found = advise(bare("cam-pusher"))
     assert not found.helps
@@ -467,20 +480,21 @@ def test_the_figure_that_is_large_falls_in_its_own_measure() -> None:
 
 
 def test_the_peak_of_what_is_offered_falls_with_its_rms() -> None:
-    for name in ("yamashita-1", "watt-six-bar", "kim-chung-a"):
+    for name in ("yamashita-1", "scotch-yoke", "kim-chung-a"):
         found = advise(bare(name))
         assert found.helps and found.advice is not None
         old, new = (eq.analyze(one).summary for one in (found.original, found.machine))
         share = found.added_mass / found.original.mass
         (aim,) = found.plan.objectives
         gone = 1 - new[aim.output].peak / old[aim.output].peak
-        assert gone >= max(0.1, 2 / 3 * share)
+        assert gone >= max(0.25, 2 / 3 * share)
 
 
 def test_little_is_added_against_what_is_not_large() -> None:
     """The reel of a baler shakes with 64 % of the weight of its links: 1.4 kg are too much."""
     found = advise(bare("baler-pickup"))
-    assert found.helps and 0 < found.added_mass <= 0.05 * found.original.mass
+    little = [one for one in found.tried if one.plan.objectives == (Objective("shaking_force"),)]
+    assert little and all(0 < one.added_mass <= 0.05 * one.original.mass for one in little)
 
 
 def test_what_stays_large_is_said_first_and_by_the_yardstick_before() -> None:
@@ -626,20 +640,47 @@ def test_a_crank_that_jams_on_its_way_is_refused_by_all() -> None:
         assert "motion = { between = " in str(caught.value)
 
 
-def test_a_second_arm_opposite_leaves_even_orders_alone() -> None:
-    """The sum of the force and of the same half a turn later, sample by sample."""
-    machine = bare("planetary-planting-arm")
+def summed(values: Array, count: int) -> Array:
+    """A signal of a turn, and the same an even part of a turn later, sample by sample."""
+    return np.sum([np.roll(values, k * len(values) // count) for k in range(count)], axis=0)
+
+
+@pytest.mark.parametrize(("name", "count"), [("planetary-planting-arm", 2), ("baler-pickup", 4)])
+def test_evenly_spaced_arms_leave_what_their_sum_leaves(name: str, count: int) -> None:
+    """The fewest that take nine tenths; the swing of the torque over its mean, likewise."""
+    machine = bare(name)
     found = advise(machine)
     assert found.advice is not None
-    opposite = opposite_arm_for(eq.analyze(machine, acceleration=0.0), found.advice.before)
-    assert opposite is not None
-    force = eq.analyze(machine, 720, acceleration=0.0).forces.shaking_force.value
-    both = force + np.roll(force, len(force) // 2)
-    left = np.sqrt(np.mean(np.abs(both) ** 2) / np.mean(np.abs(force) ** 2))
-    assert opposite.gain == pytest.approx(1 - left, abs=1e-6)
+    arms = spaced_arms_for(eq.analyze(machine, acceleration=0.0), found.advice.before, 0.5)
+    assert arms is not None and arms.count == count
+    forces = eq.analyze(machine, 720, acceleration=0.0).forces
+    force, torque = forces.shaking_force.value, forces.drive_torque
+    for few in range(2, count + 1):
+        both = summed(force, few)
+        gone = 1 - np.sqrt(np.mean(np.abs(both) ** 2) / np.mean(np.abs(force) ** 2))
+        assert (gone > 0.9) == (few == count)
+    assert arms.gain == pytest.approx(gone, abs=1e-3)
+    if arms.swing_after is not None:
+        swings = [np.ptp(one) / abs(np.mean(one)) for one in (torque, summed(torque, count))]
+        assert (arms.swing_before, arms.swing_after) == pytest.approx(swings, rel=0.01)
     told = " ".join(helps_told(found))
-    assert "A second arm like this one, opposite on carrier" in told
-    assert "Large after that: Shaking force, peak: 25.4 N" in told
+    first = "A second arm like this one, opposite on carrier"
+    assert (first if count == 2 else "4 arms like this one, evenly spaced on reel") in told
+
+
+def test_arms_that_would_strike_each_other_are_not_named() -> None:
+    """A tine that reaches across the shaft meets the one on the other side."""
+    machine = bare("baler-pickup")
+    long = machine.with_point("tine", "T", (-0.3, 0.0))
+    analysis = eq.analyze(long, acceleration=0.0)
+    assert spaced_arms_for(analysis, assess(analysis), 0.0) is None
+
+
+def test_no_weight_against_what_is_not_large_where_more_arms_do_more() -> None:
+    found = advise(bare("baler-pickup"))
+    assert not found.helps and found.advice is not None
+    force = next(one for one in found.advice.before if one.output == "shaking_force")
+    assert not force.is_large
 
 
 def test_two_weights_at_the_ends_take_the_couple_that_turns_with_the_crank() -> None:

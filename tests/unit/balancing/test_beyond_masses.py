@@ -17,7 +17,7 @@ from equipoise.balancing.balanced import Balanced
 from equipoise.balancing.beyond_masses import Beyond
 from equipoise.balancing.cylinder_sizes import MODULUS
 from equipoise.balancing.first_order import balance_shafts_for
-from equipoise.balancing.flywheels import Flywheel, flywheels_for
+from equipoise.balancing.flywheels import Flywheel, flywheel_sentences, flywheels_for
 from equipoise.balancing.outcome import helps_told
 from equipoise.balancing.policy import (
     BUCKLING_SAFETY,
@@ -28,6 +28,8 @@ from equipoise.balancing.policy import (
 )
 from equipoise.balancing.poor_transmission import poor_transmission_for
 from equipoise.balancing.problem import Problem
+from equipoise.mechanism.parts.force_elements import Motor
+from equipoise.results.blocks import Text
 from equipoise.results.yardsticks import assess
 from equipoise.running.flywheel import size_flywheel
 from equipoise.vibration.linear import Linear
@@ -138,6 +140,20 @@ def test_a_press_is_told_what_its_motor_gives() -> None:
     assert found.power == pytest.approx(found.mean_torque * machine.drive.speed)
     assert "within 5 %" in said("press") and "within 20 %" in said("press")
     assert "A motor that lets the speed swing so far then gives 100 N m" in said("press")
+
+
+def test_a_flywheel_on_a_faster_shaft_names_what_is_assumed() -> None:
+    """A pump without a motor has such a shaft only if its motor is there."""
+    machine = eq.load("plunger-pump")
+    told = said("plunger-pump")
+    assert "Flywheel, assuming a shaft 4 times as fast as crank, such as a motor's, which" in told
+    motor = Motor(stall_torque=20.0, no_load_speed=400.0, ratio=3.5)
+    driven = eq.analyze(machine.with_drive(motor=motor), acceleration=0.0)
+    flywheels = flywheels_for(driven, assess(driven))
+    assert flywheels is not None
+    assert all(one.ratio == 3.5 and not one.is_shaft_assumed for one in flywheels.choices)
+    (first, *_) = flywheel_sentences(flywheels, "crank", machine.mass)
+    assert first.startswith("Flywheel on the shaft of the motor: ")
 
 
 def test_a_flywheel_that_is_there_is_enough() -> None:
@@ -397,7 +413,12 @@ def test_a_poor_transmission_angle_names_joint_force_and_length() -> None:
     assert poor.joint == "F"
     assert poor.transmission == analysis.outputs["transmission.F"].figures.min
     assert poor.force == analysis.summary["joints.F"].peak
-    assert "transmission angle at F comes to 28.7° at crank angle 213.0°" in said("walking-beam")
+    told = said("walking-beam")
+    assert "Transmission angle at F: 28.7° at crank angle 213.0° (usual: 40°)." in told
+    assert told.count("Transmission angle at F: ") == 1
+    short = " ".join(one.text for one in found.headline(alone=True) if isinstance(one, Text)
+                     and not one.is_detail)  # fmt: skip
+    assert "Transmission angle at F: 28.7°" in short
     first, second = (complex(*found.machine.links[poor.link].points[at]) for at in poor.between)
     place = first + (1 + poor.share) * (second - first)
     changed = found.machine.with_point(poor.link, poor.between[1], (place.real, place.imag))
@@ -453,7 +474,7 @@ def test_a_machine_without_such_arms_is_not_told_of_any() -> None:
 @pytest.mark.parametrize(
     ("name", "key"),
     [
-        ("planetary-planting-arm", "opposite"),
+        ("planetary-planting-arm", "spaced"),
         ("inline-3-rows", "ends"),
         ("rotary-transplanter", "arms"),
         ("hydraulic-loader", "cylinder"),

@@ -1,4 +1,4 @@
-"""What a second arm does opposite on a carrier, and two weights at the ends of a shaft."""
+"""What two weights opposite each other at the ends of a shaft do against a couple."""
 
 from __future__ import annotations
 
@@ -9,29 +9,12 @@ from typing import ClassVar
 import numpy as np
 
 from equipoise.balancing.first_order import FirstOrder
-from equipoise.balancing.policy import (
-    WORTH_NAMING,
-)
+from equipoise.balancing.policy import WORTH_NAMING
 from equipoise.i18n import say
-from equipoise.mechanism.parts.support import Row
 from equipoise.quantities import percent, told
-from equipoise.results.analysis import Analysis, analyze
+from equipoise.results.analysis import Analysis
 from equipoise.results.declaring import Declarations, ResultOutput
 from equipoise.results.yardsticks import FigureAssessment
-
-
-@dataclass(frozen=True)
-class OppositeArm:
-    """A second arm like the first, half a turn behind it on the same carrier.
-
-    gain : share of the RMS of the shaking force that is gone.
-    """
-
-    gain: float
-
-    declared: ClassVar[Declarations] = {
-        "gain": ResultOutput("share of the shaking force that is gone"),
-    }
 
 
 @dataclass(frozen=True)
@@ -50,26 +33,6 @@ class EndWeights:
         "apart": ResultOutput("from end to end", "length"),
         "gain": ResultOutput("share of the couple of the rows that is gone"),
     }
-
-
-def opposite_arm_for(
-    analysis: Analysis, entries: tuple[FigureAssessment, ...]
-) -> OppositeArm | None:
-    """A second arm opposite, against a large shaking force; None of a machine of which more than
-    the driven link is held by the frame, which has no place for one in its plane.
-    """
-    machine = analysis.machine
-    force = next((one for one in entries if one.output == "shaking_force"), None)
-    others = [link for name, link in machine.links.items() if name != machine.drive.link]
-    held = any(point in machine.frame for link in others for point in link.points)
-    held |= any(one.on == "frame" for one in machine.sliders)
-    if force is None or not force.is_large or held or machine.rows or not others:
-        return None
-    if not machine.has_crank or not machine.crank_turns:
-        return None
-    both = analyze(machine.with_rows((Row(), Row(phase=np.pi))), acceleration=0.0).summary
-    gain = 1 - both["rows.shaking_force"].rms / analysis.summary["shaking_force"].rms
-    return OppositeArm(float(gain)) if gain >= WORTH_NAMING else None
 
 
 def end_weights_for(analysis: Analysis, entries: tuple[FigureAssessment, ...]) -> EndWeights | None:
@@ -92,16 +55,6 @@ def end_weights_for(analysis: Analysis, entries: tuple[FigureAssessment, ...]) -
     gain = couple.gain(couple.without(against=False))
     moment = abs(couple.ahead) / (motion.speed**2 * apart)
     return EndWeights(moment, apart, gain) if gain >= WORTH_NAMING else None
-
-
-def arm_sentence(opposite: OppositeArm, crank: str) -> str:
-    """What a second arm would do."""
-    return say(
-        "A second arm like this one, opposite on {crank}, would take {gain} % off the shaking "
-        "force, and work twice in a turn.",
-        crank=crank,
-        gain=percent(opposite.gain, 0),
-    )
 
 
 def end_sentences(ends: EndWeights, crank: str) -> Iterator[str]:
