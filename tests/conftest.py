@@ -31,6 +31,15 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     )
 
 
+def pytest_configure(config: pytest.Config) -> None:
+    """Draw fewer examples at random on every change than where tests are asked for."""
+    from hypothesis import settings
+
+    if not config.getoption("--exhaustive") and not _by_name(config):
+        settings.register_profile("change", settings(), max_examples=30)
+        settings.load_profile("change")
+
+
 @pytest.hookimpl(tryfirst=True)
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     """Make no test of a further seed, or of what is exhaustive, unless it was asked for."""

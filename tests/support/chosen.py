@@ -34,6 +34,13 @@ DISTINCT = (
 """Bundled linkages of which each can do what no other of them can."""
 
 
+def drawn(examples: int) -> int:
+    """How many of so many examples at random are tried: `--exhaustive` tries all."""
+    from hypothesis import settings
+
+    return max(1, examples * settings().max_examples // 100)
+
+
 def few(values: Iterable[Any], chosen: Container[Any]) -> list[Any]:
     """All values, of which those that are not chosen are tried by `--exhaustive` alone."""
     return [one if one in chosen else pytest.param(one, marks=EXHAUSTIVE) for one in values]

@@ -8,6 +8,7 @@ import shlex
 import subprocess
 import sys
 from collections import deque
+from functools import cache
 from importlib.metadata import PackageNotFoundError, packages_distributions, requires
 from pathlib import Path
 
@@ -53,6 +54,7 @@ def installed_with(name: str) -> set[str]:
     return found
 
 
+@cache
 def left_out() -> list[str]:
     """Modules that are here, and are not where nothing but the product is installed."""
     there = installed_with("equipoise") | {"pip", "setuptools"}

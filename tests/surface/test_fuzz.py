@@ -19,6 +19,7 @@ import tomli_w
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from support.chosen import drawn
 from surface.running import EXAMPLES, Result, equipoise, example, example_text, no_constant, refused
 from unit.schema.samples import BALANCE, ROWS, SUPPORT
 
@@ -29,7 +30,7 @@ Document = dict[str, Any]
 
 def fuzz(examples: int) -> settings:
     return settings(
-        max_examples=SEARCH or examples,
+        max_examples=SEARCH or drawn(examples),
         deadline=None,
         derandomize=not SEARCH,
         database=None,
