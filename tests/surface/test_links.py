@@ -469,6 +469,49 @@ def test_what_is_written_goes_through_no_link_that_comes_meanwhile(
     assert planted_there
 
 
+@pytest.mark.parametrize("name", few(WRITING, ("analyze --csv", "sweep")))
+@pytest.mark.usefixtures("store")
+def test_a_folder_that_is_named_may_be_a_link_and_what_is_in_it_not(
+    name: str, outside: Outside, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    """Whoever types the way names it; what lies below it may be a stranger's."""
+    words, elsewhere = WRITING[name], tmp_path_factory.mktemp("elsewhere")
+    inputs()
+    succeeded(equipoise("export", "mine.toml", "-o", "mine.mjcf.xml"))
+    Path("way").symlink_to(elsewhere)
+    place = Path(next(one for one in words if "{}" in one).format("way/out"))
+    named = [one.format("way/out") for one in words]
+    place.symlink_to(outside.folder / "secret.txt")
+    refused(equipoise(*named))
+    assert place.is_symlink()
+    place.unlink()
+    unswept()
+    if place.suffix == ".zarr":  # a store is a folder that programs go on with: no link at all
+        assert "way is a link" in refused(equipoise(*named))
+        return
+    succeeded(equipoise(*named))
+    assert place.exists() and not place.is_symlink()
+
+
+@pytest.mark.parametrize("name", few(DRAWING, ("plot",)))
+@pytest.mark.usefixtures("store")
+def test_pictures_below_a_link_that_is_named_go_through_none(
+    name: str, outside: Outside, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    inputs()
+    Path("way").symlink_to(tmp_path_factory.mktemp("elsewhere"))
+    words = [f"way/{one}" if one == "pictures" else one for one in DRAWING[name]]
+    succeeded(equipoise(*words))
+    first = min(Path("way/pictures").iterdir())
+    planted(first, outside.folder / "secret.txt")
+    unswept()
+    assert "leads out of its folder" in refused(equipoise(*words))
+    shutil.rmtree("way/pictures")
+    Path("way/pictures").symlink_to(outside.folder / "folder")
+    unswept()
+    assert "leads out of its folder" in refused(equipoise(*words))
+
+
 def test_a_link_within_the_folder_stays_one() -> None:
     Path("mine.toml").write_text(MODEL)
     Path("out.csv").symlink_to("real.csv")

@@ -3,6 +3,11 @@
 Links are taken in the smallest groups that can be solved: a coupled link, a dyad, and only where
 neither fits a group for Newton's method.  Each group becomes steps for motion and, in reverse
 order, steps for forces.
+
+This ends, whatever the file: a round of `_grouped` takes at least one link out of those that are
+unknown, and reads only what earlier rounds have solved.  Where sides are missing, each combination
+of at most `sides.MOST_TRIED` of them is grouped once more, by `_grouped` and `_linked` alone;
+neither checks sides, so that nothing that is tried tries anything itself.
 """
 
 from __future__ import annotations
@@ -237,7 +242,7 @@ def _check_sides(machine: Machine, joints: Structure, grouping: Grouping) -> Non
     idle = [joint for joint in machine.assembly if joint not in asked]
     if choices:
 
-        def turns_fully(tried: Mapping[str, str]) -> None:
+        def turns_fully(tried: Mapping[str, str]) -> None:  # never by `ordered`, which asks again
             _linked(machine, joints, _grouped(machine, joints, tried=tried)).close()
 
         if decided := sides.decided(choices, turns_fully):
