@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import re
+from dataclasses import replace
 from math import acos, pi
 from typing import Any
 
@@ -16,7 +17,7 @@ import equipoise as eq
 from equipoise.errors import ResponseError, UsageError
 from equipoise.mechanism.parts.force_elements import Motor
 from equipoise.running import integration
-from equipoise.running.blocks import verdict
+from equipoise.running.blocks import run_blocks, verdict
 from equipoise.running.drivers import Driver
 from equipoise.running.equation import CrankEquation
 from equipoise.running.integration import Instant, Integration
@@ -143,6 +144,16 @@ def test_energy_and_time_integration(name: str) -> None:
     nearest = found.crank_angle[k] - found.crank_speed[k] * (found.time[k] - time)
     slope = abs(done.y[1, -1]) * abs(found.time[k] - found.time[k - 1])
     assert abs(nearest - done.y[0, -1]) < 1e-6 * abs(done.y[0, -1]) + 0.02 * slope
+
+
+def test_a_drive_with_nothing_to_do_is_said_to_do_nothing() -> None:
+    """Where weight and springs alone act, the microjoules of a last cycle say nothing."""
+    machine = eq.load("walking-transplanter")
+    told = str([*run_blocks(eq.run(machine))])
+    assert "drive: nothing to do in the mean, with neither friction nor load" in told
+    assert " J in a turn" not in told
+    loaded = replace(machine, loads=(eq.Load("coupler", "P", (1e-3, 0.0)),))
+    assert "drive: nothing to do" not in str([*run_blocks(eq.run(loaded))])
 
 
 def test_values_that_cannot_be_used() -> None:

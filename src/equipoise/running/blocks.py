@@ -28,6 +28,8 @@ EVENTS = {
     "time": to_say("end of the run"),
 }
 MOST_EVENTS = 20
+SETTLED = 1e-3
+"""Of the kinetic energy: what a drive gives in a cycle beyond it speeds the machine up."""
 ROUNDING = 1e-9
 """Share of the kinetic energy below which the drive gives none in a cycle."""
 
@@ -127,12 +129,16 @@ def _figures(run: Run) -> Iterator[str]:
         "speed from {low} to {high} rpm, {mean} rpm in the mean",
         **{name: number(speed / PER_RPM) for name, speed in speeds.items()},
     )
-    gives = abs(cycle.energy) > ROUNDING * float(np.max(run.kinetic_energy))
-    yield say(
-        "drive: {energy} in a turn, {power} in the mean",
-        energy=told(cycle.energy_per_turn if gives else 0.0, "energy", "J"),
-        power=told(cycle.power if gives else 0.0, "power", "W"),
-    )
+    share = abs(cycle.energy) / float(np.max(run.kinetic_energy))
+    gives = share > ROUNDING
+    if share < SETTLED and all(source.conserves for source in run.equation.sources):
+        yield say("drive: nothing to do in the mean, with neither friction nor load in the file")
+    else:
+        yield say(
+            "drive: {energy} in a turn, {power} in the mean",
+            energy=told(cycle.energy_per_turn if gives else 0.0, "energy", "J"),
+            power=told(cycle.power if gives else 0.0, "power", "W"),
+        )
     if run.electric is not None:
         yield say(
             "current of the motor: up to {most}, {last} at the end",

@@ -31,10 +31,12 @@ class Source(ABC):
     """What exerts a generalized force on the crank, by its angle and speed.
 
     key : its name in JSON.  label : for readers.
+    conserves : whether it gives back over a cycle what it takes.
     """
 
     key: str
     label: str
+    conserves: bool = False
 
     @abstractmethod
     def columns(self, motions: Motions) -> list[Array]:
@@ -58,6 +60,7 @@ class ByAngle(Source):
     key: str
     label: str
     of: Callable[[Motion], Array]
+    conserves: bool = False
 
     def columns(self, motions: Motions) -> list[Array]:
         return [np.asarray(sum(self.of(motion) for motion in motions))]
@@ -101,9 +104,9 @@ def _of_springs(motion: Motion) -> Array:
 def sources_of(machine: Machine) -> Iterator[Source]:
     """Everything but the drive that turns the crank or brakes it."""
     if any(machine.gravity):
-        yield ByAngle("weight", to_say("weight"), weight_torque)
+        yield ByAngle("weight", to_say("weight"), weight_torque, conserves=True)
     if [*machine.force_elements] or any(one.preload for one in machine.couplings):
-        yield ByAngle("springs", to_say("springs"), _of_springs)
+        yield ByAngle("springs", to_say("springs"), _of_springs, conserves=True)
     if machine.loads:
         yield ByAngle("loads", to_say("loads"), _of_loads)
     planting = machine.planting
