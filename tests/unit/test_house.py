@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import re
+from collections import Counter
 from collections.abc import Iterator
 from functools import cache
 from graphlib import TopologicalSorter
@@ -17,6 +18,16 @@ ROOT = Path(equipoise.__file__).parent
 FILES = sorted(ROOT.rglob("*.py"))
 TOP = Path(__file__).parents[2]
 PAGES = [*sorted((TOP / "docs").glob("*.md")), TOP / "README.md", TOP / "CONTRIBUTING.md"]
+AMBIGUOUS = """
+    Answer Arrow BalanceShafts Band Best Block Body Call Carried Change Column Conditions
+    Contact Coupled Curve Designs Document Drawn Drive Entry Estimate Excitation Field Fit
+    Flag Flywheel Folder Format Found Grid Guide Instant Key Kind Line Listing Look Mark
+    Named Number Outcome Outline Output Outputs Page Pair Part Path Picture Pieces Planes
+    Pose Problem Proof Push Pushing Quantity Reading Record Reply Row Rows Scale Seat
+    Section Segment Session Shape Signal Slot Solved Source Step Stroke Swing Swinging Table
+    Task Term Text Together Told Tool Track Tube Unit Variants View Work _Search
+"""
+"""Names of several classes, each of which is to get a name of its own; no further ones."""
 FILE, FUNCTION = 800, 60
 """Most lines in a file and in a function.
 
@@ -86,6 +97,12 @@ def test_functions_are_read_without_scrolling() -> None:
                 if node.end_lineno - node.lineno + 1 - len(said.splitlines()) > FUNCTION:
                     long.append(f"{named(file)}.{node.name}")
     assert long == []
+
+
+def test_a_class_name_means_one_thing() -> None:
+    """But for those that still mean several."""
+    names = [node.name for file in FILES for node in nodes(file) if isinstance(node, ast.ClassDef)]
+    assert {name for name, count in Counter(names).items() if count > 1} <= {*AMBIGUOUS.split()}
 
 
 def test_the_documentation_tells_these_sizes() -> None:

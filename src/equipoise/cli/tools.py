@@ -54,7 +54,7 @@ Schema = dict[str, Any]
 
 
 @dataclass(frozen=True)
-class Answer:
+class CommandOutput:
     """What a command told.
 
     text : as on a terminal.  values : of its JSON object, in SI units and radians; long lists are
@@ -115,7 +115,7 @@ class Tool:
             "additionalProperties": False,
         }
 
-    def answer(self, given: Mapping[str, Any], folder: Path) -> Answer:
+    def answer(self, given: Mapping[str, Any], folder: Path) -> CommandOutput:
         """Run the command in a folder, outside of which it reads and writes no file.
 
         Raises
@@ -138,7 +138,7 @@ class Tool:
         values = [json.loads(one) for one in ([printed.getvalue()] if whole else both)]
         merged = {key: value for one in values for key, value in one.items()}
         text = printed.getvalue() + told.getvalue()
-        return Answer(text, merged if whole else _short(merged), tuple(fence.written))
+        return CommandOutput(text, merged if whole else _short(merged), tuple(fence.written))
 
     def line(self, given: Mapping[str, Any], fence: Fence) -> list[str]:
         """The words of the command line that means the same."""

@@ -31,7 +31,7 @@ Kind = Literal["hinge", "slide"]
 
 
 @dataclass(frozen=True)
-class Edge:
+class TreeJoint:
     """A joint between two bodies: a pin, or a slider."""
 
     one: str
@@ -61,7 +61,7 @@ class Hung:
 
 
 @dataclass(frozen=True)
-class Loop:
+class LoopClosure:
     """A pin that closes a loop, between two bodies."""
 
     pin: str
@@ -80,7 +80,7 @@ class Tree:
     machine: Machine
     crank_angle: float
     links: tuple[Hung, ...]
-    loops: tuple[Loop, ...]
+    loops: tuple[LoopClosure, ...]
     row: Row
     suffix: str
 
@@ -236,18 +236,18 @@ def _joints(machine: Machine) -> Structure:
     return joined(machine.bodies, machine.sliders, machine.couplings, {})
 
 
-def _edges(machine: Machine) -> Iterator[Edge]:
+def _edges(machine: Machine) -> Iterator[TreeJoint]:
     """Joints, those first that are to be in the tree."""
     pivot, joints = assemble(machine).pivot, _joints(machine)
-    yield Edge(FRAME, machine.drive.link, pin=pivot)
-    yield from (Edge(one.on, one.link, slider=one) for one in joints.needed.sliders)
+    yield TreeJoint(FRAME, machine.drive.link, pin=pivot)
+    yield from (TreeJoint(one.on, one.link, slider=one) for one in joints.needed.sliders)
     for pin, (first, *others) in joints.pins.items():
         for other in others:
             if (pin, other) != (pivot, machine.drive.link):
-                yield Edge(first, other, pin=pin)
+                yield TreeJoint(first, other, pin=pin)
 
 
-def _spanned(machine: Machine) -> tuple[list[Edge], tuple[Loop, ...]]:
+def _spanned(machine: Machine) -> tuple[list[TreeJoint], tuple[LoopClosure, ...]]:
     """Joints that hold every link once, and the pins that are left over."""
     group = {body: body for body in machine.bodies}
     held, loose = [], []
@@ -257,7 +257,7 @@ def _spanned(machine: Machine) -> tuple[list[Edge], tuple[Loop, ...]]:
             held.append(edge)
             group = {body: one if root == other else root for body, root in group.items()}
         elif edge.slider is None:
-            loose.append(Loop(edge.pin, edge.one, edge.other))
+            loose.append(LoopClosure(edge.pin, edge.one, edge.other))
         else:
             raise UsageError(
                 f"the slider {edge.slider.name} closes a loop of sliders alone, which only pins "
@@ -266,7 +266,7 @@ def _spanned(machine: Machine) -> tuple[list[Edge], tuple[Loop, ...]]:
     return held, tuple(loose)
 
 
-def _outwards(held: list[Edge]) -> Iterator[tuple[str, str, Edge]]:
+def _outwards(held: list[TreeJoint]) -> Iterator[tuple[str, str, TreeJoint]]:
     """Link, parent and joint, from the frame outwards."""
     left, known = list(held), [FRAME]
     for parent in known:
@@ -277,7 +277,7 @@ def _outwards(held: list[Edge]) -> Iterator[tuple[str, str, Edge]]:
             yield link, parent, edge
 
 
-def _hung(machine: Machine, motion: Motion, link: str, parent: str, edge: Edge) -> Hung:
+def _hung(machine: Machine, motion: Motion, link: str, parent: str, edge: TreeJoint) -> Hung:
     bodies, at, along = machine.bodies, edge.pin, 0.0
     rate = _spin(motion, link) - _spin(motion, parent)
     if edge.slider is not None:

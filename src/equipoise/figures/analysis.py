@@ -151,7 +151,7 @@ IN_LINE, MOST_SQUARES = 3, 9
 
 
 @dataclass(frozen=True, eq=False)
-class Joint:
+class JointCurve:
     """A force (complex) or a couple (real) in a joint, (N,), SI units, and its name in words."""
 
     told: str
@@ -163,20 +163,20 @@ class Joint:
         return not np.iscomplexobj(self.values)
 
 
-def joints_of(analysis: Analysis) -> dict[str, Joint]:
+def joints_of(analysis: Analysis) -> dict[str, JointCurve]:
     """Every joint, coupling and bearing; of a slider its couple too; rounding as zeros."""
     found, forces = {}, analysis.forces
     every = forces.solved.contacts
     largest = max((float(np.max(joint.size)) for joint in every.values()), default=0.0)
     force, moment = LEAST_FORCE * largest, LEAST_FORCE * largest * size_of(analysis)
     for name, joint in every.items():
-        found[name] = Joint(named(forces, name, joint), settled(joint.value, force))
+        found[name] = JointCurve(named(forces, name, joint), settled(joint.value, force))
         if isinstance(joint, SliderForce):
             told = say("{name}: couple on {on}", name=short(name), on=short(joint.on))
-            found[f"{name}.moment"] = Joint(told, settled(joint.moment, moment))
+            found[f"{name}.moment"] = JointCurve(told, settled(joint.moment, moment))
     for name in analysis.machine.bearings:
         value = forces.across.bearings[name].value
-        found[f"bearings.{name}"] = Joint(say("bearing {name}", name=short(name)), value)
+        found[f"bearings.{name}"] = JointCurve(say("bearing {name}", name=short(name)), value)
     return found
 
 
@@ -202,7 +202,7 @@ def joints(analysis: Analysis) -> Iterator[Chart]:
         yield Chart(f"joints{suffix}", analysis.machine.title, what, panels, columns=2)
 
 
-def _over_angle(analysis: Analysis, joint: Joint, every: Iterable[Joint]) -> Panel:
+def _over_angle(analysis: Analysis, joint: JointCurve, every: Iterable[JointCurve]) -> Panel:
     """One of several joints, whose forces have one unit."""
     beside = np.concatenate([one.values for one in every if one.couple == joint.couple])
     if joint.couple:
@@ -239,7 +239,7 @@ def joint_polars(analysis: Analysis) -> Iterator[Chart]:
         yield Chart(own, analysis.machine.title, told, panels, columns, stacked=False)
 
 
-def _square(analysis: Analysis, joint: Joint, axis: Axis) -> Panel:
+def _square(analysis: Analysis, joint: JointCurve, axis: Axis) -> Panel:
     values = joint.values
     marks: tuple[Mark, ...] = ()
     if analysis.motion.whole_cycle:

@@ -72,7 +72,7 @@ TUNED, NEARLY_NOTHING = 1e-15, 1e-200
 without mass and spring is divided by."""
 
 
-class Cell(NamedTuple):
+class ShaftCell(NamedTuple):
     """A segment between two nodes."""
 
     start: float
@@ -133,7 +133,7 @@ class Layout:
         return np.array(value)[:, None] if isinstance(value, tuple) else value
 
     @cached_property
-    def _laid(self) -> tuple[list[list[Station]], list[Cell]]:
+    def _laid(self) -> tuple[list[list[Station]], list[ShaftCell]]:
         """Stations of each node, and the cells between the nodes."""
         shaft = self.tool.shaft
         check_waves(self.tool, self.highest, MOST_CELLS)
@@ -142,7 +142,7 @@ class Layout:
         points += [(self.of(station, "position"), station) for station in self.tool.stations]
         points.sort(key=_order)
         nodes: list[list[Station]] = [[]]
-        cells: list[Cell] = []
+        cells: list[ShaftCell] = []
         before, moved = 0.0, False
         for at, station in points:
             moves = station is not None and (station.name, "position") in self.changed
@@ -155,12 +155,12 @@ class Layout:
             before, moved = at, moves
         return nodes, cells
 
-    def _cells(self, left: float, length: float) -> list[Cell]:
+    def _cells(self, left: float, length: float) -> list[ShaftCell]:
         """Segments of one section, none of which is too long."""
         pieces, middle = self.tool.shaft.pieces, left + length / 2
         section = next((one for _, stop, one in pieces if middle <= stop), pieces[-1][2])
         parts = max(1, ceil(length / _longest(section, self.highest)))
-        return [Cell(left + k * length / parts, length / parts, section) for k in range(parts)]
+        return [ShaftCell(left + k * length / parts, length / parts, section) for k in range(parts)]
 
     @property
     def nodes(self) -> list[list[Station]]:
@@ -168,7 +168,7 @@ class Layout:
         return self._laid[0]
 
     @property
-    def cells(self) -> list[Cell]:
+    def cells(self) -> list[ShaftCell]:
         """Segments (N - 1)."""
         return self._laid[1]
 
@@ -195,14 +195,14 @@ class Layout:
         square = np.real(s * s) if kind == "undamped" else s * s
         return self._transfers([self.cells[k] for k in which], length[:, None, None], square, kind)
 
-    def _transfers(self, cells: list[Cell], length: Any, square: Any, kind: Kind) -> Transfer:
+    def _transfers(self, cells: list[ShaftCell], length: Any, square: Any, kind: Kind) -> Transfer:
         """Transfer matrices (C, 1 or 2, F) from the left end of cells over lengths (C, 1, 1), m."""
         beam = self.beam(cells, square, kind)
         if self.tool.shaft.theory != "timoshenko":
             return transfer(length, beam.flexibility, beam.mass)
         return shear_transfer(length, *beam)
 
-    def beam(self, cells: list[Cell], square: Any, kind: Kind) -> Beam:
+    def beam(self, cells: list[ShaftCell], square: Any, kind: Kind) -> Beam:
         """The coefficients (C, 1 or 2, F) of cells (C)."""
         sections, factor = [cell.section for cell in cells], self.tool.shaft.loss_factor
         loss = 1 + 1j * factor if factor and kind != "undamped" else 1.0

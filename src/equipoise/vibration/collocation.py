@@ -102,7 +102,7 @@ class Orbit:
 
 
 @dataclass(frozen=True, eq=False)
-class Rule:
+class GaussRule:
     """Gauss's rule on [0, 1], by Legendre's polynomials, which keep it exact to rounding.
 
     nodes, weights : (m,).
@@ -114,7 +114,7 @@ class Rule:
     legendre: Array
 
     @classmethod
-    def of(cls, stages: int) -> Rule:
+    def of(cls, stages: int) -> GaussRule:
         x, w = np.polynomial.legendre.leggauss(stages)
         orders = np.arange(stages)
         values = np.polynomial.legendre.legvander(x, stages - 1)
@@ -138,7 +138,7 @@ class Rule:
         return self.integrals(self.nodes)
 
 
-RULE = Rule.of(STAGES)
+RULE = GaussRule.of(STAGES)
 
 
 def nodes_of(points: Array) -> Array:

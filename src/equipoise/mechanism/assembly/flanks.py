@@ -33,7 +33,7 @@ from equipoise.mechanism.parts.couplings import Coupling, Law, Line, RollingLine
 
 
 @dataclass(frozen=True)
-class Held:
+class CarrierJoint:
     """How the carrier holds driver or driven body: by a pin, or by a guide through a point of it.
 
     coordinate : names of its angle, or of its way along the guide, with both derivatives.
@@ -45,7 +45,7 @@ class Held:
     coordinate: tuple[str, str, str]
 
     @classmethod
-    def of(cls, joints: Structure, coupling: Coupling, body: str, pin: str) -> Held:
+    def of(cls, joints: Structure, coupling: Coupling, body: str, pin: str) -> CarrierJoint:
         """pin : about which it turns; empty of what slides."""
         if body == coupling.slides:
             guide = Guide.seen_from(_guides(joints, coupling)[0], coupling.carrier)
@@ -87,8 +87,8 @@ class Flank:
     """
 
     coupling: Coupling
-    driver: Held
-    driven: Held
+    driver: CarrierJoint
+    driven: CarrierJoint
     line: Line | StrandLine | RollingLine
     arm: Any = 0j
 
@@ -228,7 +228,7 @@ def contact(builder: Builder, joints: Structure, coupling: Coupling) -> Flank:
     """
     pins = _pins(joints, coupling)
     ends = zip((coupling.driver, coupling.driven), pins, strict=True)
-    driver, driven = (Held.of(joints, coupling, *end) for end in ends)
+    driver, driven = (CarrierJoint.of(joints, coupling, *end) for end in ends)
     carrier, way = coupling.carrier, 0j
     centres = builder.arm(carrier, pins[1], pins[0]) if all(pins) else 0j
     for one in (driver, driven):

@@ -44,7 +44,7 @@ FOLLOWED = Note(
 
 
 @dataclass(frozen=True)
-class Held:
+class RestingLinks:
     """Links that stand still at the angles at which they start."""
 
     at: dict[str, float]
@@ -129,7 +129,7 @@ def _solved(levers: Array, right: Array) -> Array:
 
 
 @dataclass(frozen=True, eq=False)
-class Followed:
+class FollowedLinks:
     """The links followed over a cycle.
 
     theta : (K,) crank angles, rad.  q, rate : (P, K).
@@ -162,7 +162,7 @@ class Followed:
         return cubic
 
 
-def commanded(machine: Machine) -> Followed:
+def commanded(machine: Machine) -> FollowedLinks:
     """The angles of all links that are pushed.
 
     Raises
@@ -173,7 +173,7 @@ def commanded(machine: Machine) -> Followed:
     pushers = machine.pushers
     start = {one.link: one.start or 0.0 for one in pushers}
     bare = replace(machine, loads=(), planting=None, balance=None, support=None, rows=())
-    bare.__dict__["turning"] = Held(start)
+    bare.__dict__["turning"] = RestingLinks(start)
     linkage = assemble(bare)
     moved = {end for one in machine.couplings for end in (one.driver, one.carrier)}
     if linkage.needed_references or moved & start.keys():
@@ -183,7 +183,7 @@ def commanded(machine: Machine) -> Followed:
     return _followed(of, np.array([*start.values()])[:, None], POINTS * int(turns))
 
 
-def _followed(of: Together, start: Array, count: int) -> Followed:
+def _followed(of: Together, start: Array, count: int) -> FollowedLinks:
     theta = np.linspace(0.0, of.period, count + 1)
     step = theta[1]
     q, change = of.near(theta[:1], start)
@@ -206,7 +206,7 @@ def _followed(of: Together, start: Array, count: int) -> Followed:
         q = new
     if np.max(np.abs(found[-1] - found[0])) > CLOSED:
         raise _lost(of, of.period)
-    return Followed(of, theta, np.hstack(found), np.hstack(rates))
+    return FollowedLinks(of, theta, np.hstack(found), np.hstack(rates))
 
 
 def _not_had(of: Together, start: Array) -> ModelError:
