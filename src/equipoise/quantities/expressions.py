@@ -228,7 +228,7 @@ def _unknown(text: str, name: str, names: Names, wrong: Callable[[str], Note]) -
     """What is said of a name that stands for nothing."""
     if not names:
         return wrong(text)
-    right = meant(name, names) or Note("there are {names}", names=", ".join(sorted(names)))
+    right = meant(name, [*names]) or Note("there are {names}", names=", ".join(sorted(names)))
     return Note(
         "got {text!r}, but no parameter is called {name!r}; {right}",
         text=text,
