@@ -335,7 +335,7 @@ def refuse_file_name(option: str, path: str, what: str) -> None:
     what : goes into the folder.
     """
     ending = os.path.splitext(path.rstrip(os.sep))[1].lower()
-    if ending in FILE_ENDINGS and not os.path.isdir(path):
+    if ending in FILE_ENDINGS and not os.path.lexists(path):
         raise UsageError(f"{option}: got {path!r}, the name of a file; give a folder, {what}")
 
 
