@@ -17,6 +17,8 @@ SCREENSHOTS = ROOT / "build" / "screenshots"
 AXE = ROOT / "page" / "node_modules" / "axe-core" / "axe.min.js"
 FITS = "document.documentElement.scrollWidth <= document.documentElement.clientWidth"
 """Nothing is to be moved from side to side."""
+TWO_FRAMES = "new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))"
+"""The first may be under way already."""
 LONGEST = 60
 """s that an answer may take on a processor that others keep busy."""
 NUMBER = re.compile(r"[-−]?\d+(?:\.\d+)?")
@@ -43,6 +45,10 @@ class Live:
         """Wait until the page shows all that there is to what was done last."""
         root = self.page.locator(".equipoise")
         expect(root).to_have_attribute("data-settled", "", timeout=LONGEST * 1000)
+
+    def painted(self) -> None:
+        """Wait until a frame shows what was turned or sized before, for which nothing is asked."""
+        self.page.evaluate(TWO_FRAMES)
 
     # -- parts of it -------------------------------------------------------------------------------
 

@@ -71,7 +71,8 @@ def test_name_title_and_drawing_are_of_one_machine(live: Live) -> None:
     for name in names[1:]:
         live.page.get_by_role("combobox", name="Example").select_option(name)
         expect(live.page.get_by_role("heading", name=eq.load(name).title)).to_be_visible()
-        live.page.wait_for_timeout(100)
+        live.settled()
+        live.painted()  # and is seen
     seen = [json.loads(one) for one in live.page.evaluate("[...seen]")]
     assert [one[:2] for one in seen] == [[name, eq.load(name).title] for name in names]
 

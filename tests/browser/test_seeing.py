@@ -39,7 +39,8 @@ def test_arrows_are_as_long_as_their_scale_tells(live: Live) -> None:
     page.get_by_role("combobox", name="Arrows at").select_option("C")
     page.get_by_role("slider", name="Crank angle").fill("200")
     expect(page.locator(".scales li")).to_have_count(3)
-    page.wait_for_timeout(300)
+    live.settled()
+    live.painted()
     whole = eq.analyze(eq.load("yamashita-1"))
     point = whole.motion.points["C"]
     for kind, values in {
@@ -96,7 +97,7 @@ def test_a_support_moves_at_work_and_in_its_modes(live: Live) -> None:
     crank, places = page.get_by_role("slider", name="Crank angle"), []
     for sample in (0, 90, 180):
         crank.fill(str(sample))
-        page.wait_for_timeout(60)
+        live.painted()
         places.append(live.spot(live.joint("L")))
     assert np.ptp(places, axis=0).max() > 3  # a point of the frame, as the support carries it
     stretched = spring.get_attribute("transform")
@@ -106,10 +107,10 @@ def test_a_support_moves_at_work_and_in_its_modes(live: Live) -> None:
     support.select_option(index=2)
     expect(page.get_by_text("the crank stands still")).to_be_visible()
     crank.fill("45")
-    page.wait_for_timeout(60)
+    live.painted()
     one = live.spot(live.joint("L"))
     crank.fill("225")  # half a swing later
-    page.wait_for_timeout(60)
+    live.painted()
     other = live.spot(live.joint("L"))
     assert np.hypot(one[0] - other[0], one[1] - other[1]) > 2
     middle = (np.array(one) + np.array(other)) / 2

@@ -11,7 +11,7 @@ import pytest
 from playwright.sync_api import Browser, Locator, expect
 
 import equipoise as eq
-from browser.live import AXE, SCREENSHOTS, Live
+from browser.live import AXE, FITS, SCREENSHOTS, Live
 from equipoise.studies import sweep
 from support.chromium import serving
 from unit.web.test_stores import STUDY
@@ -87,8 +87,7 @@ def test_designs_are_brushed_and_opened(browser: Browser, store: str) -> None:
     assert [one for one in found if one["impact"] in {"serious", "critical"}] == []
     page.screenshot(path=SCREENSHOTS / "study.png")
     page.set_viewport_size({"width": 400, "height": 900})
-    page.wait_for_timeout(200)
-    assert page.evaluate("document.documentElement.scrollWidth") <= 400
+    page.wait_for_function(f"() => {FITS}")
     page.set_viewport_size({"width": 1280, "height": 900})
     page.wait_for_timeout(200)
     frame = points.bounding_box()

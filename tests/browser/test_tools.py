@@ -6,7 +6,7 @@ import re
 
 from playwright.sync_api import expect
 
-from browser.live import Live
+from browser.live import FITS, Live
 
 FLAT = """() => [...document.querySelectorAll(".tool-side > g:not(.pale):not(.stations) > path")]
     .map(one => one.getAttribute("d")).join("")"""
@@ -48,8 +48,7 @@ def test_a_tool_is_seen_and_changed(live: Live) -> None:
     expect(live.field("engine mass")).not_to_have_value("3.6 kg")
     for width in (1280, 400):
         page.set_viewport_size({"width": width, "height": 900})
-        page.wait_for_timeout(200)
-        assert page.evaluate("document.documentElement.scrollWidth") <= width
+        page.wait_for_function(f"() => {FITS}")
         assert live.findings() == []
     page.set_viewport_size({"width": 1280, "height": 900})
     page.get_by_role("combobox", name="Example").select_option("yamashita-1")
