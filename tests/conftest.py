@@ -45,7 +45,7 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     """Make no test of a further seed, or of what is exhaustive, unless it was asked for."""
     if _by_name(metafunc.config):
         return
-    seeded = metafunc.definition.path.parent in SEEDED
+    seeded = metafunc.definition.path.parent in SEEDED or "seed" in metafunc.fixturenames
     seeds = metafunc.config.getoption("--seeds") if seeded else None
     every = metafunc.config.getoption("--exhaustive")
     marks = metafunc.definition.own_markers

@@ -271,18 +271,19 @@ def grown_is_told(found: Balanced) -> None:
         assert output_named(one.objective.output, rows if rows > 1 else 1) in told
 
 
+CHOSEN = {("crank_rocker", 0), ("scotch_yoke", 1), ("watt", 2)}
+"""On every change one on mounts, one with rows, one plain; the bundled are of other kinds."""
 BATCH = [
-    pytest.param(kind, number, marks=() if number == k % 3 else EXHAUSTIVE)
-    for k, kind in enumerate(KINDS)
+    pytest.param(kind, number, marks=() if (kind, number) in CHOSEN else EXHAUSTIVE)
+    for kind in KINDS
     for number in range(IN_A_BATCH)
 ]
-"""On every change one of each kind: two on mounts, two with rows, two plain."""
 
 
 @pytest.mark.parametrize("seed", range(50))
 @pytest.mark.parametrize(("kind", "number"), BATCH)
 def test_random_machines_with_loads(kind: str, number: int, seed: int) -> None:
-    """Of six of them, on mounts, with rows and plain; `--exhaustive --seeds 5` looks at 210."""
+    """Of three of them, on mounts, with rows and plain; `--exhaustive --seeds 5` looks at 210."""
     check(advise(loaded(kind, IN_A_BATCH * seed + number)))
 
 
