@@ -122,6 +122,7 @@ bench: $(VENV)/.installed-test
 	$(BIN)/python benchmarks/report.py
 	$(BIN)/python benchmarks/live_page.py
 	$(BIN)/python benchmarks/exudyn_slider_crank.py
+	$(BIN)/python benchmarks/squeezing_mechanism.py
 
 clean:
 	rm -rf $(VENV) build dist page/node_modules src/equipoise/web/static .pytest_cache .mypy_cache .ruff_cache .hypothesis .coverage

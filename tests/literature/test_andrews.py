@@ -2,14 +2,13 @@
 
 W. Schiehlen (ed.), "Multibody systems handbook" (1990), with the constants and the reference
 solution of the test set for initial value problem solvers (F. Mazzia, C. Magherini, University of
-Bari), in `andrews.toml`.  The axes of links K1 to K7 are such that the test set's coordinates beta,
+Bari), in the example `squeezing-mechanism`.  The axes of links K1 to K7 are such that the test set's coordinates beta,
 beta + Theta + pi, gamma, Phi + delta, delta, Omega + epsilon and epsilon are their angles.
 """
 
 from __future__ import annotations
 
 from functools import cache
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -31,7 +30,7 @@ AT_E = {
 
 @cache
 def andrews() -> Run:
-    return eq.run(eq.load(Path(__file__).with_name("andrews.toml")), 0.03, angle=START)
+    return eq.run(eq.load("squeezing-mechanism"), 0.03, angle=START)
 
 
 def test_the_linkage_at_the_start() -> None:
