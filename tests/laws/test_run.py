@@ -21,6 +21,7 @@ from equipoise.running.blocks import run_blocks, verdict
 from equipoise.running.drivers import Driver
 from equipoise.running.equation import CrankEquation
 from equipoise.running.integration import Instant, Integration
+from equipoise.running.run import Run
 from support.analyses import subject_of
 
 MASS, ARM, OWN, GRAVITY = 2.0, 0.3, 0.05, 9.81
@@ -58,6 +59,45 @@ def test_a_motor_of_a_straight_line_starts_exponentially() -> None:
     wanted = -100.0 * (1 - np.exp(-found.time / tau))
     assert found.crank_speed == pytest.approx(wanted, abs=1e-6)
     assert found.starting_time == pytest.approx(-tau * np.log(0.05), rel=1e-3)
+
+
+def test_a_stiff_start_is_followed_by_angle(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Pieces in which the speed changes too quickly are halved, which takes a twentieth of the time
+    that integration in time does; only the moment about standstill is left to that.
+    """
+    calls = []
+    original = Integration._in_time
+
+    def counted(self: Integration, begin: Instant, edge: float) -> Instant | None:
+        calls.append((begin.speed, edge - begin.angle))
+        return original(self, begin, edge)
+
+    monkeypatch.setattr(Integration, "_in_time", counted)
+    machine = eq.load("transplanter").with_drive(motor=Motor(270 * pi / 30, 20.0))
+    found = eq.run(machine, turns=5)
+    assert len(calls) == 1
+    assert calls[0][0] == 0.0
+    assert calls[0][1] < pi / 90
+    assert found.energy_error < 1e-11
+    assert found.crank_speed[-1] == pytest.approx(speed_by_scipy(machine, found), rel=1e-8)
+
+
+def speed_by_scipy(machine: eq.Machine, found: Run) -> float:
+    """Crank speed at the end of a run, rad/s, integrated in time from its second cycle on."""
+    equation, driver = CrankEquation(machine), Driver(machine)
+    begin = found.begins[-2]
+
+    def rates(_: float, state: np.ndarray) -> list[float]:
+        inertia, slope, torques = equation.at(state[0], state[1])
+        driving = float(driver.torque(np.asarray(state[1])))
+        change = (float(np.sum(torques)) + driving - slope * state[1] ** 2 / 2) / inertia
+        return [state[1], change]
+
+    solution = solve_ivp(
+        rates, (begin.time, found.end.time), [begin.angle, begin.speed], "DOP853",
+        rtol=1e-10, atol=1e-10,
+    )  # fmt: skip
+    return float(solution.y[1, -1])
 
 
 @pytest.mark.parametrize("amplitude", [0.1, 1.5, 3.0])

@@ -2,8 +2,9 @@
 
 W. Schiehlen (ed.), "Multibody systems handbook" (1990), with the constants and the reference
 solution of the test set for initial value problem solvers (F. Mazzia, C. Magherini, University of
-Bari), in the example `squeezing-mechanism`.  The axes of links K1 to K7 are such that the test set's coordinates beta,
-beta + Theta + pi, gamma, Phi + delta, delta, Omega + epsilon and epsilon are their angles.
+Bari), in the example `squeezing-mechanism`.  The axes of links K1 to K7 are such that the test
+set's coordinates beta, beta + Theta + pi, gamma, Phi + delta, delta, Omega + epsilon and epsilon
+are their angles.
 """
 
 from __future__ import annotations

@@ -36,8 +36,15 @@ whose angle is the clock."""
 WITH_CORNERS = 1e-7
 """The same with friction, whose torque has corners where what presses changes its side: time and
 speed are off by less than that, and a piece takes a hundredth of the time that one in time does."""
+HALVINGS = 5
+"""After which a part of a piece whose motion is not resolved by angle is integrated in time."""
+SPEEDING_UP = 1 / 8
+"""Share of a piece that is integrated in time where the crank speeds up: from a rest on, 1 / speed
+is resolved over parts as long as the way from that rest."""
 CLOSE, MOST_ITERATIONS = 1e-13, 8
 """Change of the kinetic energy, over its largest, at which a piece is solved; it takes 3 rounds."""
+QUICK = 1e-2
+"""Share of what a round before missed, above which slopes are computed anew."""
 NUDGE = 1e-6
 """Share of a speed by which it is changed for slopes, which only set how fast rounds converge."""
 STEADY = 1e-6
@@ -110,6 +117,23 @@ class Instant:
     electric: Array = field(default_factory=lambda: np.zeros(ELECTRIC))
 
 
+@dataclass(frozen=True, eq=False)
+class Part:
+    """A piece of the table, or a part of it.
+
+    ends : crank angles, rad.  values : (C, NODES) at its nodes.
+    coefficients : (NODES,) of the reduced inertia.
+    """
+
+    ends: tuple[float, float]
+    values: Array
+    coefficients: Array
+
+    def inertia_at(self, x: Array | float) -> Array:
+        """Reduced inertia (...), kg m2, at places (...) from -1 to 1 in it."""
+        return np.asarray(polynomials(x)[..., :NODES] @ self.coefficients)
+
+
 class Integration:
     """Follow a machine's crank.
 
@@ -125,6 +149,7 @@ class Integration:
         self.events: list[Event] = []
         self.begins: list[Instant] = []
         self.direction = 1.0
+        self.halvings = 0
 
     def follow(self, angle: float, speed: float) -> None:
         """Run from a crank angle, rad, and speed, rad/s, until something ends it."""
@@ -235,9 +260,17 @@ class Integration:
         """To the end of the piece of the table, or to what happens before; None at the end."""
         k, ahead = self.table.piece(begin.angle, self.direction)
         ends = float(self.table.lows[k]) + ahead, float(self.table.highs[k]) + ahead
-        solution = self._by_angle(begin, k, ends)
+        solution = None
+        self.halvings = max(self.halvings - 1, 0)
+        while solution is None and self.halvings <= HALVINGS:
+            part = self._part(begin, k, ends)
+            solution = self._by_angle(begin, part)
+            self.halvings += solution is None
         if solution is None:
-            return self._in_time(begin, ends[self.direction > 0])
+            edge = ends[self.direction > 0]
+            far = 1.0 if self._slows(begin) else SPEEDING_UP
+            return self._in_time(begin, begin.angle + far * (edge - begin.angle))
+        ends = part.ends
         at, within = solution
         x, kind = self._first_in(begin, ends, at)
         nodes = POINTS[:: int(self.direction)]
@@ -247,19 +280,37 @@ class Integration:
         self._record(end)
         return self._happens(kind, end)
 
+    def _part(self, begin: Instant, k: int, ends: tuple[float, float]) -> Part:
+        """What is tried next of a piece: all of it, or its rest from an instant on, halved as
+        often as `halvings` says.
+        """
+        near, far = ends[:: int(self.direction)]
+        if not self.halvings and begin.angle == near:
+            return Part(ends, self.table.values[:, k], self.table.coefficients[k][0])
+        far = begin.angle + (far - begin.angle) * 0.5**self.halvings
+        low, high = min(begin.angle, far), max(begin.angle, far)
+        half = (ends[1] - ends[0]) / 2
+        places = (low - ends[0]) / half - 1, (high - ends[0]) / half - 1
+        return Part((low, high), *self.table.within(k, *places))
+
+    def _slows(self, now: Instant) -> bool:
+        """Whether the speed of the crank falls."""
+        state = np.array([now.angle, now.speed, *now.electric])
+        return self._rates(now.time, state)[1] * self.direction < 0
+
     def _by_angle(
-        self, begin: Instant, k: int, ends: tuple[float, float]
+        self, begin: Instant, part: Part
     ) -> tuple[Callable[[float], Instant], Callable[[Array], Array]] | None:
         """The motion in a piece by places from -1 to 1 in it: an instant, and rows of the track;
         None where the crank is so slow that the angle is no clock.
         """
-        values = self.table.values[:, k]
+        values, ends = part.values, part.ends
         inertia, half = values[0], (ends[1] - ends[0]) / 2
         start = min(max((begin.angle - ends[0]) / half - 1, -1.0), 1.0)
         paths = half * (PATHS[start] if start in PATHS else integral_to(POINTS, start))
-        began = float(self._inertia_at(k, start)) * begin.speed**2 / 2
+        began = float(part.inertia_at(start)) * begin.speed**2 / 2
         energy = np.full(len(POINTS), began)
-        inverse = None
+        inverse, before = None, inf
         for _ in range(MOST_ITERATIONS):
             if not np.all(energy > 0):
                 return None
@@ -267,11 +318,13 @@ class Integration:
             current = self._current(speed, paths, begin)
             torques = self._torques(values, speed, current)
             missed = began + paths @ np.sum(torques, axis=0) - energy
-            if np.max(np.abs(missed)) <= CLOSE * np.max(energy):
+            most = float(np.max(np.abs(missed)))
+            if most <= CLOSE * np.max(energy):
                 break
-            if inverse is None:
+            if inverse is None or most > QUICK * before:
                 slopes = self._slopes(values, speed, torques, (paths, begin)) / energy
                 inverse = np.linalg.inv(np.eye(len(POINTS)) - paths @ slopes)
+            before = most
             energy = energy + inverse @ missed
         else:
             return None
@@ -281,23 +334,24 @@ class Integration:
             if roughness(smooth) > resolved * np.max(np.abs(smooth)):
                 return None
         rates = np.array([pace, *pace * self.driver.electric_rates(current, speed), *torques])
-        return self._dense(begin, k, ends, (start, began, rates))
+        return self._dense(begin, part, (start, began, rates))
 
     def _dense(
-        self, begin: Instant, k: int, ends: tuple[float, float], found: tuple[float, float, Array]
+        self, begin: Instant, part: Part, found: tuple[float, float, Array]
     ) -> tuple[Callable[[float], Instant], Callable[[Array], Array]]:
         """The motion in a piece anywhere in it, as of `_by_angle`.
 
         found : place of its begin, kinetic energy there, and rates by crank angle at the nodes of
             time, of the motor's circuit and of works.
         """
-        (start, began, rates), half = found, (ends[1] - ends[0]) / 2
+        (start, began, rates), ends = found, part.ends
+        half = (ends[1] - ends[0]) / 2
 
         def rows(x: Array) -> Array:
             gained = half * integral_to(x, start) @ rates.T
             angle = ends[0] + half * (x + 1)
             energy = began + np.sum(gained[:, 1 + ELECTRIC :], axis=1)
-            now = self.direction * np.sqrt(2 * energy / self._inertia_at(k, x))
+            now = self.direction * np.sqrt(2 * energy / part.inertia_at(x))
             electric = begin.electric + gained[:, 1 : 1 + ELECTRIC]
             if not self.driver.lags:
                 electric[:, 0] = self.driver.current(now)
@@ -309,9 +363,6 @@ class Integration:
             return replace(found, angle=ends[0] if x == -1 else ends[1] if x == 1 else found.angle)
 
         return at, rows
-
-    def _inertia_at(self, k: int, x: Array | float) -> Array:
-        return np.asarray(polynomials(x)[..., :NODES] @ self.table.coefficients[k][0])
 
     @staticmethod
     def _instant(row: Array) -> Instant:
@@ -362,7 +413,7 @@ class Integration:
             if ends[0] <= angle <= ends[1] and (angle - begin.angle) * far > AT_EDGE:
                 found.append(((angle - ends[0]) / half - 1, kind))
         for kind, time in self._times():
-            if begin.time < time <= at(far).time:
+            if begin.time < time < inf and time <= at(far).time:
                 start = (begin.angle - ends[0]) / half - 1
 
                 def left(x: float, time: float = time) -> float:

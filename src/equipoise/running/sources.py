@@ -87,6 +87,8 @@ class OfSoil(Source):
     def torque(self, columns: Array, speed: Array) -> Array:
         assert self.planting.soil is not None
         depth, x, y = columns.reshape(3, -1, *columns.shape[1:])
+        if not np.any(depth > 0):  # most of a turn
+            return np.zeros_like(speed)
         way = x + 1j * y
         over_ground = way * speed + self.planting.forward(speed)
         force = against_soil(self.planting.soil, depth, over_ground)

@@ -107,6 +107,14 @@ class Tabulated:
         ahead = self.period * floor(inside / self.period)
         return bisect_right(self._starts, inside - ahead) - 1, ahead
 
+    def within(self, k: int, low: float, high: float) -> tuple[Array, Array]:
+        """Values (C, NODES) at the nodes of a part of a piece, between places from -1 to 1 in it,
+        and coefficients (NODES,) of the first of them.
+        """
+        places = (low + high) / 2 + (high - low) / 2 * POINTS
+        values = self.coefficients[k] @ polynomials(places)[:, :NODES].T
+        return values, TO_CHEBYSHEV @ values[0]
+
     def at(self, theta: float) -> tuple[Array, Array]:
         """Values and derivatives (C,) at a crank angle."""
         k, ahead = self.piece(theta, 1.0)

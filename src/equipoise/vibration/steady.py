@@ -215,6 +215,9 @@ def _straight(motor: Motor) -> Callable[[Array], Array]:
     """A curve of straight lines: torque by the motor's speed."""
     speeds, torques = _rows(motor)
     slopes = np.diff(torques) / np.diff(speeds)
+    if len(slopes) == 1:  # the usual case, asked for at every step of a run
+        low, first, slope = float(speeds[0]), float(torques[0]), float(slopes[0])
+        return lambda own: np.asarray(first + slope * (own - low))
 
     def torque(own: Array) -> Array:
         k = np.clip(np.searchsorted(speeds, own.real, side="right") - 1, 0, len(slopes) - 1)
