@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import runpy
+import shlex
 from pathlib import Path
 from urllib.parse import urlsplit
 
@@ -75,7 +76,7 @@ def test_every_machine_of_the_gallery_opens_live(site: Path, language: str) -> N
 def test_what_is_to_be_tried_is_a_command(name: str) -> None:
     """With options that it has."""
     _, to_try = lessons((DOCS / "examples.md").read_text(encoding="utf-8"))[name]
-    words = to_try.strip("`").split()
+    words = shlex.split(to_try.strip("`"))
     assert words[0] == "equipoise"
     app.parse_args(words[1:], exit_on_error=False, print_error=False)
 
