@@ -65,7 +65,7 @@ def host(hosted: Site) -> Iterator[str]:
 def browser() -> Iterator[Browser]:
     """A Chromium."""
     if path_of_chromium() is None:
-        unavailable("there is no Chromium (Debian: apt-get install chromium)")
+        unavailable("there is no Chromium (Debian: apt-get install chromium-headless-shell)")
     expect.set_options(timeout=SECONDS * 1000)
     with chromium() as browser:
         yield browser
