@@ -19,12 +19,12 @@ from typing import Any
 import numpy as np
 
 from equipoise.codegen.figures import NO_ASSEMBLY, NO_FULL_TURN
+from equipoise.design.processes import Task
 from equipoise.design.spreads import Choices, Normal, Range
 from equipoise.design.variables import Variable
 from equipoise.errors import UsageError
 from equipoise.studies import run
 from equipoise.studies.design_space import Output, Sampling
-from equipoise.studies.executors import Task
 from equipoise.studies.outcomes import Block, Outcome
 from equipoise.studies.sampling import samples
 from equipoise.studies.store import Store

@@ -173,8 +173,8 @@ OPTIONS = {
     "plant fit": ["FILE", "TARGETS", "--out", "--seed", "--speed", *OUTPUTS],
     "plot": ["FILE", "--only", "--output", "--at", "--speed", "--units", "--out", "--format"],
     "plot map": [
-        *["FILE", "FIRST", "SECOND", "OUTPUT", "--set", "--points", "--speed", "--units"],
-        *["--out", "--format"],
+        *["FILE", "FIRST", "SECOND", "OUTPUT", "--set", "--points", "--speed"],
+        *["--workers", "--units", "--out", "--format"],
     ],
     "report": ["FILE", "--out", "--language", "--pdf", "--speed", "--units"],
     "respond": ["FILE", "--model", "--speed", "--speeds", "--drive", "--full", *OUTPUTS],

@@ -16,6 +16,7 @@ from equipoise.cli.options import (
     Many,
     Names,
     Speed,
+    WorkerCount,
     blaming,
     count,
     ends_of_range,
@@ -140,6 +141,7 @@ def landscape(
     set: Annotated[Many, wants("NUMBER=VALUE")] = None,
     points: Annotated[int, count(5, MOST_POINTS)] = POINTS,
     speed: Speed = None,
+    workers: WorkerCount = None,
     pictures: Folder = Folder(),
 ) -> None:
     """An output over two numbers of a machine.
@@ -157,6 +159,9 @@ def landscape(
         A number that is set first, "counterweights.crank.mass = 1 kg".  May be repeated.
     points
         Values of each number.
+    workers
+        Processes for machines that differ in more than masses; as many as there are processors if
+        not given.
     """
     from equipoise.figures.studies import landscape as drawn_map
     from equipoise.figures.studies import told_best
@@ -175,7 +180,7 @@ def landscape(
     if speed is not None:
         numbers["drive.speed"] = speed
     with naming(file), counted("machine") as progress:
-        found = studies.landscape(model, dict(both), objective, numbers, progress)
+        found = studies.landscape(model, dict(both), objective, numbers, progress, workers)
     with pictures.showing(model.base()):
         write_pictures({"landscape": drawn_map(found)}, folder, pictures.format)
         best = told_best(found)

@@ -20,9 +20,9 @@ from equipoise.quantities.numbers import rate_told, time_told
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
+    from equipoise.design.evaluator import PooledEvaluator
     from equipoise.studies.blocks import Unit
     from equipoise.studies.outcomes import Outcome, Progress
-    from equipoise.studies.pooling import PooledEvaluator
     from equipoise.studies.study import Study
 
 SECONDS, GROWTH, LONGEST = 5.0, 0.5, 60.0
@@ -220,7 +220,7 @@ class Watched:
 
         self.study, self.told, self.workers = study, told, workers
         self.tally = Tally(study.outputs, 0)
-        self.compute: PooledEvaluator | None = None
+        self.compute: PooledEvaluator[Outcome] | None = None
 
     def __enter__(self) -> Self:
         return self
@@ -231,11 +231,11 @@ class Watched:
 
     def __call__(self, values: Any) -> Outcome:
         """Compute designs (P, d)."""
+        from equipoise.studies.evaluate import pooled
         from equipoise.studies.outcomes import Block
-        from equipoise.studies.pooling import PooledEvaluator
 
         if self.compute is None:
-            self.compute = PooledEvaluator(self.study, self.workers)
+            self.compute = pooled(self.study, self.workers)
         outcome = self.compute(values)
         self.tally.add(Block(values, outcome), computed=True)
         return outcome

@@ -8,6 +8,7 @@ of every command, at some milliseconds a design; the other routes take what they
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
 from math import isfinite, nan, remainder
 from typing import TYPE_CHECKING, Any, cast
 
@@ -26,6 +27,7 @@ from equipoise.codegen.figures import (
     NOT_STILL,
     figure_of,
 )
+from equipoise.design.evaluator import PooledEvaluator
 from equipoise.errors import ChangePointError, EquipoiseError, ModelError, MotionError, RangeError
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.parts.machine import Machine
@@ -69,6 +71,22 @@ def evaluator(study: Study, threads: int | None = None) -> Evaluator:
     """
     quick = _quick(study, threads)
     return OneByOne(study) if quick is None else Routes(study, *quick)
+
+
+def pooled(study: Study, workers: int | None = None) -> PooledEvaluator[Outcome]:
+    """The same, shared out among processes where no loop computes everything.
+
+    workers : processes; as many as this machine has processors if not given.
+
+    Raises
+    ------
+    ModelError : an output cannot be computed of any design.
+    UsageError : fewer than one worker.
+    """
+    alone = evaluator(study)
+    shared = not getattr(alone, "compiled", False)
+    make = partial(evaluator, study, threads=1)
+    return PooledEvaluator(alone, make, Outcome.joined, workers, shared=shared)
 
 
 class Routes:

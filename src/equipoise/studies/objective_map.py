@@ -10,8 +10,9 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from math import nan
-from typing import Any, ClassVar, Self
+from typing import Any, Self
 
 import numpy as np
 
@@ -26,6 +27,7 @@ from equipoise.balancing.objectives import (
 )
 from equipoise.balancing.problem import Problem
 from equipoise.balancing.room import pin_of
+from equipoise.design.evaluator import PooledEvaluator
 from equipoise.errors import EquipoiseError, MassError, ModelError, UsageError
 from equipoise.i18n import Note, to_say
 from equipoise.mechanism.assembly.family import with_columns
@@ -52,6 +54,8 @@ MOST = 1_000
 """Values of either number."""
 CLOSE = 1e-7
 """Share of the ranges to which the best place is found."""
+LINEAR_AT_ONCE = 65_536
+"""Machines that differ in masses, after which the progress is told."""
 AT_ONCE = 128
 """Machines whose signals are computed at a time, so that these stay in the processor's cache."""
 COUNTERWEIGHT = re.compile(r"counterweights\.(?P<link>.+)\.(?P<key>mass|radius|direction)")
@@ -117,7 +121,6 @@ class SingleValues:
     maker: Variants
     of: Objective
     paths: tuple[str, str]
-    at_once: ClassVar[int] = 1
 
     def __call__(self, points: Array) -> Array:
         """The objective (P,) at values (P, 2); NaN where there is none or it cannot turn."""
@@ -178,7 +181,6 @@ class LinearValues:
     start: Mapping[str, Array]
     signal: Signal
     measure: Measure
-    at_once: ClassVar[int] = 65_536
 
     @classmethod
     def of(
@@ -335,6 +337,7 @@ def landscape(
     of: Objective,
     given: Mapping[str, float] | None = None,
     progress: Progress | None = None,
+    workers: int | None = None,
 ) -> Landscape:
     """An objective of balancing at every pair of values of two numbers.
 
@@ -348,6 +351,8 @@ def landscape(
     of : what is told, such as ``Objective("shaking_force.y", "ripple")``.
     given : other numbers to set first, by path.
     progress : called with how many machines are analysed, and how many there are.
+    workers : processes that analyse machines one by one, where that takes more than some seconds;
+        as many as this machine has processors if not given.
 
     Raises
     ------
@@ -377,11 +382,7 @@ def landscape(
     points = np.stack([one.ravel() for one in np.meshgrid(x, y)], axis=1)
     linear = LinearValues.of(maker, of, paths, points)
     value = linear or SingleValues(maker, of, paths)
-    found = np.empty(len(points))
-    for k in range(0, len(points), value.at_once):
-        found[k : k + value.at_once] = value(points[k : k + value.at_once])
-        if progress is not None:
-            progress(min(k + value.at_once, len(points)), len(points))
+    found = _computed(value, points, progress, workers)
     if np.all(np.isnan(found)):
         raise UsageError(f"no linkage turns with {paths[0]} and {paths[1]} in these ranges")
     lowest = int(highest_at(np.where(np.isnan(found), -np.inf, -found), smooth=False))
@@ -393,6 +394,31 @@ def landscape(
     values = found.reshape(len(y), len(x))
     asked = (of, paths, given, dimensions, words, x, y, values, unit_of(of, base))
     return Landscape(base.with_balance(None), *asked, best, least, start, before)
+
+
+def _computed(
+    value: LinearValues | SingleValues,
+    points: Array,
+    progress: Progress | None,
+    workers: int | None,
+) -> Array:
+    """The objective (P,) at points (P, 2); what is analysed one by one is shared out."""
+    tell = None if progress is None else lambda done: progress(done, len(points))
+    linear = isinstance(value, LinearValues)
+    make = partial(_itself, value)
+    with PooledEvaluator(value, make, np.concatenate, workers, shared=not linear) as evaluate:
+        if not linear:
+            return evaluate(points, tell)
+        found = []
+        for k in range(0, len(points), LINEAR_AT_ONCE):
+            found.append(evaluate(points[k : k + LINEAR_AT_ONCE]))
+            if tell is not None:
+                tell(min(k + LINEAR_AT_ONCE, len(points)))
+        return np.concatenate(found)
+
+
+def _itself(value: Values) -> Values:
+    return value
 
 
 def _checked(

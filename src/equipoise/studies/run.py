@@ -16,22 +16,15 @@ from typing import TYPE_CHECKING, Any, cast
 
 from equipoise.codegen.backends import processors
 from equipoise.codegen.figures import REASONS
+from equipoise.design.processes import Pool, Processes, StoppedError, Task, Threads, computed
 from equipoise.design.spreads import Choices
 from equipoise.errors import UsageError, needed
 from equipoise.fence import place_of
 from equipoise.folders import Folder
 from equipoise.partial import beside, made
 from equipoise.quantities import SI
+from equipoise.studies.clusters import Cluster
 from equipoise.studies.evaluate import evaluator
-from equipoise.studies.executors import (
-    Cluster,
-    Pool,
-    Processes,
-    StoppedError,
-    Task,
-    Threads,
-    computed,
-)
 from equipoise.studies.outcomes import Block, Evaluator, Progress, Tally
 from equipoise.studies.sampling import samples
 from equipoise.studies.store import (

@@ -22,6 +22,7 @@ from equipoise.design.spreads import Choices, Range
 from equipoise.errors import ModelError, UsageError, lacking
 from equipoise.results.result import Result
 from equipoise.sequences import sobol
+from equipoise.studies.evaluate import pooled
 from equipoise.studies.outcomes import (
     Block,
     Evaluator,
@@ -35,7 +36,6 @@ from equipoise.studies.outcomes import (
     signs_of,
     why_none,
 )
-from equipoise.studies.pooling import PooledEvaluator
 from equipoise.studies.sampling import canonical, values_at
 from equipoise.studies.study import Study
 
@@ -155,7 +155,7 @@ def search(
         raise UsageError(f"got {generations} generations; give 1 to {MOST_GENERATIONS}")
     seed = study.sampling.seed if seed is None else seed
     with ExitStack() as held:
-        evaluate = compute or held.enter_context(PooledEvaluator(study, workers))
+        evaluate = compute or held.enter_context(pooled(study, workers))
         return _search(_Archive(study, evaluate), population, generations, seed, progress)
 
 

@@ -18,8 +18,8 @@ import numpy as np
 from equipoise.codegen.figures import COMPUTED
 from equipoise.errors import ModelError, UsageError
 from equipoise.results.result import Result
+from equipoise.studies.evaluate import pooled
 from equipoise.studies.outcomes import Evaluator, Outcome, failures, kept, why_none
-from equipoise.studies.pooling import PooledEvaluator
 from equipoise.studies.sampling import samples
 from equipoise.studies.study import SLOW_CHUNK
 from equipoise.studies.variance import (
@@ -143,7 +143,7 @@ def tolerance(
     """
     _check(study)
     with ExitStack() as held:
-        evaluate = compute or held.enter_context(PooledEvaluator(study, workers))
+        evaluate = compute or held.enter_context(pooled(study, workers))
         return _tolerances(study, evaluate, progress)
 
 

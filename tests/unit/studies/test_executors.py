@@ -19,10 +19,12 @@ import numpy as np
 import psutil
 import pytest
 
+from equipoise.design import processes
+from equipoise.design.processes import Processes, StoppedError, Threads, computed
 from equipoise.errors import UsageError
-from equipoise.studies import executors
+from equipoise.studies import clusters
+from equipoise.studies.clusters import Cluster
 from equipoise.studies.design_space import Sampling
-from equipoise.studies.executors import Cluster, Processes, StoppedError, Threads, computed
 from equipoise.studies.outcomes import Block
 from equipoise.studies.sampling import samples
 from support import studies
@@ -83,11 +85,11 @@ def test_designs_at_which_processes_always_die_end_the_sweep(tmp_path: Path) -> 
     with (
         closing(Processes(orders.task, 1)) as pool,
         pytest.raises(
-            StoppedError, match=f"died {executors.TRIES} times in a row, .* give fewer w"
+            StoppedError, match=f"died {processes.TRIES} times in a row, .* give fewer w"
         ),
     ):
         list(computed(pool, CHUNKS[:1]))
-    assert len(list(tmp_path.glob("0-*"))) == executors.TRIES
+    assert len(list(tmp_path.glob("0-*"))) == processes.TRIES
 
 
 def test_processes_stop_at_once_when_they_are_closed(tmp_path: Path) -> None:
@@ -106,7 +108,7 @@ IN_A_PROCESS = """
 import sys
 from contextlib import closing
 from pathlib import Path
-from equipoise.studies.executors import Processes, computed
+from equipoise.design.processes import Processes, computed
 from support.studies import Orders, short_study
 orders = Orders(short_study(200), Path(sys.argv[1]), pause=60.0)
 with closing(Processes(orders.task, 2)) as pool:  # not below a question for __main__
@@ -211,8 +213,8 @@ def test_a_cluster_computes_every_chunk_also_if_a_worker_is_killed_at_work(
 def test_workers_with_other_versions_are_refused(
     address: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    here = executors.versions()
-    monkeypatch.setattr(executors, "versions", lambda: {**here, "numpy": "1.0"})
+    here = clusters.versions()
+    monkeypatch.setattr(clusters, "versions", lambda: {**here, "numpy": "1.0"})
     told = f"the worker on {socket.gethostname()} has numpy {here['numpy']}, and whoever .* has 1.0"
     with (
         closing(Cluster(Orders(STUDY, tmp_path).task, address)) as pool,
@@ -222,7 +224,7 @@ def test_workers_with_other_versions_are_refused(
 
 
 def test_what_the_study_itself_raises_passes_through(address: str, tmp_path: Path) -> None:
-    task = executors.Task(studies.refuse, b"")
+    task = processes.Task(studies.refuse, b"")
     for pool in (Threads(task, 1), Cluster(task, address)):
         with closing(pool), pytest.raises(UsageError, match="no study at 0") as caught:
             list(computed(pool, CHUNKS[:1]))
@@ -236,12 +238,12 @@ def test_a_cluster_that_lacks_equipoise_or_goes_is_told(
     (tmp_path / "equipoise" / "__init__.py").write_text(
         'raise ModuleNotFoundError("No module named equipoise", name="equipoise")'
     )
-    monkeypatch.setattr(executors, "JOIN", 0.2)
+    monkeypatch.setattr(clusters, "JOIN", 0.2)
     task = Orders(STUDY, tmp_path).task
     with scheduler(tmp_path) as (address, process):
         with pytest.raises(StoppedError, match="has no workers; start some by: dask worker tcp"):
             Cluster(task, address)
-        monkeypatch.setattr(executors, "JOIN", 20)
+        monkeypatch.setattr(clusters, "JOIN", 20)
         with worker(address, tmp_path), closing(Cluster(task, address)) as pool:
             with pytest.raises(StoppedError, match="a worker of the cluster has no equipoise; ins"):
                 list(computed(pool, CHUNKS))
@@ -254,7 +256,7 @@ def test_a_cluster_that_lacks_equipoise_or_goes_is_told(
 def test_no_scheduler_is_told_in_a_sentence(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(executors, "ANSWER", 0.5)
+    monkeypatch.setattr(clusters, "ANSWER", 0.5)
     task = Orders(STUDY, tmp_path).task
     level = logging.getLogger("distributed").level
     with socket.create_server(("127.0.0.1", 0)) as silent:

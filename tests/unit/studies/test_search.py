@@ -316,5 +316,5 @@ def test_the_time_to_breed_is_measured_without_computing() -> None:
 
     outputs = (*made("f", "g"), Output("x", value="a.c", at_least=2.0, at_most=3.0))
     some = of(*outputs)
-    with mock.patch.object(searching, "PooledEvaluator", failing):
+    with mock.patch.object(searching, "pooled", failing):
         assert searching.breeding_time(some, 10) > 0

@@ -8,12 +8,14 @@ from typing import Any
 import numpy as np
 import pytest
 
+from equipoise.design import evaluator as pooling
 from equipoise.errors import UsageError
+from equipoise.mechanism.parts.objectives import Objective
 from equipoise.schema.studies import load_study
-from equipoise.studies import pooling
+from equipoise.schema.template import Template
 from equipoise.studies.design_space import Output
-from equipoise.studies.evaluate import evaluator
-from equipoise.studies.pooling import PooledEvaluator
+from equipoise.studies.evaluate import evaluator, pooled
+from equipoise.studies.objective_map import landscape
 from equipoise.studies.sampling import samples
 from equipoise.studies.searching import search
 from equipoise.studies.study import Study
@@ -47,7 +49,7 @@ def test_processes_give_the_figures_in_the_order_of_the_designs(at_once: list[An
     some = slow("study-of-balance", 64)
     values = samples(some, 0, 23)
     values[5] = -values[5]  # no machine
-    with PooledEvaluator(some, 2) as evaluate:
+    with pooled(some, 2) as evaluate:
         found, again = evaluate(values), evaluate(values[::-1])
     alone = evaluator(some)(values)
     assert alone.reason[5] != 0
@@ -60,14 +62,14 @@ def test_processes_give_the_figures_in_the_order_of_the_designs(at_once: list[An
 
 def test_what_is_over_soon_starts_no_process() -> None:
     some = slow("study-of-balance", 64)
-    with PooledEvaluator(some, 2) as evaluate:
+    with pooled(some, 2) as evaluate:
         evaluate(samples(some, 0, 4))
         assert evaluate.pool is None
 
 
 def test_loops_share_out_nothing(at_once: list[Any]) -> None:
     some = load_study("study-of-balance")
-    with PooledEvaluator(some, 2) as evaluate:
+    with pooled(some, 2) as evaluate:
         evaluate(samples(some, 0, 64))
         assert evaluate.pool is None
     assert not at_once
@@ -80,9 +82,25 @@ def test_a_search_is_the_same_with_any_number_of_workers(at_once: list[Any]) -> 
     assert at_once
 
 
+def test_a_map_is_the_same_with_any_number_of_workers(at_once: list[Any]) -> None:
+    """Of lengths, of which some cannot turn; bit for bit."""
+    over = {
+        "links.crank.points.B.x": np.linspace(0.011, 0.081, 5),
+        "links.coupler.points.C.x": np.linspace(0.041, 0.151, 5),
+    }
+    one, two = (
+        landscape(Template.load("yamashita-1"), over, Objective("shaking_force"), workers=k)
+        for k in (1, 2)
+    )
+    assert 0 < np.isnan(one.values).sum() < 25
+    assert np.array_equal(one.values, two.values, equal_nan=True)
+    assert (one.best, one.least, one.before) == (two.best, two.least, two.before)
+    assert sum(len(part.values) for part in at_once) == 24, "all but the first"
+
+
 @pytest.mark.parametrize("count", [0, -1])
 def test_fewer_than_one_worker_is_refused(count: int) -> None:
     with pytest.raises(UsageError, match=f"got {count} workers; give 1 or more"):
-        PooledEvaluator(load_study("study-of-balance"), count)
+        pooled(load_study("study-of-balance"), count)
     with pytest.raises(UsageError, match="workers"):
         tolerance(load_study("study-of-tolerances"), workers=count)

@@ -1,0 +1,145 @@
+"""What computes the designs of a problem, in processes of this machine where that takes long.
+
+A search and an analysis of tolerances draw designs as they go on, and a map has them all.  Those
+that compiled loops compute take microseconds, and the loops use all processors; the others are
+shared out.
+"""
+
+from __future__ import annotations
+
+import pickle
+from collections.abc import Callable, Sequence
+from functools import lru_cache
+from time import monotonic
+from typing import Any, Generic, NamedTuple, Self, TypeVar
+
+import numpy as np
+
+from equipoise.codegen.backends import processors
+from equipoise.design.processes import Processes, Task, computed
+from equipoise.errors import UsageError
+
+Array = np.ndarray[Any, Any]
+Figures = TypeVar("Figures")
+"""What is computed of some designs, in their order: an array (P, ...), or figures with reasons."""
+Evaluate = Callable[[Array], Figures]
+"""Computes designs (P, d), values in SI units."""
+OnDesigns = Callable[[int], None]
+"""Is called with the designs of a call that are computed so far."""
+
+PATIENCE = 2.0
+"""Time of computing alone after which processes are started, which takes about as long, s."""
+QUICK = 0.2
+"""Time below which twice as many designs are computed alone before the clock is read again, s."""
+SHARES = 4
+"""Parts for each process at least, so that all end at about the same time."""
+PART = 1.0
+"""Time that a part takes at most, so that progress is told, s."""
+
+
+class DesignSlice(NamedTuple):
+    """Some of the designs that are computed together.
+
+    begin : place of the first among them.
+    values : (P, d), SI units.
+    """
+
+    begin: int
+    values: Array
+
+
+class PooledEvaluator(Generic[Figures]):
+    """Computes designs; a context manager, which ends its processes.
+
+    Parameters
+    ----------
+    alone : computes designs here.
+    make : makes the same in another process, to which it goes as bytes.
+    join : what several parts give, one after the other, as one.
+    workers : processes; as many as this machine has processors if not given.  With one, designs
+        are computed here.
+    shared : whether processes help at all; not where loops use all processors.
+
+    Raises
+    ------
+    UsageError : fewer than one worker.
+    """
+
+    def __init__(
+        self,
+        alone: Evaluate[Figures],
+        make: Callable[[], Evaluate[Figures]],
+        join: Callable[[Sequence[Figures]], Figures],
+        workers: int | None = None,
+        *,
+        shared: bool = True,
+    ) -> None:
+        count = processors() if workers is None else workers
+        if count < 1:
+            raise UsageError(f"got {count} workers; give 1 or more")
+        self.alone, self.make, self.join, self.workers = alone, make, join, count
+        self.shared = count > 1 and shared
+        self.spent, self.count, self.step = 0.0, 0, 1
+        self.pool: Processes | None = None
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """End its processes."""
+        if self.pool is not None:
+            self.pool.close()
+
+    def __call__(self, values: Array, progress: OnDesigns | None = None) -> Figures:
+        """What is computed of designs (P, d), SI units, in their order.
+
+        Raises
+        ------
+        UsageError : processes die, such as for want of memory.
+        """
+        if not self.shared and progress is None:
+            return self.alone(values)
+        tell = progress or (lambda _: None)
+        outcomes, begin = [], 0
+        while begin < len(values) and self.pool is None:
+            start = monotonic()
+            part = values[begin : begin + self.step]
+            outcomes.append(self.alone(part))
+            begin += len(part)
+            took = monotonic() - start
+            self.spent, self.count = self.spent + took, self.count + len(part)
+            if took < QUICK:
+                self.step *= 2
+            tell(begin)
+            if self.spent > PATIENCE and self.shared:
+                self.pool = Processes(Task(_compute, pickle.dumps(self.make)), self.workers)
+        if begin < len(values) and self.pool is not None:
+            outcomes += self._shared_out(self.pool, values[begin:], lambda k: tell(begin + k))
+        return self.join(outcomes)
+
+    def _shared_out(self, pool: Processes, values: Array, tell: OnDesigns) -> list[Figures]:
+        share = -(-len(values) // (SHARES * self.workers))
+        size = max(1, min(share, int(PART * self.count / max(self.spent, 1e-9))))
+        starts = range(0, len(values), size)
+        parts = (DesignSlice(start, values[start : start + size]) for start in starts)
+        found, done = {}, 0
+        for part, outcome in computed(pool, parts):
+            found[part.begin] = outcome
+            done += len(part.values)
+            tell(done)
+        return [found[start] for start in starts]
+
+
+def _compute(packed: bytes, part: DesignSlice) -> Any:
+    """In another process: some designs."""
+    return _made(packed)(part.values)
+
+
+@lru_cache(maxsize=2)
+def _made(packed: bytes) -> Evaluate[Any]:
+    """What computes, made once in a process."""
+    made: Evaluate[Any] = pickle.loads(packed)()
+    return made

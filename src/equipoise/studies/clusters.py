@@ -1,0 +1,146 @@
+"""Workers of a Dask scheduler, who compute chunks as processes of this machine do."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import pickle
+import warnings
+from collections.abc import Callable, Iterator
+from concurrent.futures import CancelledError, Future, ThreadPoolExecutor
+from contextlib import ExitStack, contextmanager, suppress
+from dataclasses import dataclass
+from socket import gethostname
+from time import monotonic, sleep
+from typing import Any
+
+from equipoise.design.processes import DEAD, Pool, StoppedError, Task
+from equipoise.errors import needed
+from equipoise.studies.store import brief, versions
+
+ANSWER = 5.0
+"""Time in which a scheduler has to answer, s."""
+JOIN = 10.0
+"""Time that a cluster may be without workers, s: those that died are started again."""
+LOGS = ("distributed", "distributed.client", "tornado.application")
+
+
+class SilentError(StoppedError):
+    """No scheduler answers."""
+
+
+class Cluster(Pool):
+    """Workers of a Dask scheduler.
+
+    Raises
+    ------
+    StoppedError : no scheduler answers at `address`, or it has no workers.
+    """
+
+    def __init__(self, task: Task, address: str) -> None:
+        self.task, self.address = task, address
+        self.rpc = needed("distributed.core", "a cluster").rpc
+        self.seen = monotonic()
+        with ExitStack() as held:
+            held.enter_context(_quiet())
+            while not self._counted():
+                sleep(0.2)
+            distributed = needed("distributed", "a cluster")
+            with warnings.catch_warnings():  # of versions, which each chunk looks after
+                warnings.simplefilter("ignore")
+                client = distributed.Client(address, timeout=ANSWER, set_as_default=False)
+            held.callback(client.close)
+            self.executor = client.get_executor(pure=False)
+            self.held = held.pop_all()
+
+    def submit(self, chunk: Any) -> Future[Any]:
+        call = Call(_compute, (versions(), self.task.function, self.task.study, chunk))
+        future: Future[Any] = self.executor.submit(pickle.loads, pickle.dumps(call))
+        return future
+
+    def look(self) -> None:
+        with suppress(SilentError):  # if it has gone for good, the chunks under way will tell
+            self._counted()
+
+    def _counted(self) -> int:
+        """Threads of all workers; there is room for twice as many chunks, so that none waits."""
+        try:
+            with ThreadPoolExecutor(1) as aside:  # a notebook has a loop in this thread
+                found = aside.submit(asyncio.run, self._identity()).result()
+        except Exception as error:  # whatever may listen there
+            raise SilentError(
+                f"no Dask scheduler answers at {self.address} ({brief(error)}); see whether it "
+                "runs, and whether a firewall is between"
+            ) from error
+        threads: int = found["total_threads"]
+        self.room = max(1, 2 * threads)
+        if threads:
+            self.seen = monotonic()
+        elif monotonic() - self.seen > JOIN:
+            raise StoppedError(
+                f"the Dask scheduler at {self.address} has no workers; start some by: dask worker "
+                f"{self.address}"
+            )
+        return threads
+
+    async def _identity(self) -> dict[str, Any]:
+        """What the scheduler says of itself."""
+        async with asyncio.timeout(ANSWER), self.rpc(self.address) as scheduler:
+            found: dict[str, Any] = await scheduler.identity()
+        return found
+
+    def close(self) -> None:
+        """Leave what is not finished, and the cluster to others."""
+        self.executor.shutdown(wait=False)
+        self.held.close()
+
+    def explained(self, error: Exception) -> StoppedError | None:
+        if isinstance(error, ModuleNotFoundError):
+            return StoppedError(
+                f"a worker of the cluster has no {error.name}; install the same on all hosts"
+            )
+        if isinstance(error, CancelledError):
+            return StoppedError(f"the Dask scheduler at {self.address} has gone")
+        killed = needed("distributed", "a cluster").KilledWorker
+        return StoppedError(DEAD) if isinstance(error, killed) else None
+
+
+@dataclass(frozen=True)
+class Call:
+    """A function and its arguments; reading it from its bytes calls it.
+
+    What Dask cannot read ends a worker.  It can read bytes, wherever nothing else is installed, and
+    whatever goes wrong then is told.
+    """
+
+    function: Callable[..., Any]
+    arguments: tuple[Any, ...]
+
+    def __reduce__(self) -> tuple[Callable[..., Any], tuple[Any, ...]]:
+        return self.function, self.arguments
+
+
+def _compute(
+    wanted: dict[str, str], function: Callable[[bytes, Any], Any], study: bytes, chunk: Any
+) -> Any:
+    """On a worker: compute a chunk, if it has the versions of whoever asks."""
+    for name, found in versions().items():
+        if found != wanted.get(name):
+            raise StoppedError(
+                f"the worker on {gethostname()} has {name} {found}, and whoever asks it has "
+                f"{wanted.get(name)}; install the same on all hosts"
+            )
+    return function(study, chunk)
+
+
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """Keep the libraries from writing about what is told in a sentence."""
+    levels = {log: log.level for log in map(logging.getLogger, LOGS)}
+    for log in levels:
+        log.setLevel(logging.CRITICAL + 1)
+    try:
+        yield
+    finally:
+        for log, level in levels.items():
+            log.setLevel(level)
