@@ -79,7 +79,7 @@ def test_modules_are_imported_by_statements() -> None:
     names = {
         file.relative_to(ROOT).as_posix() for file in FILES if "import_module" in text_of(file)
     }
-    assert names == {"errors.py", "guarding.py", "displays.py", "figures/pictures.py",
+    assert names == {"errors.py", "guarding.py", "displays.py",
                      "exchange/export.py", "keys/kinds.py", "symbols/part_signs.py"}  # fmt: skip
 
 

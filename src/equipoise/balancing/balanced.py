@@ -136,6 +136,8 @@ class Balanced(Result):
     with_room : where nobody said so, what more room would allow.
     """
 
+    blocks_in = "balancing.blocks.balanced_blocks"
+    pictures_in = "figures.pictures.balance_pictures"
     headline_in = "balancing.blocks.balanced_headline"
 
     machine: Machine

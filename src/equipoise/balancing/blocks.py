@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from equipoise.balancing.compared import FAINT, WORSE
 from equipoise.balancing.objectives import unit_of as si_unit
@@ -294,9 +294,3 @@ def phasing_blocks(found: Phasing) -> Iterator[Block]:
     )
     columns = (Column(""), Column(say("before"), "torque"), Column(say("after"), "torque"))
     yield Table(say("Twist by the shaking force, RMS"), columns, rows)
-
-
-SHOWS: dict[str, Any] = {
-    "Balanced": balanced_blocks,
-    "Phasing": phasing_blocks,
-}

@@ -39,12 +39,12 @@ class Added(Result):
     machine : with them; masses, and moments of inertia about the centres of mass, are kept.
     """
 
-    shown_in = "balancing.least_norm"
-
     moments: Mapping[str, Vector]
     totals: Mapping[str, Vector]
     cost: float
     machine: Machine
+
+    blocks_in = "balancing.least_norm.added_blocks"
 
     def to_dict(self) -> dict[str, Any]:
         """Everything as plain data, in SI units."""
@@ -141,6 +141,3 @@ def added_blocks(added: Added) -> Iterator[Block]:
     centers = (Column(say("centre x"), "length", "mm"), Column(say("centre y"), "length", "mm"))
     title = say("Least first moments that make the shaking force zero, in each link's axes")
     yield Table(title, (*columns, *centers), tuple(rows))
-
-
-SHOWS: dict[str, Any] = {"Added": added_blocks}

@@ -65,7 +65,7 @@ class Conditions(Result):
     without_effect : parameters that stand in no row.
     """
 
-    shown_in: ClassVar[str] = "balancing.linear_conditions"
+    blocks_in = "balancing.linear_conditions.conditions_blocks"
     records: ClassVar[str] = "conditions"
 
     kind: Kind
@@ -296,6 +296,3 @@ def _conditions(found: Conditions) -> Block:
     )
     title = say("Conditions for {what} to be {wanted}", **told)
     return Table(title, (Column(""), Column(say("now")), Column("")), rows)
-
-
-SHOWS: dict[str, Any] = {"Conditions": conditions_blocks}

@@ -44,8 +44,9 @@ class Front(Result):
     values : (P, 2) of both objectives, SI units.
     """
 
+    blocks_in = "balancing.pareto.front_blocks"
+    pictures_in = "figures.pictures.front_pictures"
     records: ClassVar[str] = "points"
-    shown_in: ClassVar[str] = "balancing.pareto"
 
     original: Machine
     first: Objective
@@ -173,6 +174,3 @@ def front_blocks(found: Front) -> Iterator[Block]:
             scope=scope_of(found.points[0]),
         )
     )
-
-
-SHOWS: dict[str, Any] = {"Front": front_blocks}

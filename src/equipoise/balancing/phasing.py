@@ -52,6 +52,9 @@ class Phasing(Result):
     looked_at: int
     notes: tuple[Note, ...] = ()
 
+    blocks_in = "balancing.blocks.phasing_blocks"
+    pictures_in = "figures.pictures.phasing_pictures"
+
     def to_dict(self) -> dict[str, Any]:
         """The machine-readable output, in SI units and rad."""
         return {

@@ -83,13 +83,13 @@ class Sensitivities(Result):
     crank_angle : (N,) rad, over the whole cycle.  turns : of the crank in it.
     """
 
-    shown_in = "balancing.sensitivity"
-
     machine: Machine
     output: str
     crank_angle: Array
     turns: int
     by_name: Mapping[str, Sensitivity]
+
+    blocks_in = "balancing.sensitivity.sensitivities_blocks"
 
     @property
     def ranked(self) -> tuple[Sensitivity, ...]:
@@ -285,6 +285,3 @@ def sensitivities_blocks(found: Sensitivities, zero: float = 0.0) -> Iterator[Bl
     ]
     if still:
         yield Text(say("No effect at any crank angle: {names}", names=say(", ").join(still)))
-
-
-SHOWS: dict[str, Any] = {"Sensitivities": sensitivities_blocks}

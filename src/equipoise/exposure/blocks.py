@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from equipoise.exposure.daily import (
     ACTION,
@@ -247,6 +247,3 @@ def clock(time: float) -> str:
     parts = [say("{hours} h", hours=hours)] * (hours > 0)
     parts += [say("{minutes} min", minutes=minutes)] * (minutes > 0)
     return " ".join(parts) or f"{number(time)} s"
-
-
-SHOWS: dict[str, Any] = {"Weighted": weighted_blocks, "Exposure": exposure_blocks}

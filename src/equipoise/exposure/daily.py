@@ -231,6 +231,7 @@ class TaskShare:
 class Exposure(Result):
     """A day's exposure; see docs/exposure.md."""
 
+    blocks_in = "exposure.blocks.exposure_blocks"
     records: ClassVar[str] = "tasks"
 
     tasks: tuple[Task, ...]

@@ -232,6 +232,8 @@ class Weighted(Result):
     sampling_rate: float | None = None
     notes: tuple[str, ...] = ()
 
+    blocks_in = "exposure.blocks.weighted_blocks"
+
     @property
     def dominant_axis(self) -> str:
         """The axis with the largest weighted value."""

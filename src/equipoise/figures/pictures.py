@@ -2,56 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from importlib import import_module
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from equipoise.errors import UsageError
 from equipoise.results.charts import Chart
+from equipoise.results.result import Result
 
 if TYPE_CHECKING:
     from equipoise.balancing.balanced import Balanced
     from equipoise.balancing.pareto import Front
     from equipoise.balancing.phasing import Phasing
-    from equipoise.mechanism.parts.machine import Machine
     from equipoise.planting.summary import PlantingFigures
     from equipoise.results.analysis import Analysis
+    from equipoise.studies.objective_map import Landscape
     from equipoise.vibration.free import FreeVibration
 
 
 Pictures = dict[str, Chart]
 
-CHARTS = {
-    "Response": "vibration:response_charts",
-    "Transient": "vibration:transient_charts",
-    "Run": "running:run_charts",
-    "Sweep": "sweep:sweep_charts",
-    "ToolModes": "tool_side:mode_pictures",
-    "Transmissions": "tool_speeds:transmission_charts",
-    "ToolResponse": "tool_shaft:response_charts",
-    "ToolExposure": "tool_speeds:exposure_charts",
-    "ToolDesign": "tool_side:design_pictures",
-    "Variation": "tool_designs:variation_charts",
-    "Landscape": "studies:landscape",
-}
-"""Kind of result that needs nothing else for its charts -> module here, and the function."""
 
-
-def pictures_of(result: Any) -> Pictures:
+def pictures_of(result: Any) -> Mapping[str, Chart]:
     """Every picture of a result by name, which also does for a file.
 
     Raises
     ------
     UsageError : there are none of such a result.
     """
-    kind = type(result).__name__
-    if kind in PICTURES:
-        return PICTURES[kind](result)
-    if kind not in CHARTS:
-        raise UsageError(f"there are no pictures of {kind}; draw one of {', '.join(KINDS)}")
-    module, _, name = CHARTS[kind].partition(":")
-    drawn = getattr(import_module(f"equipoise.figures.{module}"), name)(result)
-    return {drawn.name: drawn} if isinstance(drawn, Chart) else drawn
+    if not isinstance(result, Result):
+        raise UsageError(f"there are no pictures of {type(result).__name__}; give a result")
+    return result.charts()
 
 
 def analysis_pictures(analysis: Analysis, at: Sequence[float] | None = None) -> Pictures:
@@ -110,37 +90,34 @@ def mode_pictures(free: FreeVibration) -> Pictures:
     return {f"mode-{k}": mode_chart(free, k) for k in range(1, len(free.modes) + 1)}
 
 
-def balance_pictures(
-    found: Balanced | Phasing | Front, original: Machine | None = None
-) -> Pictures:
-    """Every picture of a result of balancing by name.
-
-    Of a balanced machine its charts and, where its linkage is changed, ``changes``; of a trade-off
-    ``front``.
-
-    original : the machine before; phases alone do not know it.
-    """
-    from equipoise.balancing.pareto import Front
-    from equipoise.balancing.phasing import Phasing
-    from equipoise.figures import balancing as view
+def balance_pictures(found: Balanced) -> Pictures:
+    """Charts of a balanced machine and, where its linkage is changed, ``changes``."""
+    from equipoise.figures.balancing import charts
     from equipoise.figures.changes import changes
 
-    if isinstance(found, Front):
-        return {"front": view.front(found)}
-    if isinstance(found, Phasing):
-        return {**view.row_charts(original, found.machine)}
-    pictures: Pictures = {**view.charts(found)}
+    pictures: Pictures = {**charts(found)}
     if any(change.kind != "phases" for change in found.changes):
         pictures["changes"] = changes(found)
     return pictures
 
 
-PICTURES: dict[str, Callable[[Any], Pictures]] = {
-    "Analysis": analysis_pictures,
-    "PlantingFigures": planting_pictures,
-    "FreeVibration": mode_pictures,
-    "Balanced": balance_pictures,
-    "Phasing": balance_pictures,
-    "Front": balance_pictures,
-}
-KINDS = (*PICTURES, *CHARTS)
+def phasing_pictures(found: Phasing) -> Pictures:
+    """Charts of rows whose phases are chosen."""
+    from equipoise.figures.balancing import row_charts
+
+    return {**row_charts(None, found.machine)}
+
+
+def front_pictures(found: Front) -> Pictures:
+    """``front``, the chart of a trade-off."""
+    from equipoise.figures.balancing import front
+
+    return {"front": front(found)}
+
+
+def landscape_pictures(found: Landscape) -> Pictures:
+    """The map of a measure over two numbers."""
+    from equipoise.figures.studies import landscape
+
+    chart = landscape(found)
+    return {chart.name: chart}

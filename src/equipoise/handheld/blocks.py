@@ -304,11 +304,3 @@ def response_blocks(found: ToolResponse) -> Iterator[Block]:
         *(column(name, "acceleration") for name in names),
     )
     yield Table(say("Acceleration of the stations, RMS"), columns, rows)
-
-
-SHOWS: dict[str, Any] = {
-    "ToolModes": modes_blocks,
-    "ToolSweep": sweep_blocks,
-    "ToolResponse": response_blocks,
-    "Transmissions": transmissions_blocks,
-}

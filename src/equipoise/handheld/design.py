@@ -202,8 +202,6 @@ class ToolDesign(Result):
     speed : (S,), rad/s; a_hv : of the worst hand, before and after, (2, S), m/s2.
     """
 
-    shown_in = "handheld.hand_blocks"
-
     tool: Tool
     better: Tool
     variables: tuple[Before, ...]
@@ -213,6 +211,9 @@ class ToolDesign(Result):
     arrived: int
     speed: Array
     a_hv: Array
+
+    blocks_in = "handheld.hand_blocks.design_blocks"
+    pictures_in = "figures.tool_side.design_pictures"
 
     def to_dict(self) -> dict[str, Any]:
         """As plain values in SI units."""

@@ -110,9 +110,9 @@ class ToolExposure(Result):
     days : the day's exposure of each hand; empty where no work is told.
     """
 
+    blocks_in = "handheld.hand_blocks.exposure_of_tool"
+    pictures_in = "figures.tool_speeds.exposure_charts"
     headline_in = "handheld.headline.exposure_headline"
-
-    shown_in = "handheld.hand_blocks"
 
     response: ToolResponse
     grips: Mapping[str, Grip]

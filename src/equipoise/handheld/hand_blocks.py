@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -205,10 +205,3 @@ def sensitivity_blocks(
         **ends_told(np.array(ends)),
     )
     yield Table(title, columns, tuple(rows))
-
-
-SHOWS: dict[str, Any] = {
-    "ToolExposure": exposure_of_tool,
-    "ToolDesign": design_blocks,
-    "Variation": variation_blocks,
-}

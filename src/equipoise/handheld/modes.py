@@ -127,6 +127,8 @@ class ToolModes(Result):
     planes : vertical and lateral; the lateral one is the same object where the tool is alike.
     """
 
+    blocks_in = "handheld.blocks.modes_blocks"
+    pictures_in = "figures.tool_side.mode_pictures"
     headline_in = "handheld.headline.modes_headline"
 
     tool: Tool

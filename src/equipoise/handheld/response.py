@@ -137,6 +137,9 @@ class ToolResponse(Result):
     shakes: tuple[Shake, ...]
     field: Field
 
+    blocks_in = "handheld.blocks.response_blocks"
+    pictures_in = "figures.tool_shaft.response_charts"
+
     @property
     def frequency(self) -> Array:
         """Angular frequency (K, S), rad/s."""

@@ -66,14 +66,15 @@ class Variation(Result):
     parameter : lambda of each, as in `modes.PlaneModes`.
     """
 
-    shown_in = "handheld.hand_blocks"
-
     tool: Tool
     station: str
     key: str
     values: Array
     frequency: Array
     parameter: Array
+
+    blocks_in = "handheld.hand_blocks.variation_blocks"
+    pictures_in = "figures.tool_designs.variation_charts"
 
     def to_dict(self) -> dict[str, Any]:
         """As plain values; natural frequencies in Hz."""

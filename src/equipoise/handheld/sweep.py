@@ -133,6 +133,8 @@ class Transmissions(Result):
     speed: Array
     stations: Mapping[str, Transmission]
 
+    blocks_in = "handheld.blocks.transmissions_blocks"
+    pictures_in = "figures.tool_speeds.transmission_charts"
     declared: ClassVar[Declarations] = {
         "source": ResultOutput("station of the unit force"),
         "speed": SPEED,
@@ -264,6 +266,7 @@ class ToolSweep(Result):
     further : places (m) that are told of besides the stations.
     """
 
+    blocks_in = "handheld.blocks.sweep_blocks"
     headline_in = "handheld.headline.sweep_headline"
 
     tool: Tool

@@ -71,8 +71,6 @@ class Decay(Result):
     notes : what deserves a second look, as sentences.
     """
 
-    shown_in = "measured.decay"
-
     record: Record
     confidence: float
     stiffness: float | None
@@ -82,6 +80,8 @@ class Decay(Result):
     by_record: Quantities
     whole: WholeFit
     notes: tuple[str, ...]
+
+    blocks_in = "measured.decay.decay_blocks"
 
     @property
     def kind(self) -> Kind:
@@ -332,6 +332,3 @@ def _cells(quantity: Quantity, scale: float) -> tuple[Cell, Cell]:
     after = None if digits > MOST_DIGITS or largest >= 1e6 else max(digits, 0)
     interval = Span(scale * low, scale * high, largest, after=after)
     return Value(scale * value, largest, after=after), interval
-
-
-SHOWS: dict[str, Any] = {"Decay": decay_blocks}

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 from math import pi
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.outputs.spoken import joint_named
@@ -294,6 +294,3 @@ def _forces(page: Page) -> Iterator[Block]:
     labels = ("", say("in the air"), say("with soil"), say("ratio"))
     title = say("Peaks of drive torque and joint forces, at crank angle")
     yield Table(title, tuple(map(Column, labels)), tuple(rows))
-
-
-SHOWS: dict[str, Any] = {"PlantingFigures": planting_blocks}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from equipoise.i18n import Note, say, to_say
 from equipoise.mechanism.assembly.linkage import assemble
@@ -85,6 +85,3 @@ def _figures(fit: Fit) -> Table:
             rows.append((figure_named(name), _told(fit.before, name), _told(fit.after, name)))
     columns = (Column(""), Column(say("before")), Column(say("after")))
     return Table(say("Other figures"), columns, tuple(rows))
-
-
-SHOWS: dict[str, Any] = {"Fit": fit_blocks}

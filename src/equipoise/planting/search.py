@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 
@@ -56,8 +56,6 @@ class Fit(Result):
     judged : number of designs.  seed : of the random numbers.
     """
 
-    shown_in: ClassVar[str] = "planting.fit_blocks"
-
     machine: Machine
     before: PlantingFigures | None
     after: PlantingFigures
@@ -67,6 +65,8 @@ class Fit(Result):
     steps: tuple[float, ...]
     judged: int
     seed: int
+
+    blocks_in = "planting.fit_blocks.fit_blocks"
 
     @property
     def met(self) -> dict[str, bool]:

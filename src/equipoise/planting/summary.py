@@ -199,6 +199,8 @@ class PlantingFigures(Result):
         """The figures of the arm alone, by nested keys."""
         return nested((n, x) for n, x in self.figures.items() if n not in SHARED)
 
+    blocks_in = "planting.blocks.planting_blocks"
+    pictures_in = "figures.pictures.planting_pictures"
     declared: ClassVar[Declarations] = {
         "title": TITLE,
         **OF_ARM,

@@ -64,7 +64,8 @@ class Analysis(Result):
     motion : always there.  solved : its forces, or None where masses are missing.
     """
 
-    shown_in: ClassVar[str] = "results.analysis_blocks"
+    blocks_in = "results.analysis_blocks.shown_blocks"
+    pictures_in = "figures.pictures.analysis_pictures"
     headline_in: ClassVar[str] = "results.headline.analysis_headline"
 
     motion: Motion

@@ -374,7 +374,7 @@ def dwells_table(dwells: Mapping[str, Dwell], kind: Dimension) -> Table:
     return Table.of(title, columns, rows)
 
 
-def _shown(
+def shown_blocks(
     analysis: Analysis,
     orders: int | None = None,
     zero: float = 0.0,
@@ -391,6 +391,3 @@ def _shown(
         yield dwells_table(dwells, "angle" if of_links else "length")
     if orders is None and not outputs and dwells is None:
         yield from analysis_blocks(analysis)
-
-
-SHOWS = {"Analysis": _shown}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import fields
 from numbers import Number
@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, cast
 import numpy as np
 
 from equipoise.displays import Displayed, room
+from equipoise.errors import UsageError
 from equipoise.quantities import column_heading
 from equipoise.results.declaring import Declarations, columns_of, figures_of, values_of
 from equipoise.results.own_words import in_own_words
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     import xarray
 
     from equipoise.results.blocks import Block
+    from equipoise.results.charts import Chart
 
 Values = dict[str, Any]
 PLAIN = (str, int, float, np.ndarray)
@@ -81,14 +83,13 @@ class Result(Displayed):
         found = columns_of(self, self.declared, model=self.owner)
         return [*{column[0]: column for column in found}.values()]  # parts share an abscissa
 
-    shown_in: ClassVar[str] = ""
-    """Module that tells what it shows; ``blocks`` of its room where not given."""
+    blocks_in: ClassVar[str]
+    """Module and function that tell what it shows, such as ``vibration.blocks.response_blocks``."""
 
     def blocks(self, **options: Any) -> Sequence[Block]:
         """What it shows, in the language that is spoken."""
-        module = self.shown_in or f"{type(self).__module__.split('.')[1]}.blocks"
         with self.in_own_units():
-            own = room(module).SHOWS[type(self).__name__](self, **options)
+            own = _function(self.blocks_in)(self, **options)
             return (*own, *figures_of(self, self.declared))
 
     headline_in: ClassVar[str] = ""
@@ -101,11 +102,10 @@ class Result(Displayed):
 
         alone : whether nothing follows, as on a terminal; else its blocks do.
         """
-        module, _, function = self.headline_in.rpartition(".")
-        if not function:
+        if not self.headline_in:
             return ()
         with self.in_own_units():
-            return tuple(getattr(room(module), function)(self, alone))
+            return tuple(_function(self.headline_in)(self, alone))
 
     @property
     def summary(self) -> Mapping[str, Any]:
@@ -164,11 +164,28 @@ class Result(Displayed):
         row = {path: value for path, value in attributes.items() if not isinstance(value, list)}
         return pandas.DataFrame([row])
 
+    pictures_in: ClassVar[str] = ""
+    """Module and function that draw its pictures, such as ``figures.running.run_charts``: a chart
+    for each name, the first of which `plot` draws unasked.  None where it has no pictures.
+    """
+
     @property
     def pictures(self) -> tuple[str, ...]:
         """Names of its pictures, the first of which is the one that `plot` draws unasked."""
         with self.in_own_units():
-            return tuple(room("figures.pictures").pictures_of(self))
+            return tuple(self.charts())
+
+    def charts(self) -> Mapping[str, Chart]:
+        """Every picture of it by name, as a chart for `figures` to draw.
+
+        Raises
+        ------
+        UsageError : a result of its kind has no pictures.
+        """
+        if not self.pictures_in:
+            raise UsageError(f"there are no pictures of {type(self).__name__}; show its blocks")
+        drawn: Mapping[str, Chart] = _function(self.pictures_in)(self)
+        return drawn
 
     def plot(self, name: str = "", *, ax: Any = None) -> Any:
         """Draw one of its pictures; a notebook shows what comes back.
@@ -191,6 +208,13 @@ class Result(Displayed):
     @property
     def caption(self) -> str:
         return repr(self.title) if self.title else ""
+
+
+def _function(place: str) -> Callable[..., Any]:
+    """What a class declares by module and name, imported when it is wanted."""
+    module, _, name = place.rpartition(".")
+    function: Callable[..., Any] = getattr(room(module), name)
+    return function
 
 
 def _flat(path: str, values: Array) -> Iterator[tuple[str, Array]]:

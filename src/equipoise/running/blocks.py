@@ -179,6 +179,3 @@ def run_blocks(run: Run) -> Iterator[Block]:
         Column(say("crank speed"), "angular speed", "rpm"),
     )
     yield Table.of(say("Events"), heads, events)
-
-
-SHOWS = {"Run": run_blocks}

@@ -102,6 +102,8 @@ class Run(Result):
     begins: tuple[Instant, ...]
     flywheel: Flywheel | None = None
     electric: Electric | None = None
+    blocks_in = "running.blocks.run_blocks"
+    pictures_in = "figures.running.run_charts"
     headline_in: ClassVar[str] = "running.blocks.run_headline"
 
     @property

@@ -342,11 +342,3 @@ def landscape_blocks(found: Landscape) -> Iterator[Block]:
     values = found.values[np.isfinite(found.values)]
     if isnan(found.least) or not values.size:
         yield Text(say("Nowhere in this range can the linkage turn."))
-
-
-SHOWS: dict[str, Any] = {
-    "Best": best_blocks,
-    "Searched": searched_blocks,
-    "Landscape": landscape_blocks,
-    "Store": store_blocks,
-}

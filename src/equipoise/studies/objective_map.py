@@ -308,6 +308,9 @@ class Landscape(Result):
     start: tuple[float, float] | None
     before: float
 
+    blocks_in = "studies.blocks.landscape_blocks"
+    pictures_in = "figures.pictures.landscape_pictures"
+
     @property
     def at_edge(self) -> list[str]:
         """Which of the two numbers is least at an end of its range: beyond it, it may be less."""

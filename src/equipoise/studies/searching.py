@@ -78,6 +78,7 @@ class Searched(Result):
         front that the front dominates (hypervolume); of one objective the best figure.
     """
 
+    blocks_in = "studies.blocks.searched_blocks"
     records: ClassVar[str] = "designs"
 
     study: Study

@@ -70,6 +70,7 @@ class Best(Result):
     note : where no design keeps every limit, why not; the designs are then those nearest to them.
     """
 
+    blocks_in = "studies.blocks.best_blocks"
     records: ClassVar[str] = "designs"
 
     by: Mapping[str, Make]

@@ -89,6 +89,8 @@ class Store(Result):
     arrays: Mapping[str, zarr.Array[Any]]
     folder: Folder
 
+    blocks_in = "studies.blocks.store_blocks"
+
     @property
     def title(self) -> str:
         """Of the study."""

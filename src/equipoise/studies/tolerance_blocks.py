@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from equipoise.design.spreads import Normal, Uniform
 from equipoise.i18n import Note, say, to_say
@@ -169,6 +169,3 @@ def _outside(found: Tolerances) -> Iterator[Note]:
         low, high = one.output.at_least, one.output.at_most
         if (low is not None and one.base < low) or (high is not None and one.base > high):
             yield Note(told, name=name)
-
-
-SHOWS: dict[str, Any] = {"Tolerances": tolerances_blocks}

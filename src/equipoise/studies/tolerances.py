@@ -79,8 +79,6 @@ class Tolerances(Result):
     computed : machines in all.
     """
 
-    shown_in = "studies.tolerance_blocks"
-
     study: Study
     designs: int
     failures: Mapping[str, int]
@@ -91,6 +89,8 @@ class Tolerances(Result):
     unchanged: float | None
     computed: int
     notes: tuple[str, ...]
+
+    blocks_in = "studies.tolerance_blocks.tolerances_blocks"
 
     def to_dict(self) -> dict[str, Any]:
         """As plain values in SI units."""

@@ -302,6 +302,3 @@ def _stretch(name: str, values: Array, kind: Kind) -> tuple[Cell, ...]:
     count = max(1, len(values) // PARTS)
     ranges = np.ptp(values[:count]), np.ptp(values[-count:])
     return _row(name, (np.min(values), np.max(values), *ranges), kind)
-
-
-SHOWS = {"Response": response_blocks, "Transient": transient_blocks}

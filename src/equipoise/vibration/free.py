@@ -47,7 +47,8 @@ class FreeVibration(Result):
     notes : what a reader has to know.
     """
 
-    shown_in: ClassVar[str] = "vibration.sweep_blocks"
+    blocks_in = "vibration.sweep_blocks.free_blocks"
+    pictures_in = "figures.pictures.mode_pictures"
     records: ClassVar[str] = "modes"
 
     linear: Linear

@@ -386,6 +386,8 @@ class Response(Result):
         there is none.
     """
 
+    blocks_in = "vibration.blocks.response_blocks"
+    pictures_in = "figures.vibration.response_charts"
     headline_in = "vibration.headline.response_headline"
 
     machine: Machine

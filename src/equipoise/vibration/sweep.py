@@ -127,7 +127,8 @@ class Sweep(Result):
     NaN and `notes` tell.
     """
 
-    shown_in = "vibration.sweep_blocks"
+    blocks_in = "vibration.sweep_blocks.sweep_blocks"
+    pictures_in = "figures.sweep.sweep_charts"
     headline_in = "vibration.headline.sweep_headline"
 
     machine: Machine

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from math import pi
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -186,6 +186,3 @@ def _rest(free: FreeVibration) -> Table:
         touching = "" if rest.carries(name, mounts[name]) else say("does not touch")
         rows.append((name, Value(force, scale, dimension=kind), touching))
     return Table.of(say("Mounts at rest"), ("", say("force on the support"), ""), rows)
-
-
-SHOWS: dict[str, Any] = {"Sweep": sweep_blocks, "FreeVibration": free_blocks}

@@ -67,6 +67,8 @@ class Transient(Result):
         ride = self.system.place_and_rate(self.states)
         return {contact.name: contact.force(*ride) for contact in self.system.contacts}
 
+    blocks_in = "vibration.blocks.transient_blocks"
+    pictures_in = "figures.vibration.transient_charts"
     declared: ClassVar[Declarations] = {
         "title": TITLE,
         "time": ResultOutput("instants", "time", column="time"),

@@ -10,7 +10,7 @@ import equipoise as eq
 from equipoise.balancing.balanced import Balanced
 from equipoise.balancing.pareto import Front, trade_off
 from equipoise.balancing.phasing import Phasing, choose_phases
-from equipoise.figures.pictures import balance_pictures
+from equipoise.figures.pictures import pictures_of
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.support import Row
 from equipoise.results.charts import Chart
@@ -168,7 +168,7 @@ def front(first: eq.balancing.Objective = MOMENT, points: int = 4) -> Front:
 @cache
 def pictures(kind: str) -> Pictures:
     """Charts of a case by name."""
-    drawn = balance_pictures(_result(kind))
+    drawn = pictures_of(_result(kind))
     return {name: chart for name, chart in drawn.items() if isinstance(chart, Chart)}
 
 

@@ -1,0 +1,99 @@
+"""A result declares what shows and draws it, and needs no entry anywhere else."""
+
+from __future__ import annotations
+
+import pkgutil
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass
+from importlib import import_module
+from types import ModuleType
+
+import numpy as np
+import pytest
+from matplotlib.text import Text
+
+import equipoise as eq
+from equipoise.figures.pictures import pictures_of
+from equipoise.mechanism.parts.machine import Machine
+from equipoise.results.blocks import Block
+from equipoise.results.blocks import Text as Sentence
+from equipoise.results.charts import Axis, Chart, Curve, Panel
+from equipoise.results.result import Result
+
+ROOMS = (
+    *("results", "vibration", "planting", "running", "handheld", "balancing", "studies"),
+    *("measured", "exposure", "exchange"),
+)
+
+
+@dataclass(frozen=True, repr=False)
+class Own(Result):
+    """A result of a test."""
+
+    machine: Machine
+
+    blocks_in = "own_result.own_blocks"
+    pictures_in = "own_result.own_charts"
+
+
+@dataclass(frozen=True, repr=False)
+class Undrawn(Result):
+    """A result of a test, without pictures."""
+
+    machine: Machine
+
+    blocks_in = "own_result.own_blocks"
+
+
+def own_blocks(_: Own) -> Iterator[Block]:
+    yield Sentence("shown by its own function")
+
+
+def own_charts(found: Own) -> dict[str, Chart]:
+    x = np.linspace(0.0, 1.0, 5)
+    panel = Panel(Axis("time"), Axis("square"), (Curve(x, x**2),))
+    return {name: Chart(name, found.title, name, (panel,)) for name in ("first", "second")}
+
+
+@pytest.fixture
+def machine(monkeypatch: pytest.MonkeyPatch) -> Machine:
+    module = ModuleType("equipoise.own_result")
+    vars(module).update(own_blocks=own_blocks, own_charts=own_charts)
+    monkeypatch.setitem(sys.modules, module.__name__, module)
+    return eq.load("yamashita-1")
+
+
+def test_a_result_is_shown_and_drawn_by_what_its_class_declares(machine: Machine) -> None:
+    found = Own(machine)
+    assert [*found.blocks()] == [Sentence("shown by its own function")]
+    assert found.pictures == ("first", "second")
+    assert [*pictures_of(found)] == ["first", "second"]
+    words = " ".join(one.get_text() for one in found.plot("second").findobj(Text))
+    assert "second" in words and "square" in words
+
+
+def test_a_result_without_pictures_is_refused(machine: Machine) -> None:
+    with pytest.raises(eq.EquipoiseError, match="no pictures of Undrawn"):
+        Undrawn(machine).plot()
+
+
+def kinds() -> list[type[Result]]:
+    for room in map(import_module, (f"equipoise.{name}" for name in ROOMS)):
+        for one in pkgutil.walk_packages(room.__path__, f"{room.__name__}."):
+            import_module(one.name)
+    found = [one for one in Result.__subclasses__() if one.__module__.startswith("equipoise.")]
+    assert all(not one.__subclasses__() for one in found)
+    return found
+
+
+def test_what_results_declare_is_there() -> None:
+    """Functions are named by texts, which no type checker reads."""
+    found = kinds()
+    assert len(found) >= 29
+    for one in found:
+        assert one.blocks_in
+        for place in filter(None, (one.blocks_in, one.headline_in, one.pictures_in)):
+            module, _, name = place.rpartition(".")
+            function = getattr(import_module(f"equipoise.{module}"), name)
+            assert callable(function), place
