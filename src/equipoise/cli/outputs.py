@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, replace
+from json import loads
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TextIO
 
 from cyclopts import Parameter
@@ -48,8 +49,8 @@ MORE = to_say("--full prints all tables, --json every number.")
 """Below what stands first of a result."""
 BRIEF = 15
 """Lines of what stands first, on a terminal that is 80 signs wide."""
-heard: ContextVar[list[str] | None] = ContextVar("heard", default=None)
-"""Gets the JSON of what is printed in tables, for who wants both."""
+values_given: ContextVar[list[dict[str, Any]] | None] = ContextVar("values_given", default=None)
+"""Gets the values of each JSON object, printed or not, for programs that call a command."""
 
 
 @Parameter(name="*")
@@ -86,14 +87,15 @@ class Printed(Shown):
         from equipoise.schema.files import json_text
 
         check()
-        both = heard.get()
+        caller = values_given.get()
+        if self.json or caller is not None:
+            text = json_text(dict(values()))
+            if caller is not None:
+                caller.append(loads(text))  # plain: without arrays
         if self.json:
-            print(json_text(dict(values())))
+            print(text)
         else:
             from equipoise.present import show_blocks
-
-            if both is not None:
-                both.append(json_text(dict(values())))
 
             with self.showing(of):
                 show_blocks(of if isinstance(of, str) else of.title, blocks(), most=most)

@@ -6,7 +6,6 @@ Both follow from what commands declare for the command line; none is declared he
 from __future__ import annotations
 
 import io
-import json
 import os
 from collections.abc import Iterator, Mapping
 from contextlib import redirect_stderr, redirect_stdout
@@ -20,7 +19,7 @@ from typing import TYPE_CHECKING, Any, get_args, get_origin
 from cyclopts import App
 
 from equipoise.cli import app, check_repeated
-from equipoise.cli.outputs import heard
+from equipoise.cli.outputs import values_given
 from equipoise.errors import UsageError, unknown
 from equipoise.fence import Fence, fenced
 from equipoise.mechanism.outputs.declared import declared
@@ -126,18 +125,17 @@ class Tool:
         bundled = Path(str(files("equipoise"))).resolve()
         fence = Fence(folder, (bundled,), replaces=given.get("overwrite") is True)
         line = self.line(given, fence)
-        printed, told, both = io.StringIO(), io.StringIO(), list[str]()
-        token = heard.set(both)
+        printed, told, values = io.StringIO(), io.StringIO(), list[dict[str, Any]]()
+        token = values_given.set(values)
         try:
             check_repeated(line)
             with redirect_stdout(printed), redirect_stderr(told), fenced(fence), together():
                 app(line, exit_on_error=False, print_error=False, result_action="return_value")
         finally:
-            heard.reset(token)
-        whole = given.get("json") is True
-        values = [json.loads(one) for one in ([printed.getvalue()] if whole else both)]
+            values_given.reset(token)
         merged = {key: value for one in values for key, value in one.items()}
         text = printed.getvalue() + told.getvalue()
+        whole = given.get("json") is True
         return CommandOutput(text, merged if whole else _short(merged), tuple(fence.written))
 
     def line(self, given: Mapping[str, Any], fence: Fence) -> list[str]:
