@@ -47,6 +47,7 @@ from equipoise.keys.kinds import Listing as Listing
 from equipoise.keys.kinds import Named as Named
 from equipoise.keys.kinds import Number as Number
 from equipoise.keys.kinds import OneOr as OneOr
+from equipoise.keys.kinds import ParameterValue as ParameterValue
 from equipoise.keys.kinds import Planes as Planes
 from equipoise.keys.kinds import Point as Point
 from equipoise.keys.kinds import Quantity as Quantity

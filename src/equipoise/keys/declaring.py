@@ -128,9 +128,9 @@ def key(
     return field(metadata={_KEY: declaration}, compare=compare, kw_only=kw_only, **given)
 
 
-def inside(kind: Kind | str, *, default: Any = REQUIRED, compare: bool = True, **more: Any) -> Any:
+def inside(kind: Kind | str, **more: Any) -> Any:
     """Declare a field that no file has a key for; it is checked all the same, as of `key`."""
-    return key(kind, default=default, compare=compare, inside=True, **more)
+    return key(kind, inside=True, **more)
 
 
 @dataclass_transform(frozen_default=True, field_specifiers=(key, inside, field))

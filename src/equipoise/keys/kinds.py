@@ -115,6 +115,18 @@ class Flag(Kind):
 
 
 @dataclass(frozen=True)
+class ParameterValue(Kind):
+    """A quantity of any dimension, a plain number, or an expression, as it is written."""
+
+    wanted = "text such as '33.5 mm', or a number"
+
+    def check(self, value: Any) -> str | float:
+        if isinstance(value, bool) or not isinstance(value, str | Real):
+            raise TypeError
+        return value if isinstance(value, str) else float(value)
+
+
+@dataclass(frozen=True)
 class Anything(Kind):
     """What cannot be told before something else is known; it comes through as it is.
 

@@ -104,7 +104,7 @@ def parse_expression(text: str, dimension: Dimension, names: Names = NO_NAMES) -
     if re.fullmatch(pattern(dimension), text) or not is_expression(text):
         return parse(text, dimension)
     amount = _amount(text, names, lambda shown: _no_quantity(shown, dimension))
-    if not amount.powers and not names.keys() & _names_in(_tree(text)[0]):
+    if not amount.powers and not names.keys() & names_in(text):
         raise UsageError(
             Note(
                 "got {text!r}, which has no unit; give {noun}, such as {example!r}",
@@ -114,7 +114,9 @@ def parse_expression(text: str, dimension: Dimension, names: Names = NO_NAMES) -
             )
         )
     if amount.powers != {dimension: 1}:
-        raise UsageError(_no_quantity(_short(text), dimension))
+        kind, shown = KINDS[dimension], _short(text)
+        otherwise = _no_quantity(shown, dimension)
+        raise UsageError(_another(shown, amount, Note(kind.noun), kind.example, otherwise))
     return _float(amount, text)
 
 
@@ -133,7 +135,8 @@ def parse_number(text: str, names: Names = NO_NAMES) -> float:
     """
     amount = _amount(text, names, _no_number)
     if amount.powers:
-        raise UsageError(_no_number(_short(text)))
+        shown = _short(text)
+        raise UsageError(_another(shown, amount, Note("a plain number"), "0.15", _no_number(shown)))
     return _float(amount, text)
 
 
@@ -150,6 +153,9 @@ def parse_amount(text: str, names: Names = NO_NAMES) -> Amount:
     UsageError
         One sentence: what was given and what would be right.
     """
+    plain = re.fullmatch(rf"{NUMBER} *([^\W\d_].*)", text)
+    if plain is not None and (dimension := OF_UNIT.get(plain_unit(plain[1]))) is not None:
+        _ = parse(text, dimension)  # which says what is wrong, such as a space that is missing
     amount = _amount(text, names, _no_amount)
     try:
         _ = amount.dimension
@@ -161,7 +167,7 @@ def parse_amount(text: str, names: Names = NO_NAMES) -> Amount:
 
 def is_expression(text: str) -> bool:
     """Whether a text is meant as a sum or product, and not as one quantity."""
-    if len(text) > LONGEST or start_of_range(text):
+    if start_of_range(text):
         return False
     return bool(OPERATORS.search(text.strip()[1:]) or text[:1] in "=(")
 
@@ -181,6 +187,24 @@ def _no_quantity(text: str, dimension: Dimension) -> Note:
         text=text,
         noun=Note(KINDS[dimension].noun),
         unit=unit,
+    )
+
+
+def _another(text: str, amount: Amount, wanted: Note, example: str, otherwise: Note) -> Note:
+    """What is said of an expression that gives an amount of another kind than is wanted.
+
+    otherwise : of one that gives what has no name, such as a product of two lengths.
+    """
+    try:
+        dimension = amount.dimension
+    except ValueError:
+        return otherwise
+    return Note(
+        "got {text!r}, which gives {given}; give {wanted}, such as {example!r}",
+        text=text,
+        given=Note("a plain number") if dimension is None else Note(KINDS[dimension].noun),
+        wanted=wanted,
+        example=example,
     )
 
 
@@ -210,7 +234,14 @@ def _amount(text: str, names: Names, wrong: Callable[[str], Note]) -> Amount:
     """What an expression comes to; `wrong` says what is wrong where it is none."""
     shown = _short(text)
     if len(text) > LONGEST:
-        raise UsageError(wrong(shown))
+        raise UsageError(
+            Note(
+                "got {text!r}, which has {count} characters; give at most {most}",
+                text=shown,
+                count=len(text),
+                most=LONGEST,
+            )
+        )
     with localcontext() as context:
         context.prec = DIGITS
         try:
@@ -258,8 +289,21 @@ def _tree(text: str) -> tuple[ast.expr, dict[str, Amount]]:
         quantities[name] = Amount(number, {OF_UNIT[unit]: 1})
         return name if match["number"] else f"*{name}"
 
+    if "#" in text:  # what follows would be left out as a comment of Python's
+        raise SyntaxError(text)
     written = _quantities().sub(as_name, text.strip().removeprefix("="))
     return ast.parse(written.strip(), mode="eval").body, quantities
+
+
+def names_in(text: str) -> set[str]:
+    """The names in an expression; none where it cannot be read."""
+    if len(text) > LONGEST:
+        return set()
+    try:
+        tree, quantities = _tree(text)
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return set()
+    return _names_in(tree) - quantities.keys()
 
 
 def _names_in(tree: ast.expr) -> set[str]:

@@ -9,10 +9,12 @@ from numbers import Real
 from typing import Any
 
 from equipoise.errors import ModelError
+from equipoise.i18n import Note
 from equipoise.keys import PLANES, Key, Listing, Named, OneOr, Table, Tables, Whole, all_keys
 from equipoise.keys import Kind as KeyKind
 from equipoise.keys.paths import KeyPath, with_values
 from equipoise.mechanism.checks import unknown
+from equipoise.mechanism.parts.parameters import SIGN
 from equipoise.quantities import KINDS, NUMBER, Dimension, plain_unit
 from equipoise.quantities.reading import described
 from equipoise.schema.numbers import POLAR, XYZ, Number, Planes, Vector, read_number, vector_of
@@ -140,10 +142,35 @@ def _below(content: Content, kind: Kind, path: str, place: KeyPath, here: Any) -
             raise ModelError(
                 path, f"{missing} is not written in the model; add it there to vary it"
             )
+    if expression := _expression_in_point(here, step):
+        raise ModelError(path, _worked_out(path, expression))
     raise ModelError(path, unknown(path, all_numbers(content), "number of the model"))
 
 
-def _no_number(path: str, here: Any) -> str:
+def _expression_in_point(here: Any, step: str | int) -> str | None:
+    """The first expression in a point, which has no part that could vary beside it."""
+    if isinstance(here, dict) and here.keys() == {*POLAR}:
+        here = [*here.values()]
+    if step not in (*XYZ, *POLAR) or not isinstance(here, list):
+        return None
+    return next((one for one in here if _is_expression(one)), None)
+
+
+def _is_expression(here: Any) -> bool:
+    return isinstance(here, str) and here.startswith(SIGN)
+
+
+def _worked_out(path: str, expression: str) -> Note:
+    return Note(
+        "{path} is worked out by {expression!r}; let a parameter in it vary",
+        path=path,
+        expression=expression,
+    )
+
+
+def _no_number(path: str, here: Any) -> Note | str:
+    if _is_expression(here):
+        return _worked_out(path, here)
     vector = vector_of(here)
     if vector is not None:
         parts = [f"{path}.{part}" for part in vector.numbers]

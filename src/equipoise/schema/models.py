@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,6 +14,7 @@ from equipoise.i18n import Note
 from equipoise.keys import Frozen
 from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.parts.machine import Machine
+from equipoise.mechanism.parts.parameters import PARAMETERS, amounts_of
 from equipoise.mechanism.parts.shown_units import units_of
 from equipoise.quantities import format_exact, parse, showing_by_default
 from equipoise.schema.files import printable, write
@@ -29,7 +30,7 @@ from equipoise.schema.opening import (
 )
 from equipoise.schema.places import Context
 from equipoise.schema.reading import read_table
-from equipoise.schema.writing import Writer, beside, toml_text
+from equipoise.schema.writing import WorkedOut, Writer, beside, toml_text
 
 if TYPE_CHECKING:
     from equipoise.handheld.model import Tool
@@ -68,13 +69,20 @@ def machine_of(content: Mapping[str, Any], reader: Beside) -> Machine:
     """
     balance = content.get("balance")
     rest = {name: value for name, value in content.items() if name != "balance"}
-    machine: Machine = read_table(Machine, rest, Context(reader.read))
-    if balance is None:
+    context = Context(reader.read, names=amounts_of(content.get(PARAMETERS, {})))
+    machine: Machine = read_table(Machine, rest, context)
+    if balance is not None:
+        machine = _with_balance(machine, balance, context)
+    if not context.expressions:
         return machine
+    return machine.with_expressions({str(at): one for at, one in context.expressions.items()})
+
+
+def _with_balance(machine: Machine, balance: Any, context: Context) -> Machine:
     from equipoise.mechanism.parts.balance import Balance, Limit
 
-    context = Context(reader.read, {Limit: partial(_limit, machine)})
-    return machine.with_balance(read_table(Balance, balance, context, KeyPath(("balance",))))
+    of_balance = replace(context, makers={Limit: partial(_limit, machine)})
+    return machine.with_balance(read_table(Balance, balance, of_balance, KeyPath(("balance",))))
 
 
 def tool_of(content: Mapping[str, Any], reader: Beside) -> Tool:
@@ -210,7 +218,14 @@ def plain_of(model: Machine | Tool, names: Mapping[str, str]) -> dict[str, Any]:
 
         makers[Limit] = partial(_limit_table, model)
     with showing_by_default(units_of(model)):
-        return Writer(names, makers).content(type(model), model)
+        return Writer(names, makers, _worked_out(model)).content(type(model), model)
+
+
+def _worked_out(model: Machine | Tool) -> WorkedOut:
+    """The expressions of a machine whose numbers are what they give."""
+    if not isinstance(model, Machine) or not model.expressions:
+        return WorkedOut()
+    return WorkedOut(model.expressions, amounts_of(model.parameters))
 
 
 def _limit_table(machine: Machine, limit: Any) -> dict[str, Any]:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from decimal import Decimal, localcontext
 from functools import cached_property
 from math import atan2, cos, hypot, pi, sin
+from types import MappingProxyType
 from typing import Any
 
 from equipoise.errors import ModelError, UsageError
@@ -84,22 +85,34 @@ def _clean(ratio: float) -> float:
     return 0.0 if abs(ratio) < 4e-16 else ratio
 
 
-def written_point(point: tuple[float, float]) -> list[str] | dict[str, str]:
-    """Write a point such that reading it gives exactly the same floats, in the shorter form."""
+def written_point(
+    point: tuple[float, float],
+    given: Mapping[str, str] = MappingProxyType({}),
+    read: Callable[[str, Dimension], float] = parse,
+) -> list[str] | dict[str, str]:
+    """Write a point such that reading it gives exactly the same floats, in the shorter form.
+
+    given : texts for its distance, its direction or both.  read : how they are read.
+    """
     components = [format_exact(component, "length") for component in point]
-    if max(map(len, components)) < 20:
+    if not given and max(map(len, components)) < 20:
         return components
-    distance = rounded(hypot(*point), "mm", 9)
+    distance = given.get("distance") or rounded(hypot(*point), "mm", 9)
     for turn in (0.0, 2 * pi):
-        direction = rounded(atan2(point[1], point[0]) + turn, "deg", 9)
-        if _reads_as(point, distance, direction):
+        direction = given.get("direction") or rounded(atan2(point[1], point[0]) + turn, "deg", 9)
+        if _reads_as(point, distance, direction, read):
             return {"distance": distance, "direction": direction}
     return components
 
 
-def _reads_as(point: tuple[float, float], distance: str, direction: str) -> bool:
+def _reads_as(
+    point: tuple[float, float],
+    distance: str,
+    direction: str,
+    read: Callable[[str, Dimension], float],
+) -> bool:
     try:
-        return from_polar(parse(distance, "length"), parse(direction, "angle")) == point
+        return from_polar(read(distance, "length"), read(direction, "angle")) == point
     except UsageError:  # such as 1e-40 deg, where one component is tiny beside the other
         return False
 

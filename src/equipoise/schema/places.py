@@ -10,6 +10,7 @@ from equipoise import keys
 from equipoise.errors import ModelError
 from equipoise.keys.paths import KeyPath
 from equipoise.quantities import described
+from equipoise.quantities.expressions import Names
 from equipoise.quantities.reading import got
 
 
@@ -28,14 +29,18 @@ class Context:
 
     beside : reads what lies in a file of its own, by its sort and the file's name.
     makers : make the objects of some classes otherwise than by `Frozen.from_table`.
+    names : what names in expressions stand for.
     problems : what has been found wrong, with its place.
+    expressions : those of numbers that have been worked out, by their places.
     """
 
     beside: Callable[[str, str], Any] | None = None
     makers: Mapping[type[keys.Frozen], Callable[[dict[str, Any]], Any]] = field(
         default_factory=dict
     )
+    names: Names = field(default_factory=dict)
     problems: list[tuple[KeyPath, str]] = field(default_factory=list)
+    expressions: dict[KeyPath, str] = field(default_factory=dict)
 
     def wrong(self, place: KeyPath, given: Any, right: str) -> Any:
         """Note that a value is none that can be read."""

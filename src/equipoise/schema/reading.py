@@ -19,7 +19,9 @@ from equipoise.errors import ModelError, UsageError, meant
 from equipoise.i18n import LANGUAGES, Note, Worded
 from equipoise.keys.paths import KeyPath, quoted
 from equipoise.mechanism.checks import unknown
-from equipoise.quantities import KINDS, parse
+from equipoise.mechanism.parts.parameters import SIGN, worked_out
+from equipoise.quantities import KINDS, Dimension, parse
+from equipoise.quantities.expressions import is_expression
 from equipoise.schema.numbers import Polar
 from equipoise.schema.places import WRONG, Context, within
 
@@ -178,10 +180,34 @@ def _given(found: Values, context: Context) -> dict[str, Any]:
 
 
 def _quantity(kind: keys.Quantity, given: Any, place: KeyPath, context: Context) -> Any:
+    if isinstance(given, str) and given.startswith(SIGN):
+        return _worked_out(kind.dimension, given, place, context)
     try:
         return parse(given, kind.dimension)
     except UsageError as error:
+        return context.say(place, _without_sign(given, kind.dimension, context) or error.note)
+
+
+def _without_sign(given: Any, dimension: Dimension | None, context: Context) -> Note | None:
+    """What is said of an expression that lacks only its sign; None of anything else."""
+    if not isinstance(given, str) or not (is_expression(given) or given in context.names):
+        return None
+    right = f"{SIGN}{given}"
+    with suppress(UsageError):
+        _ = worked_out(right, dimension, context.names)
+        return Note("got {given!r}; begin an expression with =: {right!r}",
+                    given=given, right=right)  # fmt: skip
+    return None
+
+
+def _worked_out(dimension: Dimension | None, given: str, place: KeyPath, context: Context) -> Any:
+    """The number that an expression gives."""
+    try:
+        value = worked_out(given, dimension, context.names)
+    except UsageError as error:
         return context.say(place, error.note)
+    context.expressions[place] = given
+    return value
 
 
 def _text(kind: keys.Text, given: Any, place: KeyPath, context: Context) -> Any:
@@ -215,6 +241,10 @@ def _wording(kind: keys.Wording, given: Any, place: KeyPath, context: Context) -
 
 
 def _number(kind: keys.Number, given: Any, place: KeyPath, context: Context) -> Any:
+    if isinstance(given, str) and given.startswith(SIGN):
+        return _worked_out(None, given, place, context)
+    if (note := _without_sign(given, None, context)) is not None:
+        return context.say(place, note)
     if isinstance(given, bool) or not isinstance(given, int | float):
         return context.wrong(place, given, Note("give a plain number without unit and quotes"))
     with suppress(OverflowError):
@@ -224,6 +254,15 @@ def _number(kind: keys.Number, given: Any, place: KeyPath, context: Context) -> 
 
 
 def _whole(kind: keys.Whole, given: Any, place: KeyPath, context: Context) -> Any:
+    if isinstance(given, str) and given.startswith(SIGN) and not kind.names:
+        value = _worked_out(None, given, place, context)
+        if value is WRONG:
+            return WRONG
+        if not float(value).is_integer():
+            what = Note("got {given!r}, which gives {value:g}; give a whole number",
+                        given=given, value=value)  # fmt: skip
+            return context.say(place, what)
+        given = int(value)
     whole = isinstance(given, int) and not isinstance(given, bool)
     if kind.names:
         right = Note("give {what}", what=keys.choice(kind.names))
@@ -311,6 +350,7 @@ def _one_or(kind: keys.OneOr, given: Any, place: KeyPath, context: Context) -> A
     if isinstance(given, list):
         return _listing(keys.Listing(kind.item, (kind.size,), kind.right), given, place, context)
     plain = isinstance(given, int | float) and not isinstance(given, bool)
+    plain = plain or (isinstance(given, str) and given.startswith(SIGN))
     if not isinstance(kind.item, keys.Quantity) and not plain:
         return context.wrong(place, given, f"give {kind.right}")
     value = READERS[type(kind.item)](kind.item, given, place, context)
@@ -344,6 +384,7 @@ def example_of(kind: keys.Kind) -> str:
 
 
 READERS: dict[type[keys.Kind], Callable[[Any, Any, KeyPath, Context], Any]] = {
+    keys.ParameterValue: lambda kind, given, place, context: given,
     keys.Anything: lambda kind, given, place, context: given,
     keys.Direction: _direction,
     keys.File: _file,

@@ -17,6 +17,10 @@ Definitions = dict[str, Schema]
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
 
+EXPRESSION = "^="
+"""How an expression begins that a number is worked out from, as a pattern."""
+
+
 def json_schema(kind: FileKind = "linkage") -> Schema:
     """JSON Schema (draft 2020-12) of the file of a linkage, tool or study, for editors."""
     definitions: Definitions = {}
@@ -80,7 +84,8 @@ def _quantity(kind: keys.Quantity, definitions: Definitions) -> Schema:
 
 def _text_of(kind: keys.Quantity) -> Schema:
     example = KINDS[kind.dimension].example
-    return {"type": "string", "pattern": pattern(kind.dimension), "examples": [example]}
+    either = f"{pattern(kind.dimension)}|{EXPRESSION}"
+    return {"type": "string", "pattern": either, "examples": [example]}
 
 
 def _described(dimension: Dimension, more: str = "") -> Schema:
@@ -116,7 +121,7 @@ def _whole(kind: keys.Whole, definitions: Definitions) -> Schema:
     if kind.names:
         return {"type": "integer", "enum": [*kind.names]}
     least = {} if kind.least is None else {"minimum": kind.least, "maximum": kind.most}
-    return {"type": "integer", **least}
+    return {"type": ["integer", "string"], "pattern": EXPRESSION, **least}
 
 
 def _listing(kind: keys.Listing, definitions: Definitions) -> Schema:
@@ -193,13 +198,14 @@ def _table(kind: keys.Table, definitions: Definitions) -> Schema:
 
 
 SCHEMAS: Mapping[type[keys.Kind], Callable[[Any, Definitions], Schema]] = {
+    keys.ParameterValue: lambda kind, _: {"type": ["string", "number"]},
     keys.Anything: lambda kind, _: dict(kind.schema or {}),
     keys.Direction: _direction,
     keys.File: lambda kind, _: {"type": "string"},
     keys.Flag: lambda kind, _: {"type": "boolean"},
     keys.Listing: _listing,
     keys.Named: _named,
-    keys.Number: lambda kind, _: {"type": "number"},
+    keys.Number: lambda kind, _: {"type": ["number", "string"], "pattern": EXPRESSION},
     keys.OneOr: _one_or,
     keys.Planes: _planes,
     keys.Point: _point,

@@ -12,7 +12,18 @@ from string import Formatter
 from typing import Any
 
 from equipoise.i18n import Note, to_say
-from equipoise.keys import Key, Listing, Named, OneOr, Planes, Point, Table, Tables, all_keys
+from equipoise.keys import (
+    Key,
+    Listing,
+    Named,
+    OneOr,
+    ParameterValue,
+    Planes,
+    Point,
+    Table,
+    Tables,
+    all_keys,
+)
 from equipoise.keys import Kind as KeyKind
 from equipoise.keys.paths import KeyPath
 from equipoise.schema.finding import Content, Found
@@ -28,7 +39,11 @@ PARTS = {
 """Parts of vectors and pairs of planes; x, y and z are called so everywhere."""
 
 
-POINT = to_say("point {name}")
+NAMED: Mapping[type[KeyKind], str] = {
+    Point: to_say("point {name}"),
+    ParameterValue: to_say("parameter {name}"),
+}
+"""What is called by the name that a user has chosen for it."""
 
 
 @dataclass(frozen=True)
@@ -46,8 +61,8 @@ class Layer:
     @property
     def word(self) -> str:
         """Of a number that stands here."""
-        point = isinstance(self.key.kind, Named) and isinstance(self.held, Point)
-        return self.key.word or (POINT if point else plain_word(self.key))
+        named = NAMED.get(type(self.held)) if isinstance(self.key.kind, Named) else None
+        return self.key.word or named or plain_word(self.key)
 
     @property
     def called(self) -> str:

@@ -3,16 +3,45 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any
 
 from equipoise import keys
-from equipoise.errors import ModelError
+from equipoise.errors import ModelError, UsageError
 from equipoise.i18n import Worded
 from equipoise.keys.paths import KeyPath
-from equipoise.quantities import format_exact
-from equipoise.schema.numbers import written_point
+from equipoise.mechanism.parts.parameters import SIGN, worked_out
+from equipoise.quantities import Dimension, format_exact, parse
+from equipoise.quantities.expressions import Names
+from equipoise.schema.numbers import POLAR, written_point
 from equipoise.schema.places import within
+
+
+@dataclass(frozen=True)
+class WorkedOut:
+    """Numbers that expressions give.
+
+    expressions : by the path of the number.  names : what they name.
+    """
+
+    expressions: Mapping[str, str] = field(default_factory=dict)
+    names: Names = field(default_factory=dict)
+
+    def of(self, value: float, dimension: Dimension | None, place: KeyPath) -> str | None:
+        """The expression that gives exactly the value at a place; None where none does."""
+        expression = self.expressions.get(str(place)) if self.expressions else None
+        if expression is None:
+            return None
+        with suppress(UsageError):  # a name may be gone
+            return expression if self.read(expression, dimension) == value else None
+        return None
+
+    def read(self, text: str, dimension: Dimension | None) -> float:
+        """The number of an expression, or of a quantity."""
+        if dimension is not None and not text.startswith(SIGN):
+            return parse(text, dimension)
+        return worked_out(text, dimension, self.names)
 
 
 @dataclass(frozen=True)
@@ -21,12 +50,14 @@ class Writer:
 
     names : name of the file of what lies in one of its own, by the key that names it.
     makers : tables of some classes, otherwise than by `Frozen.to_table`.
+    worked_out : numbers that are written as expressions.
     """
 
     names: Mapping[str, str]
     makers: Mapping[type[keys.Frozen], Callable[[Any], dict[str, Any]]] = field(
         default_factory=dict
     )
+    worked_out: WorkedOut = WorkedOut()
 
     def content(
         self, of: type[keys.Frozen], value: Any, place: KeyPath = KeyPath()
@@ -112,14 +143,34 @@ def _point(kind: keys.Point, value: Any, place: KeyPath, writer: Writer) -> Any:
     if isinstance(value, str):
         return value
     if kind.space and value[2]:
-        return [format_exact(one, "length") for one in value]
-    return written_point((value[0], value[1]))
+        return [_length(one, place / n, writer) for n, one in enumerate(value)]
+    x, y = value[:2]
+    expressions = writer.worked_out.expressions
+    if any(str(place / axis) in expressions for axis in (0, 1)):
+        return [_length(one, place / n, writer) for n, one in enumerate((x, y))]
+    given = {name: one for name in POLAR if (one := expressions.get(str(place / name)))}
+    return written_point((x, y), given, writer.worked_out.read) if given else written_point((x, y))
+
+
+def _length(value: float, place: KeyPath, writer: Writer) -> str:
+    return writer.worked_out.of(value, "length", place) or format_exact(value, "length")
 
 
 def _direction(kind: keys.Direction, value: Any, place: KeyPath, writer: Writer) -> Any:
     if isinstance(value, tuple):
         return [tidy(component) for component in value]
-    return format_exact(value, "angle")
+    return _number(keys.Quantity(dimension="angle"), value, place, writer)
+
+
+def _number(kind: keys.Number | keys.Whole, value: Any, place: KeyPath, writer: Writer) -> Any:
+    """A number with its unit, if it has one, or the expression that gives it."""
+    dimension = kind.dimension if isinstance(kind, keys.Quantity) else None
+    expression = writer.worked_out.of(value, dimension, place)
+    if expression is not None:
+        return expression
+    if dimension is not None:
+        return format_exact(value, dimension)
+    return value if isinstance(kind, keys.Whole) else tidy(value)
 
 
 def _listing(kind: keys.Listing, value: Any, place: KeyPath, writer: Writer) -> Any:
@@ -147,24 +198,27 @@ def _planes(kind: keys.Planes, value: Any, place: KeyPath, writer: Writer) -> An
 
 
 WRITERS: dict[type[keys.Kind], Callable[[Any, Any, KeyPath, Writer], Any]] = {
+    keys.ParameterValue: lambda kind, value, place, writer: (
+        value if isinstance(value, str) else tidy(value)
+    ),
     keys.Anything: lambda kind, value, place, writer: value,
     keys.Direction: _direction,
     keys.File: lambda kind, value, place, writer: writer.names[place.shown],
     keys.Flag: lambda kind, value, place, writer: value,
     keys.Listing: _listing,
     keys.Named: _named,
-    keys.Number: lambda kind, value, place, writer: tidy(value),
+    keys.Number: _number,
     keys.OneOr: _one_or,
     keys.Planes: _planes,
     keys.Point: _point,
-    keys.Quantity: lambda kind, value, place, writer: format_exact(value, kind.dimension),
+    keys.Quantity: _number,
     keys.Table: lambda kind, value, place, writer: writer.content(kind.type, value, place),
     keys.Tables: lambda kind, value, place, writer: [
         writer.plain(kind.item, one, place / n) for n, one in enumerate(value)
     ],
     keys.Text: lambda kind, value, place, writer: value,
     keys.Told: lambda kind, value, place, writer: value,
-    keys.Whole: lambda kind, value, place, writer: value,
+    keys.Whole: _number,
     keys.Wording: lambda kind, value, place, writer: (
         dict(value.texts) if isinstance(value, Worded) else value
     ),

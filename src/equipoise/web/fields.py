@@ -16,6 +16,7 @@ from equipoise.mechanism.outputs.declared import GROUPS
 from equipoise.mechanism.parts.links import MASS_FIELDS
 from equipoise.mechanism.parts.machine import FRAME, Link, Machine, Vector, size_of
 from equipoise.mechanism.parts.mounts import OF_AXIS, OF_POINT
+from equipoise.mechanism.parts.parameters import PARAMETERS, SIGN, amounts_of, worked_out
 from equipoise.quantities import (
     Display,
     chosen_unit,
@@ -24,12 +25,13 @@ from equipoise.quantities import (
     display,
     format_exact,
     in_unit,
-    parse_expression,
-    parse_number,
     rounded,
     typeset,
 )
+from equipoise.quantities.expressions import names_in
 from equipoise.quantities.units import KINDS, Dimension
+from equipoise.schema.entries import Document
+from equipoise.schema.writing import WorkedOut
 from equipoise.web.design import Design, pin_of
 from equipoise.web.measures import Measure, measures_of
 
@@ -51,6 +53,8 @@ class Field:
 
     dimension : None of a number without a unit, such as a coefficient of friction.
     measure : the length or direction that it is, if it is one.
+    place : of the number in the file, where an expression may stand for it.
+    expression : that which does.
     """
 
     path: str
@@ -60,6 +64,8 @@ class Field:
     value: float
     put: Put
     measure: Measure | None = None
+    place: KeyPath | None = None
+    expression: str | None = None
 
     def keeping(self, points: tuple[str, ...]) -> Field:
         """The same, but that the point that it moves keeps its distance from others."""
@@ -77,12 +83,10 @@ class Field:
         if not isinstance(to, str):
             return self.put(of, clean(to, self.dimension))
         typed = to.strip()
-        if self.dimension is None:
-            value = parse_number(typed)
-        else:
-            value = parse_expression(typed, self.dimension)
+        names = amounts_of(of.own.parameters) if isinstance(of, Design) else {}
+        value = worked_out(typed, self.dimension, names)
         try:
-            return self.put(of, value)
+            return self._remembering(typed, self.put(of, value))
         except (ModelError, UsageError) as error:
             given = error.given
             if given is None or given.value != value:  # of another number
@@ -90,6 +94,14 @@ class Field:
             if isinstance(error, ModelError):
                 raise ModelError(error.where, given.retold(error.what, typed)) from error
             raise UsageError(given.retold(error.note, typed)) from error
+
+    def _remembering(self, typed: str, of: Any) -> Any:
+        """What has the number now, with the expression by which it was given from parameters."""
+        if self.place is None or not isinstance(of, Design) or not names_in(typed):
+            return of
+        typed = typed if typed.startswith(SIGN) else f"{SIGN}{typed}"
+        expressions = {**of.own.expressions, str(self.place): typed}
+        return of.with_machine(of.own.with_expressions(expressions))
 
 
 @dataclass(frozen=True)
@@ -135,7 +147,7 @@ class Scale:
             "heading": _heading(field),
             "label": field.label,
             "value": field.value,
-            "text": _text(field.value, unit.unit),
+            "text": field.expression or _text(field.value, unit.unit),
             "shown": _shown(field.value, unit),
             "unit": unit.unit,
             "factor": unit.factor,
@@ -148,6 +160,7 @@ class Scale:
 
 
 SECTIONS = {
+    PARAMETERS: to_say("parameters"),
     "drive": to_say("drive"),
     "frame": to_say("frame"),
     "rows": to_say("rows"),
@@ -199,6 +212,7 @@ def _shown(value: float, unit: Display) -> str:
 def fields_of(design: Design) -> dict[str, Field]:
     """Every number by its path, in the order in which a page shows them."""
     parts = (
+        _parameters,
         _drive,
         _links,
         _frame,
@@ -209,14 +223,46 @@ def fields_of(design: Design) -> dict[str, Field]:
         _mounts,
     )
     found = [field for part in parts for field in part(design.own)]
-    return {field.path: field for field in (*found, *_weights(design))}
+    fields = {field.path: field for field in (*found, *_weights(design))}
+    if not design.own.expressions:
+        return fields
+    given = WorkedOut(design.own.expressions, amounts_of(design.own.parameters))
+    return {path: _with_expression(field, given) for path, field in fields.items()}
+
+
+def _with_expression(field: Field, given: WorkedOut) -> Field:
+    if field.place is None:
+        return field
+    return replace(field, expression=given.of(field.value, field.dimension, field.place))
+
+
+def _parameters(machine: Machine) -> Iterator[Field]:
+    """The parameters that are not worked out from others."""
+    amounts = amounts_of(machine.parameters)
+    for name, given in machine.parameters.items():
+        if not (isinstance(given, str) and names_in(given)):
+            path, amount = KeyPath((PARAMETERS, name)), amounts[name]
+            put = partial(_with_parameter, path, amount.dimension)
+            yield Field(str(path), PARAMETERS, name, amount.dimension, float(amount.number), put)
+
+
+def _with_parameter(
+    path: KeyPath, dimension: Dimension | None, design: Design, value: float
+) -> Design:
+    """The design with another value of a parameter, and all that is worked out from it."""
+    document = Document.of_machine(design.own)
+    text = value if dimension is None else format_exact(value, dimension)
+    changed = replace(document, content=path.write(document.content, text))
+    return design.with_machine(changed.machine())
 
 
 def _field(
     path: KeyPath, group: str, label: str, dimension: Dimension | None, value: float
 ) -> Field:
     """A number of the machine, which its path tells how to change."""
-    return Field(str(path), group, label, dimension, value, partial(_put, path))
+    *above, last = path
+    place = KeyPath((*above, "xy".index(last))) if last in ("x", "y") else path
+    return Field(str(path), group, label, dimension, value, partial(_put, path), place=place)
 
 
 def _put(path: KeyPath, design: Design, value: float) -> Design:

@@ -111,6 +111,7 @@ def _place(kind: keys.Point) -> Values:
 
 
 CONTROLS: Mapping[type[keys.Kind], Callable[[Any], Values]] = {
+    keys.ParameterValue: lambda kind: {"kind": "text", "options": []},
     keys.Direction: lambda kind: {"kind": "direction", "unit": _unit("angle")},
     keys.File: lambda kind: {"kind": "file"},
     keys.Flag: lambda kind: {"kind": "flag"},

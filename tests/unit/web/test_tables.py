@@ -107,7 +107,9 @@ def test_names_are_chosen_from_those_that_there_are() -> None:
     assert [name for name in rig if name.startswith("gauges.")]
     assert not [name for name in told["outputs"] if name.startswith("gauges.")]
     assert told["bodies"]["frame"]["A"] == (0.0, 0.0)
-    assert own_keys(Machine).keys() == {"title", "description", "gravity", "assembly"}
+    assert own_keys(Machine).keys() == {
+        "title", "description", "parameters", "gravity", "assembly",
+    }  # fmt: skip
 
 
 @pytest.mark.parametrize(

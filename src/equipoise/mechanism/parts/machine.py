@@ -21,6 +21,7 @@ from equipoise.keys import (
     Keys,
     Listing,
     Named,
+    ParameterValue,
     Quantity,
     Table,
     Tables,
@@ -28,6 +29,7 @@ from equipoise.keys import (
     Wording,
     changed,
     declared,
+    inside,
     key,
 )
 from equipoise.keys.paths import KeyPath
@@ -70,6 +72,7 @@ from equipoise.mechanism.parts.links import (
     Link,
     size_of,
 )
+from equipoise.mechanism.parts.parameters import PARAMETERS
 from equipoise.mechanism.parts.places import Frame, Position
 from equipoise.mechanism.parts.racks import Rack
 from equipoise.mechanism.parts.shown_units import ShownUnits
@@ -116,10 +119,11 @@ class Machine(Driven, Displayed, Frozen):
     """A planar linkage with its drive, loads, springs and gravity."""
 
     beside: ClassVar[Keys] = {"schema": VERSION}
-    file_order = ("schema", "title", "description", "units", "gravity", "drive", "drives", "frame",
-                  "links", "bearings", "assembly", "sliders", "circular_slots", "curved_slots",
-                  "gears", "belts", "racks", "cams", "loads", "springs", "torsion_springs",
-                  "joints", "position", "planting", "support", "rows", "balance")  # fmt: skip
+    file_order = ("schema", "title", "description", "units", "parameters", "gravity", "drive",
+                  "drives", "frame", "links", "bearings", "assembly", "sliders", "circular_slots",
+                  "curved_slots", "gears", "belts", "racks", "cams", "loads", "springs",
+                  "torsion_springs", "joints", "position", "planting", "support", "rows",
+                  "balance")  # fmt: skip
 
     title: str = key(Wording(), "shown in reports", example="Slider-crank")
     drive: Drive = key(Table(Drive), "the link that is driven")
@@ -191,6 +195,13 @@ class Machine(Driven, Displayed, Frozen):
     curved_slots: tuple[CurvedSlot, ...] = key(
         Tables(Table(CurvedSlot)), "pins in slots along smooth curves", default=()
     )
+
+    parameters: Mapping[str, str | float] = key(
+        Named(ParameterValue()),
+        'quantities and numbers by name, for expressions such as `"=2*crank + 3 mm"`',
+        factory=dict,
+    )
+    expressions: Mapping[str, str] = inside(Named(Text()), factory=dict)
 
     @classmethod
     def from_table(cls, given: dict[str, Any]) -> Machine:
@@ -333,9 +344,14 @@ class Machine(Driven, Displayed, Frozen):
     def with_number(self, path: str | KeyPath, number: float) -> Machine:
         """Return the machine with another number, by its path such as ``links.crank.mass`` or
         ``springs[1].stiffness``, in SI units.
+
+        A parameter is none of them: `equipoise.schema.Template` has machines with other parameters.
         """
         steps = KeyPath.of(path)
         first, last = steps[0], steps[-1]
+        if first == PARAMETERS:
+            what = Note("numbers are worked out from it when the file is read; change it there")
+            raise ModelError(steps.shown, what)
 
         def put(_: Any) -> float:
             return number
@@ -348,6 +364,13 @@ class Machine(Driven, Displayed, Frozen):
         else:
             found = changed(self, steps, put)
         return self._same_motion(found, same)
+
+    def with_expressions(self, expressions: Mapping[str, str]) -> Machine:
+        """Return the machine that remembers by which expressions numbers of it were given.
+
+        expressions : texts such as ``"=2*crank"`` by the path of the number, as of `with_number`.
+        """
+        return self._same_motion(replace(self, expressions=expressions))
 
     def with_planting(self, **changes: Any) -> Machine:
         """Return the machine with values of its planting changed, or given for the first time."""

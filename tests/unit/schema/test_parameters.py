@@ -1,0 +1,160 @@
+"""Named parameters of a model file, and numbers that are worked out from them."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+import equipoise as eq
+from equipoise.errors import ModelError
+from equipoise.schema.models import text_of
+from equipoise.schema.template import Template
+
+FOUR_BAR = """schema = 1
+title = "Four-bar with parameters"
+
+[parameters]
+crank = "30 mm"
+base = "=4*crank"
+weight = "200 g"
+
+[drive]
+link = "crank"
+speed = "120 rpm"
+
+[frame]
+points.A = ["0 mm", "0 mm"]
+points.D = ["=base", "0 mm"]
+
+[links.crank]
+points = ["A", "B"]
+length = "=crank"
+mass = "=weight/2"
+center_of_mass = ["0 mm", "0 mm"]
+inertia = "20 kg mm^2"
+
+[links.rod]
+points = ["B", "C"]
+length = "=base + 10 mm"
+mass = "=weight"
+center_of_mass = { distance = "=(base + 10 mm)/2", direction = "5 deg" }
+inertia = "300 kg mm^2"
+
+[links.rocker]
+points = ["D", "C"]
+length = "=2.5*crank"
+mass = "=weight*1.5"
+center_of_mass = ["=crank", "0 mm"]
+inertia = "300 kg mm^2"
+
+[assembly]
+C = "left"
+"""
+PLAIN = FOUR_BAR[: FOUR_BAR.index("[parameters]")] + FOUR_BAR[FOUR_BAR.index("[drive]") :]
+for _expression, _number in {
+    "=base + 10 mm": "130 mm", "=(base + 10 mm)/2": "65 mm", "=2.5*crank": "75 mm",
+    "=weight/2": "100 g", "=weight*1.5": "300 g", "=weight": "200 g", "=base": "120 mm",
+    "=crank": "30 mm",
+}.items():  # fmt: skip
+    PLAIN = PLAIN.replace(f'"{_expression}"', f'"{_number}"')
+
+
+def test_the_machine_is_that_of_the_numbers() -> None:
+    assert "=" not in PLAIN.replace(" = ", " ").replace('"=', "!")
+    machine, plain = eq.loads(FOUR_BAR), eq.loads(PLAIN)
+    assert (machine.links, machine.frame) == (plain.links, plain.frame)
+    assert eq.analyze(machine).summary == eq.analyze(plain).summary
+
+
+def test_a_file_is_written_as_it_was_read() -> None:
+    assert text_of(eq.loads(FOUR_BAR), {}) == FOUR_BAR
+
+
+def test_a_number_that_has_changed_is_written_as_a_number() -> None:
+    machine = eq.loads(FOUR_BAR).with_link("rod", mass=0.25)
+    text = text_of(machine, {})
+    assert text == FOUR_BAR.replace('"=weight"', '"250 g"')
+    assert eq.loads(text).links == machine.links
+
+
+def test_studies_vary_parameters(tmp_path: Path) -> None:
+    template = Template(FOUR_BAR)
+    assert template.number("parameters.crank") == (0.03, "length")
+    assert str(template.words("parameters.crank")) == "parameter crank"
+    for path, expression in {
+        "parameters.base": "4*crank", "links.rod.mass": "weight", "frame.points.D.x": "base",
+        "frame.points.D.direction": "base", "links.rod.center_of_mass.x": "(base + 10 mm)/2",
+    }.items():  # fmt: skip
+        what = f"{path} is worked out by '={expression}'; let a parameter in it vary"
+        with pytest.raises(ModelError, match=re.escape(what)):
+            template.number(path)
+    with pytest.raises(ModelError, match=r"did you mean 'parameters.crank'"):
+        template.number("parameters.crnk")
+    with pytest.raises(ModelError, match=r"parameters.crank: numbers are worked out from it"):
+        eq.loads(FOUR_BAR).with_number("parameters.crank", 0.04)
+    changed = template.machine({"parameters.crank": 0.032, "parameters.weight": 0.3})
+    whole = FOUR_BAR.replace('"30 mm"', '"32 mm"').replace('"200 g"', '"300 g"')
+    assert (changed.links, changed.frame) == (eq.loads(whole).links, eq.loads(whole).frame)
+    (tmp_path / "model.toml").write_text(FOUR_BAR, encoding="utf-8")
+    study = tmp_path / "study.toml"
+    study.write_text("""schema = 1
+title = "Crank"
+model = "model.toml"
+[[vary]]
+path = "parameters.crank"
+range = ["28 mm", "32 mm"]
+steps = 3
+[sampling]
+method = "grid"
+[[outputs]]
+value = "shaking_force.peak"
+[accuracy]
+angles = 360
+""", encoding="utf-8")  # fmt: skip
+    designs = eq.sweep(eq.load(study), tmp_path / "designs.zarr").read(range(3))
+    expected = [
+        eq.analyze(eq.loads(FOUR_BAR.replace("30 mm", f"{crank} mm"))).summary["shaking_force"].peak
+        for crank in (28, 30, 32)
+    ]
+    assert designs.outcome.figures[:, 0] == pytest.approx(expected, rel=1e-9)
+
+
+def test_whole_and_plain_numbers_are_worked_out_too() -> None:
+    machine = eq.loads(
+        FOUR_BAR
+        + """
+[[joints]]
+joint = "joints.C"
+radius = "=crank/3"
+friction = "=crank/(300 mm)"
+"""
+    )
+    assert machine.joints[0].friction == 0.1
+    assert 'friction = "=crank/(300 mm)"' in text_of(machine, {})
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ('"30 mm"', '"=crank"', "parameters.crank: is worked out from itself: crank → crank"),
+        ('"30 mm"', '"=base/4"', "parameters.base: is worked out from itself: base → crank → base"),
+        ('"30 mm"', '"30mm"', "parameters.crank: got '30mm'; put a space between"),
+        ('"30 mm"', "true", "parameters.crank: got true; give a quantity"),
+        ("crank = ", "mm = ", "parameters.mm: mm is a unit; give another name"),
+        ("crank = ", '"a b" = ', 'parameters."a b": got .a b.; give letters, digits'),
+        ('"=weight"', '"=wieght"', "links.rod.mass: .*no parameter is called 'wieght'; did you"),
+        ('"=weight"', '"=crank"', "links.rod.mass: .*which gives a length; give a mass"),
+        ('"=weight"', '"=weight*weight"', "links.rod.mass: .* no sum or product that gives a mass"),
+        ('"=weight"', '"=0*weight - 1 g"', "links.rod.mass: got -0.001 kg; a mass cannot be neg"),
+        ('"=weight"', '"2*weight"', "links.rod.mass: .*begin an expression with =: '=2[*]weight'"),
+        ('"=weight"', '"weight"', "links.rod.mass: .*begin an expression with =: '=weight'"),
+        ('"=weight"', '"=9**9**9"', "links.rod.mass: .* no sum or product that gives a mass"),
+        ('"=weight"', '"=weight/(base - 4*crank)"', "links.rod.mass: .*which divides by 0"),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_worked_out_is_refused(old: str, new: str, message: str) -> None:
+    assert old in FOUR_BAR
+    with pytest.raises(ModelError, match=message):
+        eq.loads(FOUR_BAR.replace(old, new, 1))
