@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
+from math import pi
 from typing import Any
 
 import numpy as np
 import pytest
 from scipy.linalg import expm
+from scipy.optimize import brentq
 
 import equipoise as eq
 from equipoise.errors import ModelError
@@ -16,6 +18,7 @@ from equipoise.mechanism.parts.dc_motors import DcMotor
 from equipoise.mechanism.parts.force_elements import Load, Motor
 from equipoise.mechanism.parts.induction_motors import InductionMotor
 from equipoise.mechanism.parts.joint_properties import JointProperties
+from equipoise.running.blocks import verdict
 from equipoise.schema.files import json_text
 from equipoise.vibration.steady import speed_at
 from laws.test_run import GRAVITY, INERTIA, WEIGHT, crank
@@ -150,3 +153,83 @@ def test_they_are_read_printed_and_written(tmp_path: Any) -> None:
 def test_a_motor_is_of_one_kind(given: dict[str, Any]) -> None:
     with pytest.raises(ModelError, match=r"^drive\.motor: give either no_load_speed and stall_"):
         crank(Motor(**given))
+
+
+# -- brakes ----------------------------------------------------------------------------------------
+
+
+def braked(machine: eq.Machine, brake: float, motor: Motor | None = None) -> eq.Machine:
+    return machine.with_drive(brake=brake, motor=motor)
+
+
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+def test_a_brake_stops_a_crank_and_takes_its_energy(sense: float) -> None:
+    """Two turns by a constant torque T, and then 2 T / B more; evenly, as of a constant torque."""
+    found = eq.run(braked(crank(speed=sense, gravity=0.0), 3.0, Motor(torque=4.0)), off_turns=2)
+    fastest = np.sqrt(2 * 4.0 * 4 * pi / INERTIA)
+    assert [event.kind for event in found.events] == ["off", "standstill"]
+    assert found.stopping == pytest.approx((fastest * INERTIA / 3.0, 2 * 4 / 3), rel=1e-8)
+    assert found.work["brake"][-1] == pytest.approx(-16 * pi, rel=1e-9)
+    assert found.energy_error < 1e-11
+    after = found.time >= found.events[0].time
+    left = sense * (fastest - 3.0 / INERTIA * (found.time - found.events[0].time))
+    assert np.max(np.abs(found.crank_speed - left)[after]) < 1e-7 * fastest
+    assert "it stops in 1.603 s and 2.667" in verdict(found)
+    assert found.to_dict()["stopping"]["turns"] == found.stopping[1]
+
+
+def test_a_brake_does_nothing_while_a_motor_is_on() -> None:
+    driven_on = braked(crank(gravity=0.0), 3.0, Motor(torque=4.0))
+    with_it, without = (
+        eq.run(one, turns=3) for one in (driven_on, driven_on.with_drive(brake=0.0))
+    )
+    assert with_it.end.time == pytest.approx(without.end.time, rel=1e-12)
+    assert np.all(with_it.work["brake"] == 0) and "brake" not in without.work
+    assert with_it.stopping is None
+
+
+def test_a_brake_holds_what_is_smaller() -> None:
+    """A crank whose weight pulls at it, level."""
+    held = eq.run(braked(crank(), 1.001 * WEIGHT), speed=0.0)
+    assert held.end.kind == "standstill" and held.end.time == 0
+    falls = eq.run(braked(crank(), 0.999 * WEIGHT), speed=0.0)
+    assert falls.end.kind == "standstill" and falls.end.time > 0
+    assert falls.end.crank_angle < 0
+
+
+def test_a_braked_pendulum_stops_where_its_energy_says() -> None:
+    """From -90 deg on at 3 rad/s: J w^2 / 2 = B a + W (1 - cos a), as far as it goes; then it
+    swings back if its weight is stronger there than the brake.
+    """
+    weak, speed = WEIGHT / 20, 3.0
+
+    def left(way: float) -> float:
+        return INERTIA * speed**2 / 2 - weak * way - WEIGHT * (1 - np.cos(way))
+
+    found = eq.run(braked(crank(), weak), speed=speed, angle=-pi / 2)
+    back = next(event for event in found.events if event.kind == "reversal")
+    assert back.crank_angle + pi / 2 == pytest.approx(brentq(left, 0.0, pi), abs=1e-8)
+    assert found.end.kind == "standstill"
+    assert WEIGHT * abs(np.sin(found.end.crank_angle + pi / 2)) < weak
+    assert found.energy_error < 1e-10
+
+
+def test_a_brake_presses_rubbing_joints_as_a_load_does() -> None:
+    """A torque against the motion, by the table of loads, is the same while the crank turns on."""
+    machine = eq.load("plunger-pump").with_drive(motor=None)
+    load = Load(machine.drive.link, torque=-np.sign(machine.drive.speed) * 2.0)
+    fast = 10 * machine.drive.speed
+    loaded = eq.run(replace(machine, loads=(*machine.loads, load)), turns=1.5, speed=fast)
+    found = eq.run(braked(machine, 2.0), turns=1.5, speed=fast)
+    assert found.end.kind == "turns"
+    assert found.end.time == pytest.approx(loaded.end.time, rel=1e-9)
+    assert found.end.speed == pytest.approx(loaded.end.speed, rel=1e-9)
+    assert found.work["friction"][-1] == pytest.approx(loaded.work["friction"][-1], rel=1e-8)
+    assert found.work["friction"][-1] < 0 > found.work["brake"][-1]
+
+
+def test_a_brake_in_a_file() -> None:
+    machine = braked(crank(), 5.0)
+    assert eq.loads(eq.dumps(machine)) == machine
+    with pytest.raises(ModelError, match=r"drive\.brake: got -5 N m"):
+        braked(crank(), -5.0)

@@ -186,6 +186,8 @@ def _drive_train(machine: Machine) -> Iterator[str]:
     drive = machine.drive
     if drive.flywheel:
         yield f"flywheel: {told(drive.flywheel, 'inertia', 'kg m^2')}"
+    if drive.brake:
+        yield f"brake: {told(drive.brake, 'torque', 'N m')}, where no motor is on"
     if (motor := drive.motor) is not None:
         rotor = f", rotor {told(motor.inertia, 'inertia', 'kg m^2')}" if motor.inertia else ""
         speed = "is the drive's" if motor.mean_speed == "held" else "follows from it"

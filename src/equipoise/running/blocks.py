@@ -11,7 +11,7 @@ import numpy as np
 from equipoise.i18n import Note, said, say, to_say
 from equipoise.quantities import PER_RPM, number, told
 from equipoise.results.blocks import Block, Column, Facts, Table, Text, Value, broken_if
-from equipoise.running.run import DRIVE
+from equipoise.running.run import BRAKE, DRIVE
 from equipoise.vibration.coupled import STALLS
 
 if TYPE_CHECKING:
@@ -66,7 +66,7 @@ def verdict(run: Run) -> str:
         template = to_say(
             "The machine stands still after {time} s and {turns} turns, at crank angle {angle} deg."
         )
-        return say(template, **values, angle=angle)
+        return " ".join([say(template, **values, angle=angle), *_stopped(run)])
     if end.kind == "reversal":
         turned_back = sum(event.kind == "reversal" for event in run.events)
         template = to_say(
@@ -88,6 +88,13 @@ def verdict(run: Run) -> str:
     speed = number(end.speed / PER_RPM)
     template = to_say("After {time} s and {turns} turns the crank turns at {speed} rpm.")
     return say(template, **values, speed=speed)
+
+
+def _stopped(run: Run) -> Iterator[str]:
+    """How long a machine that stands still has taken since its motor was switched off."""
+    if run.stopping is not None:
+        time, turns = (number(value) for value in run.stopping)
+        yield say("Switched off, it stops in {time} s and {turns} turns.", time=time, turns=turns)
 
 
 def _flywheel(flywheel: Flywheel) -> str:
@@ -152,7 +159,7 @@ def run_blocks(run: Run) -> Iterator[Block]:
     if lines := tuple(_figures(run)):
         yield Facts(say("Last cycle"), lines)
     labels = {source.key: say(source.label) for source in run.equation.sources}
-    labels[DRIVE] = say("drive")
+    labels |= {BRAKE: say("brake"), DRIVE: say("drive")}
     energy = run.kinetic_energy
     rows = [(labels[name], Value(float(work[-1]))) for name, work in run.work.items()]
     rows.append((say("kinetic energy"), Value(float(energy[-1] - energy[0]))))

@@ -1,4 +1,6 @@
-"""What turns the crank: a motor by its curve, or with its current, while it is switched on."""
+"""What turns the crank: a motor by its curve, or with its current, while it is switched on; and
+what stops it: a brake, while no motor is on.
+"""
 
 from __future__ import annotations
 
@@ -16,12 +18,14 @@ class Driver:
 
     sense : 1 where it turns the crank counterclockwise, -1 clockwise.  on : whether it is on.
     circuit : of a direct-current motor; None of any other.
+    brake : torque of the brake on the crank, N m, which acts while no motor is on; 0 without one.
     """
 
     def __init__(self, machine: Machine) -> None:
         drive = machine.drive
         self.sense = copysign(1.0, drive.speed)
         self.on = drive.motor is not None
+        self.brake = drive.brake
         self._torque = torque_on_crank(drive, drive.speed) if self.on else None
         self.circuit = None if drive.motor is None else drive.motor.dc
         self._gear = 1.0 if drive.motor is None else self.sense * drive.motor.ratio
@@ -31,6 +35,10 @@ class Driver:
         if self._torque is None or not self.on:
             return np.zeros_like(speed)
         return self._torque(speed, np.zeros(()))
+
+    def holding(self) -> float:
+        """Torque of the brake, N m, that holds a crank at rest, and slows one that turns."""
+        return 0.0 if self.on else self.brake
 
     # -- with its current --------------------------------------------------------------------------
 

@@ -105,7 +105,8 @@ class Limits:
 
 @dataclass(frozen=True)
 class Instant:
-    """State of a run: s, rad, rad/s, and the work so far of each source and of the drive, J.
+    """State of a run: s, rad, rad/s, and the work so far of each source, of the brake where there
+    is one, and of the drive, J.
 
     electric : (3,) current of a direct-current motor, A, and work of its supply and heat so far, J.
     """
@@ -157,7 +158,7 @@ class Integration:
         self.start = angle
         inertia = float(np.max(equation.inertia(np.linspace(0.0, equation.period, SAMPLES))[0]))
         self.usual = usual = max(abs(speed), abs(equation.machine.drive.speed)) or 1.0
-        works = len(equation.sources) + 1
+        works = len(equation.sources) + bool(self.driver.brake) + 1
         energy = inertia * usual**2 / 2
         circuit = self.driver.circuit
         current = 1.0 if circuit is None else circuit.voltage / circuit.resistance
@@ -242,7 +243,8 @@ class Integration:
         acting, holding = self.equation.at_rest(now.angle)
         driving = float(self.driver.torque(np.zeros(())))
         net = acting + driving
-        held = holding[copysign(1.0, net)] + AT_REST * max(abs(acting), abs(driving))
+        held = holding[copysign(1.0, net)] + self.driver.holding()
+        held += AT_REST * max(abs(acting), abs(driving))
         if abs(net) <= held:
             rubs = holding[copysign(1.0, net)] > 0
             pushes = rubs and self.driver.on and net * self.driver.sense > 0
@@ -393,13 +395,19 @@ class Integration:
         return np.stack(columns, axis=1)
 
     def _torques(self, columns: Array, speed: Array, current: Array) -> Array:
-        """Of each source and of the drive (K + 1, ...); current : of the motor (...), A, by which
-        it drives where it lags.
+        """Of each source, of the brake where there is one, and of the drive, (K + 1, ...) or
+        (K + 2, ...); current : of the motor (...), A, by which it drives where it lags.
         """
-        lags = self.driver.lags
+        lags, braking = self.driver.lags, self._braking()
         driving = self.driver.torque_of(current) if lags else self.driver.torque(speed)
-        sources = self.equation.torques(columns, speed, driving, self.direction)
+        sources = self.equation.torques(columns, speed, driving + sum(braking), self.direction)
+        if braking:
+            sources = np.concatenate([sources, np.full((1, *np.shape(speed)), braking[0])])
         return np.concatenate([sources, driving[None]])
+
+    def _braking(self) -> list[float]:
+        """Torque of the brake on a crank that turns as it does, N m; empty without a brake."""
+        return [-self.direction * self.driver.holding()] if self.driver.brake else []
 
     def _first_in(
         self, begin: Instant, ends: tuple[float, float], at: Callable[[float], Instant]
@@ -492,9 +500,12 @@ class Integration:
             electric = driver.electric_rates(np.asarray(current), state[1]).tolist()
             lags = driver.lags
             driving = float(driver.torque_of(current) if lags else driver.torque(state[1]))
-        inertia, slope, torques = self.equation.at(angle, speed, driving, self.direction)
-        change = (float(np.sum(torques)) + driving - 0.5 * slope * speed * speed) / inertia
-        return [speed, change, *electric, *(torques * speed).tolist(), driving * speed]
+        braking = self._braking()
+        acting = driving + sum(braking)
+        inertia, slope, torques = self.equation.at(angle, speed, acting, self.direction)
+        change = (float(np.sum(torques)) + acting - 0.5 * slope * speed * speed) / inertia
+        powers = [torque * speed for torque in (*torques.tolist(), *braking, driving)]
+        return [speed, change, *electric, *powers]
 
     # -- events ------------------------------------------------------------------------------------
 

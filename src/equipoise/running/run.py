@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
-from math import inf, pi
+from math import copysign, inf, pi
 from typing import Any, ClassVar
 
 import numpy as np
@@ -26,7 +26,7 @@ TURNS = 300
 """Turns after which a run ends where nothing else ends it."""
 STARTED = 0.95
 """Share of the mean speed of a steady state at which a machine has started."""
-DRIVE = "drive"
+BRAKE, DRIVE = "brake", "drive"
 
 
 @dataclass(frozen=True)
@@ -177,6 +177,17 @@ class Run(Result):
         return float(self.time[k - 1] + share * (self.time[k] - self.time[k - 1]))
 
     @cached_property
+    def stopping(self) -> tuple[float, float] | None:
+        """Time, s, and turns of the crank, forward less back, from when the motor is switched off
+        to a standstill; None where either does not happen.
+        """
+        off = next((event for event in self.events if event.kind == "off"), None)
+        if off is None or self.end.kind != "standstill":
+            return None
+        turned = (self.end.crank_angle - off.crank_angle) / (2 * pi)
+        return self.end.time - off.time, turned * copysign(1.0, off.speed)
+
+    @cached_property
     def lacking_torque(self) -> tuple[float, float] | None:
         """Where a motor stalls: torque that the crank needs to go on, and that the motor gives,
         N m; None where it does not.
@@ -202,7 +213,7 @@ class Run(Result):
 
     def to_dict(self) -> dict[str, Any]:
         """The machine-readable output, in SI units."""
-        cycle, lacking = self.last_cycle, self.lacking_torque
+        cycle, lacking, stopping = self.last_cycle, self.lacking_torque, self.stopping
         return {
             "title": self.machine.title,
             "end": self.end.kind,
@@ -219,6 +230,7 @@ class Run(Result):
             "stall": None
             if lacking is None
             else {"torque_needed": lacking[0], "torque_given": lacking[1]},
+            "stopping": None if stopping is None else {"time": stopping[0], "turns": stopping[1]},
             "flywheel": None if self.flywheel is None else self.flywheel.to_dict(),
             "energy_error": self.energy_error,
             "events": [vars(event) for event in self.events],
@@ -312,7 +324,8 @@ def _result(equation: CrankEquation, found: Integration, flywheel: Flywheel | No
     driver = Driver(machine)
     driving = driver.torque_of(electric[0]) if driver.lags else driver.torque(crank_speed)
     torque = np.where(time <= switched, driving, 0.0)
-    names = [*(source.key for source in equation.sources), DRIVE]
+    brake = [BRAKE] if driver.brake else []
+    names = [*(source.key for source in equation.sources), *brake, DRIVE]
     return Run(
         machine,
         equation,

@@ -65,8 +65,8 @@ def wrong_drive(drive: Drive, bodies: Bodies, sliders: list[str]) -> Iterator[Mo
         yield from wrong_law("drive.motion", drive.motion)
     if drive.motion is None and drive.stroke is None:
         return
-    for name, given in (("motor", drive.motor), ("flywheel", drive.flywheel)):
-        if given:
+    for name in ("motor", "flywheel", "brake"):
+        if getattr(drive, name):
             yield ModelError(
                 f"drive.{name}",
                 Note("turns with the crank, and here the driven link has a motion; leave it out"),

@@ -116,6 +116,13 @@ class Drive(Pushing, Frozen):
         at_least=0,
         why=NO_INERTIA,
     )
+    brake: float = key(
+        "torque",
+        "of a brake on the driven link, which `run` applies while no motor is on",
+        default=0.0,
+        example="5 N m",
+        at_least=0,
+    )
     motor: Motor | None = key(Table(Motor, headed=True), "what drives it", default=None)
     speeds: tuple[float, ...] = key(
         Listing(Quantity("angular speed"), (2,), 'a list such as ["150 rpm", "240 rpm"]'),
