@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import partial
+from itertools import chain, takewhile
 from typing import Any, ClassVar
 
 import numpy as np
@@ -26,6 +27,8 @@ as small as the last of them."""
 SMALLEST_LOOP = 1e-9
 """Height and width of a loop, over the height of the whole curve, below which it is a cusp."""
 MOST_NODES = 6000
+AT_ONCE, PIECES = 256, 4096
+"""Loops that are measured, and pieces of the path that are followed, in one call: memory."""
 MOST_STEPS, CLOSED = 20, 1e-12
 """Steps of Newton's method for a crossing, and the step (rad) at which it has been found."""
 
@@ -72,12 +75,14 @@ class GroundPath:
         self.slow = crossings(self.rate_slope, self.samples)
 
     def place(self, way: Array) -> Array:
-        """Place over ground, m, complex, (1, K); over the machine's place at crank angle 0."""
-        return self.curve.at(self.sense * way).place + self.drive * way
+        """Places over ground, m, complex, as many as ways; over that at crank angle 0."""
+        turned = self.sense * way.reshape(1, -1)
+        return self.curve.at(turned).place.reshape(way.shape) + self.drive * way
 
     def rate(self, way: Array) -> Array:
-        """Its derivative, m, complex, (1, K)."""
-        return self.sense * self.curve.at(self.sense * way).place_1 + self.drive
+        """Its derivative, m, complex, as many as ways."""
+        turned = self.sense * way.reshape(1, -1)
+        return self.sense * self.curve.at(turned).place_1.reshape(way.shape) + self.drive
 
     def rate_slope(self, way: Array) -> Array:
         """A signal with the sign of the derivative of the rate's size."""
@@ -97,16 +102,18 @@ class GroundPath:
         largest = np.max(np.abs(self.rate(self.samples[None])))
         return tuple(self.crank_angle(way) for way in self.slow[rates < STILL * largest])
 
-    def breaks(self, start: float, stop: float) -> Array:
+    def breaks(self, start: float, stop: float, pieces: int = 24) -> Array:
         """Ways (B,) from start to stop between which the path bends gently: they crowd about
         places where it is slow.
+
+        pieces : of equal width, at least.
         """
         period = self.curve.period
         around = self.slow + period * np.floor((start - self.slow) / period)
         slow = np.concatenate([around + period * k for k in range(3)], axis=None)
         step = period / len(self.curve.theta) * 8
         near = _crowded(slow, step)
-        inner = np.concatenate([np.linspace(start, stop, 25), near])
+        inner = np.concatenate([np.linspace(start, stop, pieces + 1), near])
         return np.unique(inner[(inner >= start) & (inner <= stop)])
 
     def loops(self) -> tuple[Loop, ...]:
@@ -116,17 +123,15 @@ class GroundPath:
         nodes = self._nodes()
         places = self.place(nodes[None])[0]
         cycle = int(np.searchsorted(nodes, self.curve.period))
-        crossed = _crossing_pairs(nodes, places, cycle)
-        pairs = [pair for pair in (self._polished(*ways) for ways in crossed) if pair]
-        found: list[tuple[float, float]] = []
-        for first, second in sorted(pairs):
-            inside = -1e-12 <= first < self.curve.period - 1e-12
-            apart = inside and 1e-7 < second - first < self.curve.period
-            if apart and not any(abs(first - a) + abs(second - b) < 1e-9 for a, b in found):
-                found.append((first, second))
-        loops = (self._loop(first, second) for first, second in found)
+        crossed = self._polished(_crossing_pairs(nodes, places, cycle))
+        ways = self._distinct(crossed)
+        areas = self._areas(ways)
         smallest = SMALLEST_LOOP * float(self.curve.highest[0][0] - self.curve.lowest[0][0])
-        return tuple(loop for loop in loops if loop.height + loop.width > smallest)
+        measured = [
+            self._measured(ways[k : k + AT_ONCE], areas[k : k + AT_ONCE])
+            for k in range(0, len(ways), AT_ONCE)
+        ]
+        return tuple(loop for loop in chain(*measured) if loop.height + loop.width > smallest)
 
     def _nodes(self) -> Array:
         """Ways over two cycles at which the path is sampled: crowded where it is slow."""
@@ -136,50 +141,108 @@ class GroundPath:
         once = np.unique(np.concatenate([once, near]))
         return np.concatenate([once, once + self.curve.period])
 
-    def _polished(self, first: float, second: float) -> tuple[float, float] | None:
-        """Newton's method on the two components of the way between both passes.
+    def _polished(self, ways: Array) -> Array:
+        """Ways (L, 2) of crossings near ways (C, 2), by Newton's method on the two components of
+        the way between both passes.
 
         At a cusp it creeps towards a single instant: then there is no crossing.
         """
-        ways = np.array([[first, second]])
+        closed = [np.empty((0, 2))]
         for _ in range(MOST_STEPS):
-            gap = np.diff(self.place(ways)[0])[0]
-            one, other = self.rate(ways)[0]
-            turn = kernels.cross(one, other)
-            if not abs(turn) > 0:
+            if not ways.size:
                 break
-            step = np.array([kernels.cross(gap, other), kernels.cross(gap, one)]) / turn
-            ways = ways + step
-            if np.max(np.abs(step)) < CLOSED:
-                return float(ways[0, 0]), float(ways[0, 1])
-        return None
+            places, (one, other) = self.place(ways), self.rate(ways).T
+            turn, gap = kernels.cross(one, other), places[:, 1] - places[:, 0]
+            crossing = np.abs(turn) > 0
+            steps = np.stack([kernels.cross(gap, other), kernels.cross(gap, one)], axis=-1)
+            steps = steps[crossing] / turn[crossing, None]
+            ways = ways[crossing] + steps
+            close = np.max(np.abs(steps), axis=1) < CLOSED
+            closed.append(ways[close])
+            ways = ways[~close]
+        return np.concatenate(closed)
 
-    def _loop(self, first: float, second: float) -> Loop:
-        breaks = self.breaks(first, second)
-        origin = self.place(np.array([[first]]))[0, 0]
-        swept = integral(
-            lambda way: kernels.cross(self.place(way) - origin, self.rate(way)), breaks[None]
-        )
-        height, width = (self._extent(first, second, axis) for axis in ("imag", "real"))
-        return Loop(
-            first=self.crank_angle(first),
-            second=self.crank_angle(second),
-            way=second - first,
-            y=float(origin.imag),
-            height=height,
-            width=width,
-            area=abs(float(swept[0])) / 2,
-            in_soil=bool(origin.imag < self.curve.surface[0]),
-        )
+    def _distinct(self, crossed: Array) -> Array:
+        """Ways (L, 2) of those crossings (C, 2) that begin in the first cycle, each once."""
+        period, once = self.curve.period, list[tuple[float, float]]()
+        for first, second in sorted(map(tuple, crossed.tolist())):
+            inside = -1e-12 <= first < period - 1e-12 and 1e-7 < second - first < period
+            if inside and not _among(once, first, second):
+                once.append((first, second))
+        return np.array(once).reshape(-1, 2)
 
-    def _extent(self, first: float, second: float, axis: str) -> float:
-        ends = np.array([first]), np.array([second])
+    def _measured(self, ways: Array, areas: Array) -> list[Loop]:
+        """Loops between ways (L, 2), of areas (L,)."""
+        crossing = self.place(ways[:, 0])
+        extents = [self._extent(*ways.T, axis).tolist() for axis in ("imag", "real")]
+        return [
+            Loop(
+                first=self.crank_angle(first),
+                second=self.crank_angle(second),
+                way=second - first,
+                y=float(at.imag),
+                height=height,
+                width=width,
+                area=float(area),
+                in_soil=bool(at.imag < self.curve.surface[0]),
+            )
+            for (first, second), at, area, height, width in zip(
+                ways.tolist(), crossing, areas, *extents, strict=True
+            )
+        ]
+
+    def _areas(self, ways: Array) -> Array:
+        """Areas (L,), m2, that the path goes around between ways (L, 2).
+
+        Most of what loops go around is common to many, so that each piece of the path is followed
+        once; only the ends of a loop, from and to the next break, are its own.
+        """
+        breaks = self.breaks(0.0, 2 * self.curve.period, len(self.curve.theta) // 4)
+        inside = np.searchsorted(breaks, ways[:, 0]), np.searchsorted(breaks, ways[:, 1]) - 1
+        starts, own, along = self._swept(breaks[:-1], breaks[1:])
+        first, second = ways.T
+        begin = np.minimum(breaks[inside[0]], second)
+        end = np.maximum(breaks[inside[1]], begin)
+        origins = self.place(first)
+        total = np.zeros(len(ways))
+        for low, high in ((first, begin), (end, second)):
+            corners, areas, chords = self._swept(low, high)
+            total += areas + kernels.cross(corners - origins, chords)
+        for k, (i, j) in enumerate(zip(*inside, strict=True)):
+            total[k] += np.sum(own[i:j] + kernels.cross(starts[i:j] - origins[k], along[i:j]))
+        return np.abs(total) / 2
+
+    def _swept(self, low: Array, high: Array) -> tuple[Array, Array, Array]:
+        """Of pieces from ways `low` to `high` (N,): where they begin (N,), m, twice the areas (N,)
+        that lines from there sweep, m2, and how far they lead (N,), m.
+        """
+        starts, ends = self.place(low), self.place(high)
+        areas = [np.empty(0)]
+        for k in range(0, len(low), PIECES):
+            part = slice(k, k + PIECES)
+
+            def sweeping(way: Array, origins: Array = starts[part, None]) -> Array:
+                return np.asarray(kernels.cross(self.place(way) - origins, self.rate(way)))
+
+            areas.append(integral(sweeping, np.stack([low[part], high[part]], axis=-1)))
+        return starts, np.concatenate(areas), ends - starts
+
+    def _extent(self, first: Array, second: Array, axis: str) -> Array:
+        """Width or height (L,), m, of the path between ways `first` and `second` (L,)."""
 
         def part(way: Array, sign: int) -> Any:
             return sign * getattr(self.place(way), axis)
 
-        least, most = (lowest_within(partial(part, sign=sign), *ends)[0] for sign in (1, -1))
-        return float(-most[0] - least[0])
+        least, most = (
+            lowest_within(partial(part, sign=sign), first, second)[0] for sign in (1, -1)
+        )
+        return np.asarray(-most - least)
+
+
+def _among(pairs: list[tuple[float, float]], first: float, second: float) -> bool:
+    """Whether one of some rising pairs is this one, but for rounding."""
+    near = takewhile(lambda pair: first - pair[0] < 1e-9, reversed(pairs))
+    return any(first - a + abs(second - b) < 1e-9 for a, b in near)
 
 
 def _crowded(middles: Array, step: float) -> Array:
@@ -190,10 +253,10 @@ def _crowded(middles: Array, step: float) -> Array:
     return near
 
 
-def _crossing_pairs(nodes: Array, places: Array, cycle: int) -> list[tuple[float, float]]:
-    """Ways at which the lines between nodes cross, with the first in the first cycle."""
+def _crossing_pairs(nodes: Array, places: Array, cycle: int) -> Array:
+    """Ways (C, 2) at which the lines between nodes cross, with the first in the first cycle."""
     starts, ends = places[:-1], places[1:]
-    pairs = []
+    pairs: list[tuple[int, int]] = []
     for i in range(cycle):
         last = min(i + cycle, len(starts))
         a, b = starts[i], ends[i]
@@ -202,4 +265,4 @@ def _crossing_pairs(nodes: Array, places: Array, cycle: int) -> list[tuple[float
         across = (kernels.cross(d - c, a - c) > 0) != (kernels.cross(d - c, b - c) > 0)
         pairs += [(i, int(k)) for k in i + 2 + np.flatnonzero(apart & across)]
     middles = (nodes[1:] + nodes[:-1]) / 2
-    return [(float(middles[i]), float(middles[k])) for i, k in pairs]
+    return np.asarray(middles[np.array(pairs, int).reshape(-1, 2)])

@@ -121,6 +121,8 @@ def test_loop_of_a_trochoid(forward: float, at: float, speed: float) -> None:
     assert loop.height == pytest.approx(0.1 * (1 - np.cos(half)), rel=1e-7)
     widest = np.arccos(forward)
     assert loop.width == pytest.approx(0.2 * (np.sin(widest) - forward * widest), rel=1e-6)
+    area = half + np.sin(half) * np.cos(half) - 2 * np.sin(half) ** 2 / half
+    assert loop.area == pytest.approx(0.01 * area, rel=1e-6)
 
 
 @pytest.mark.parametrize("speed", [10.0, -10.0])
@@ -141,6 +143,28 @@ def test_a_slow_tip_neither_loops_nor_stops(forward: float) -> None:
     path = GroundPath(TipCurve([spinner(at=0.3, forward_speed=forward)]))
     assert path.loops() == ()
     assert path.cusps() == ()
+
+
+def test_a_path_that_crosses_itself_often_is_followed_once(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A slow machine with a cycle of many turns; not each crossing by itself, which takes long."""
+    path = GroundPath(TipCurve([planetary(teeth=29, forward_speed=0.05)]))
+    calls = []
+    at = TipCurve.at
+
+    def counted(curve: TipCurve, theta: Array) -> Any:
+        calls.append(theta.size)
+        return at(curve, theta)
+
+    monkeypatch.setattr(TipCurve, "at", counted)
+    loops = path.loops()
+    assert len(loops) > 500
+    assert len(calls) < len(loops)
+    first, way = np.array([[loop.first, loop.way] for loop in loops]).T
+    ends = path.place(np.stack([first, first + way], axis=-1))
+    np.testing.assert_allclose(ends[:, 0], ends[:, 1], atol=1e-12)
+    assert len({*zip(first.round(8), way.round(8), strict=True)}) == len(loops)
 
 
 def test_a_machine_at_rest_has_no_path_over_ground() -> None:
