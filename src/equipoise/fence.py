@@ -154,6 +154,53 @@ def _readable_roots() -> tuple[Path, ...] | None:
 # -- opening where something is written ------------------------------------------------------------
 
 
+_held: ContextVar[dict[str, Folder] | None] = ContextVar("_held", default=None)
+
+
+@contextmanager
+def holding() -> Iterator[None]:
+    """Inside, a folder for which a `place` was held once stays the same, whatever comes there."""
+    if _held.get() is not None:
+        yield
+        return
+    token = _held.set({})
+    try:
+        yield
+    finally:
+        _held.reset(token)
+
+
+def hold_place(path: str | os.PathLike[str]) -> None:
+    """Hold open the folder in which something is to be written later, where folders are held.
+
+    Raises
+    ------
+    OSError : the folder cannot be opened.
+    """
+    held, above = _held.get(), Path(path).absolute().parent
+    if held is not None and str(above) not in held:
+        held[str(above)] = Folder.at(os.path.realpath(above))
+
+
+def hold_folder(path: Path) -> None:
+    """Hold open a folder into which something is to be written later, where folders are held.
+
+    path : absolute.
+
+    Raises
+    ------
+    UsageError, LinkError, OSError, ValueError : as of `place_of`.
+    """
+    held = _held.get()
+    if held is None or str(path) in held:
+        return
+    if path.name in {"", ".."}:
+        held[str(path)] = Folder.at(path)
+    else:
+        above, name = place_of(path)
+        held[str(path)] = above.folder(name)
+
+
 def place_of(path: str | os.PathLike[str], *, links: bool = True) -> tuple[Folder, str]:
     """The folder in which a file or a folder is to be written, held open, and the name there.
 
@@ -172,7 +219,10 @@ def place_of(path: str | os.PathLike[str], *, links: bool = True) -> tuple[Folde
     if not links:
         _note_written(given)
         return Folder.without_links(given.parent), given.name
-    above = Path(os.path.realpath(given.parent))
+    held = (_held.get() or {}).get(str(given.absolute().parent))
+    if held is not None and _fence.get() is None and not held.has_link(given.name):
+        return held, given.name
+    above = held.path if held is not None else Path(os.path.realpath(given.parent))
     target = Path(os.path.realpath(above / given.name))
     check_written(target)
     if not target.is_relative_to(above):
@@ -180,7 +230,7 @@ def place_of(path: str | os.PathLike[str], *, links: bool = True) -> tuple[Folde
     way = target.relative_to(above).parent.as_posix()
     fence = _fence.get()
     if fence is None:
-        return Folder.at(above).folder(way), target.name
+        return (held or Folder.at(above)).folder(way), target.name
     _note_written(target)
     way = target.parent.relative_to(fence.folder).as_posix()
     return Folder.at(fence.folder).folder(way), target.name

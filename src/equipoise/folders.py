@@ -175,9 +175,13 @@ class Folder:
             return os.stat(name, dir_fd=self._descriptor, follow_symlinks=False)
         return None
 
-    def _check(self, name: str) -> None:
+    def has_link(self, name: str) -> bool:
+        """Whether what is of this name in it is a link."""
         status = self.status(name)
-        if status is not None and _is_link(status):
+        return status is not None and _is_link(status)
+
+    def _check(self, name: str) -> None:
+        if self.has_link(name):
             raise LinkError(name)
 
     @contextmanager

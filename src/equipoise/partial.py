@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 from equipoise.errors import UsageError
-from equipoise.fence import check_link, check_written, place_of
+from equipoise.fence import check_link, check_written, hold_folder, holding, place_of
 from equipoise.folders import Folder
 from equipoise.interrupts import check, held_back
 
@@ -77,7 +77,8 @@ def together() -> Iterator[None]:
     whole = _Together(stack)
     token = _waiting.set(whole)
     try:
-        yield
+        with holding():
+            yield
         with held_back():
             whole.done()
     except BrokenPipeError:
@@ -142,6 +143,7 @@ def made(folder: str | os.PathLike[str]) -> None:
     check_link(path)
     missing = [one for one in (path, *path.parents) if not one.exists()]
     os.makedirs(folder, exist_ok=True)
+    hold_folder(path)
     if whole is not None:
         for one in reversed(missing):  # the innermost goes first
             whole.stack.callback(_remove_empty, one)

@@ -21,6 +21,7 @@ from equipoise.errors import EquipoiseError, UsageError
 from equipoise.exchange.formats import FORMATS
 from equipoise.folders import Folder
 from equipoise.schema.documents import load
+from equipoise.schema.files import write_all
 from equipoise.web import server as served_files
 from equipoise.web.disk import on_disk
 from equipoise.web.stores import StoreDesk, stores_in
@@ -316,7 +317,17 @@ DRAWING = {
         *("--plot", "pictures"),
     ),
 }
-OFTEN = ("analyze --csv", "report", "export", "animate", "balance", "sweep", "plot", "best")
+OFTEN = (
+    "analyze --csv",
+    "report",
+    "export",
+    "animate",
+    "balance",
+    "sweep",
+    "plot",
+    "best",
+    "plant fit --csv",
+)
 """What is tried on every change; all write by the same few functions."""
 
 
@@ -467,6 +478,46 @@ def test_what_is_written_goes_through_no_link_that_comes_meanwhile(
     monkeypatch.setattr(Folder, "open", open_late)
     equipoise(*(one.format("here/out") for one in words))
     assert planted_there
+
+
+@pytest.mark.parametrize("name", few(DRAWING, OFTEN))
+@pytest.mark.usefixtures("store")
+def test_pictures_go_into_the_folder_that_was_named_whatever_comes_there(
+    name: str, outside: Outside, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A link is put in the place of their folder once the first is begun."""
+    words = DRAWING[name]
+    inputs()
+    opened, planted_there = Folder.open, []
+
+    def open_late(folder: Folder, file: str, flags: int, mode: int = 0o666) -> int:
+        descriptor = opened(folder, file, flags, mode)
+        if flags & os.O_CREAT and Path("pictures").is_dir() and not planted_there:
+            planted_there.append(file)
+            Path("pictures").rename("old")
+            Path("pictures").symlink_to(outside.folder)
+        return descriptor
+
+    monkeypatch.setattr(Folder, "open", open_late)
+    equipoise(*words)
+    assert planted_there
+
+
+def test_pictures_drawn_in_python_go_into_the_folder_that_was_named(
+    outside: Outside, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    opened = Folder.open
+
+    def open_late(folder: Folder, file: str, flags: int, mode: int = 0o666) -> int:
+        descriptor = opened(folder, file, flags, mode)
+        if flags & os.O_CREAT and not Path("old").exists():
+            Path("new").rename("old")
+            Path("new").symlink_to(outside.folder)
+        return descriptor
+
+    monkeypatch.setattr(Folder, "open", open_late)
+    write_all("new", {"a.svg": b"a", "b.svg": b"b"})
+    assert {path.name for path in Path("old").iterdir()} == {"a.svg", "b.svg"}
 
 
 @pytest.mark.parametrize("name", few(WRITING, ("analyze --csv", "sweep")))

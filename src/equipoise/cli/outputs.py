@@ -6,7 +6,7 @@ import os
 import re
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from contextvars import ContextVar
 from dataclasses import dataclass, replace
 from json import loads
@@ -23,7 +23,7 @@ from equipoise.cli.options import (
     count,
 )
 from equipoise.errors import UsageError
-from equipoise.fence import may_be_replaced
+from equipoise.fence import hold_place, may_be_replaced
 from equipoise.i18n import Note, in_each, said, say, to_say
 from equipoise.interrupts import check
 from equipoise.partial import afterwards
@@ -362,6 +362,8 @@ def _check_place(option: str, path: str) -> None:
         raise UsageError(f"{shown} is a directory; give the name of a file")
     if not os.path.isdir(os.path.dirname(path) or "."):
         raise UsageError(f"{shown}: there is no such folder; make it, or choose another")
+    with suppress(OSError):  # told of when the file is written
+        hold_place(path)
 
 
 def check_model_name(path: str, option: str = "--out") -> None:

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from equipoise.errors import UsageError
-from equipoise.fence import OutsideError, may_be_replaced, open_file
+from equipoise.fence import OutsideError, holding, may_be_replaced, open_file
 from equipoise.partial import made, replaced
 from equipoise.quantities import column_heading
 
@@ -109,10 +109,19 @@ def write(path: Name, text: str | bytes, *, replace: bool = True, links: bool = 
 def write_all(folder: Name, files: Mapping[str, bytes]) -> None:
     """Write files into a folder, which is made where it is not there; each whole or not at all.
 
+    The folder is opened once: all go into the same, whatever is put in its place meanwhile.
+
     Raises
     ------
     UsageError : they cannot be written.
     """
+    with holding():
+        _make(folder)
+        for name, data in files.items():
+            write(Path(folder) / name, data)
+
+
+def _make(folder: Name) -> None:
     try:
         made(folder)
     except FileExistsError as error:
@@ -121,8 +130,6 @@ def write_all(folder: Name, files: Mapping[str, bytes]) -> None:
     except (OSError, ValueError) as error:
         what = f"the folder cannot be made ({reason(error)})"
         raise UsageError(f"{printable(folder)}: {what}; choose another place or name") from error
-    for name, data in files.items():
-        write(Path(folder) / name, data)
 
 
 def printable(path: Name) -> str:
