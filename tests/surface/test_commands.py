@@ -170,7 +170,7 @@ OPTIONS = {
     "modes": ["FILE", "--model", *DRAWN],
     "new": ["FILE", "--tool", "--study"],
     "plant": ["FILE", "--speed", "--crank-zero", "--angles", *OUTPUTS],
-    "plant fit": ["FILE", "TARGETS", "--out", "--seed", "--speed", *OUTPUTS],
+    "plant fit": ["FILE", "TARGETS", "--out", "--seed", "--speed", "--workers", *OUTPUTS],
     "plot": ["FILE", "--only", "--output", "--at", "--speed", "--units", "--out", "--format"],
     "plot map": [
         *["FILE", "FIRST", "SECOND", "OUTPUT", "--set", "--points", "--speed"],

@@ -20,6 +20,7 @@ from equipoise.cli.options import (
     PlantingFile,
     Speed,
     SupportFile,
+    WorkerCount,
     blaming,
     check_belonging,
     count,
@@ -371,6 +372,7 @@ def fit(
     out: Out = None,
     seed: int | None = None,
     speed: Speed = None,
+    workers: WorkerCount = None,
     outputs: Outputs = Outputs(),
 ) -> None:
     """Look for the geometry that meets targets and limits, and write it as a new model file.
@@ -383,6 +385,8 @@ def fit(
         The new model file; FILE-fit.toml beside you if not given.
     seed
         Of the random numbers, instead of the target file's.
+    workers
+        Processes that judge designs; as many as there are processors if not given.
     """
     from equipoise.planting.goals import figure_names
     from equipoise.planting.search import fit_planting
@@ -409,6 +413,7 @@ def fit(
             generations=given.search.generations,
             population=given.search.population,
             progress=progress,
+            workers=workers,
         )
     origin = Note(
         "Geometry found by equipoise plant fit {file}, seed {seed}.",

@@ -33,6 +33,9 @@ QUICK = 0.2
 """Time below which twice as many designs are computed alone before the clock is read again, s."""
 SHARES = 4
 """Parts for each process at least, so that all end at about the same time."""
+HANDY = 0.05
+"""Time of designs that are computed here though there are processes, s: to send them there and back
+takes some milliseconds, and whoever descends asks for few at a time."""
 PART = 1.0
 """Time that a part takes at most, so that progress is told, s."""
 
@@ -103,6 +106,8 @@ class PooledEvaluator(Generic[Figures]):
         if not self.shared and progress is None:
             return self.alone(values)
         tell = progress or (lambda _: None)
+        if self.pool is not None and self.spent * len(values) < HANDY * self.count:
+            return self.alone(values)
         outcomes, begin = [], 0
         while begin < len(values) and self.pool is None:
             start = monotonic()

@@ -35,6 +35,7 @@ class Designs:
         sense: Sense = "as given",
     ) -> None:
         self.machine, self.sense = machine, sense
+        self.given = (machine, vary, sense)
         known = {one.name: one for one in lifts_of(machine)}
         names = [name for name in known if usual(name)] if vary is None else list(vary)
         if not names:

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
-from functools import cached_property
+from dataclasses import dataclass, fields
+from functools import cached_property, partial
+from typing import Self
 
 import numpy as np
 
+from equipoise.design.evaluator import PooledEvaluator
 from equipoise.design.requirements import Requirement
 from equipoise.errors import EquipoiseError, UsageError
 from equipoise.mechanism.assembly.family import Family
@@ -16,7 +18,7 @@ from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.kinematics.tip import TipCurve
 from equipoise.mechanism.parts.machine import Machine, unknown
 from equipoise.planting.arms import machine_figures
-from equipoise.planting.designs import Designs
+from equipoise.planting.designs import Designs, Sense
 from equipoise.planting.names import dimension_of
 from equipoise.signals import Array
 
@@ -51,6 +53,12 @@ class Outcome:
     size: Array
     worst: Array
 
+    @classmethod
+    def joined(cls, parts: Sequence[Outcome]) -> Outcome:
+        """What came of all parts, one after the other."""
+        names = [one.name for one in fields(cls)]
+        return cls(*(np.concatenate([getattr(one, name) for one in parts]) for name in names))
+
     @property
     def kept(self) -> Array:
         """Whether a design can turn and keeps every limit (P,)."""
@@ -69,12 +77,21 @@ class Outcome:
 
 
 class Problem:
-    """Designs of a machine and the goals that they have to meet.
+    """Designs of a machine and the goals that they have to meet; a context manager, which ends the
+    processes that judge them.
 
+    workers : processes, where judging takes more than some seconds; as many as this machine has
+        processors if not given.
     judged : number of designs so far.
+
+    Raises
+    ------
+    UsageError : a goal cannot be used, or there are fewer than one worker.
     """
 
-    def __init__(self, designs: Designs, goals: Sequence[Requirement]) -> None:
+    def __init__(
+        self, designs: Designs, goals: Sequence[Requirement], workers: int | None = 1
+    ) -> None:
         self.designs, self.goals = designs, tuple(goals)
         self.judged = 0
         if not self.goals:
@@ -87,6 +104,14 @@ class Problem:
         self.scales = [
             goal.scale(float(known[goal.figure][0]), dimension_of(goal.figure)) for goal in goals
         ]
+        make = partial(_judging, *designs.given, self.goals)
+        self.evaluate = PooledEvaluator(self.judge_here, make, Outcome.joined, workers)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        self.evaluate.close()
 
     @property
     def makes(self) -> bool:
@@ -94,8 +119,12 @@ class Problem:
         return any(goal.make for goal in self.goals)
 
     def judge(self, values: Array) -> Outcome:
-        """Judge designs (P, n)."""
+        """Judge designs (P, n), together with processes of this machine where that takes long."""
         self.judged += len(values)
+        return self.evaluate(values)
+
+    def judge_here(self, values: Array) -> Outcome:
+        """Judge designs (P, n) in this process; of none does the result depend on the others."""
         machines, worst = self._built(values)
         good = worst > OPEN
         found = {goal.figure: np.full(len(values), np.nan) for goal in self.goals}
@@ -129,6 +158,16 @@ class Problem:
                 numbers = family.margins(family.solve(theta))
             worst[[*families]] = np.min(np.nan_to_num(numbers, nan=-1.0), axis=1)
         return machines, worst
+
+
+def _judging(
+    machine: Machine,
+    vary: Mapping[str, tuple[float, float]] | None,
+    sense: Sense,
+    goals: Sequence[Requirement],
+) -> Callable[[Array], Outcome]:
+    """In another process: what judges designs."""
+    return Problem(Designs(machine, vary, sense), goals).judge_here
 
 
 def _figures(

@@ -115,6 +115,7 @@ def fit_planting(
     generations: int = GENERATIONS,
     population: int = POPULATION,
     progress: Progress | None = None,
+    workers: int | None = None,
 ) -> Fit:
     """Look for the geometry that meets targets and limits on planting figures.
 
@@ -130,6 +131,8 @@ def fit_planting(
     sense : in which the crank may turn.
     seed : of the random numbers; the same seed gives the same result.
     generations, population : of the global search.
+    workers : processes that judge designs, where that takes more than some seconds; as many as this
+        machine has processors if not given.  The result is the same with any number.
 
     Raises
     ------
@@ -137,7 +140,13 @@ def fit_planting(
     ModelError, MotionError : the machine to start from cannot be used.
     """
     _check(machine, seed, generations, population)
-    problem = Problem(Designs(machine, vary, sense), goals)
+    with Problem(Designs(machine, vary, sense), goals, workers) as problem:
+        return _fit(problem, seed, generations, population, progress)
+
+
+def _fit(
+    problem: Problem, seed: int, generations: int, population: int, progress: Progress | None
+) -> Fit:
     evolution = _Evolution(problem, seed, generations, progress)
     best = evolution.rounds(population)
     if problem.makes:
@@ -149,7 +158,7 @@ def fit_planting(
     names = [variable.path for variable in problem.designs.variables]
     return Fit(
         machine=after.machine,
-        before=_figures(machine),
+        before=_figures(problem.designs.machine),
         after=after,
         goals=problem.goals,
         designs=problem.designs,

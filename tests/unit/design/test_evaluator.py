@@ -8,9 +8,16 @@ from typing import Any
 import numpy as np
 import pytest
 
+from equipoise import load
 from equipoise.design import evaluator as pooling
+from equipoise.design.evaluator import PooledEvaluator
+from equipoise.design.requirements import Requirement
 from equipoise.errors import UsageError
+from equipoise.mechanism.kinematics.tip import TipCurve
 from equipoise.mechanism.parts.objectives import Objective
+from equipoise.planting.arms import machine_figures
+from equipoise.planting.designs import Designs
+from equipoise.planting.search import fit_planting
 from equipoise.schema.studies import load_study
 from equipoise.schema.template import Template
 from equipoise.studies.design_space import Output
@@ -41,6 +48,7 @@ def at_once(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
             yield part, outcome
 
     monkeypatch.setattr(pooling, "PATIENCE", -1.0)
+    monkeypatch.setattr(pooling, "HANDY", 0.0)
     monkeypatch.setattr(pooling, "computed", counted)
     return parts
 
@@ -96,6 +104,41 @@ def test_a_map_is_the_same_with_any_number_of_workers(at_once: list[Any]) -> Non
     assert np.array_equal(one.values, two.values, equal_nan=True)
     assert (one.best, one.least, one.before) == (two.best, two.least, two.before)
     assert sum(len(part.values) for part in at_once) == 24, "all but the first"
+
+
+def test_a_search_of_geometry_is_the_same_with_any_number_of_workers(at_once: list[Any]) -> None:
+    goals = [
+        Requirement("curve.width", target=0.1),
+        Requirement("max_speed.value", make="smallest"),
+    ]
+    machine, few = load("kim-chung-c"), {"seed": 3, "generations": 2, "population": 8}
+    one, two = (fit_planting(machine, goals, workers=k, **few) for k in (1, 2))  # type: ignore[arg-type]
+    assert one.to_dict() == two.to_dict()
+    assert (one.machine, one.judged) == (two.machine, two.judged)
+    assert at_once
+
+
+def test_what_is_over_at_once_is_computed_here(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Few designs are not sent to processes, though there are some."""
+    with PooledEvaluator(np.square, lambda: np.square, np.concatenate, 2) as evaluate:
+        evaluate(np.arange(3.0))
+        evaluate.pool = object()  # type: ignore[assignment]  # which computes nothing
+        np.testing.assert_array_equal(evaluate(np.array([2.0, 3.0])), [4.0, 9.0])
+        evaluate.pool = None
+
+
+@pytest.mark.parametrize("name", ["kim-chung-a", "transplanter"])
+def test_no_figure_of_a_finger_depends_on_those_computed_beside_it(name: str) -> None:
+    """Bit for bit, so that it does not matter into which parts designs are shared out."""
+    designs = Designs(load(name))
+    low, high = designs.bounds
+    shares = 0.03 * (np.random.default_rng(1).random((6, len(low))) - 0.5)
+    machines = [designs.build(row) for row in designs.start + shares * (high - low)]
+    together = machine_figures(TipCurve(machines))
+    for k, machine in enumerate(machines):
+        alone = machine_figures(TipCurve([machine]))
+        for figure, values in together.items():
+            np.testing.assert_array_equal(values[k], alone[figure][0], figure)
 
 
 @pytest.mark.parametrize("count", [0, -1])

@@ -56,9 +56,11 @@ def _roots(signal: Signal, low: Array, high: Array) -> Array:
     share: Array = np.full_like(x1, 0.5)
     for _ in range(MOST_ROUNDS):
         narrow = np.abs(x2 - x1) <= 2 * CLOSE
-        if np.all(narrow | ~bracketed | np.equal(f1, 0) | np.equal(f2, 0)):
+        over = narrow | ~bracketed | np.equal(f1, 0) | np.equal(f2, 0)
+        if np.all(over):
             break
-        x = x1 + share * (x2 - x1)
+        # What is over stays, so that no root depends on those that are looked for beside it.
+        x = np.where(over, x1, x1 + share * (x2 - x1))
         f = signal(x)
         same = np.signbit(f) == np.signbit(f1)
         x3, f3 = np.where(same, x1, x2), np.where(same, f1, f2)
@@ -146,7 +148,7 @@ def lowest_within(
         near = np.clip(between, np.minimum(low, high), np.maximum(low, high))
         values = signal(near)
         k = np.argmin(values, axis=1)[:, None]
-        width = width / 8
+        width = np.where(np.abs(width) > 8 * FINE, width / 8, 0.0)  # as alone, see `roots`
 
 
 def integral(signal: Signal, breaks: Array) -> Array:
@@ -158,7 +160,8 @@ def integral(signal: Signal, breaks: Array) -> Array:
     middle, half = (breaks[:, 1:] + breaks[:, :-1]) / 2, np.diff(breaks, axis=1) / 2
     theta = middle[..., None] + half[..., None] * nodes
     values = signal(theta.reshape(len(breaks), -1)).reshape(theta.shape)
-    total: Array = np.sum((values @ weights) * half, axis=1)
+    # A product of matrices would round a row by how many there are.
+    total: Array = np.sum(np.sum(values * weights, axis=-1) * half, axis=1)
     return total
 
 
@@ -255,7 +258,7 @@ class TipCurve:
         weights = np.array([-1, 9, -45, 45, -9, 1]) / (60 * STEP)
         near = theta[..., None] + offsets
         second = self.at(near.reshape(len(theta), -1)).place_2
-        third: Array = second.reshape(near.shape) @ weights
+        third: Array = np.sum(second.reshape(near.shape) * weights, axis=-1)
         return third
 
     @cached_property
