@@ -15,6 +15,7 @@ from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.outputs.declaring import declared
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.objectives import balanced_names
+from equipoise.mechanism.parts.parameters import SIGN
 from equipoise.quantities import clean, format_exact, parse_expression, pattern, told
 from equipoise.schema.entries import Document, entry_of, kind_at, own_keys, tables_below
 from equipoise.schema.writing import value_text
@@ -51,9 +52,14 @@ def entered(design: Design, entry: Entry) -> Design:
 
 
 def _worked_out(of: type[Frozen], name: str, value: Any) -> Any:
-    """A value of a form, where it is a sum or product of quantities as the quantity that it is."""
+    """A value of a form, where it is a sum or product of quantities as the quantity that it is.
+
+    One that begins with the sign of expressions stays in the file as it is.
+    """
     one = own_keys(of).get(name)
     if one is None or not isinstance(one.kind, Quantity) or not isinstance(value, str):
+        return value
+    if value.startswith(SIGN):
         return value
     dimension = one.kind.dimension
     try:

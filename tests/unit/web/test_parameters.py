@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 import equipoise as eq
@@ -9,7 +11,11 @@ from equipoise.errors import UsageError
 from equipoise.schema.models import text_of
 from equipoise.web.design import Design
 from equipoise.web.fields import Scale, fields_of
+from equipoise.web.session import Session
 from unit.schema.test_parameters import FOUR_BAR
+from unit.web.pages import Content, ask, edit, refusal, state
+from unit.web.test_disk import session_of
+from unit.web.test_tables import enter, group, tables
 
 
 def design() -> Design:
@@ -53,3 +59,51 @@ def test_a_number_that_is_typed_plainly_stops_following() -> None:
 def test_an_unknown_name_is_refused() -> None:
     with pytest.raises(UsageError, match="no parameter is called 'wieght'"):
         fields_of(design())["links.rod.mass"].typed(design(), "=2*wieght")
+
+
+# -- in a session ----------------------------------------------------------------------------------
+
+SUMS = FOUR_BAR.replace('"20 kg mm^2"', '"=2*10 kg mm^2"').replace('"5 deg"', '"=2 deg + 3 deg"')
+"""Expressions without names too."""
+
+
+@pytest.fixture
+def session(tmp_path: Path) -> Session:
+    (tmp_path / "model.toml").write_text(SUMS, encoding="utf-8")
+    return session_of(tmp_path / "model.toml")
+
+
+def saved(session: Session, tmp_path: Path) -> str:
+    after, _ = ask(session, "save", seq=1)
+    assert state(after).content["file"]["saved"]
+    return (tmp_path / "model.toml").read_text(encoding="utf-8")
+
+
+def test_what_is_saved_has_its_expressions_still(session: Session, tmp_path: Path) -> None:
+    edit(session, {"set": "parameters.crank", "text": "32 mm"})
+    edit(session, {"set": "links.rocker.mass", "text": "2*weight - 10 g"})
+    changed = SUMS.replace('"30 mm"', '"32 mm"').replace('"=weight*1.5"', '"=2*weight - 10 g"')
+    assert saved(session, tmp_path) == changed
+
+
+def test_forms_keep_expressions_and_take_new_ones(session: Session, tmp_path: Path) -> None:
+    for entry in group(tables(session), "links")["entries"]:
+        enter(session, entry["place"], entry["values"])
+    rod = group(tables(session), "links")["entries"][1]
+    enter(session, rod["place"], {**rod["values"], "mass": "=3*weight"}, name="coupler")
+    text = SUMS.replace("links.rod", "links.coupler").replace('"=weight"', '"=3*weight"')
+    assert saved(session, tmp_path) == text
+
+
+def test_parameters_come_and_go_in_the_form_of_the_whole(session: Session) -> None:
+    (whole,) = group(tables(session), "")["entries"]
+    parameters: Content = whole["values"]["parameters"]
+    assert parameters == {"crank": "30 mm", "base": "=4*crank", "weight": "200 g"}
+    more = {**parameters, "crank": "40 mm", "ratio": 0.5}
+    enter(session, [], {**whole["values"], "parameters": more})
+    assert session.shown.design.own.frame["D"] == (0.16, 0.0)
+    assert edit(session, {"set": "parameters.ratio", "text": "0.6"}).field("parameters.ratio")
+    less = {"crank": "40 mm", "base": "160 mm"}
+    said = refusal(enter(session, [], {**whole["values"], "parameters": less}))
+    assert "no parameter is called 'weight'; there are base, crank" in said
+    assert session.shown.design.own.parameters["ratio"] == 0.6
