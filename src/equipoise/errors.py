@@ -18,7 +18,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
 from importlib import import_module
 from typing import Any, Self
 from unicodedata import normalize
@@ -26,32 +25,11 @@ from unicodedata import normalize
 from equipoise.i18n import Note, in_english, said, speaking, spoken
 
 
-@dataclass(frozen=True)
-class Given:
-    """A number that a sentence complains of, for who knows how it was typed.
-
-    value : SI units.  text : what the sentence says for it, such as ``-0.005 kg``.
-    """
-
-    value: float
-    text: str
-
-    def retold(self, sentence: Note | str, typed: str) -> Note | str:
-        """The sentence with what was typed in the number's place."""
-        if isinstance(sentence, Note):
-            return sentence.with_values(lambda one: typed if one == self.text else one)
-        return sentence.replace(self.text, typed, 1)
-
-
 class EquipoiseError(Exception):
     """Base of all errors; `str(error)` is one sentence a user can act on, in English.
 
     It is made of that sentence, as a `Note` where other languages have it too.
-
-    given : the number that the sentence complains of, where it is one.
     """
-
-    given: Given | None = None
 
     @property
     def note(self) -> Note:
@@ -65,11 +43,6 @@ class EquipoiseError(Exception):
         """
         with speaking(language or spoken()):
             return said(in_english(self.note))
-
-    def about(self, value: float, text: str) -> Self:
-        """The same error, with the number (SI units) that its sentence tells as a text."""
-        self.given = Given(value, text)
-        return self
 
 
 PASTE = "\n\n"
@@ -111,17 +84,12 @@ class ModelError(EquipoiseError):
 
     def in_file(self, source: str) -> ModelError:
         """Return the same error with the name of the file in front."""
-        return self._at(self.where, source)
+        return type(self)(self.where, self.what, source)
 
     def within(self, outer: str) -> ModelError:
         """Return the same error, whose place is inside of another."""
         point = "." if outer and self.where and self.where[0] != "[" else ""
-        return self._at(f"{outer}{point}{self.where}", self.source)
-
-    def _at(self, where: str, source: str) -> ModelError:
-        found = type(self)(where, self.what, source)
-        found.given = self.given
-        return found
+        return type(self)(f"{outer}{point}{self.where}", self.what, self.source)
 
 
 def at_place(place: Note | str, what: Note | str) -> Note:

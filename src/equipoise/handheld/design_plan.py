@@ -7,6 +7,7 @@ from typing import Any, ClassVar, Literal
 
 from equipoise.errors import ModelError, UsageError
 from equipoise.handheld.station import Station
+from equipoise.i18n import Note
 from equipoise.keys import (
     Conditions,
     Frozen,
@@ -21,7 +22,7 @@ from equipoise.keys import (
 )
 from equipoise.keys import key as _key
 from equipoise.mechanism.checks import numbered, unknown, wrong_speeds
-from equipoise.quantities import Dimension, format_exact, parse
+from equipoise.quantities import Dimension, Measured, format_exact, parse
 
 Measure = Literal["rms", "peak"]
 MEASURES: tuple[Measure, ...] = ("rms", "peak")
@@ -213,17 +214,20 @@ def _wrong_variable(
     for station in stations:
         if dot and station.name == variable.station and getattr(station, part) is None:
             yield ModelError(f"{where}.key", f"{station.name!r} has no {part}; give it one")
+    low, high = (Measured(end, KEYS[variable.key]) for end in (variable.low, variable.high))
     if variable.low < 0:
-        yield ModelError(f"{where}.from", f"got {variable.low:g} in SI units; give 0 or more")
+        yield ModelError(f"{where}.from", Note("got {text}; give 0 or more", text=low))
     if variable.low >= variable.high:
-        yield ModelError(
-            f"{where}.to",
-            f"got {variable.high:g} after from {variable.low:g} in SI units; give more than that",
-        )
+        what = Note("got {high} after from {low}; give more than that", high=high, low=low)
+        yield ModelError(f"{where}.to", what)
     if variable.key == "position" and variable.high > length:
         yield ModelError(
             f"{where}.to",
-            f"got {variable.high:g} m, which is off the shaft; give at most {length:g} m",
+            Note(
+                "got {high}, which is off the shaft; give at most {length}",
+                high=high,
+                length=Measured(length, "length"),
+            ),
         )
 
 
@@ -234,8 +238,12 @@ def _wrong_limit(
         yield ModelError(f"{where}.output", unknown(limit.output, OUTPUTS, "output"))
         return
     if limit.at_most < 0 or (limit.at_most == 0 and limit.output != "added_mass"):
-        least = "0 or more" if limit.output == "added_mass" else "more than 0"
-        yield ModelError(f"{where}.at_most", f"got {limit.at_most:g} in SI units; give {least}")
+        template = (
+            "give {limit:g} or more" if limit.output == "added_mass" else "give more than {limit:g}"
+        )
+        least = Note(template, limit=0)
+        given = Measured(limit.at_most, OUTPUTS[limit.output])
+        yield ModelError(f"{where}.at_most", Note("got {text}; {right}", text=given, right=least))
     if limit.output == "added_mass":
         if limit.station is not None:
             yield ModelError(f"{where}.station", "added_mass is of the whole tool; leave it out")

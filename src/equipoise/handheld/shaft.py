@@ -29,7 +29,7 @@ from equipoise.keys import (
 )
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.parts.balance import MATERIALS as DENSITIES
-from equipoise.quantities import Dimension
+from equipoise.quantities import Dimension, Measured
 
 Theory = Literal["euler-bernoulli", "timoshenko"]
 
@@ -180,6 +180,11 @@ def _linear(given: dict[str, Any]) -> float | None:
     if given.get("segments"):
         raise ModelError("mass", Note("does not tell that of each part; give mass_per_length"))
     length, mass = given["length"], given["mass"]
+    if mass <= 0:
+        right = Note("give more than {limit:g}", limit=0)
+        raise ModelError(
+            "mass", Note("got {text}; {right}", text=Measured(mass, "mass"), right=right)
+        )
     return mass / length if length > 0 else 0.0  # told by the checks of the tool
 
 

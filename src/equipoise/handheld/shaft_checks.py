@@ -9,6 +9,7 @@ from equipoise.errors import ModelError
 from equipoise.handheld.shaft import Section, Shaft, Tube
 from equipoise.i18n import Note
 from equipoise.mechanism.checks import numbered
+from equipoise.quantities import Measured
 
 
 def wrong_shaft(shaft: Shaft) -> Iterator[ModelError]:
@@ -19,11 +20,12 @@ def wrong_shaft(shaft: Shaft) -> Iterator[ModelError]:
             yield ModelError(
                 where,
                 Note(
-                    "goes from {start:g} m to {stop:g} m; give a part of the shaft, which goes "
-                    "from 0 m to {length:g} m",
-                    start=segment.start,
-                    stop=segment.stop,
-                    length=shaft.length,
+                    "goes from {start} to {stop}; give a part of the shaft, which goes from "
+                    "{end} to {length}",
+                    start=Measured(segment.start, "length"),
+                    stop=Measured(segment.stop, "length"),
+                    end=Measured(0.0, "length", limit=True),
+                    length=Measured(shaft.length, "length"),
                 ),
             )
         yield from _wrong_profile(where, segment.profile, shaft)
@@ -33,11 +35,11 @@ def wrong_shaft(shaft: Shaft) -> Iterator[ModelError]:
             yield ModelError(
                 where,
                 Note(
-                    "begins at {start:g} m, where {before} still goes on to {stop:g} m; parts "
-                    "must not overlap",
-                    start=second.start,
+                    "begins at {start}, where {before} still goes on to {stop}; parts must not "
+                    "overlap",
+                    start=Measured(second.start, "length"),
                     before=before,
-                    stop=first.stop,
+                    stop=Measured(first.stop, "length"),
                 ),
             )
 
@@ -55,8 +57,14 @@ def _wrong_profile(where: str, profile: Section | Tube, shaft: Shaft) -> Iterato
         return
     inner, outer, ratio = profile.inner_diameter, profile.outer_diameter, profile.poisson_ratio
     if inner >= outer:
-        sentence = f"got {1e3 * inner:g} mm inside of {1e3 * outer:g} mm; give less than that"
-        yield ModelError(f"{where}.inner_diameter", sentence)
+        yield ModelError(
+            f"{where}.inner_diameter",
+            Note(
+                "got {inner} inside of {outer}; give less than that",
+                inner=Measured(inner, "length", "mm"),
+                outer=Measured(outer, "length", "mm"),
+            ),
+        )
     if not 0 <= ratio <= 0.5:
         yield ModelError(
             f"{where}.poisson_ratio",

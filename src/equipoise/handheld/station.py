@@ -27,7 +27,7 @@ from equipoise.keys import (
     keys_of,
 )
 from equipoise.keys.csv_tables import CsvTable
-from equipoise.quantities import Dimension
+from equipoise.quantities import Dimension, Measured
 
 Both = tuple[float, float]
 """One number for bending in the vertical plane, one for the lateral one."""
@@ -185,9 +185,10 @@ def wrong_station(where: str, station: Station, length: float) -> Iterator[Model
         yield ModelError(
             f"{where}.position",
             Note(
-                "got {position:g} m, which is off the shaft; give 0 m to {length:g} m",
-                position=station.position,
-                length=length,
+                "got {position}, which is off the shaft; give {start} to {length}",
+                position=Measured(station.position, "length"),
+                start=Measured(0.0, "length", limit=True),
+                length=Measured(length, "length"),
             ),
         )
     if station.hand is not None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from functools import cache
-from math import degrees
 from types import MappingProxyType
 from typing import Any, ClassVar, Self, TypeVar, dataclass_transform
 
@@ -23,7 +22,7 @@ from equipoise.keys.kinds import (
     Whole,
     innermost,
 )
-from equipoise.quantities import SI
+from equipoise.quantities import Dimension
 
 Given = TypeVar("Given")
 Class = TypeVar("Class", bound=type)
@@ -80,14 +79,11 @@ class Key:
             right = right & (value < self.below)
         return right
 
-    def told(self, value: float) -> str:
-        """A number as sentences have it: with its SI unit, an angle in degrees as limits are."""
+    @property
+    def dimension(self) -> Dimension | None:
+        """What the number of this key is, or each of its numbers; None without a unit."""
         kind = innermost(self.kind)
-        if not isinstance(kind, Quantity):
-            return f"{value:g}"
-        if kind.dimension == "angle":
-            return f"{degrees(value):g} deg"
-        return f"{value:g} {SI[kind.dimension]}"
+        return kind.dimension if isinstance(kind, Quantity) else None
 
     def right(self, value: float) -> Note | str:
         """What to give instead of a number beyond the limits."""

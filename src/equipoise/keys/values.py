@@ -10,7 +10,7 @@ from equipoise.errors import ModelError
 from equipoise.i18n import Note
 from equipoise.keys.declaring import Frozen, Key, declarations, once
 from equipoise.keys.kinds import PLANES, OneOr, Planes, Table, choice, innermost
-from equipoise.quantities import HUGE, TINY
+from equipoise.quantities import HUGE, TINY, Measured
 
 
 def wrong_values(where: str, value: Any) -> Iterator[ModelError]:
@@ -26,18 +26,16 @@ def wrong_values(where: str, value: Any) -> Iterator[ModelError]:
         if not isfinite(leaf):
             yield ModelError(place, Note("got {leaf}; give a finite number", leaf=leaf))
         elif abs(leaf) > HUGE or 0 < abs(leaf) < TINY:
-            text = f"{leaf:g} in SI units"
-            told = Note("got {text}, which no machine can have", text=text)
-            yield ModelError(place, told).about(leaf, text)
+            size = f"{leaf:g} in SI units"
+            yield ModelError(place, Note("got {text}, which no machine can have", text=size))
     for place, leaf, one in leaves:
         names = () if one is None else _names(one)
         if names and leaf not in names:
             told = Note("got {leaf!r}; give {choice}", leaf=leaf, choice=choice(names))
             yield ModelError(place, told)
         elif one is not None and not isinstance(leaf, str) and not one.allows(leaf):
-            text = one.told(leaf)
-            told = Note("got {text}; {right}", text=text, right=one.right(leaf))
-            yield ModelError(place, told).about(leaf, text)
+            given = Measured(leaf, one.dimension)
+            yield ModelError(place, Note("got {text}; {right}", text=given, right=one.right(leaf)))
 
 
 def _leaves(where: str, value: Any, of: Key | None) -> Iterator[tuple[str, Any, Key | None]]:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from math import pi
 from typing import Any, TypeVar
 
 from equipoise.displays import brief, names_of
 from equipoise.errors import ModelError, form_of, meant, unknown
 from equipoise.i18n import Note, Worded
+from equipoise.quantities import Dimension, Measured
 
 __all__ = [
     "ALTERNATIVES",
@@ -114,26 +114,24 @@ def wrong_text(where: str, text: str) -> Iterator[ModelError]:
         yield ModelError(where, Note("got {text!r}; give printable characters", text=text))
 
 
-def positive(where: str, value: float | None, unit: str) -> Iterator[ModelError]:
+def positive(where: str, value: float | None, dimension: Dimension | None) -> Iterator[ModelError]:
     """Complain of a number, where it is given, that is not above 0."""
     if value is not None and value <= 0:
-        yield ModelError(
-            where, Note("got {value:g} {unit}; give more than 0", value=value, unit=unit)
-        )
+        given = Measured(value, dimension)
+        yield ModelError(where, Note("got {value}; give more than 0", value=given))
 
 
-def wrong_range(where: str, pair: Vector | None, scale: float, unit: str) -> Iterator[ModelError]:
-    """Complain of a range, where it is given, that ends before it begins."""
+def wrong_range(
+    where: str, pair: Vector | None, dimension: Dimension | None = None, unit: str = ""
+) -> Iterator[ModelError]:
+    """Complain of a range, where it is given, that ends before it begins.
+
+    unit : in which its ends are named where no file has them.
+    """
     if pair is not None and pair[0] > pair[1]:
-        low, high = (scale * value for value in pair)
+        low, high = (Measured(value, dimension, unit) for value in pair)
         yield ModelError(
-            where,
-            Note(
-                "got {low:.6g} to {high:.6g}{unit}; give the smaller one first",
-                low=low,
-                high=high,
-                unit=unit,
-            ),
+            where, Note("got {low} to {high}; give the smaller one first", low=low, high=high)
         )
 
 
@@ -144,14 +142,10 @@ def wrong_speeds(where: str, speeds: Sequence[float]) -> Iterator[ModelError]:
             where, Note("got {speeds}; give the lowest and the highest speed", speeds=len(speeds))
         )
     elif not 0 < speeds[0] < speeds[1]:
-        low, high = (speed * 30 / pi for speed in speeds)
+        low, high = (Measured(speed, "angular speed", "rpm") for speed in speeds)
         yield ModelError(
             where,
-            Note(
-                "got {low:.6g} to {high:.6g} rpm; give two above 0, the lower one first",
-                low=low,
-                high=high,
-            ),
+            Note("got {low} to {high}; give two above 0, the lower one first", low=low, high=high),
         )
 
 

@@ -1,7 +1,8 @@
 """Quantities: what can be measured, in which units, how it is read and how it is written.
 
 `units` has the dimensions and their units, `reading` turns strict text into SI floats and back,
-and `numbers` is the one formatter of numbers, in the units in which they are shown.
+`numbers` is the one formatter of numbers, in the units in which they are shown, and `measured`
+keeps quantities in sentences until it is known how they were written.
 """
 
 from equipoise.quantities.clean import DIGITS as DIGITS
@@ -11,6 +12,9 @@ from equipoise.quantities.expressions import Amount as Amount
 from equipoise.quantities.expressions import parse_amount as parse_amount
 from equipoise.quantities.expressions import parse_expression as parse_expression
 from equipoise.quantities.expressions import parse_number as parse_number
+from equipoise.quantities.measured import Measured as Measured
+from equipoise.quantities.measured import as_written as as_written
+from equipoise.quantities.measured import with_measured as with_measured
 from equipoise.quantities.numbers import DEGREE as DEGREE
 from equipoise.quantities.numbers import PER_RPM as PER_RPM
 from equipoise.quantities.numbers import Display as Display

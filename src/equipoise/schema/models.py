@@ -82,7 +82,9 @@ def _with_balance(machine: Machine, balance: Any, context: Context) -> Machine:
     from equipoise.mechanism.parts.balance import Balance, Limit
 
     of_balance = replace(context, makers={Limit: partial(_limit, machine)})
-    return machine.with_balance(read_table(Balance, balance, of_balance, KeyPath(("balance",))))
+    plan = read_table(Balance, balance, of_balance, KeyPath(("balance",)))
+    with of_balance.with_written():
+        return machine.with_balance(plan)
 
 
 def tool_of(content: Mapping[str, Any], reader: Beside) -> Tool:

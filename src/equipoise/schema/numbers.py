@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from decimal import Decimal, localcontext
 from functools import cached_property
-from math import atan2, cos, hypot, pi, sin
+from math import atan2, cos, hypot, isfinite, pi, sin
 from types import MappingProxyType
 from typing import Any
 
@@ -15,8 +15,8 @@ from equipoise.errors import ModelError, UsageError
 from equipoise.keys import PLANES, Frozen, declared, key
 from equipoise.quantities import (
     HUGE,
-    KINDS,
     NUMBER,
+    SI,
     TINY,
     Dimension,
     format_exact,
@@ -143,14 +143,11 @@ class Number:
         if self.share:
             return format_share(float(value))
         if self.dimension is not None:
-            return quantity(value, self.dimension)
+            if not isfinite(value):  # refused where it is read
+                return f"{value} {SI[self.dimension]}"
+            return format_exact(value, self.dimension)
         whole = isinstance(self.value, int) and float(value).is_integer()
         return int(value) if whole else float(value)
-
-
-def quantity(value: float, dimension: Dimension) -> str:
-    """A value in SI units with all its digits."""
-    return f"{float(value)!r} {KINDS[dimension].si}"
 
 
 def read_number(given: Any, whole: bool = False) -> Number | None:
@@ -233,14 +230,14 @@ class Vector:
             distance, direction = (values.get(key, self.numbers[key].value) for key in POLAR)
             if isinstance(self.given, dict):
                 return {
-                    "distance": quantity(distance, "length"),
-                    "direction": quantity(direction, "angle"),
+                    "distance": format_exact(distance, "length"),
+                    "direction": format_exact(direction, "angle"),
                 }
             components = (*from_polar(distance, direction), *self.components[2:])
         else:
             own = zip(XYZ, self.components, strict=False)
             components = tuple(values.get(key, value) for key, value in own)
-        return [quantity(component, self.dimension) for component in components]
+        return [format_exact(component, self.dimension) for component in components]
 
 
 @dataclass(frozen=True)

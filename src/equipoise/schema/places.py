@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Any
 
 from equipoise import keys
 from equipoise.errors import ModelError
 from equipoise.keys.paths import KeyPath
-from equipoise.quantities import described
+from equipoise.quantities import as_written, described
 from equipoise.quantities.expressions import Names
 from equipoise.quantities.reading import got
 
@@ -17,6 +18,11 @@ from equipoise.quantities.reading import got
 def within(place: KeyPath, error: ModelError) -> ModelError:
     """The same error, whose place is inside of another."""
     return error.within(place.shown)
+
+
+def _is_below(place: str, where: str) -> bool:
+    """Whether a place is that of an error, or in its table."""
+    return place == where or place.startswith((f"{where}.", f"{where}["))
 
 
 WRONG = object()
@@ -32,6 +38,7 @@ class Context:
     names : what names in expressions stand for.
     problems : what has been found wrong, with its place.
     expressions : those of numbers that have been worked out, by their places.
+    written : texts of quantities that have been read, each with its place.
     """
 
     beside: Callable[[str, str], Any] | None = None
@@ -41,6 +48,23 @@ class Context:
     names: Names = field(default_factory=dict)
     problems: list[tuple[KeyPath, str]] = field(default_factory=list)
     expressions: dict[KeyPath, str] = field(default_factory=dict)
+    written: list[tuple[KeyPath, str]] = field(default_factory=list)
+
+    def wrote(self, place: KeyPath, given: Any) -> None:
+        """Keep a text as it stands in the file, for sentences about the quantity that it is."""
+        if isinstance(given, str):
+            self.written.append((place, given))
+
+    @contextmanager
+    def with_written(self) -> Iterator[None]:
+        """Say what is wrong with objects in the units in which their numbers were written."""
+        try:
+            yield
+        except ModelError as error:
+            where, source = error.where, error.source
+            texts = sorted(self.written, key=lambda item: not _is_below(item[0].shown, where))
+            what = as_written(error.what, [text for _, text in texts])
+            raise ModelError(where, what, source) from error
 
     def wrong(self, place: KeyPath, given: Any, right: str) -> Any:
         """Note that a value is none that can be read."""

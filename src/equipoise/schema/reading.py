@@ -20,7 +20,7 @@ from equipoise.i18n import LANGUAGES, Note, Worded
 from equipoise.keys.paths import KeyPath, quoted
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.parts.parameters import SIGN, worked_out
-from equipoise.quantities import KINDS, Dimension, parse
+from equipoise.quantities import KINDS, Dimension, format_exact, parse
 from equipoise.quantities.expressions import is_expression
 from equipoise.schema.numbers import Polar
 from equipoise.schema.places import WRONG, Context, within
@@ -59,7 +59,8 @@ def read_table(
         if others:
             what = Note("{sentence} (and {more} more)", sentence=what, more=len(others))
         raise ModelError(where.shown, what)
-    return made(found, context)
+    with context.with_written():
+        return made(found, context)
 
 
 def _table(kind: keys.Table, given: Any, place: KeyPath, context: Context) -> Any:
@@ -182,6 +183,7 @@ def _given(found: Values, context: Context) -> dict[str, Any]:
 def _quantity(kind: keys.Quantity, given: Any, place: KeyPath, context: Context) -> Any:
     if isinstance(given, str) and given.startswith(SIGN):
         return _worked_out(kind.dimension, given, place, context)
+    context.wrote(place, given)
     try:
         return parse(given, kind.dimension)
     except UsageError as error:
@@ -207,6 +209,8 @@ def _worked_out(dimension: Dimension | None, given: str, place: KeyPath, context
     except UsageError as error:
         return context.say(place, error.note)
     context.expressions[place] = given
+    if dimension is not None:
+        context.wrote(place, format_exact(value, dimension))
     return value
 
 
@@ -383,6 +387,11 @@ def example_of(kind: keys.Kind) -> str:
     return KINDS[kind.dimension].example if isinstance(kind, keys.Quantity) else "hand.csv"
 
 
+def _told(kind: keys.Told, given: Any, place: KeyPath, context: Context) -> Any:
+    context.wrote(place, given)
+    return given if isinstance(given, str) else context.wrong(place, given, kind.right)
+
+
 READERS: dict[type[keys.Kind], Callable[[Any, Any, KeyPath, Context], Any]] = {
     keys.ParameterValue: lambda kind, given, place, context: given,
     keys.Anything: lambda kind, given, place, context: given,
@@ -403,9 +412,7 @@ READERS: dict[type[keys.Kind], Callable[[Any, Any, KeyPath, Context], Any]] = {
     keys.Table: _table,
     keys.Tables: _tables,
     keys.Text: _text,
-    keys.Told: lambda kind, given, place, context: (
-        given if isinstance(given, str) else context.wrong(place, given, kind.right)
-    ),
+    keys.Told: _told,
     keys.Whole: _whole,
     keys.Wording: _wording,
 }

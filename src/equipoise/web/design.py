@@ -16,7 +16,7 @@ from equipoise.i18n import Note
 from equipoise.mechanism.parts.links import MASS_FIELDS
 from equipoise.mechanism.parts.machine import Link, Machine
 from equipoise.mechanism.parts.shown_units import ShownUnits
-from equipoise.quantities import clean, clean_place
+from equipoise.quantities import Measured, clean, clean_place
 
 DRAGGED = 7
 """Those of a place to which something is dragged, over the size of the machine: a page knows places
@@ -94,15 +94,14 @@ class Design:
         ------
         UsageError : its mass or radius is below 0.
         """
-        for value, what, unit in (
-            (weight.mass, Note("mass"), "g"),
-            (weight.radius, Note("radius"), "mm"),
+        for given, what in (
+            (Measured(weight.mass, "mass", "g"), Note("mass")),
+            (Measured(weight.radius, "length", "mm"), Note("radius")),
         ):
-            if value < 0:
-                text = f"{1e3 * value:.6g} {unit}"
+            if given.value < 0:
                 raise UsageError(
-                    Note("got a {what} of {text}; give 0 or more", what=what, text=text)
-                ).about(value, text)
+                    Note("got a {what} of {text}; give 0 or more", what=what, text=given)
+                )
         weights = {**self.counterweights, link: weight}
         return replace(self, counterweights=MappingProxyType(weights))
 

@@ -19,6 +19,7 @@ from equipoise.mechanism.parts.mounts import OF_AXIS, OF_POINT
 from equipoise.mechanism.parts.parameters import PARAMETERS, SIGN, amounts_of, worked_out
 from equipoise.quantities import (
     Display,
+    Measured,
     chosen_unit,
     clean,
     clean_place,
@@ -27,6 +28,7 @@ from equipoise.quantities import (
     in_unit,
     rounded,
     typeset,
+    with_measured,
 )
 from equipoise.quantities.expressions import names_in
 from equipoise.quantities.units import KINDS, Dimension
@@ -88,12 +90,13 @@ class Field:
         try:
             return self._remembering(typed, self.put(of, value))
         except (ModelError, UsageError) as error:
-            given = error.given
-            if given is None or given.value != value:  # of another number
-                raise
+
+            def as_typed(amount: Measured) -> Any:
+                return typed if amount.value == value else amount
+
             if isinstance(error, ModelError):
-                raise ModelError(error.where, given.retold(error.what, typed)) from error
-            raise UsageError(given.retold(error.note, typed)) from error
+                raise ModelError(error.where, with_measured(error.what, as_typed)) from error
+            raise UsageError(with_measured(error.note, as_typed)) from error
 
     def _remembering(self, typed: str, of: Any) -> Any:
         """What has the number now, with the expression by which it was given from parameters."""

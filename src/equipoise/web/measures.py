@@ -13,6 +13,7 @@ from equipoise.errors import UsageError
 from equipoise.i18n import Note, all_of, listed, say
 from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.parts.machine import Vector
+from equipoise.quantities import Measured
 from equipoise.web.messages import Drag
 
 MOST = 4
@@ -65,8 +66,8 @@ class Measure:
         start = complex(*points[self.start])
         way = complex(*points[self.moves]) - start
         if self.dimension == "length" and value <= 0:
-            text = f"{1e3 * value:.6g} mm"
-            raise UsageError(f"got a length of {text}; give more than 0").about(value, text)
+            given = Measured(value, "length", "mm")
+            raise UsageError(Note("got a length of {given}; give more than 0", given=given))
         size, angle = hypot(way.real, way.imag), phase(way)
         found = start + (rect(value, angle) if self.dimension == "length" else rect(size, value))
         if others:

@@ -88,14 +88,14 @@ WEIGHTS = [
     (replace(DISC, shape="ring", inner_radius=0.06), ".inner_radius",
      "got 60 mm in a room of 60 mm; give less than that"),
     (replace(DISC, mass=0.9), ".mass",
-     "a disc of 900 g and 5 mm steel has a radius of 85.433 mm and does not fit into its room "
+     "a disc of 900 g and 5 mm steel has a radius of 85.4332 mm and does not fit into its room "
      "of 60 mm; make it thicker, or the room larger"),
     (replace(DISC, shape="ring", inner_radius=0.05, mass=0.9), ".mass",
      "a ring of 900 g and 5 mm steel has an outer radius of 98.989 mm and does not fit into "
      "its room of 60 mm; make it thicker, or the room larger"),
     (replace(DISC, shape="sector", density=5000.0, mass=0.9), ".mass",
      "a sector of 900 g and 5 mm of 5000 kg/m^3 needs, even as a full ring, a radius of "
-     "107.05 mm and does not fit into its room of 60 mm; make it thicker, or the room larger"),
+     "107.047 mm and does not fit into its room of 60 mm; make it thicker, or the room larger"),
 ]  # fmt: skip
 PARTS: list[tuple[Any, str, str]] = [
     (AddedMass("cranc", "A", ROOM), ".link", "no link is called 'cranc'; did you mean 'crank'?"),
@@ -103,8 +103,10 @@ PARTS: list[tuple[Any, str, str]] = [
      "no link is called 'frame'; there are 'crank', 'coupler', 'rocker'"),
     (AddedMass("crank", "C", ROOM), ".at", "no point of crank is called 'C'; there are 'A', 'B'"),
     (CenterMove("cranc"), ".link", "no link is called 'cranc'; did you mean 'crank'?"),
-    (CenterMove("coupler", x=(0.02, -0.06)), ".x", "got 20 to -60 mm; give the smaller one first"),
-    (CenterMove("coupler", y=(0.02, -0.06)), ".y", "got 20 to -60 mm; give the smaller one first"),
+    (CenterMove("coupler", x=(0.02, -0.06)), ".x",
+     "got 20 mm to -60 mm; give the smaller one first"),
+    (CenterMove("coupler", y=(0.02, -0.06)), ".y",
+     "got 20 mm to -60 mm; give the smaller one first"),
     (CenterMove("coupler", center=ORIGIN), "",
      "give both center and radius of a circle, or neither"),
     (CenterMove("coupler", radius=1.0), "", "give both center and radius of a circle, or neither"),
@@ -173,12 +175,12 @@ PARTS: list[tuple[Any, str, str]] = [
     (replace(SPRING, stiffness=0.0), ".stiffness", "got 0 N/m; give more than 0"),
     (replace(SPRING, free_length=(-0.1, 0.1)), ".free_length[1]", "got -0.1 m; give 0 or more"),
     (replace(SPRING, free_length=(0.12, 0.02)), ".free_length",
-     "got 120 to 20 mm; give the smaller one first"),
+     "got 120 mm to 20 mm; give the smaller one first"),
     (Limit(Objective("drive_torque")), "",
      "give either at_most or ratio, its share of the value before"),
     (Limit(Objective("drive_torque"), 1.0, 1.0), "",
      "give either at_most or ratio, its share of the value before"),
-    (Limit(Objective("drive_torque"), 0.0), ".at_most", "got 0 in SI units; give more than 0"),
+    (Limit(Objective("drive_torque"), 0.0), ".at_most", "got 0 N m; give more than 0"),
     (Limit(Objective("drive_torque"), ratio=-0.8), ".at_most", "got -80 %; give more than 0"),
     (Limit(Objective("shaking_force.x", "area"), 1.0), ".at_most",
      "there is no unit for the area under shaking_force.x; give a share of the value before, "

@@ -193,7 +193,7 @@ def test_scripts_have_it(tmp_path: Path) -> None:
     ({"on": "coupler", "center": "B"}, r"^circular_slots\[1\]\.on: 'coupler' cannot hold itself"),
     ({"center": "Q"}, r"^circular_slots\[1\]\.center: .*point of frame"),
     ({"radius": 0.0}, r"^circular_slots\[1\]\.radius: .*more than 0"),
-    ({"arc": (1.0, 0.5)}, r"^circular_slots\[1\]\.arc: got 57\.3 deg to 28\.65 deg"),
+    ({"arc": (1.0, 0.5)}, r"^circular_slots\[1\]\.arc: got 57\.2958 deg to 28\.6479 deg"),
     ({"own_name": "B"}, r"^circular_slots\[1\]\.label: 'B' is the name of something else"),
 ])  # fmt: skip
 def test_wrong_values_are_one_sentence(change: dict[str, object], sentence: str) -> None:

@@ -49,8 +49,8 @@ def wrong(where: str, words: str, support: Support) -> None:
         ({"inertia": (0.0,)}, ".inertia", "got 0 kg m^2; give more than 0"),
         ({"inertia": (1.0, -1.0, 1.0)}, ".inertia[2]", "got -1 kg m^2; give more than 0"),
         ({"inertia": (1.0, 1.0, 2.1)}, ".inertia",
-         "got 2.1 kg m^2 beside 1 and 1; no body has one moment of inertia above the sum of the "
-         "others"),
+         "got 2.1 kg m^2 beside 1 kg m^2 and 1 kg m^2; no body has one moment of inertia "
+         "above the sum of the others"),
         ({"freedoms": ("roll",)}, ".inertia",
          "got one value, but the support can roll; give three, about x, y and z"),
         ({"freedoms": ("yaw", "sway", "pitch")}, ".inertia",
@@ -59,12 +59,12 @@ def wrong(where: str, words: str, support: Support) -> None:
         ({"inertia": (1.0, 1.0, 1.0), "products": (0.1,)}, ".products",
          "give three values, of x y, y z and z x"),
         ({"inertia": (1.0, 1.0, 1.0), "products": (1.0, 0.0, 0.0)}, ".products",
-         "got 1, 0 and 0 kg m^2 beside an inertia of 1, 1 and 1; no body has that, give smaller "
-         "ones"),
+         "got 1 kg m^2, 0 kg m^2 and 0 kg m^2 beside an inertia of 1 kg m^2, 1 kg m^2 and "
+         "1 kg m^2; no body has that, give smaller ones"),
         # Each pair alone would do.
         ({"inertia": (1.0, 1.0, 1.0), "products": (0.6, 0.6, 0.6)}, ".products",
-         "got 0.6, 0.6 and 0.6 kg m^2 beside an inertia of 1, 1 and 1; no body has that, give "
-         "smaller ones"),
+         "got 0.6 kg m^2, 0.6 kg m^2 and 0.6 kg m^2 beside an inertia of 1 kg m^2, 1 kg m^2 and "
+         "1 kg m^2; no body has that, give smaller ones"),
         ({"freedoms": ("pich",)}, ".freedoms[1]",
          "got 'pich'; give 'surge', 'heave', 'sway', 'roll', 'yaw' or 'pitch'"),
         ({"freedoms": ("surge", "pitch", "surge")}, ".freedoms[3]", "'surge' is given twice"),
@@ -83,7 +83,7 @@ PIVOTED = Support(60.0, (0.1, 0.3, 0.0), pivot_inertia=9.0, pivot=(0.1, 0.0))
         ({"pivot": None}, ".pivot_inertia",
          "there is no pivot; give inertia, about the centre of mass"),
         ({"pivot_inertia": 5.3}, ".pivot_inertia",
-         "got 5.3 kg m^2; mass and center_of_mass alone make 5.4, give more"),
+         "got 5.3 kg m^2; mass and center_of_mass alone make 5.4 kg m^2, give more"),
         ({"freedoms": ("pitch", "roll")}, ".pivot_inertia",
          "the support can roll too; give inertia about the centre of mass, three values"),
         ({"products": (0.0, 0.0, 0.0)}, ".products", "goes with an inertia of three values"),

@@ -345,7 +345,7 @@ def test_a_wrong_model_is_told_with_both_names(tmp_path: Path) -> None:
         read(tmp_path, HEAD.replace("yamashita-1", "m.toml") + RANGE + REST)
     folder = printable(tmp_path)
     assert str(caught.value) == (
-        f"{folder}/s.toml: model: {folder}/m.toml: links.crank.mass: got -0.001 kg; a mass cannot "
+        f"{folder}/s.toml: model: {folder}/m.toml: links.crank.mass: got -1 g; a mass cannot "
         "be negative"
     )
 

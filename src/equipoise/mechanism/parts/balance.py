@@ -7,11 +7,11 @@ the link that they belong to.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from math import degrees, hypot, pi, radians, sqrt
+from math import hypot, pi, radians, sqrt
 from typing import Any, Literal
 
 from equipoise.errors import ModelError
-from equipoise.i18n import to_say
+from equipoise.i18n import Note, to_say
 from equipoise.keys import Frozen, Table, Tables, Text, declared, key
 from equipoise.mechanism.checks import LONGEST_NAME, Bodies, numbered, too_many, wrong_range
 from equipoise.mechanism.outputs.declaring import Measure
@@ -46,6 +46,7 @@ from equipoise.mechanism.parts.weights import (
     wrong_added,
     wrong_move,
 )
+from equipoise.quantities import Measured
 
 __all__ = [
     "CUT",
@@ -218,8 +219,9 @@ def _wrong_names(balance: Balance, bodies: Bodies) -> Iterator[ModelError]:
 
 def _wrong_phases(step: float, rows: int) -> Iterator[ModelError]:
     if not 0 < step <= pi / 2 * (1 + 1e-12):
-        sentence = f"got {degrees(step):g} deg; give more than 0 deg and at most 90 deg"
-        yield ModelError("balance.phases.step", sentence)
+        given = Measured(step, "angle")
+        what = Note("got {given}; give more than 0 deg and at most 90 deg", given=given)
+        yield ModelError("balance.phases.step", what)
     if rows < 2:
         sentence = f"got {rows} rows, which leaves no phase to choose; give two at least"
         yield ModelError("balance.phases", sentence)
@@ -227,7 +229,7 @@ def _wrong_phases(step: float, rows: int) -> Iterator[ModelError]:
 
 def _wrong_spring(where: str, spring: SpringChoice, machine: Mechanism) -> Iterator[ModelError]:
     yield from wrong_ends(where, spring, machine.bodies)
-    yield from wrong_range(f"{where}.free_length", spring.free_length, 1e3, " mm")
+    yield from wrong_range(f"{where}.free_length", spring.free_length, "length", "mm")
 
 
 LISTS: Mapping[str, Callable[[str, Any, Mechanism], Iterator[ModelError]]] = {

@@ -7,7 +7,7 @@ it is solved in closed form, by dyads.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from math import degrees, pi
+from math import pi
 from typing import Any, ClassVar
 
 from equipoise.errors import ModelError
@@ -16,7 +16,7 @@ from equipoise.keys import Listing, Quantity, Text, declared, key
 from equipoise.mechanism.checks import Bodies
 from equipoise.mechanism.parts.element_kinds import Placed
 from equipoise.mechanism.parts.joint_kinds import BEYOND, JointKind, Rider
-from equipoise.quantities import Dimension, told
+from equipoise.quantities import Dimension, Measured, told
 
 
 @declared
@@ -81,10 +81,10 @@ class CircularSlot(JointKind):
         """Everything that is wrong with it in a machine of these bodies."""
         yield from super().problems(where, bodies)
         if self.arc and not 0 < self.arc[1] - self.arc[0] < 2 * pi:
-            first, last = map(degrees, self.arc)
+            first, last = (Measured(end, "angle") for end in self.arc)
             wrong = Note(
-                "got {first:.4g} deg to {last:.4g} deg; give the ends counterclockwise, the second "
-                "less than a turn beyond the first",
+                "got {first} to {last}; give the ends counterclockwise, the second less than a "
+                "turn beyond the first",
                 first=first,
                 last=last,
             )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import degrees, hypot
+from math import hypot
 from typing import Any, ClassVar
 
 from equipoise.errors import ModelError
@@ -233,14 +233,14 @@ def _wrong_sizes(where: str, geared: GearedWeight) -> Iterator[ModelError]:
         yield ModelError(
             f"{where}.pitch_radius", "axis and ratio determine it already; leave it out"
         )
-    yield from wrong_range(f"{where}.ratio", geared.ratio, 1.0, "")
+    yield from wrong_range(f"{where}.ratio", geared.ratio)
 
 
 def _wrong_teeth(where: str, geared: GearedWeight, teeth: tuple[int, int]) -> Iterator[ModelError]:
     if min(teeth) < LEAST_TEETH:
         sentence = f"got {min(teeth)}; no gear has less than {LEAST_TEETH} teeth"
         yield ModelError(f"{where}.teeth", sentence)
-    yield from wrong_range(f"{where}.teeth", teeth, 1.0, "")
+    yield from wrong_range(f"{where}.teeth", teeth)
     if geared.module is None:
         yield ModelError(f"{where}.module", 'missing; with teeth give it, such as "2 mm"')
     if geared.pitch_radius is not None:
@@ -261,7 +261,7 @@ def _wrong_axis(
                 f"missing; {geared.driver!r} turns about the drive's own pivot, from which there "
                 "is no line to it",
             )
-        yield from wrong_range(f"{where}.direction", geared.direction, degrees(1), " deg")
+        yield from wrong_range(f"{where}.direction", geared.direction, "angle")
         return
     if geared.direction is not None:
         yield ModelError(f"{where}.direction", "the axis determines it already; leave it out")

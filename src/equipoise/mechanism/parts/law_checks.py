@@ -9,7 +9,7 @@ from math import degrees
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, to_say
 from equipoise.mechanism.parts.laws import CLOSED, MOST_ROWS, Law
-from equipoise.quantities import format_exact
+from equipoise.quantities import KINDS, Measured
 
 CRANK, CAM = to_say("crank angle"), to_say("cam angle")
 """Over which angle a law goes, of a drive and of a cam."""
@@ -59,8 +59,10 @@ def _wrong_return(where: str, law: Law, first: float, last: float) -> Iterator[M
     gained = last - first
     missing = gained - law.whole * round(gained / law.whole) if law.whole else gained
     if abs(missing) > CLOSED * (abs(last) + abs(first) + law.whole):
-        values = {"first": format_exact(first, law.dimension)}
-        values["last"] = format_exact(last, law.dimension)
+        values = {
+            name: Measured(value, law.dimension, KINDS[law.dimension].printed[0])
+            for name, value in (("first", first), ("last", last))
+        }
         told = (
             Note("begins at {first} and ends at {last}; let it come back, or gain whole turns",
                  **values)

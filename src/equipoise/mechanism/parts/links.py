@@ -30,6 +30,7 @@ from equipoise.mechanism.checks import FRAME, Vector, unknown, unknown_point
 from equipoise.mechanism.parts.bodies import Body, together, weighed
 from equipoise.mechanism.parts.body_checks import demands, wrong_bodies
 from equipoise.mechanism.parts.sections import LinkSection, wrong_section
+from equipoise.quantities import Measured
 
 MASS_FIELDS = {"mass", "center_of_mass", "inertia"}
 FLAT = 1e-12
@@ -333,8 +334,8 @@ def wrong_link(where: str, name: str, link: Link) -> Iterator[ModelError]:
     if link.mass is None or link.inertia is None:
         return
     if link.mass == 0 and link.inertia > 0:
-        text = f"{link.inertia:g} kg m^2"
+        given = Measured(link.inertia, "inertia")
         yield ModelError(
             f"{where}.inertia",
-            Note("got {text} for a mass of 0; no body can have that, give 0", text=text),
-        ).about(link.inertia, text)
+            Note("got {text} for a mass of 0; no body can have that, give 0", text=given),
+        )

@@ -266,6 +266,8 @@ def wrong_limit(where: str, limit: Limit, machine: Mechanism) -> Iterator[ModelE
             f"there is no unit for the area under {limit.objective.output}; give a share of the "
             'value before, such as "80 %"',
         )
-    yield from positive(f"{where}.at_most", limit.at_most, "in SI units")
+    elif limit.at_most is not None:
+        dimension = quantity_of(limit.objective, machine)
+        yield from positive(f"{where}.at_most", limit.at_most, dimension)
     if limit.ratio is not None and limit.ratio <= 0:
         yield ModelError(f"{where}.at_most", f"got {100 * limit.ratio:g} %; give more than 0")

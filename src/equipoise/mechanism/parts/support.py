@@ -36,6 +36,7 @@ from equipoise.mechanism.parts.mounts import (
     wrong_mount,
     wrong_reading,
 )
+from equipoise.quantities import Measured
 
 __all__ = [
     "AXES",
@@ -258,11 +259,11 @@ def _wrong_moments(support: Support) -> Iterator[ModelError]:
         yield ModelError(
             "support.inertia",
             Note(
-                "got {c:g} kg m^2 beside {a:g} and {b:g}; no body has one moment of "
-                "inertia above the sum of the others",
-                c=c,
-                a=a,
-                b=b,
+                "got {c} beside {a} and {b}; no body has one moment of inertia above the sum of "
+                "the others",
+                a=Measured(a, "inertia"),
+                b=Measured(b, "inertia"),
+                c=Measured(c, "inertia"),
             ),
         )
     if len(support.products) == 3:
@@ -273,14 +274,14 @@ def _wrong_moments(support: Support) -> Iterator[ModelError]:
             yield ModelError(
                 "support.products",
                 Note(
-                    "got {xy:g}, {yz:g} and {zx:g} kg m^2 beside an inertia of {xx:g}, {yy:g} "
-                    "and {zz:g}; no body has that, give smaller ones",
-                    xy=xy,
-                    yz=yz,
-                    zx=zx,
-                    xx=xx,
-                    yy=yy,
-                    zz=zz,
+                    "got {xy}, {yz} and {zx} beside an inertia of {xx}, {yy} and {zz}; no body "
+                    "has that, give smaller ones",
+                    xy=Measured(xy, "inertia"),
+                    yz=Measured(yz, "inertia"),
+                    zx=Measured(zx, "inertia"),
+                    xx=Measured(xx, "inertia"),
+                    yy=Measured(yy, "inertia"),
+                    zz=Measured(zz, "inertia"),
                 ),
             )
 
@@ -306,10 +307,9 @@ def _wrong_pivot_inertia(support: Support) -> Iterator[ModelError]:
         yield ModelError(
             where,
             Note(
-                "got {pivot_inertia:g} kg m^2; mass and center_of_mass alone make "
-                "{least:g}, give more",
-                pivot_inertia=support.pivot_inertia,
-                least=least,
+                "got {given}; mass and center_of_mass alone make {least}, give more",
+                given=Measured(support.pivot_inertia, "inertia"),
+                least=Measured(least, "inertia"),
             ),
         )
 

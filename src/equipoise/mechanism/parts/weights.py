@@ -32,6 +32,7 @@ from equipoise.mechanism.parts.bodies import (
     with_material,
 )
 from equipoise.mechanism.parts.sliders import Mechanism
+from equipoise.quantities import Measured
 
 Pair = tuple[float, float]
 Shape = Literal["any", "point", "disc", "ring", "sector"]
@@ -187,17 +188,28 @@ def wrong_weight(where: str, weight: Weight) -> Iterator[ModelError]:
     if isfinite(weight.radius) and weight.radius > LARGEST_ROOM:
         yield ModelError(
             f"{where}.radius",
-            f"got {weight.radius:g} m; give at most {LARGEST_ROOM:g} m, or none for no limit",
+            Note(
+                "got {radius}; give at most {most}, or none for no limit",
+                radius=Measured(weight.radius, "length"),
+                most=Measured(LARGEST_ROOM, "length", limit=True),
+            ),
         )
     yield from _wrong_plate(where, weight)
     inner, key = weight.inner_radius, f"{where}.inner_radius"
     if inner and weight.shape not in HOLLOW:
         yield ModelError(key, f"goes with a ring or sector, got shape {weight.shape!r}")
     elif inner < 0:
-        yield ModelError(key, f"got {inner:g} m; give 0 or more")
+        given = Measured(inner, "length")
+        yield ModelError(key, Note("got {text}; give 0 or more", text=given))
     elif inner >= weight.radius:
-        room = f"a room of {_length(weight.radius)}"
-        yield ModelError(key, f"got {_length(inner)} in {room}; give less than that")
+        yield ModelError(
+            key,
+            Note(
+                "got {inner} in a room of {radius}; give less than that",
+                inner=_length(inner),
+                radius=_length(weight.radius),
+            ),
+        )
     if weight.mass is not None and weight.at_most is not None:
         yield ModelError(where, "give either mass or at_most")
     if weight.mass is None and not isfinite(weight.radius):
@@ -228,7 +240,7 @@ def _wrong_plate(where: str, weight: Weight) -> Iterator[ModelError]:
         )
 
 
-def _too_large(weight: Weight, mass: float) -> str:
+def _too_large(weight: Weight, mass: float) -> Note:
     """Say how much room a mass (kg) cut from a plate would need."""
     assert weight.thickness is not None and weight.density is not None
     inner = weight.inner_radius if weight.shape in HOLLOW else 0.0
@@ -239,15 +251,18 @@ def _too_large(weight: Weight, mass: float) -> str:
         "ring": "has an outer radius of",
         "sector": "needs, even as a full ring, a radius of",
     }
-    return (
-        f"a {weight.shape} of {1e3 * mass:.5g} g and {_length(weight.thickness)} {stuff} "
-        f"{goes[weight.shape]} {_length(radius)} and does not fit into its room of "
-        f"{_length(weight.radius)}; make it thicker, or the room larger"
+    return Note(
+        f"a {weight.shape} of {{mass}} and {{thickness}} {stuff} {goes[weight.shape]} {{radius}} "
+        "and does not fit into its room of {room}; make it thicker, or the room larger",
+        mass=Measured(mass, "mass", "g"),
+        thickness=_length(weight.thickness),
+        radius=_length(radius),
+        room=_length(weight.radius),
     )
 
 
-def _length(value: float) -> str:
-    return f"{1e3 * value:.5g} mm"
+def _length(value: float) -> Measured:
+    return Measured(value, "length", "mm")
 
 
 def wrong_move(where: str, move: CenterMove, machine: Mechanism) -> Iterator[ModelError]:
@@ -266,8 +281,8 @@ def wrong_move(where: str, move: CenterMove, machine: Mechanism) -> Iterator[Mod
             f"{move.link!r} has bodies in planes of their own, which have no one centre to move; "
             "give another link",
         )
-    yield from wrong_range(f"{where}.x", move.x, 1e3, " mm")
-    yield from wrong_range(f"{where}.y", move.y, 1e3, " mm")
+    yield from wrong_range(f"{where}.x", move.x, "length", "mm")
+    yield from wrong_range(f"{where}.y", move.y, "length", "mm")
     if (move.center is None) != (move.radius is None):
         yield ModelError(where, "give both center and radius of a circle, or neither")
     elif move.center is not None and (move.x is not None or move.y is not None):
