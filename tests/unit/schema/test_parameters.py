@@ -147,7 +147,7 @@ friction = "=crank/(300 mm)"
         ('"=weight"', '"=wieght"', "links.rod.mass: .*no parameter is called 'wieght'; did you"),
         ('"=weight"', '"=crank"', "links.rod.mass: .*which gives a length; give a mass"),
         ('"=weight"', '"=weight*weight"', "links.rod.mass: .* no sum or product that gives a mass"),
-        ('"=weight"', '"=0*weight - 1 g"', "links.rod.mass: got -0.001 kg; a mass cannot be neg"),
+        ('"=weight"', '"=0*weight - 1 g"', "links.rod.mass: got -1 g; a mass cannot be neg"),
         ('"=weight"', '"2*weight"', "links.rod.mass: .*begin an expression with =: '=2[*]weight'"),
         ('"=weight"', '"weight"', "links.rod.mass: .*begin an expression with =: '=weight'"),
         ('"=weight"', '"=9**9**9"', "links.rod.mass: .* no sum or product that gives a mass"),

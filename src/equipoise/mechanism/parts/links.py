@@ -334,8 +334,8 @@ def wrong_link(where: str, name: str, link: Link) -> Iterator[ModelError]:
     if link.mass is None or link.inertia is None:
         return
     if link.mass == 0 and link.inertia > 0:
-        given = Measured(link.inertia, "inertia")
+        amount = Measured(link.inertia, "inertia")
         yield ModelError(
             f"{where}.inertia",
-            Note("got {text} for a mass of 0; no body can have that, give 0", text=given),
+            Note("got {text} for a mass of 0; no body can have that, give 0", text=amount),
         )
