@@ -332,14 +332,18 @@ def _bodies(where: KeyPath, name: str, link: Link) -> Iterator[Field]:
 def _measures(where: KeyPath, body: str, points: Mapping[str, Vector]) -> Iterator[Field]:
     """Lengths and directions between the points of a body."""
     for one in measures_of(points):
-        put = partial(_measured, body, one)
-        yield Field(str(one.path(where)), body, one.label, one.dimension, one.value, put, one)
+        put, path = partial(_measured, body, one), str(one.path(where))
+        place = where / "points" / one.moves / 0 if one.is_component(points) else None
+        yield Field(path, body, one.label, one.dimension, one.value, put, one, place)
 
 
 def _measured(
     body: str, measure: Measure, design: Design, value: float, keep: tuple[str, ...] = ()
 ) -> Design:
-    place = clean_place(complex(*measure.place(design.own.points_of(body), value, keep)))
+    points = design.own.points_of(body)
+    place = measure.place(points, value, keep)
+    if keep or not measure.is_component(points):  # else it is the number that was given
+        place = clean_place(complex(*place))
     return design.with_machine(design.own.with_point(body, measure.moves, place))
 
 

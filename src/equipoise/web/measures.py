@@ -39,6 +39,14 @@ class Measure:
         what = "lengths" if self.dimension == "length" else "directions"
         return body / what / f"{self.start}-{self.moves}"
 
+    def is_component(self, points: Mapping[str, Vector]) -> bool:
+        """Whether the file has it as the x of its second point: a length along x from the origin.
+
+        points : of its body, in the axes of that, m.
+        """
+        x, y = points[self.moves]
+        return self.dimension == "length" and not any(points[self.start]) and y == 0 and x > 0
+
     @property
     def told(self) -> dict[str, Any]:
         """What a page is told of its points: which one moves, and both ends of a length."""

@@ -50,6 +50,24 @@ def test_a_number_is_given_from_parameters_and_then_follows_them() -> None:
     assert heavier.own.links["rod"].mass == 0.61
 
 
+def test_a_length_between_points_follows_where_the_file_has_it_as_one_number() -> None:
+    points = FOUR_BAR.replace(
+        'points = ["A", "B"]\nlength = "=crank"',
+        'points.A = ["0 mm", "0 mm"]\npoints.B = ["30 mm", "0 mm"]\npoints.P = ["9 mm", "4 mm"]',
+    )
+    own = Design("points", eq.loads(points))
+    path = "links.crank.lengths.A-B"
+    given = fields_of(own)[path].typed(own, "crank/3 + 15 mm")
+    assert 'points.B = ["=crank/3 + 15 mm", "0 mm"]' in text_of(given.own, {})
+    assert fields_of(given)[path].expression == "=crank/3 + 15 mm"
+    longer = fields_of(given)["parameters.crank"].typed(given, "40 mm")
+    assert longer.own.links["crank"].points["B"] == (eq.loads(points.replace(
+        '["30 mm"', '["=40 mm/3 + 15 mm"')).links["crank"].points["B"])  # fmt: skip
+    once = fields_of(own)["links.crank.lengths.A-P"].typed(own, "crank/3")
+    assert not once.own.expressions.keys() - own.own.expressions.keys()
+    assert abs(complex(*once.own.links["crank"].points["P"])) == pytest.approx(0.01)
+
+
 def test_a_number_that_is_typed_plainly_stops_following() -> None:
     plain = fields_of(design())["links.rod.mass"].typed(design(), "250 g")
     assert 'mass = "250 g"' in text_of(plain.own, {})
