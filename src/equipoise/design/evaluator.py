@@ -62,6 +62,8 @@ class PooledEvaluator(Generic[Figures]):
     workers : processes; as many as this machine has processors if not given.  With one, designs
         are computed here.
     shared : whether processes help at all; not where loops use all processors.
+    together : designs that are sent together where there are as many for each process: those that
+        one run of arrays computes take longer in small parts.
 
     Raises
     ------
@@ -76,12 +78,13 @@ class PooledEvaluator(Generic[Figures]):
         workers: int | None = None,
         *,
         shared: bool = True,
+        together: int = 1,
     ) -> None:
         count = processors() if workers is None else workers
         if count < 1:
             raise UsageError(f"got {count} workers; give 1 or more")
         self.alone, self.make, self.join, self.workers = alone, make, join, count
-        self.shared = count > 1 and shared
+        self.shared, self.together = count > 1 and shared, together
         self.spent, self.count, self.step = 0.0, 0, 1
         self.pool: Processes | None = None
 
@@ -128,6 +131,7 @@ class PooledEvaluator(Generic[Figures]):
     def _shared_out(self, pool: Processes, values: Array, tell: OnDesigns) -> list[Figures]:
         share = -(-len(values) // (SHARES * self.workers))
         size = max(1, min(share, int(PART * self.count / max(self.spent, 1e-9))))
+        size = max(size, min(self.together, -(-len(values) // self.workers)))
         starts = range(0, len(values), size)
         parts = (DesignSlice(start, values[start : start + size]) for start in starts)
         found, done = {}, 0

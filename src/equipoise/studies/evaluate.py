@@ -86,7 +86,8 @@ def pooled(study: Study, workers: int | None = None) -> PooledEvaluator[Outcome]
     alone = evaluator(study)
     shared = not getattr(alone, "compiled", False)
     make = partial(evaluator, study, threads=1)
-    return PooledEvaluator(alone, make, Outcome.joined, workers, shared=shared)
+    together = AT_ONCE if any(output.of == "plant" for output in study.outputs) else 1
+    return PooledEvaluator(alone, make, Outcome.joined, workers, shared=shared, together=together)
 
 
 class Routes:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -116,6 +117,18 @@ def test_a_search_of_geometry_is_the_same_with_any_number_of_workers(at_once: li
     assert one.to_dict() == two.to_dict()
     assert (one.machine, one.judged) == (two.machine, two.judged)
     assert at_once
+
+
+@pytest.mark.parametrize(("count", "sizes"), [(100, {32}), (41, {20})])
+def test_what_arrays_compute_is_sent_in_large_parts(
+    count: int, sizes: set[int], at_once: list[Any]
+) -> None:
+    """But so that each process has some; the first design is computed here."""
+    make = partial(partial, np.square)
+    with PooledEvaluator(np.square, make, np.concatenate, 2, together=32) as evaluate:
+        np.testing.assert_array_equal(evaluate(np.arange(count)), np.arange(count) ** 2)
+    assert {len(part.values) for part in at_once[:-1]} <= sizes | {(count - 1) % 32}
+    assert max(len(part.values) for part in at_once) in sizes
 
 
 def test_what_is_over_at_once_is_computed_here(monkeypatch: pytest.MonkeyPatch) -> None:
