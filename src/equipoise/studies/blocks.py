@@ -212,16 +212,25 @@ def searched_blocks(
     own : values (d,) and figures (m,) of the model itself, if it can be computed.
     """
     failed = sum(found.failures.values())
-    counted = {"count": found.computed, "generations": found.generations, "seed": found.seed}
-    parts = [say("{count} designs in {generations} generations, seed {seed}", **counted)]
+    if found.proof is not None:
+        parts = [say("{count} designs: {proof}", count=found.computed, proof=found.proof)]
+    else:
+        counted = {"count": found.computed, "generations": found.generations, "seed": found.seed}
+        parts = [say("{count} designs in {generations} generations, seed {seed}", **counted)]
     parts += [say("{count} failed", count=failed)] if failed else []
-    still, growing = say("the front stands still"), say("the front may still grow")
-    parts.append(still if found.stood_still else growing)
+    if found.proof is None:
+        still, growing = say("the front stands still"), say("the front may still grow")
+        parts.append(still if found.stood_still else growing)
     yield Text("; ".join(parts))
     yield from _limits(found.study.outputs, units)
     yield _front(found, units, own)
     if not found.stood_still:
         yield Notes((Note(to_say("it may get better yet; give more generations")),))
+    elif found.proof is None:
+        unproved = to_say(
+            "nothing proves that no other design is better; another seed may lead further"
+        )
+        yield Notes((Note(unproved),))
 
 
 def _front(found: Searched, units: Units | None, own: tuple[Array, Array] | None) -> Table:

@@ -1,16 +1,16 @@
 """Global search of designs for one or several objectives, generation by generation.
 
-pymoo breeds the designs, in the places 0 to 1 of each number's range or list; the study's evaluator
-computes a whole generation at once.  What is told in the end is the best of all designs that were
-ever computed, not of the last generation.
+A solver asks for designs, in the places 0 to 1 of each number's range or list; the study's
+evaluator computes a whole generation at once.  What is told in the end is the best of all designs
+that were ever computed, not of the last generation.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from contextlib import ExitStack
-from dataclasses import dataclass
-from math import comb, inf, isnan
+from dataclasses import dataclass, replace
+from math import inf, isnan
 from time import perf_counter
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -18,11 +18,13 @@ import numpy as np
 
 from equipoise.codegen.figures import COMPUTED, NO_ASSEMBLY, NO_FULL_TURN, NO_MACHINE
 from equipoise.design.requirements import Make
+from equipoise.design.solvers import DesignProblem, solver_for
 from equipoise.design.spreads import Choices, Range
-from equipoise.errors import ModelError, UsageError, lacking
+from equipoise.errors import ModelError, UsageError
 from equipoise.results.result import Result
 from equipoise.sequences import sobol
 from equipoise.studies.evaluate import pooled
+from equipoise.studies.evolution import SOLVERS
 from equipoise.studies.outcomes import (
     Block,
     Evaluator,
@@ -41,6 +43,7 @@ from equipoise.studies.study import Study
 
 if TYPE_CHECKING:
     from equipoise.handheld.model import Tool
+    from equipoise.i18n import Note
     from equipoise.mechanism.parts.machine import Machine
 
 Array = np.ndarray[Any, Any]
@@ -55,8 +58,6 @@ LEAST_POPULATION, MOST_POPULATION, MOST_GENERATIONS = 8, 100_000, 100_000
 OnGeneration = Callable[[int, int, int, int], None]
 """Is called with generation, most of them, designs computed so far, designs on the front."""
 
-MANY = 4
-"""Objectives from which reference directions, not crowding, keep designs apart."""
 FAILED = 1e6
 """Violation of a design that cannot be computed; those that can be stand at most at some tens."""
 VIOLATIONS = np.full(256, FAILED)
@@ -76,6 +77,8 @@ class Searched(Result):
     generations : done.  stood_still : whether the front did not grow any more.
     volumes : after each generation: share of the box from the best to the worst figures of the last
         front that the front dominates (hypervolume); of one objective the best figure.
+    solver : name of what looked for them.
+    proof : why no design is better than these; None where nothing proves it.
     """
 
     blocks_in = "studies.blocks.searched_blocks"
@@ -93,6 +96,8 @@ class Searched(Result):
     volumes: Array
     seed: int
     tried: Block
+    solver: str = ""
+    proof: Note | None = None
 
     def machine(self, number: int = 0) -> Machine | Tool:
         """One of the designs as a new machine, counted from 0."""
@@ -107,6 +112,8 @@ class Searched(Result):
             "objectives": dict(self.objectives),
             "seed": self.seed,
             "front": self.front,
+            "solver": self.solver,
+            "proved": self.proof is not None,
             "generations": self.generations,
             "stood_still": self.stood_still,
             "computed": self.computed,
@@ -128,8 +135,10 @@ def search(
 ) -> Searched:
     """Look for the best designs of a study.
 
-    One objective: differential evolution; two or three: NSGA-II; more: NSGA-III.  Limits of outputs
-    are constraints, and designs that keep them go before those that do not.
+    Where all numbers are lists or whole and there are no more designs than generations have,
+    every one is computed, which proves that none is better.  Else, which proves nothing, of one
+    objective: differential evolution; two or three: NSGA-II; more: NSGA-III.  Limits of outputs are
+    constraints, and designs that keep them go before those that do not.
 
     Parameters
     ----------
@@ -163,24 +172,40 @@ def search(
 def _search(
     seen: _Archive, population: int, generations: int, seed: int, progress: OnGeneration | None
 ) -> Searched:
-    study = seen.study
-    breeding = _evolution(seen, population, seed)
-    volumes = Hypervolumes()
+    problem = _problem(seen, population, generations, seed)
+    solver = solver_for(problem, SOLVERS)
+    solving, volumes, still = solver.begin(problem), Hypervolumes(), False
     for generation in range(1, generations + 1):
-        bred = breeding.ask()
-        if bred is None:
+        asked = solving.ask()
+        if still := asked is None:
             break  # there is hardly another design
-        places = canonical(study, bred.get("X"))
-        rows = seen.rows(values_at(study, places))
-        bred.set("X", places, "F", seen.costs[rows], "G", seen.violations[rows])
-        breeding.tell(infills=bred)
+        places = canonical(seen.study, asked)
+        rows = seen.rows(values_at(seen.study, places))
+        solving.tell(places, seen.costs[rows], seen.violations[rows])
         volumes.add(seen.costs[seen.front])
         if progress is not None:
             progress(generation, generations, len(seen.values), len(seen.front))
-        if volumes.still:
+        if still := volumes.still and not solver.exact:
             break
-    told = seen.some_of_front(seen.rows(values_at(study, breeding.pop.get("X"))), population)
-    return _result(study, seen, volumes, told, bred is None or volumes.still, seed)
+    told = seen.some_of_front(seen.rows(values_at(seen.study, solving.best)), population)
+    found = _result(seen, volumes, told, seed)
+    proof = solving.proof
+    return replace(found, solver=solver.name, proof=proof, stood_still=still or proof is not None)
+
+
+def _problem(seen: _Archive, population: int, generations: int, seed: int) -> DesignProblem:
+    study = seen.study
+    return DesignProblem(
+        spreads=[one.spread for one in study.vary if isinstance(one.spread, Range | Choices)],
+        objectives=len(seen.makes),
+        limits=1 + len(seen.limits),
+        population=population,
+        generations=generations,
+        seed=seed,
+        first=_first(study, population, seed),
+        values_of=lambda places: values_at(study, canonical(study, places)),
+        known=seen.known,
+    )
 
 
 def search_size(
@@ -236,10 +261,8 @@ def _check(study: Study) -> None:
         raise ModelError("outputs", told)
 
 
-def _result(
-    study: Study, seen: _Archive, volumes: Hypervolumes, told: Array, still: bool, seed: int
-) -> Searched:
-    counts = seen.outcome.counts
+def _result(seen: _Archive, volumes: Hypervolumes, told: Array, seed: int) -> Searched:
+    study, counts = seen.study, seen.outcome.counts
     if not len(seen.front):
         good = seen.outcome.figures[seen.outcome.computed]
         limits = np.sum(kept(study.outputs, good), axis=0)
@@ -255,66 +278,11 @@ def _result(
         computed=len(seen.values),
         failures=failures(counts),
         generations=len(volumes.fronts),
-        stood_still=still,
+        stood_still=False,
         volumes=volumes.all * (seen.signs[0] if len(seen.signs) == 1 else 1),
         seed=seed,
         tried=Block(seen.values, seen.outcome),
     )
-
-
-# -- breeding --------------------------------------------------------------------------------------
-
-
-def _evolution(seen: _Archive, population: int, seed: int) -> Any:
-    """The algorithm, ready to be asked for a generation.
-
-    With several objectives designs that were computed before are not bred again, so that lists are
-    searched to their ends.
-    """
-    if missing := lacking("a search"):
-        raise UsageError(missing)
-    from pymoo.algorithms.moo.nsga2 import NSGA2
-    from pymoo.algorithms.moo.nsga3 import NSGA3
-    from pymoo.algorithms.soo.nonconvex.de import DE
-    from pymoo.core.problem import Problem
-    from pymoo.core.termination import NoTermination
-    from pymoo.util.ref_dirs import get_reference_directions
-
-    makes, first, new = len(seen.makes), _first(seen.study, population, seed), _only_new(seen)
-    if makes == 1:
-        algorithm = DE(pop_size=population, sampling=first, variant="DE/rand/1/bin", CR=0.9)
-    elif makes < MANY:
-        algorithm = NSGA2(pop_size=population, sampling=first, eliminate_duplicates=new)
-    else:
-        fine = max(p for p in range(1, population) if comb(p + makes - 1, p) <= population)
-        directions = get_reference_directions("das-dennis", makes, n_partitions=fine)
-        algorithm = NSGA3(directions, pop_size=population, sampling=first, eliminate_duplicates=new)
-    width = len(seen.study.vary)
-    problem = Problem(n_var=width, n_obj=makes, n_ieq_constr=1 + len(seen.limits), xl=0.0, xu=1.0)
-    return algorithm.setup(problem, termination=NoTermination(), seed=seed, verbose=False)
-
-
-def _only_new(seen: _Archive) -> Any:
-    """What strikes out designs that were computed before, or are in a generation twice."""
-    from pymoo.core.duplicate import DuplicateElimination
-
-    def values_of(bred: Any) -> Array:
-        """Values of some individuals."""
-        return values_at(seen.study, canonical(seen.study, bred.get("X")))
-
-    class OnlyNew(DuplicateElimination):  # type: ignore[misc]
-        def _do(self, bred: Any, other: Any, struck: Array) -> Array:
-            values = values_of(bred)
-            if other is None:
-                _, first = np.unique(values, axis=0, return_index=True)
-                struck[:] = True
-                struck[first] = seen.known(values[first])
-            elif len(other):
-                there = {*_keys(values_of(other))}
-                struck |= [key in there for key in _keys(values)]
-            return struck
-
-    return OnlyNew()
 
 
 def _first(study: Study, population: int, seed: int) -> Array:
@@ -372,7 +340,7 @@ class _Archive:
         if new:
             self.add(values[list(new.values())])
             self.numbers |= {key: len(self.numbers) + k for k, key in enumerate(new)}
-        return np.array([self.numbers[key] for key in keys])
+        return np.array([self.numbers[key] for key in keys], np.intp)
 
     def known(self, values: Array) -> Array:
         """Which of some designs (P, d) are here already, (P,)."""

@@ -171,7 +171,10 @@ def test_the_same_seed_gives_the_same() -> None:
     assert [one[2] for one in told] == sorted(one[2] for one in told)
 
 
-def test_nothing_is_computed_twice(capfd: pytest.CaptureFixture[str]) -> None:
+@pytest.mark.parametrize(("generations", "solver"), [(200, "complete enumeration"), (5, "NSGA-II")])
+def test_nothing_is_computed_twice(
+    generations: int, solver: str, capfd: pytest.CaptureFixture[str]
+) -> None:
     """Nor does the library say anything."""
     seen: list[tuple[float, ...]] = []
 
@@ -180,7 +183,12 @@ def test_nothing_is_computed_twice(capfd: pytest.CaptureFixture[str]) -> None:
         return formula(two_bowls)(values)
 
     spreads = (Choices(tuple(np.linspace(0, 1, 4).tolist())),) * 3
-    found = search(of(*made("f", "g"), spreads=spreads), compute=compute, population=12)
+    some, size = (
+        of(*made("f", "g"), spreads=spreads),
+        {"population": 12, "generations": generations},
+    )
+    found = search(some, compute=compute, **size)  # type: ignore[arg-type]
+    assert found.solver == solver
     assert len(seen) == len(set(seen)) == found.computed <= 4**3
     assert capfd.readouterr() == ("", "")
 
