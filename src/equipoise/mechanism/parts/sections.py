@@ -56,7 +56,7 @@ class LinkSection(Frozen):
         above=0,
     )  # fmt: skip
     yield_strength: float | None = key(
-        "modulus", "stress at which it yields", default=None, example="355 MPa", above=0
+        "stress", "stress at which it yields", default=None, example="355 MPa", above=0
     )
     effective_length: float = key(
         Number(), "for buckling, of its length; 1 between pins", default=1.0, above=0
@@ -65,13 +65,13 @@ class LinkSection(Frozen):
         Number(), "by which notches make the stress larger", default=1.0, at_least=1
     )
     fatigue_limit: float | None = key(
-        "modulus", "amplitude of stress about 0 at the knee of the Woehler line", default=None,
+        "stress", "amplitude of stress about 0 at the knee of the Woehler line", default=None,
         example="180 MPa", above=0,
     )  # fmt: skip
     knee_cycles: float = key(Number(), "cycles at that knee", default=1e6, above=0)
     slope: float = key(Number(), "of the Woehler line above its knee", default=5.0, above=0)
     tensile_strength: float | None = key(
-        "modulus", "by which stress in the mean counts (Goodman)", default=None, example="510 MPa",
+        "stress", "by which stress in the mean counts (Goodman)", default=None, example="510 MPa",
         above=0,
     )  # fmt: skip
 
