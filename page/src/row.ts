@@ -72,8 +72,9 @@ export class Row {
   }
 
   show(field: Field): void {
+    const follows = this.field.shown !== field.shown; // as an expression does, whose text stays
     this.field = field;
-    if (this.exact !== field.text) {
+    if (this.exact !== field.text || follows) {
       this.exact = field.text;
       this.input.title = field.text;
       if (!this.typing) this.input.value = this.focused ? field.text : field.shown;
