@@ -8,8 +8,10 @@ from __future__ import annotations
 
 import ctypes
 import shutil
+import signal
 import subprocess
 from collections.abc import Callable
+from multiprocessing import get_context
 from pathlib import Path
 
 import numpy as np
@@ -58,11 +60,26 @@ def compiled(source: Source, flags: list[str], folder: Path) -> Loop:
 
     def run(table: np.ndarray, grid: np.ndarray) -> np.ndarray:
         out = np.empty((len(table), len(source.gathered.columns)))
-        places = [array.ctypes.data_as(double) for array in (table, grid, out)]
+        # C takes numbers one after the other, whatever way the arrays were made.
+        given = [np.ascontiguousarray(array, float) for array in (table, grid)]
+        places = [array.ctypes.data_as(double) for array in (*given, out)]
         loop(places[0], len(table), places[1], grid.shape[1], places[2])
         return out
 
     return run
+
+
+def crashes(loop: Loop, table: np.ndarray, grid: np.ndarray) -> str:
+    """The signal that ends a process which runs a loop; empty where it runs to its end.
+
+    What gcc makes for a processor that it does not know well has crashed: the benchmark goes on
+    without those flags.
+    """
+    process = get_context("fork").Process(target=loop, args=(table, grid))
+    process.start()
+    process.join()
+    code = process.exitcode or 0
+    return signal.Signals(-code).name if code < 0 else ""
 
 
 # -- writing ---------------------------------------------------------------------------------------

@@ -42,3 +42,25 @@ def test_the_loop_in_c_gives_the_figures_of_many_designs(tmp_path: Path) -> None
     words = [sys.executable, "-c", f"import sys; sys.path.append({str(BENCHMARKS)!r})\n{COMPARING}"]
     done = subprocess.run([*words, str(tmp_path)], capture_output=True, text=True, check=False)
     assert (done.stdout, done.stderr) == ("alike\n", "")
+
+
+CRASHING = """
+import ctypes
+
+import numpy as np
+
+import c_loop
+
+there = np.ones((2, 2))
+print(c_loop.crashes(lambda table, grid: ctypes.string_at(0), there, there))
+print(c_loop.crashes(lambda table, grid: table + grid, there, there))
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="needs fork")
+def test_a_loop_that_crashes_is_left_out_of_the_benchmark() -> None:
+    """It ended the whole of `make bench` on a processor that gcc did not know."""
+    words = [sys.executable, "-c", f"import sys; sys.path.append({str(BENCHMARKS)!r})\n{CRASHING}"]
+    done = subprocess.run(words, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout == "SIGSEGV\n\n"
