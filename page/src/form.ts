@@ -88,15 +88,9 @@ export class Form {
     const { path, what } = told ?? {};
     const key = path === undefined ? null : keyOf(path, this.subject.where);
     const here = key !== null || path === this.subject.where;
-    const text = this.inWords(here ? (what ?? message) : message);
+    const text = path === undefined || here ? (what ?? message) : message;
     if (key !== null && this.errors.has(key)) this.wrong(key, text)?.focus();
     else this.say(this.problem, text);
-  }
-
-  /** A sentence with the names that keys have in the form, in place of those of the file. */
-  private inWords(sentence: string): string {
-    const named = this.controls.filter(({ key }) => key.includes("_"));
-    return named.reduce((text, { key, word }) => text.replace(new RegExp(`\\b${key}\\b`, "g"), word), sentence);
   }
 
   /** Say at a key what is wrong, and give back what it is typed into. */

@@ -483,8 +483,9 @@ export interface Refused {
   type: "refused";
   seq: number;
   message: string;
-  /** Key of the model file that is wrong, and what is wrong with it. */
+  /** Key of the model file that is wrong. */
   path?: string;
+  /** What is wrong, without its place, and keys by the words of forms. */
   what?: string;
 }
 

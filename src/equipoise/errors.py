@@ -17,7 +17,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 from importlib import import_module
 from typing import Any, Self
 from unicodedata import normalize
@@ -25,34 +26,69 @@ from unicodedata import normalize
 from equipoise.i18n import Note, in_english, said, speaking, spoken
 
 
+@dataclass(frozen=True)
+class Paste:
+    """Lines that can be pasted into the file.
+
+    lines : as they stand in the file.  leading : a template that leads from the ``{sentence}`` of
+    the error to these lines, where they stand below it.  values : of its other placeholders.
+    """
+
+    lines: tuple[str, ...]
+    leading: str
+    values: Mapping[str, Any] = field(default_factory=dict)
+
+    def below(self, sentence: Note) -> Note:
+        """The sentence of the error, where the lines stand below it."""
+        return Note(self.leading, sentence=sentence, **self.values)
+
+
 class EquipoiseError(Exception):
     """Base of all errors; `str(error)` is one sentence a user can act on, in English.
 
-    It is made of that sentence, as a `Note` where other languages have it too.
+    It is made of that sentence, as a `Note` where other languages have it too. Below the sentence
+    `str(error)` has the lines that can be pasted into the file, where there are some.
     """
+
+    _paste: Paste | None = None
+
+    def __str__(self) -> str:
+        return "\n\n".join(filter(None, [self.sentence, "\n".join(self.lines)]))
 
     @property
     def note(self) -> Note:
         """The sentence, to be said in any language."""
         return noted(self.args[0] if self.args else "")
 
-    def told(self, language: str = "") -> str:
+    @property
+    def paste(self) -> Paste | None:
+        """Lines that can be pasted into the file, with what leads to them; None without any."""
+        return self._paste
+
+    @property
+    def lines(self) -> tuple[str, ...]:
+        """Lines that can be pasted into the file."""
+        return () if self.paste is None else self.paste.lines
+
+    @property
+    def sentence(self) -> Note:
+        """The sentence, to be said in any language, as it stands above `lines`."""
+        return self.note if self.paste is None else self.paste.below(self.note)
+
+    def told(self, language: str = "", lines: bool = False) -> str:
         """The sentence in a language, that which is spoken where none is given.
 
         Where the language lacks it, the English sentence, and that it is in English.
+
+        lines : whether `lines` stand below it.
         """
         with speaking(language or spoken()):
-            return said(in_english(self.note))
+            return said(in_english(self.sentence if lines else self.note))
 
-
-PASTE = "\n\n"
-"""Between the sentence of an error and lines for the file, where it has some."""
-
-
-def to_paste(text: str) -> list[str]:
-    """The sentence of an error, then each of its lines that can be pasted into the file."""
-    sentence, _, lines = text.partition(PASTE)
-    return [sentence, *lines.splitlines()]
+    def with_paste(self, paste: Paste | None) -> Self:
+        """The same error, with lines that can be pasted into the file."""
+        self._paste = paste
+        return self
 
 
 class ModelError(EquipoiseError):
@@ -69,9 +105,6 @@ class ModelError(EquipoiseError):
         self.where, self.what, self.source = where, what, source
         super().__init__(where, what, source)
 
-    def __str__(self) -> str:
-        return ": ".join(part for part in (self.source, self.where, self.what) if part)
-
     @property
     def note(self) -> Note:
         place = ": ".join(part for part in (self.source, self.where) if part)
@@ -84,12 +117,16 @@ class ModelError(EquipoiseError):
 
     def in_file(self, source: str) -> ModelError:
         """Return the same error with the name of the file in front."""
-        return type(self)(self.where, self.what, source)
+        return self.at(self.where, source)
 
     def within(self, outer: str) -> ModelError:
         """Return the same error, whose place is inside of another."""
         point = "." if outer and self.where and self.where[0] != "[" else ""
-        return type(self)(f"{outer}{point}{self.where}", self.what, self.source)
+        return self.at(f"{outer}{point}{self.where}", self.source)
+
+    def at(self, where: str, source: str = "") -> ModelError:
+        """The same error at another place."""
+        return type(self)(where, self.what, source).with_paste(self.paste)
 
 
 def at_place(place: Note | str, what: Note | str) -> Note:
@@ -119,9 +156,6 @@ class MotionError(EquipoiseError):
         super().__init__(message)
         self._reason = reason or message
 
-    def __str__(self) -> str:
-        return str(self._explained().args[0])
-
     def __reduce__(self) -> str | tuple[Any, ...]:
         self._explained()  # the machine does not go to another process
         return super().__reduce__()
@@ -129,6 +163,10 @@ class MotionError(EquipoiseError):
     @property
     def note(self) -> Note:
         return noted(self._explained().args[0])
+
+    @property
+    def paste(self) -> Paste | None:
+        return self._explained()._paste
 
     @property
     def reason(self) -> Note | str:
@@ -139,7 +177,7 @@ class MotionError(EquipoiseError):
         if self.explain is not None:
             explain, self.explain = self.explain, None
             fuller = explain()
-            self.args, self._reason = fuller.args, fuller._reason
+            self.args, self._reason, self._paste = fuller.args, fuller._reason, fuller.paste
         return self
 
 

@@ -183,7 +183,7 @@ def test_they_are_reported_everywhere() -> None:
     assert found.to_dict()["sections"]["rod"]["stress"] == found.sections["rod"].stress
     assert found.summary["links.rod.stress"].peak == pytest.approx(found.sections["rod"].stress)
     assert "links.rod.stress [Pa]" in to_csv(found).partition("\n")[0]
-    assert dimension_of(machine, "analyze", "sections.rod.stress") == "stress"
+    assert dimension_of(machine, "analyze", "sections.rod.stress") == "modulus"
     fields = fields_of(Design("engine", machine))
     assert fields["links.rod.section.height"].value == pytest.approx(0.022)
     titles = [one.title for one in found.blocks() if isinstance(one, Table)]

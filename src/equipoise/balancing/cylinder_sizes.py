@@ -98,7 +98,7 @@ class Cylinder:
         "pull": ResultOutput("largest force that pulls", "force"),
         "closed": ResultOutput("shortest length", "length"),
         "open": ResultOutput("longest length", "length"),
-        "pressure": ResultOutput("at which the bore holds the force", "pressure"),
+        "pressure": ResultOutput("at which the bore holds the force", "modulus"),
         "bore": ResultOutput("of the cylinder", "length"),
         "rod": ResultOutput("diameter of a rod that does not buckle", "length"),
         "dead": ResultOutput("of the closed length, for piston, gland and eyes", "length"),

@@ -22,7 +22,7 @@ from cyclopts import App, CycloptsError, Parameter
 
 from equipoise import __version__
 from equipoise.cli.help import Laid
-from equipoise.errors import EquipoiseError, UsageError, to_paste
+from equipoise.errors import EquipoiseError, UsageError
 from equipoise.interrupts import answered, check, recorded
 from equipoise.partial import together
 from equipoise_command import INTERRUPTED
@@ -156,8 +156,10 @@ def _mishap(error: OSError) -> str:
 
 def _refuse(error: Exception) -> int:
     """Say what the user can mend; returns the exit status."""
-    sentence, *lines = map(_one_line, to_paste(str(error)))
-    print(f"equipoise: {sentence}", *lines, sep="\n", file=sys.stderr)
+    sentence, lines = str(error), tuple[str, ...]()
+    if isinstance(error, EquipoiseError):
+        sentence, lines = error.sentence, error.lines
+    print(f"equipoise: {_one_line(sentence)}", *map(_one_line, lines), sep="\n", file=sys.stderr)
     return 2
 
 

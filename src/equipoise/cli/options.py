@@ -20,6 +20,7 @@ from equipoise.errors import (
     MotionError,
     ResponseError,
     UsageError,
+    at_place,
 )
 
 if TYPE_CHECKING:
@@ -227,7 +228,8 @@ def naming(file: str) -> Iterator[None]:
             raise  # it names the file itself
         from equipoise.schema.files import printable
 
-        raise EquipoiseError(f"{printable(file)}: {error}") from error
+        named = EquipoiseError(at_place(printable(file), error.note))
+        raise named.with_paste(error.paste) from error
 
 
 @contextmanager
@@ -236,7 +238,7 @@ def blaming(option: str) -> Iterator[None]:
     try:
         yield
     except (ModelError, UsageError) as error:
-        raise UsageError(f"{option}: {error}") from error
+        raise UsageError(at_place(option, error.note)).with_paste(error.paste) from error
 
 
 @contextmanager

@@ -121,7 +121,8 @@ def check_turning(machine: Machine, title: str) -> None:
     try:
         _ = assemble(machine).cycle
     except (RangeError, ChangePointError) as error:
-        raise UsageError(Note(refusal, title=title, why=error.note)) from error
+        refused = UsageError(Note(refusal, title=title, why=error.note))
+        raise refused.with_paste(error.paste) from error
 
 
 def format_of(path: str | os.PathLike[str], name: str | None = None) -> Format:

@@ -20,6 +20,7 @@ LANGUAGES = {"en": "English", "ja": "日本語", "ko": "한국어"}
 """Code of a language -> its own name."""
 
 _spoken = ContextVar("spoken", default="en")
+_key_words: ContextVar[Callable[[str], str]] = ContextVar("key_words", default=str)
 _wording: ContextVar[Mapping[str, str]] = ContextVar("wording", default=MappingProxyType({}))
 
 
@@ -53,7 +54,7 @@ class Note(str):
     values: Mapping[str, Any]
 
     def __new__(cls, template: str, /, **values: Any) -> Self:
-        with speaking("en"), wording({}):
+        with speaking("en"), wording({}), key_words(str):
             made = super().__new__(cls, _said(template, values))
         made.template, made.values = template, values
         return made
@@ -118,6 +119,32 @@ class Worded(str):
         return self.texts.get(_spoken.get()) or str(self)
 
 
+class KeyName(str):
+    """A key of a file in a sentence: as files have it, or by a word inside of `key_words`."""
+
+    def said(self) -> str:
+        """The key, or its word."""
+        return _key_words.get()(str(self))
+
+
+def key_names(*names: str) -> dict[str, KeyName]:
+    """Keys of a file, for the placeholders of a sentence that are called like them."""
+    return {name: KeyName(name) for name in names}
+
+
+@contextmanager
+def key_words(word_of: Callable[[str], str]) -> Iterator[None]:
+    """Inside, sentences call keys of files by words, as forms do.
+
+    word_of : gives the word of a key, in the language that is spoken.
+    """
+    token = _key_words.set(word_of)
+    try:
+        yield
+    finally:
+        _key_words.reset(token)
+
+
 def without_middle(name: str, most: int) -> str:
     """A long name without its middle, so that two that only begin or end alike stay apart."""
     if len(name) <= most:
@@ -133,7 +160,7 @@ def worded(text: str | Mapping[str, str]) -> str:
 
 def said(text: Note | str) -> str:
     """A sentence, a part of one, or a text of a file, in the language that is spoken."""
-    return text.said() if isinstance(text, Note | Worded) else text
+    return text.said() if isinstance(text, Note | Worded | KeyName) else text
 
 
 def in_english(text: Note | str) -> Note | str:

@@ -61,7 +61,7 @@ def _pose(machine: Machine) -> tuple[str, tuple[Block, ...]]:
         seen = swing(machine)
         return _drawn(Analysis(move(machine if seen is None else seen.machine, ANGLES), None)), ()
     except EquipoiseError as error:
-        return "", (Text(error.told()),)
+        return "", (Text(error.told(lines=True)), *map(Text, error.lines))
 
 
 def _drawn(analysis: Analysis) -> str:

@@ -27,7 +27,7 @@ from equipoise.quantities.reading import (
     too_far,
     unit_pattern,
 )
-from equipoise.quantities.units import FACTORS, HUGE, KINDS, OF_UNIT, SAME, TINY, Dimension
+from equipoise.quantities.units import FACTORS, HUGE, KINDS, OF_UNIT, TINY, Dimension
 
 LONGEST = 200
 """Characters of an expression."""
@@ -113,7 +113,7 @@ def parse_expression(text: str, dimension: Dimension, names: Names = NO_NAMES) -
                 example=KINDS[dimension].example,
             )
         )
-    if amount.powers != {SAME[dimension]: 1}:
+    if amount.powers != {dimension: 1}:
         kind, shown = KINDS[dimension], _short(text)
         otherwise = _no_quantity(shown, dimension)
         raise UsageError(_another(shown, amount, Note(kind.noun), kind.example, otherwise))

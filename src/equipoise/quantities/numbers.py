@@ -198,10 +198,6 @@ _SHOWN: dict[Dimension, str] = {
     "mass": "g",
     "inertia": "kg mm^2",
     "unbalance": "g mm",
-    "modulus": "GPa",
-    "stress": "MPa",
-    "pressure": "MPa",
-    "pressure times speed": "MPa m/s",
 }
 """Unit that is shown usually; SI of every other dimension."""
 
@@ -222,8 +218,6 @@ _SCALES: tuple[tuple[str, ...], ...] = (
     ("nJ", "uJ", "mJ", "J", "kJ", "MJ"),
     ("N/m", "kN/m", "MN/m"),
     ("Hz", "kHz"),
-    ("Pa", "kPa", "MPa", "GPa"),
-    ("Pa m/s", "MPa m/s"),
     ("ms", "s"),
 )
 """Units of which the next is taken where numbers become too small or too large."""

@@ -37,8 +37,6 @@ Dimension = Literal[
     "bending stiffness",
     "mass per length",
     "modulus",
-    "stress",
-    "pressure",
     "pressure times speed",
     "unbalance",
     "per length",
@@ -77,18 +75,6 @@ class Kind:
         """The units that `format_exact` tries."""
         return self.usual or (self.si,)
 
-
-_PRESSURES = {
-    "Pa": "1",
-    "kPa": "1000",
-    "MPa": "1000000",
-    "GPa": "1000000000",
-    "bar": "100000",
-    "N/mm^2": "1000000",
-    "kgf/mm^2": "9806650",
-    "psi": "6894.757293168361336722673445",
-}
-"""Units of three dimensions, each of which is shown in one of its own."""
 
 KINDS: dict[Dimension, Kind] = {
     "length": Kind(
@@ -302,10 +288,20 @@ KINDS: dict[Dimension, Kind] = {
         usual=("g/m", "kg/m"),
     ),
     "modulus": Kind(
-        to_say("a modulus of elasticity"), _PRESSURES, example="70 GPa", usual=("GPa", "MPa")
+        to_say("a stress or modulus of elasticity"),
+        {
+            "Pa": "1",
+            "kPa": "1000",
+            "MPa": "1000000",
+            "GPa": "1000000000",
+            "bar": "100000",
+            "N/mm^2": "1000000",
+            "kgf/mm^2": "9806650",
+            "psi": "6894.757293168361336722673445",
+        },
+        example="70 GPa",
+        usual=("GPa", "MPa"),
     ),
-    "stress": Kind(to_say("a stress"), _PRESSURES, example="355 MPa", usual=("MPa", "kPa")),
-    "pressure": Kind(to_say("a pressure"), _PRESSURES, example="12 MPa", usual=("MPa", "kPa")),
     "pressure times speed": Kind(
         to_say("a pressure times speed"),
         {"Pa m/s": "1", "MPa m/s": "1000000", "W/mm^2": "1000000"},
@@ -350,15 +346,11 @@ FACTORS: dict[str, str] = {
 }
 """SI units in one unit, as decimal text."""
 OF_UNIT: dict[str, Dimension] = {
-    unit: dimension for dimension, kind in reversed(KINDS.items()) for unit in kind.units
+    unit: dimension for dimension, kind in KINDS.items() for unit in kind.units
 }
-"""Dimension of each unit, the first of those that share it."""
+"""Dimension of each unit: none belongs to two, which a test looks after."""
 SI: dict[Dimension, str] = {dimension: kind.si for dimension, kind in KINDS.items()}
 """SI unit of each dimension."""
-SAME: dict[Dimension, Dimension] = {
-    dimension: OF_UNIT[kind.si] for dimension, kind in KINDS.items()
-}
-"""The first dimension with the units of each: stresses are added to moduli in expressions."""
 
 HUGE, TINY = 1e30, 1e-30
 """Limits of what is taken for a quantity in SI units."""

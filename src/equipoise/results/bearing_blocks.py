@@ -53,7 +53,7 @@ def _plain(analysis: Analysis) -> Table:
         rows.append((joint_named(name), largest(pressure), largest(warms), Value(warms.mean)))
     columns = (
         "",
-        Column(say("largest pressure"), "pressure"),
+        Column(say("largest pressure"), "modulus"),
         Column(say("largest pressure times speed"), "pressure times speed"),
         Column(say("mean"), "pressure times speed"),
     )

@@ -41,7 +41,7 @@ def section_blocks(analysis: Analysis) -> Iterator[Block]:
     columns.append(Column(say("bending moment"), "torque"))
     yield Table.of(say("Loads along links, largest"), columns, loads)
     heads = (say("yielding"), say("buckling"), say("fatigue"))
-    columns = ["", Column(say("stress"), "stress"), say("place"), *heads]
+    columns = ["", Column(say("stress"), "modulus"), say("place"), *heads]
     columns.append(Column(say("life"), "time", "h"))
     shown = [k for k in range(len(columns)) if any(row[k] is not None for row in strength)]
     title = say("Largest stress along links (at crank angle), and safety")

@@ -9,7 +9,7 @@ from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from equipoise.errors import EquipoiseError, ModelError, UsageError, to_paste
+from equipoise.errors import EquipoiseError, ModelError, UsageError, at_place
 from equipoise.i18n import Note
 from equipoise.keys import Frozen
 from equipoise.keys.paths import KeyPath
@@ -147,10 +147,8 @@ class Beside:
             machine = loads_linkage(found.text, folder=found.folder)
             _ = assemble(machine).cycle
         except EquipoiseError as error:
-            where = f"{error.where}: " if isinstance(error, ModelError) and error.where else ""
-            what = error.what if isinstance(error, ModelError) else str(error)
-            what, *_ = to_paste(str(what))  # lines for a file would be those of the other one
-            raise ModelError("", f"{printable(file)}: {where}{what}") from error
+            refusal = at_place(printable(file), error.note)
+            raise ModelError("", refusal) from error  # lines would be for the other file
         if lacking := massless(machine):
             raise ModelError("", f"{printable(file)}: {lacking}")
         return machine

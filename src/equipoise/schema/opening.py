@@ -60,7 +60,7 @@ def in_file(source: str) -> Iterator[None]:
     try:
         yield
     except ModelError as error:
-        raise ModelError(printable(error.where), error.what, source) from error
+        raise error.at(printable(error.where), source) from error
 
 
 def opened(path_or_name: str | os.PathLike[str], *, within: Folder = None) -> Opened:

@@ -176,7 +176,9 @@ def _of_command(study: Study, numbers: Sequence[int], command: str) -> list[Requ
                 raise steps
             return _parted(study, model, Request(command, columns, steps))
     where = f"outputs[{min(asked)}].of"
-    raise ModelError(where, f"equipoise {command} cannot compute the model: {first}") from first
+    assert first is not None
+    refusal = f"equipoise {command} cannot compute the model: {first.note}"
+    raise ModelError(where, refusal).with_paste(first.paste) from first
 
 
 EACH_ITS_OWN = {"planting.depth", "planting.forward_speed", "planting.hill_spacing"}

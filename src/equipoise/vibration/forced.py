@@ -13,7 +13,7 @@ from dataclasses import replace
 from typing import cast, get_args
 
 from equipoise.errors import MassError, ModelError, ResponseError, UsageError
-from equipoise.i18n import Note, to_say
+from equipoise.i18n import Note, key_names, to_say
 from equipoise.mechanism.dynamics.forces import massless
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.support import idle_parts
@@ -51,7 +51,9 @@ def chosen_model(machine: Machine, model: str | None, drive: bool) -> Model:
             )
         )
     if drive and machine.drive.motor is None:
-        raise ModelError("drive.motor", Note("missing; give its no_load_speed and stall_torque"))
+        names = key_names("no_load_speed", "stall_torque")
+        told = Note("missing; give its {no_load_speed} and {stall_torque}", **names)
+        raise ModelError("drive.motor", told)
     if drive and model not in {None, "exact"}:
         raise UsageError(
             Note("the speed follows from the motor in the model exact, not in {model}", model=model)

@@ -9,7 +9,7 @@ from functools import partial
 
 import numpy as np
 
-from equipoise.errors import EquipoiseError, MobilityError, UsageError, to_paste
+from equipoise.errors import EquipoiseError, MobilityError, UsageError
 from equipoise.i18n import Note, listed, say
 from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.assembly.named_joints import pin_radii
@@ -61,7 +61,7 @@ def drawn(sketch: Sketch) -> Solved | Drawn:
             found = sketch.finished()
             return replace(found, stand=_stand(found, sketch))
         except EquipoiseError as error:
-            told = to_paste(error.told())[0]
+            told = error.told()
     return Drawn(sketch, told)
 
 

@@ -95,7 +95,8 @@ class Field:
                 return typed if amount.value == value else amount
 
             if isinstance(error, ModelError):
-                raise ModelError(error.where, with_measured(error.what, as_typed)) from error
+                what = with_measured(error.what, as_typed)
+                raise ModelError(error.where, what).with_paste(error.paste) from error
             raise UsageError(with_measured(error.note, as_typed)) from error
 
     def _remembering(self, typed: str, of: Any) -> Any:

@@ -6,7 +6,8 @@ Nothing here knows a table or a key; what each kind of value takes is told in `C
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from functools import cache
 from types import MappingProxyType
 from typing import Any
 
@@ -14,6 +15,7 @@ from equipoise import keys
 from equipoise.i18n import say
 from equipoise.quantities import display
 from equipoise.schema.entries import entry_of, own_keys, tables_below
+from equipoise.schema.opening import document_of
 from equipoise.schema.words import plain_word
 from equipoise.schema.writing import plain_default
 
@@ -27,20 +29,42 @@ def forms_of(of: type[keys.Frozen]) -> dict[str, Values]:
     go together.
     """
     found: dict[str, Values] = {}
-    waiting = [of]
-    while waiting:
-        one = waiting.pop()
-        if one.__name__ in found:
-            continue
+    for one in _tables_of(of):
         own = own_keys(one)
         controls = [control_of(key, own) for key in own.values()]
         found[one.__name__] = {
             "rule": one.conditions,
             "controls": sorted(controls, key=lambda control: not control["required"]),
         }
-        inner = (entry_of(key.kind) for key in tables_below(one).values())
-        waiting += [table.type for table in inner if table is not None]
     return found
+
+
+def _tables_of(of: type[keys.Frozen]) -> Iterator[type[keys.Frozen]]:
+    """A table and all below it, each once."""
+    names: set[str] = set()
+    waiting = [of]
+    while waiting:
+        one = waiting.pop()
+        if one.__name__ not in names:
+            names.add(one.__name__)
+            yield one
+            inner = (entry_of(key.kind) for key in tables_below(one).values())
+            waiting += [table.type for table in inner if table is not None]
+
+
+def word_in_forms(name: str) -> str:
+    """What forms of the tables of a linkage call a key; the key where they have several words."""
+    words = {word_of(one) for one in _keys_of_linkages().get(name, ())}
+    return words.pop() if len(words) == 1 else name
+
+
+@cache
+def _keys_of_linkages() -> Mapping[str, tuple[keys.Key, ...]]:
+    found: dict[str, tuple[keys.Key, ...]] = {}
+    for table in _tables_of(document_of("linkage")):
+        for name, one in own_keys(table).items():
+            found[name] = (*found.get(name, ()), one)
+    return MappingProxyType(found)
 
 
 def control_of(one: keys.Key, beside: Mapping[str, keys.Key]) -> Values:

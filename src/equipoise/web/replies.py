@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import json
 import struct
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from equipoise.errors import EquipoiseError, ModelError, UsageError, to_paste
+from equipoise.errors import EquipoiseError, ModelError, UsageError
+from equipoise.i18n import key_words
 from equipoise.limits import out_of_memory
+from equipoise.web.forms import word_in_forms
 
 LONGEST = 800
 """Signs of a sentence."""
@@ -25,11 +28,14 @@ class Reply:
 
 def refused(seq: int | None, error: EquipoiseError, language: str = "en") -> Reply:
     """Say why something cannot be done, in a language."""
-    told = _shortened(error.told(language))
+    told = _shortened(error.told(language, lines=True), error.lines)
     content: dict[str, Any] = {"type": "refused", "seq": seq, "message": told}
-    if isinstance(error, ModelError) and error.where:
-        what = EquipoiseError(error.what).told(language)
-        content |= {"path": error.where, "what": _shortened(what)}
+    what = error
+    if isinstance(error, ModelError):
+        what = EquipoiseError(error.what)
+        content |= {"path": error.where} if error.where else {}
+    with key_words(word_in_forms):
+        content["what"] = _shortened(what.told(language))
     return Reply(content)
 
 
@@ -57,7 +63,6 @@ def packed(reply: Reply) -> bytes:
     return b"".join([struct.pack("<I", len(header)), header, filling, reply.buffer])
 
 
-def _shortened(text: str) -> str:
-    sentence, *lines = to_paste(text)
+def _shortened(sentence: str, lines: Sequence[str] = ()) -> str:
     text = "\n".join([" ".join(sentence.split()), *lines])
     return text if len(text) <= LONGEST else f"{text[: LONGEST - 200]} ... {text[-190:]}"

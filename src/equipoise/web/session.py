@@ -381,4 +381,4 @@ def _in_file(error: EquipoiseError, name: str) -> EquipoiseError:
     """The same error with the name of the file in front."""
     if isinstance(error, ModelError):
         return error.in_file(name)
-    return UsageError(at_place(name, error.note))
+    return UsageError(at_place(name, error.note)).with_paste(error.paste)

@@ -16,7 +16,7 @@ from equipoise.errors import (
     at_place,
     unknown,
 )
-from equipoise.i18n import Note, all_of, speaking
+from equipoise.i18n import Note, all_of, key_names, key_words, speaking
 from equipoise.quantities import KINDS, as_written, parse
 from equipoise.schema.documents import loads
 from equipoise.web.replies import refused
@@ -47,7 +47,7 @@ def test_a_refusal_is_told_in_each_language(case):
     old, new, *parts = FAILS[case]
     assert old in FOUR_BAR
     error = error_of(FOUR_BAR.replace(old, new, 1))
-    assert error.told() == error.told("en") == str(error)
+    assert error.told() == error.told("en") == error.note
     for language, part in zip(("ja", "ko"), parts, strict=True):
         assert part in error.told(language)
         with speaking(language):
@@ -84,6 +84,29 @@ def test_a_typed_number_stands_in_every_language():
     told = ModelError("mass", as_written(caught.value.what, ["-1 g"]))
     assert str(told) == "mass: got -1 g; a mass cannot be negative"
     assert told.told("ja") == "mass：-1 g が与えられました。質量は負にできません"
+
+
+def test_lines_for_the_file_stand_below_the_sentence_and_not_in_it():
+    error = error_of(FOUR_BAR.replace('["33.5 mm", "0 mm"]', '["133.5 mm", "0 mm"]', 1))
+    assert error.paste is not None and len(error.lines) == 1
+    (line,) = error.lines
+    assert line.startswith("motion = {") and line.endswith("}")
+    assert str(error) == f"{error.sentence}\n\n{line}"
+    assert str(error.sentence).startswith(f"{error.note}; the motion below ")
+    assert "below" not in error.note and "motion =" not in error.told(lines=True)
+    assert error.told("ja", lines=True).startswith(error.told("ja"))
+    placed = ModelError("drive", error.note).with_paste(error.paste).in_file("a.toml")
+    assert placed.lines == error.lines
+    assert str(placed) == f"a.toml: drive: {error}"
+    assert pickle.loads(pickle.dumps(placed)).lines == error.lines
+
+
+def test_keys_in_a_sentence_are_said_as_in_files_or_by_words():
+    error = ModelError("x", Note("give {inertia}", **key_names("inertia")))
+    assert str(error) == "x: give inertia"
+    with key_words(str.upper):
+        assert error.told() == "x: give INERTIA"
+        assert str(ModelError("x", error.what)) == "x: give inertia"
 
 
 def test_a_range_keeps_its_crank_angles_beside_its_sentence():

@@ -280,7 +280,7 @@ def asked(given: eq.Machine) -> tuple[dict[str, str], str]:
     """What is offered for the table of sides, and the whole sentence, of a machine without it."""
     with pytest.raises(ModelError) as caught:
         eq.mechanism.assemble(replace(given, assembly={}))
-    sentence, _, lines = caught.value.what.partition("\n\n")
+    sentence, lines = caught.value.what, "\n".join(caught.value.lines)
     assert sentence
     return tomllib.loads(lines)["assembly"], lines
 
@@ -395,7 +395,7 @@ def test_wrong_and_idle_sides_are_told_with_missing_ones() -> None:
     with pytest.raises(ModelError) as caught:
         eq.mechanism.assemble(given)
     assert caught.value.what.startswith(words)
-    assert "[assembly]\n" not in caught.value.what  # there is one already
+    assert "[assembly]" not in caught.value.lines  # there is one already
 
 
 def test_sides_of_links_that_cannot_be_joined() -> None:

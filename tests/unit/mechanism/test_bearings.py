@@ -102,7 +102,7 @@ def test_they_are_reported_everywhere() -> None:
     told = json.loads(json_text(found.to_dict()))["rolling_bearings"]["C"]
     assert told["basic_life"] == found.rolling_bearings["C"].basic_life
     assert dimension_of(machine, "analyze", "rolling_bearings.C.basic_life") == "time"
-    assert dimension_of(machine, "analyze", "joints.B.pressure.max") == "pressure"
+    assert dimension_of(machine, "analyze", "joints.B.pressure.max") == "modulus"
     titles = [one.title for one in found.blocks() if isinstance(one, Table)]
     assert "Rolling bearings in joints" in titles
     assert "Plain bearings in joints; largest with its crank angle" in titles

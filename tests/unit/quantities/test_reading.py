@@ -180,3 +180,8 @@ def test_writing_prefers_the_usual_unit(text: str) -> None:
 def test_printed_units_are_listed() -> None:
     for kind in KINDS.values():
         assert set(kind.printed) <= set(kind.units)
+
+
+def test_no_unit_is_in_two_lists() -> None:
+    listed = [unit for kind in KINDS.values() for unit in kind.units]
+    assert len(set(listed)) == len(listed)

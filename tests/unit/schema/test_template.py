@@ -18,6 +18,7 @@ import equipoise as eq
 from equipoise.errors import ModelError, MotionError
 from equipoise.handheld.model import Tool
 from equipoise.mechanism.parts.machine import Machine
+from equipoise.quantities.units import KINDS, OF_UNIT
 from equipoise.schema.finding import is_whole
 from equipoise.schema.numbers import from_polar
 from equipoise.schema.opening import examples
@@ -29,6 +30,10 @@ from unit.schema.tool_samples import TOOL
 @cache
 def example(name: str) -> Template:
     return Template.load(name)
+
+
+def test_no_unit_belongs_to_two_dimensions() -> None:
+    assert len(OF_UNIT) == sum(len(kind.units) for kind in KINDS.values())
 
 
 @pytest.mark.parametrize(

@@ -8,14 +8,17 @@ import numpy as np
 import pytest
 
 import equipoise as eq
+from equipoise.errors import ModelError
 from equipoise.i18n import speaking
 from equipoise.keys import Frozen, Named, Quantity, Tables
 from equipoise.keys.paths import KeyPath
+from equipoise.mechanism.parts.links import TOLD_BY_BODIES
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.quantities import parse, showing
 from equipoise.schema.entries import Document, entry_of, own_keys, tables_below
 from equipoise.web.forms import forms_of
 from equipoise.web.openings import opened_example, titles
+from equipoise.web.replies import refused
 from equipoise.web.session import Session
 from equipoise.web.tables import tables_of
 from unit.web.pages import Content, ask, opened, refusal, state
@@ -322,6 +325,20 @@ def test_what_is_wrong_is_told_at_its_key(
     assert reply.content["path"] == path
     assert what in reply.content["what"]
     assert session.shown is before
+
+
+def test_forms_are_refused_in_their_own_words() -> None:
+    """What forms call a key, in each language; the message and its place keep the file's."""
+    session, _ = opened("yamashita-1")
+    values = {"points": {"A": ["0 mm", "0 mm"]}, "mass": "1 kg"}
+    (reply,) = enter(session, ["links", "other"], values)
+    missing = "give mass, {} and inertia together, or none of them"
+    assert missing.format("centre of mass") in reply.content["what"]
+    assert reply.content["what"].startswith("centre of mass and inertia missing; ")
+    assert missing.format("center_of_mass") in reply.content["message"]
+    error = ModelError("links.crank.mass", TOLD_BY_BODIES)
+    content = refused(1, error, "ja").content
+    assert "重心" in content["what"] and "center_of_mass" in content["message"]
 
 
 @pytest.mark.parametrize(

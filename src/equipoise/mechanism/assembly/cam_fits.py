@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.errors import ModelError
-from equipoise.i18n import Note
+from equipoise.i18n import Note, key_names
 from equipoise.mechanism.assembly.builder import Guide
 from equipoise.mechanism.assembly.cam_shapes import (
     BESIDE,
@@ -242,9 +242,15 @@ def _with_radius(told: Note, machine: Machine, joints: Structure, cam: Cam) -> N
     least = larger_base(machine, joints, cam)
     if least is None:
         most = LARGEST * cam.base_radius * 1e3
-        return Note("{told}; no base_radius up to {most:.4g} mm does", told=told, most=most)
+        return Note(
+            "{told}; no {base_radius} up to {most:.4g} mm does",
+            told=told, most=most, **key_names("base_radius"),
+        )  # fmt: skip
     return Note(
-        "{told}; {least:.4g} mm is the least base_radius that does", told=told, least=least * 1e3
+        "{told}; {least:.4g} mm is the least {base_radius} that does",
+        told=told,
+        least=least * 1e3,
+        **key_names("base_radius"),
     )
 
 
@@ -319,8 +325,9 @@ def _demands(cam: Cam) -> Iterator[Demand]:
         lambda one: np.cos(one.pressure_angle) - STEEPEST,
         lambda _, angle: Note(
             "the follower jams at cam angle {angle:.4g} deg, where the pressure angle is 90 "
-            "deg; give a larger base_radius, or another place of the follower",
+            "deg; give a larger {base_radius}, or another place of the follower",
             angle=angle,
+            **key_names("base_radius"),
         ),
     )
     if cam.rides == "flat":
@@ -342,8 +349,9 @@ def _undercut_flat(least: float, angle: float) -> Note:
     return Note(
         "the cam is undercut at cam angle {angle:.4g} deg, where its radius of curvature "
         "would be {radius:.4g} mm; a flat face needs more than 0: give a larger "
-        "base_radius, or more time there",
+        "{base_radius}, or more time there",
         angle=angle,
+        **key_names("base_radius"),
         radius=least * 1e3,
     )
 
@@ -352,8 +360,9 @@ def _undercut_round(roller: float, least: float, angle: float) -> Note:
     return Note(
         "the cam is undercut at cam angle {angle:.4g} deg, where the curve of the "
         "roller's centre has a radius of {radius:.4g} mm, and the roller one of "
-        "{roller:.4g} mm; give a larger base_radius, a smaller roller, or more time "
+        "{roller:.4g} mm; give a larger {base_radius}, a smaller roller, or more time "
         "there",
+        **key_names("base_radius"),
         angle=angle,
         radius=1e3 * roller / (1 - least),
         roller=roller * 1e3,

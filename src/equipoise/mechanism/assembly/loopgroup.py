@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.errors import ModelError
-from equipoise.i18n import Note
+from equipoise.i18n import Note, key_names
 from equipoise.mechanism.assembly.builder import Builder, Group
 from equipoise.mechanism.assembly.contacts import contact_of
 from equipoise.mechanism.assembly.joints import Structure, place_in_file
@@ -340,7 +340,8 @@ def _solve_start(
             "position",
             Note(
                 "missing; no dyad solves {names}, so the file must say roughly where they "
-                "are: crank_angle, and points or angles of these links",
+                "are: {crank_angle}, and points or angles of these links",
+                **key_names("crank_angle"),
                 names=", ".join(group.shown),
             ),
         )

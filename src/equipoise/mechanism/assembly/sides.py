@@ -18,7 +18,8 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.errors import PASTE, EquipoiseError, ModelError
+from equipoise.errors import EquipoiseError, ModelError, Paste
+from equipoise.i18n import to_say
 from equipoise.mechanism.assembly.builder import Builder, Group
 from equipoise.mechanism.assembly.steps import Call, State, initial_state, run
 from equipoise.mechanism.checks import meant
@@ -40,6 +41,7 @@ SMALL = 1e4
 """Sizes of the machine beside which rounding of coordinates is seen as such."""
 BARE = re.compile("[A-Za-z0-9_-]+")
 
+LEADING = to_say("{sentence}, such as")
 TURNS = "the crank turns fully with this side alone"
 
 
@@ -239,5 +241,4 @@ def missing(machine: Machine, choices: Sequence[Choice], idle: Iterable[str] = (
         table += one.lines(", ".join(taken))
         if not one.why:
             taken.append(one.entry(one.side))
-    paste = "\n".join(table)
-    return ModelError(where, f"{what}, such as{PASTE}{paste}")
+    return ModelError(where, what).with_paste(Paste(tuple(table), LEADING))

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import acos, degrees, floor, log10, radians, sin
 
 import numpy as np
 
-from equipoise.errors import PASTE, ChangePointError, MotionError, RangeError, at_place
+from equipoise.errors import ChangePointError, MotionError, Paste, RangeError, at_place
 from equipoise.i18n import Note, to_say
 from equipoise.mechanism.assembly.newton import BranchError
 from equipoise.mechanism.assembly.reach import Assembled, Reach, has_loops, margins_at, range_of
@@ -28,7 +29,8 @@ LOOKED_AT = 720
 DIGITS = 3
 """Of the range, to which the ends of a swing are rounded."""
 
-WITH_LINES = to_say("{reason}; {cure}; the motion below {room}{lines}")
+WITH_CURE = to_say("{reason}; {cure}")
+LEADING = to_say("{sentence}; the motion below {room}")
 KEEPS_ANGLES = Note(
     "keeps transmission angles of {least:.4g} deg and more", least=degrees(TRANSMISSION)
 )
@@ -63,12 +65,12 @@ def with_cures(linkage: Assembled, error: MotionError) -> MotionError:
     lines = [motion_line(swing.law)]
     cure: Note = SWING_ALONE if machine.drive.motor or machine.drive.flywheel else SWING
     if not isinstance(error, ChangePointError):
-        message = Note(
-            WITH_LINES, reason=found.note, cure=cure, room=swing.room, lines=_pasted(lines)
-        )
+        message = Note(WITH_CURE, reason=found.note, cure=cure)
         if isinstance(error, RangeError):
-            return RangeError(message, error.ranges, reason=found.note)
-        return type(error)(message, reason=found.note)
+            stuck: MotionError = RangeError(message, error.ranges, reason=found.note)
+        else:
+            stuck = type(error)(message, reason=found.note)
+        return stuck.with_paste(_paste(lines, swing))
     if error.joint:
         cure = MODE_OR_SWING
         entry = key_text(error.joint)
@@ -78,10 +80,9 @@ def with_cures(linkage: Assembled, error: MotionError) -> MotionError:
             f'# or {entry} = "{MODES[1]}"',
             f"# or, in [drive]: {lines[0]}",
         ]
-    message = Note(
-        WITH_LINES, reason=error.reason, cure=cure, room=swing.room, lines=_pasted(lines)
-    )
-    return ChangePointError(message, error.crank_angle, error.joint, reason=error.reason)
+    message = Note(WITH_CURE, reason=error.reason, cure=cure)
+    stuck = ChangePointError(message, error.crank_angle, error.joint, reason=error.reason)
+    return stuck.with_paste(_paste(lines, swing))
 
 
 def _in_its_slot(machine: Machine, error: MotionError) -> MotionError:
@@ -93,8 +94,8 @@ def _in_its_slot(machine: Machine, error: MotionError) -> MotionError:
     return BranchError(at_place(place, Note(BEYOND, crank_angle=degrees(error.crank_angle))))
 
 
-def _pasted(lines: list[str]) -> str:
-    return PASTE + "\n".join(lines)
+def _paste(lines: Sequence[str], swing: SwingWithin) -> Paste:
+    return Paste(tuple(lines), LEADING, {"room": swing.room})
 
 
 @dataclass(frozen=True)

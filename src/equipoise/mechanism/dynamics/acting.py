@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.errors import ModelError
+from equipoise.i18n import Note, key_names
 from equipoise.mechanism.assembly.joints import coupling_pins
 from equipoise.mechanism.assembly.steps import Array
 from equipoise.mechanism.dynamics.loads import load_at
@@ -162,7 +163,14 @@ def spring_direction(motion: Motion, link: str, point: str, to: str) -> Any:
         angle = degrees(motion.crank_angle[meeting.argmax()])
         raise ModelError(
             "springs",
-            f"{point!r} of {link!r} meets {to!r} at crank angle {angle:.6g} deg, where a spring "
-            "with a free length points nowhere; give another point, or a free_length of 0",
+            Note(
+                "{point!r} of {link!r} meets {to!r} at crank angle {angle:.6g} deg, where a spring "
+                "with a free length points nowhere; give another point, or a {free_length} of 0",
+                point=point,
+                link=link,
+                to=to,
+                angle=angle,
+                **key_names("free_length"),
+            ),
         )
     return along / length

@@ -17,7 +17,7 @@ import numpy as np
 
 from equipoise.displays import Displayed
 from equipoise.errors import MassError
-from equipoise.i18n import Note
+from equipoise.i18n import Note, key_names
 from equipoise.mechanism.assembly.steps import Array, p, planar, u
 from equipoise.mechanism.dynamics import acting
 from equipoise.mechanism.dynamics.across import (
@@ -299,9 +299,10 @@ def massless(machine: Machine) -> Note | str:
     if not missing:
         return ""
     return Note(
-        "forces need mass, center_of_mass and inertia of every link; missing for {links} (a link "
+        "forces need mass, {center_of_mass} and inertia of every link; missing for {links} (a link "
         "to be neglected has mass 0)",
         links=", ".join(missing),
+        **key_names("center_of_mass"),
     )
 
 

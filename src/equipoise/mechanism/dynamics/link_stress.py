@@ -41,7 +41,7 @@ class LinkStress:
     """
 
     fibre: str
-    stress: float = figure(to_say("largest stress"), "stress")
+    stress: float = figure(to_say("largest stress"), "modulus")
     place: float = figure(to_say("at a distance from the first point"), "length")
     stress_at: float = figure(to_say("largest stress at crank angle"), "angle")
     tension: float = figure(to_say("largest tension"), "force")

@@ -362,7 +362,7 @@ of_plain_bearing = alike(
     items=lambda found: found.forces.plain_bearings,
     spoken=joint_named,
 )
-of_plain_bearing("pressure", "pressure", to_say("pressure in joint {name}"))
+of_plain_bearing("pressure", "modulus", to_say("pressure in joint {name}"))
 of_plain_bearing("pressure_speed", "pressure times speed",
                  to_say("pressure times sliding speed in joint {name}"))  # fmt: skip
 
@@ -371,7 +371,7 @@ of_section = alike(
     lambda name, found, link: getattr(found.forces.sections[link], name),
     members=lambda machine: [name for name, one in machine.links.items() if one.section],
 )
-of_section("stress", "stress", to_say("largest stress along {name}"))
+of_section("stress", "modulus", to_say("largest stress along {name}"))
 of_section("axial_force", "force", to_say("largest axial force along {name}"))
 of_section("bending_moment", "torque", to_say("largest bending moment along {name}"))
 

@@ -9,7 +9,7 @@ from math import pi
 from typing import Any
 
 from equipoise.errors import ModelError
-from equipoise.i18n import Note
+from equipoise.i18n import Note, key_names
 from equipoise.keys import quantities_of
 from equipoise.mechanism.checks import numbered, too_many, unknown
 from equipoise.mechanism.parts.bodies import (
@@ -23,6 +23,12 @@ from equipoise.mechanism.parts.bodies import (
     place_of,
 )
 
+NO_SECTION = Note(
+    "missing; with a material give width and thickness, or {outer_diameter}",
+    **key_names("outer_diameter"),
+)
+GOES_WITH_DIAMETER = Note("goes with {outer_diameter}", **key_names("outer_diameter"))
+LESS_THAN_DIAMETER = Note("give less than {outer_diameter}", **key_names("outer_diameter"))
 MOST = {"bodies": 100, "corners": 200, "holes": 200}
 """Far beyond any link."""
 ROUNDING = 1e-9
@@ -127,7 +133,7 @@ def _wrong_mass(body: Body, _: Points) -> Wrong:
     if body.density is None or (bar and body.outer_diameter is not None):
         return
     if bar and body.width is None:
-        yield "width", "missing; with a material give width and thickness, or outer_diameter"
+        yield "width", NO_SECTION
     elif body.thickness is None:
         yield "thickness", "missing; with a material give it, or give the mass instead"
 
@@ -141,7 +147,7 @@ def _wrong_numbers(body: Body, points: Points) -> Wrong:
     if body.wall is not None and None in (body.width, body.thickness):
         yield "wall", "goes with width and thickness of a bar"
     elif body.inner_diameter and body.outer_diameter is None:
-        yield "inner_diameter", "goes with outer_diameter"
+        yield "inner_diameter", GOES_WITH_DIAMETER
     else:
         for name, right, what in _rules(body, points):
             if not right:
@@ -159,7 +165,7 @@ def _rules(body: Body, points: Points) -> Iterator[tuple[str, Any, str]]:
         yield "inner_radius", body.inner_radius < body.radius, "give less than the radius"
     if body.outer_diameter is not None:
         right = body.inner_diameter < body.outer_diameter
-        yield "inner_diameter", right, "give less than outer_diameter"
+        yield "inner_diameter", right, LESS_THAN_DIAMETER
     if body.wall is not None and body.width is not None and body.thickness is not None:
         right = (2 * body.wall < body.width) & (2 * body.wall < body.thickness)
         yield "wall", right, "give less than half of width and thickness"

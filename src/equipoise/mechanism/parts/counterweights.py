@@ -7,7 +7,7 @@ from math import hypot
 from typing import Any, ClassVar
 
 from equipoise.errors import ModelError
-from equipoise.i18n import to_say
+from equipoise.i18n import Note, key_names, to_say
 from equipoise.keys import (
     Conditions,
     Frozen,
@@ -197,9 +197,11 @@ def wrong_geared(where: str, geared: GearedWeight, machine: Mechanism) -> Iterat
     yield from _wrong_sizes(where, geared)
     yield from _wrong_axis(where, geared, pins[driver][0], machine)
     if (geared.gear_thickness is None) != (geared.gear_density is None):
-        yield ModelError(
-            where, "give both gear_thickness and gear_material (or gear_density), or neither"
+        told = Note(
+            "give both {gear_thickness} and {gear_material} (or {gear_density}), or neither",
+            **key_names("gear_thickness", "gear_material", "gear_density"),
         )
+        yield ModelError(where, told)
     for place, link in numbered(f"{where}.clear_of", geared.clear_of):
         if link not in machine.links:
             yield ModelError(place, unknown(link, machine.links, "link"))

@@ -11,7 +11,7 @@ from math import pi
 from typing import Any, ClassVar, Literal
 
 from equipoise.errors import ModelError
-from equipoise.i18n import Note, to_say
+from equipoise.i18n import Note, key_names, to_say
 from equipoise.keys import (
     ROW,
     Conditions,
@@ -33,6 +33,9 @@ from equipoise.mechanism.checks import FRAME, Bodies, Vector, numbered, unknown
 WAYS = ("forward", "backward")
 PARTS = ("resistance", "per_depth", "per_speed", "per_depth_and_speed")
 """Of the resistance of soil."""
+EITHER = Note(
+    "give either {forward_speed} or {hill_spacing}", **key_names("forward_speed", "hill_spacing")
+)
 RESISTS = Note("soil resists, give 0 or more")
 
 
@@ -224,7 +227,7 @@ def wrong_planting(planting: Planting | None, bodies: Bodies) -> Iterator[ModelE
     if wrong:
         return
     if (planting.forward_speed is None) == (planting.hill_spacing is None):
-        yield ModelError("planting", Note("give either forward_speed or hill_spacing"))
+        yield ModelError("planting", EITHER)
     if (planting.depth is None) == (planting.surface is None):
         yield ModelError("planting", Note("give either depth or surface"))
     if planting.tray is not None and planting.tray[0] == planting.tray[1]:

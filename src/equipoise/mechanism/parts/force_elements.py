@@ -8,7 +8,7 @@ from math import ceil, degrees, pi
 from typing import ClassVar, Literal
 
 from equipoise.errors import ModelError
-from equipoise.i18n import Note, to_say
+from equipoise.i18n import Note, key_names, to_say
 from equipoise.keys import (
     NO_INERTIA,
     ROW,
@@ -386,7 +386,9 @@ def wrong_motor(where: str, motor: Motor) -> Iterator[ModelError]:
     given += [motor.dc is not None, motor.induction is not None]
     if sum(given) != 1 or line.count(None) == 1:
         told = Note(
-            "give either no_load_speed and stall_torque, or torque, or table, or dc, or induction"
+            "give either {no_load_speed} and {stall_torque}, or torque, or table, or dc, or "
+            "induction",
+            **key_names("no_load_speed", "stall_torque"),
         )
         yield ModelError(where, told)
     elif table is None:

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator
 from typing import ClassVar
 
 from equipoise.errors import ModelError
-from equipoise.i18n import Note, to_say
+from equipoise.i18n import Note, key_names, to_say
 from equipoise.keys import Conditions, Frozen, Number, Table, Text, any_of, declared, key
 from equipoise.mechanism.parts.rolling_bearings import RollingBearing
 
@@ -153,7 +153,10 @@ def _wrong_friction(where: str, one: JointProperties) -> Iterator[ModelError]:
     """Report keys of friction that do not go together."""
     if (one.static_friction is None) != (one.stribeck_speed is None):
         missing = "static_friction" if one.static_friction is None else "stribeck_speed"
-        told = Note("missing; static_friction and stribeck_speed go together")
+        told = Note(
+            "missing; {static_friction} and {stribeck_speed} go together",
+            **key_names("static_friction", "stribeck_speed"),
+        )
         yield ModelError(f"{where}.{missing}", told)
     for name in ("static_friction", "guide_length"):
         if one.friction is None and getattr(one, name) is not None:

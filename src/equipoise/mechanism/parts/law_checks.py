@@ -7,7 +7,7 @@ from itertools import pairwise
 from math import degrees
 
 from equipoise.errors import ModelError
-from equipoise.i18n import Note, to_say
+from equipoise.i18n import Note, key_names, to_say
 from equipoise.mechanism.parts.laws import CLOSED, MOST_ROWS, Law
 from equipoise.quantities import KINDS, Measured
 
@@ -19,7 +19,10 @@ def wrong_law(where: str, law: Law, over: str = CRANK) -> Iterator[ModelError]:
     """Everything that is wrong with a motion law over `CRANK` or `CAM`."""
     given = [law.between is not None, bool(law.segments), bool(law.values), law.table is not None]
     if sum(given) != 1 or bool(law.crank_angles) != bool(law.values):
-        told = Note("give exactly one of between, segments, table, and crank_angles with values")
+        told = Note(
+            "give exactly one of between, segments, table, and {crank_angles} with values",
+            **key_names("crank_angles"),
+        )
         yield ModelError(where, told)
         return
     turned, wrong = Note(over), _wrong_segments if law.segments else _wrong_rows

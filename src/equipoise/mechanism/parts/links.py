@@ -8,7 +8,7 @@ from types import MappingProxyType
 from typing import Any, ClassVar
 
 from equipoise.errors import ModelError
-from equipoise.i18n import Note, to_say
+from equipoise.i18n import KeyName, Note, all_of, key_names, to_say
 from equipoise.keys import (
     NO_INERTIA,
     Conditions,
@@ -36,7 +36,8 @@ MASS_FIELDS = {"mass", "center_of_mass", "inertia"}
 FLAT = 1e-12
 """Over the square of a side: that of a height which is rounding."""
 TOLD_BY_BODIES = Note(
-    "the bodies tell it; leave out mass, center_of_mass and inertia, or the bodies"
+    "the bodies tell it; leave out mass, {center_of_mass} and inertia, or the bodies",
+    **key_names("center_of_mass"),
 )
 TOLD_BY_LENGTHS = Note(
     "length or sides tell the places; give the names of the points alone, in a list"
@@ -326,8 +327,10 @@ def wrong_link(where: str, name: str, link: Link) -> Iterator[ModelError]:
         yield ModelError(
             where,
             Note(
-                "{names} missing; give mass, center_of_mass and inertia together, or none of them",
-                names=" and ".join(missing),
+                "{names} missing; give mass, {center_of_mass} and inertia together, or none of "
+                "them",
+                names=all_of([*map(KeyName, missing)]),
+                **key_names("center_of_mass"),
             ),
         )
         return

@@ -8,7 +8,7 @@ from math import pi
 from typing import ClassVar
 
 from equipoise.errors import ModelError
-from equipoise.i18n import to_say
+from equipoise.i18n import Note, key_names, to_say
 from equipoise.keys import (
     Frozen,
     Key,
@@ -259,7 +259,13 @@ def wrong_limit(where: str, limit: Limit, machine: Mechanism) -> Iterator[ModelE
     """Everything that is wrong with what must not become larger."""
     yield from wrong_objective(where, limit.objective, machine)
     if (limit.at_most is None) == (limit.ratio is None):
-        yield ModelError(where, "give either at_most or ratio, its share of the value before")
+        yield ModelError(
+            where,
+            Note(
+                "give either {at_most} or ratio, its share of the value before",
+                **key_names("at_most"),
+            ),
+        )
     elif limit.at_most is not None and quantity_of(limit.objective, machine) is None:
         yield ModelError(
             f"{where}.at_most",

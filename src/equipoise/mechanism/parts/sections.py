@@ -7,7 +7,7 @@ from math import pi
 from typing import Any, ClassVar
 
 from equipoise.errors import ModelError
-from equipoise.i18n import Note, to_say
+from equipoise.i18n import Note, key_names, to_say
 from equipoise.keys import (
     Conditions,
     Frozen,
@@ -56,7 +56,7 @@ class LinkSection(Frozen):
         above=0,
     )  # fmt: skip
     yield_strength: float | None = key(
-        "stress", "stress at which it yields", default=None, example="355 MPa", above=0
+        "modulus", "stress at which it yields", default=None, example="355 MPa", above=0
     )
     effective_length: float = key(
         Number(), "for buckling, of its length; 1 between pins", default=1.0, above=0
@@ -65,13 +65,13 @@ class LinkSection(Frozen):
         Number(), "by which notches make the stress larger", default=1.0, at_least=1
     )
     fatigue_limit: float | None = key(
-        "stress", "amplitude of stress about 0 at the knee of the Woehler line", default=None,
+        "modulus", "amplitude of stress about 0 at the knee of the Woehler line", default=None,
         example="180 MPa", above=0,
     )  # fmt: skip
     knee_cycles: float = key(Number(), "cycles at that knee", default=1e6, above=0)
     slope: float = key(Number(), "of the Woehler line above its knee", default=5.0, above=0)
     tensile_strength: float | None = key(
-        "stress", "by which stress in the mean counts (Goodman)", default=None, example="510 MPa",
+        "modulus", "by which stress in the mean counts (Goodman)", default=None, example="510 MPa",
         above=0,
     )  # fmt: skip
 
@@ -144,7 +144,7 @@ def wrong_section(
             f"{where}.wall", Note("got a wall that leaves no hole; give less, or leave it out")
         )
     if section.tensile_strength is not None and section.fatigue_limit is None:
-        told = Note("goes with fatigue_limit; give that too")
+        told = Note("goes with {fatigue_limit}; give that too", **key_names("fatigue_limit"))
         yield ModelError(f"{where}.tensile_strength", told)
     if section.between is None and len(points) != 2:
         yield ModelError(

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import ClassVar
 
 from equipoise.errors import ModelError
-from equipoise.i18n import Note, all_of, to_say
+from equipoise.i18n import Note, all_of, key_names, to_say
 from equipoise.keys import (
     Conditions,
     Frozen,
@@ -56,6 +56,7 @@ __all__ = [
 ]
 
 
+EITHER = Note("give either inertia or {pivot_inertia}", **key_names("pivot_inertia"))
 PLANAR = ("surge", "heave", "pitch")
 FREEDOMS = (
     to_say("surge"),
@@ -221,7 +222,7 @@ def _wrong_freedoms(support: Support) -> Iterator[ModelError]:
 
 def _wrong_body(support: Support) -> Iterator[ModelError]:
     if bool(support.inertia) == (support.pivot_inertia is not None):
-        yield ModelError("support", Note("give either inertia or pivot_inertia"))
+        yield ModelError("support", EITHER)
         return
     if support.pivot_inertia is not None:
         if support.products:
@@ -307,7 +308,8 @@ def _wrong_pivot_inertia(support: Support) -> Iterator[ModelError]:
         yield ModelError(
             where,
             Note(
-                "got {given}; mass and center_of_mass alone make {least}, give more",
+                "got {given}; mass and {center_of_mass} alone make {least}, give more",
+                **key_names("center_of_mass"),
                 given=Measured(support.pivot_inertia, "inertia"),
                 least=Measured(least, "inertia"),
             ),

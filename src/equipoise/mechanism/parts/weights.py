@@ -7,7 +7,7 @@ from math import inf, isfinite, pi, sqrt
 from typing import Any, ClassVar, Literal
 
 from equipoise.errors import ModelError
-from equipoise.i18n import Note, to_say
+from equipoise.i18n import Note, key_names, to_say
 from equipoise.keys import (
     Conditions,
     Frozen,
@@ -211,7 +211,7 @@ def wrong_weight(where: str, weight: Weight) -> Iterator[ModelError]:
             ),
         )
     if weight.mass is not None and weight.at_most is not None:
-        yield ModelError(where, "give either mass or at_most")
+        yield ModelError(where, Note("give either mass or {at_most}", **key_names("at_most")))
     if weight.mass is None and not isfinite(weight.radius):
         yield ModelError(where, "nothing limits it; give the radius of its room, or its mass")
     cut = weight.shape in CUT and None not in (weight.thickness, weight.density)
