@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 from scipy.optimize import brentq
 
@@ -18,7 +19,10 @@ from equipoise.mechanism.parts.dc_motors import DcMotor
 from equipoise.mechanism.parts.force_elements import Load, Motor
 from equipoise.mechanism.parts.induction_motors import InductionMotor
 from equipoise.mechanism.parts.joint_properties import JointProperties
+from equipoise.mechanism.parts.servo_motors import ServoMotor
 from equipoise.running.blocks import verdict
+from equipoise.running.controllers import Controller
+from equipoise.running.equation import CrankEquation
 from equipoise.schema.files import json_text
 from equipoise.vibration.steady import speed_at
 from laws.test_run import GRAVITY, INERTIA, WEIGHT, crank
@@ -131,12 +135,13 @@ def test_an_induction_motor_that_is_overloaded_stalls() -> None:
 
 
 def test_they_are_read_printed_and_written(tmp_path: Any) -> None:
-    for motor in (Motor(dc=DC, ratio=RATIO), Motor(induction=KLOSS)):
+    for motor in (Motor(dc=DC, ratio=RATIO), Motor(induction=KLOSS), Motor(servo=SERVO)):
         machine = crank(motor)
         survives(machine)
         eq.save(machine, tmp_path / "motor.toml")
         out = equipoise("check", str(tmp_path / "motor.toml")).out
-        assert "direct current, " in out or "induction, 1500 rpm without slip" in out
+        kinds = ("direct current, ", "induction, 1500 rpm without slip", "servo, 382.0 rpm, 6")
+        assert any(kind in out for kind in kinds)
     found = eq.run(driven(), "2 s")
     told = json.loads(json_text(found.to_dict()))["electric"]
     assert told["current"][-1] == found.electric.current[-1]
@@ -233,3 +238,153 @@ def test_a_brake_in_a_file() -> None:
     assert eq.loads(eq.dumps(machine)) == machine
     with pytest.raises(ModelError, match=r"drive\.brake: got -5 N m"):
         braked(crank(), -5.0)
+
+
+# -- servo motors ----------------------------------------------------------------------------------
+
+SERVO = ServoMotor(speed=40.0, torque_limit=6.0, speed_gain=0.5)
+
+
+def servoed(servo: ServoMotor, speed: float = 10.0, gravity: float = 0.0) -> eq.Machine:
+    return crank(Motor(servo=servo, ratio=RATIO, inertia=ROTOR), speed, gravity)
+
+
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+def test_a_servo_motor_starts_at_its_limit_and_then_by_its_gain(sense: float) -> None:
+    """Evenly, up to the speed at which the gain gives the limit, and exponentially from there."""
+    found = eq.run(servoed(SERVO, sense), "1.2 s")
+    rate, tau = RATIO * 6.0 / WHOLE, WHOLE / (RATIO**2 * 0.5)
+    corner = (40.0 - 6.0 / 0.5) / RATIO
+    late = found.time - corner / rate
+    exact = np.where(late < 0, rate * found.time, 20.0 - 6.0 * np.exp(-late / tau))
+    np.testing.assert_allclose(sense * found.crank_speed, exact, atol=1e-7)
+    assert sense * found.drive_torque[0] == RATIO * 6.0
+    assert found.energy_error < 1e-10
+
+
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+@pytest.mark.parametrize("first", [0.0, 3.0, 30.0])
+def test_a_servo_motor_follows_a_ramp(sense: float, first: float) -> None:
+    """Exactly, by a matrix exponential of crank, reference and its acceleration, below the limit;
+    from a speed above the reference's too.
+    """
+    servo = replace(SERVO, torque_limit=1e3, angle_gain=4.0, acceleration=60.0)
+    found = eq.run(servoed(servo, sense), "1.5 s", speed=sense * first, angle=0.7)
+    stiff, damp = np.array([4.0, 0.5]) * RATIO / WHOLE
+    rates = np.zeros((5, 5))  # crank's angle and speed, reference's, its acceleration
+    rates[[0, 2, 3], [1, 3, 4]] = 1.0
+    rates[1, :4] = -RATIO * stiff, -RATIO * damp, stiff, damp
+    begin = np.array([0.0, first, 0.0, RATIO * first, np.sign(40 - RATIO * first) * 60.0])
+    end = abs(40.0 - RATIO * first) / 60.0
+    assert 0 < end < 1.5
+    after = expm(rates * end) @ begin
+    after[4] = 0.0
+    some = slice(None, None, 7)
+    exact = np.array([
+        expm(rates * time) @ begin if time < end else expm(rates * (time - end)) @ after
+        for time in found.time[some]
+    ])  # fmt: skip
+    np.testing.assert_allclose(sense * found.crank_speed[some], exact[:, 1], atol=1e-8)
+    np.testing.assert_allclose(sense * (found.crank_angle[some] - 0.7), exact[:, 0], atol=1e-8)
+    assert found.energy_error < 1e-10
+
+
+def test_a_servo_motor_drives_a_linkage_as_in_time() -> None:
+    """By SciPy's DOP853 on the equation of the crank, with the controller written anew; the limit
+    is reached on the way.
+    """
+    servo = ServoMotor(speed=250.0, torque_limit=0.03, speed_gain=0.3, angle_gain=2.0,
+                       acceleration=2500.0)  # fmt: skip
+    machine = eq.load("transplanter").with_drive(motor=Motor(servo=servo, ratio=12.0))
+    found = eq.run(machine, "0.2 s")
+    equation, sense = CrankEquation(machine), np.sign(machine.drive.speed)
+
+    def driving(time: float, angle: float, speed: float) -> float:
+        ramp = min(time, 250.0 / 2500.0)
+        ahead = 1250.0 * ramp**2 + 250.0 * (time - ramp) - 12.0 * sense * angle
+        torque = 2.0 * ahead + 0.3 * (2500.0 * ramp - 12.0 * sense * speed)
+        return float(12.0 * sense * np.clip(torque, -0.03, 0.03))
+
+    def rates(time: float, state: np.ndarray) -> list[float]:
+        given = driving(time, *state)
+        inertia, slope, torques = equation.at(state[0], state[1], given, sense)
+        return [state[1], (float(np.sum(torques)) + given - slope * state[1] ** 2 / 2) / inertia]
+
+    leaves = float(found.time[np.argmax(found.crank_angle != 0.0) - 1])
+    acting = float(np.sum(equation.at(0.0, 0.0)[2]))
+    assert driving(leaves, 0.0, 0.0) == pytest.approx(-acting, rel=1e-6)
+    by_time = solve_ivp(rates, (leaves, 0.2), [0.0, 0.0], "DOP853", rtol=1e-8, atol=1e-8)
+    assert found.end.crank_angle == pytest.approx(by_time.y[0, -1], rel=1e-6)
+    assert found.end.speed == pytest.approx(by_time.y[1, -1], rel=1e-6)
+    limited = np.abs(found.drive_torque) > 0.999 * 12.0 * 0.03
+    assert np.any(limited) and not np.all(limited)
+    assert found.energy_error < 1e-10
+
+
+def test_a_servo_motor_that_holds_its_angle_does_not_fall_behind() -> None:
+    """The mean speed of a steady state is the reference speed, whatever resists."""
+    load = Load("crank", torque=-4.0)
+    held, slower = (
+        eq.run(replace(servoed(replace(SERVO, angle_gain=gain), gravity=GRAVITY), loads=(load,)))
+        for gain in (3.0, 0.0)
+    )
+    assert held.end.kind == slower.end.kind == "steady"
+    assert held.last_cycle is not None and slower.last_cycle is not None
+    assert held.last_cycle.mean_speed == pytest.approx(20.0, rel=1e-5)
+    assert slower.last_cycle.mean_speed == pytest.approx(20.0 - 4.0 / (RATIO**2 * 0.5), rel=1e-2)
+
+
+def test_a_servo_motor_waits_for_its_ramp() -> None:
+    """A weight on a level crank holds it until the torque is large enough, or for ever."""
+    ramp = replace(SERVO, acceleration=60.0, speed_gain=0.1)
+    found = eq.run(servoed(ramp, gravity=GRAVITY), "0.7 s")
+    moves = found.time[np.argmax(found.crank_speed > 0) - 1]
+    assert moves == pytest.approx(WEIGHT / (RATIO * 0.1 * 60.0), rel=1e-6)
+    by_angle = eq.run(servoed(replace(ramp, angle_gain=1.0), gravity=GRAVITY), "0.7 s")
+    moves = by_angle.time[np.argmax(by_angle.crank_speed > 0) - 1]
+    assert 0.1 * 60 * moves + 30 * moves**2 == pytest.approx(WEIGHT / RATIO, rel=1e-6)
+    weak = eq.run(servoed(replace(ramp, torque_limit=0.9 * WEIGHT / RATIO), gravity=GRAVITY))
+    assert weak.end.kind == "stall" and weak.end.time == 0
+
+
+def test_a_servo_motor_lets_its_crank_swing_back_until_it_is_strong_enough() -> None:
+    """After a push, by a slow ramp: the weight turns it back first, and later it goes round."""
+    slow = ServoMotor(speed=40.0, torque_limit=6.0, speed_gain=0.02, angle_gain=0.3,
+                      acceleration=3.0)  # fmt: skip
+    found = eq.run(servoed(slow, gravity=GRAVITY), "6 s", speed=2.0, angle=-pi / 2)
+    kinds = [event.kind for event in found.events]
+    assert "reversal" in kinds and kinds[-1] == "time"
+    assert found.turned > 2 and found.energy_error < 1e-9
+    equation = CrankEquation(found.machine)
+
+    def rates(time: float, state: np.ndarray) -> list[float]:
+        ramp = min(time, 36.0 / 3.0)
+        ahead = 4.0 * ramp + 1.5 * ramp**2 + 40.0 * (time - ramp) - RATIO * (state[0] + pi / 2)
+        torque = 0.3 * ahead + 0.02 * (4.0 + 3.0 * ramp - RATIO * state[1])
+        weight = float(np.sum(equation.at(state[0], state[1])[2]))
+        return [state[1], (weight + RATIO * float(np.clip(torque, -6.0, 6.0))) / WHOLE]
+
+    by_time = solve_ivp(rates, (0.0, 6.0), [-pi / 2, 2.0], "DOP853", rtol=1e-10, atol=1e-10)
+    assert found.end.crank_angle == pytest.approx(by_time.y[0, -1], rel=1e-6)
+
+
+def test_a_servo_motor_in_other_commands_goes_by_its_speed_alone() -> None:
+    motor = Motor(servo=replace(SERVO, angle_gain=3.0, acceleration=60.0))
+    for torque in (-5.0, 0.0, 5.0):
+        assert 0.5 * (40.0 - speed_at(motor, torque)) == pytest.approx(torque, abs=1e-12)
+
+
+@pytest.mark.parametrize("gain", [0.0, 2.0])
+@pytest.mark.parametrize("acceleration", [None, 20.0])
+@pytest.mark.parametrize(("first", "angle", "since"), [(0.0, 0.0, 0.0), (4.0, 7.0, 1.0)])
+def test_when_the_torque_of_a_servo_motor_at_rest_is_large_enough(
+    gain: float, acceleration: float | None, first: float, angle: float, since: float
+) -> None:
+    """It is what was asked for then, and less before; on the ramp, after it, and from a time on."""
+    servo = replace(SERVO, torque_limit=1e3, angle_gain=gain, acceleration=acceleration)
+    controller = Controller(servo, first)
+    for torque in (-10.0, 8.0, 19.0, 200.0 if gain else 20.0):
+        time = controller.time_until(torque, angle, since)
+        given = float(controller.torque(0.0, angle, time))
+        assert time >= since
+        assert given == pytest.approx(torque, rel=1e-12) or (time == since and given > torque)

@@ -421,12 +421,23 @@ def _other_motor(chance: random.Random, motor: Document) -> None:
     alternating = {"synchronous_speed": f"{chance.choice((750, 1500, 3000))} rpm",
                    "breakdown_torque": f"{size:.4g} N m",
                    "breakdown_slip": round(chance.uniform(0.02, 0.9), 3)}  # fmt: skip
+    controlled = {"speed": f"{chance.choice((750, 1500, 3000))} rpm",
+                  "torque_limit": f"{size:.4g} N m",
+                  "speed_gain": f"{size / 10 ** chance.uniform(0, 2):.4g} N m s/rad"}  # fmt: skip
     motor |= chance.choice(
         [
             {"torque": f"{size:.4g} N m"},
             {"dc": direct},
             {"dc": direct | {"inductance": f"{10 ** chance.uniform(-2, 2):.4g} mH"}},
             {"induction": alternating},
+            {"servo": controlled},
+            {
+                "servo": controlled
+                | {
+                    "acceleration": f"{10 ** chance.uniform(1, 4):.4g} rad/s^2",
+                    "angle_gain": f"{size:.4g} N m/rad",
+                }
+            },
         ]
     )
 

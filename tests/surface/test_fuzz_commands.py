@@ -441,6 +441,7 @@ def test_machines_from_nothing_have_every_table_of_a_model_file() -> None:
         "Motor": motors,
         "DcMotor": [one["dc"] for one in motors if "dc" in one],
         "InductionMotor": [one["induction"] for one in motors if "induction" in one],
+        "ServoMotor": [one["servo"] for one in motors if "servo" in one],
     }
     for table, entries in made.items():
         assert {*schema["$defs"][table]["properties"]} == {*chain(*entries)}, table

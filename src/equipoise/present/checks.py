@@ -209,6 +209,9 @@ def _curve(motor: Motor) -> str:
     if (net := motor.induction) is not None:
         largest = told(net.breakdown_torque, "torque", "N m")
         return f"induction, {_rpm(net.synchronous_speed)} rpm without slip, {largest} at most"
+    if (servo := motor.servo) is not None:
+        most = told(servo.torque_limit, "torque", "N m")
+        return f"servo, {_rpm(servo.speed)} rpm, {most} at most"
     (_, fastest), (stall, _) = motor.rows
     kind = "" if motor.dc is None else f"{told(motor.dc.voltage, 'voltage')} direct current, "
     torque = told(stall, "torque", "N m")

@@ -9,6 +9,7 @@ from math import copysign, log
 import numpy as np
 
 from equipoise.mechanism.parts.machine import Machine
+from equipoise.running.controllers import Controller
 from equipoise.signals import Array
 from equipoise.vibration.steady import torque_on_crank
 
@@ -18,6 +19,7 @@ class Driver:
 
     sense : 1 where it turns the crank counterclockwise, -1 clockwise.  on : whether it is on.
     circuit : of a direct-current motor; None of any other.
+    servo : of a servo motor; None of any other.
     brake : torque of the brake on the crank, N m, which acts while no motor is on; 0 without one.
     """
 
@@ -28,17 +30,46 @@ class Driver:
         self.brake = drive.brake
         self._torque = torque_on_crank(drive, drive.speed) if self.on else None
         self.circuit = None if drive.motor is None else drive.motor.dc
+        self.servo = None if drive.motor is None else drive.motor.servo
         self._gear = 1.0 if drive.motor is None else self.sense * drive.motor.ratio
+
+    def begins(self, angle: float, speed: float) -> None:
+        """Start at a crank angle, rad, and speed, rad/s, at time 0."""
+        self._start = angle
+        if self.servo is not None:
+            self._controller = Controller(self.servo, self._gear * speed)
 
     def torque(self, speed: Array) -> Array:
         """On the crank (...), N m, at its speed (...), rad/s, that lasts."""
         if self._torque is None or not self.on:
             return np.zeros_like(speed)
+        if self.servo is not None and not np.any(speed):
+            return np.full_like(speed, self._gear * self.servo.stall_torque)
         return self._torque(speed, np.zeros(()))
 
     def holding(self) -> float:
         """Torque of the brake, N m, that holds a crank at rest, and slows one that turns."""
         return 0.0 if self.on else self.brake
+
+    # -- with its controller -----------------------------------------------------------------------
+
+    @property
+    def remembers(self) -> bool:
+        """Whether its torque depends on time or angle besides speed: see `torque_at`."""
+        return self.on and self.servo is not None and self.servo.remembers
+
+    def torque_at(self, speed: Array, angle: Array, time: Array) -> Array:
+        """On the crank (...), N m, at its speeds (...), rad/s, angles (...), rad, and times, s."""
+        if not self.remembers:
+            return self.torque(speed)
+        turned = self._gear * (angle - self._start)
+        own = self._controller.torque(self._gear * speed, turned, time)
+        return np.asarray(self._gear * own)
+
+    @property
+    def ramp_end(self) -> float:
+        """Time, s, at which the controller's reference speed stops to change; 0 without a ramp."""
+        return self._controller.ramp_end if self.remembers else 0.0
 
     # -- with its current --------------------------------------------------------------------------
 
@@ -84,10 +115,13 @@ class Driver:
         right = begin + paths @ (push / (of.inductance * speed))
         return np.asarray(np.linalg.solve(np.eye(len(speed)) + slower, right))
 
-    def until(self, torque: float) -> tuple[float, Array]:
-        """Time, s, after which its torque at standstill is so large, N m; and current, A, work of
-        the supply and heat, J, by then (3,).
+    def until(self, torque: float, angle: float, time: float) -> tuple[float, Array]:
+        """Time, s, at which its torque at standstill is so large, N m, from a time on, at a crank
+        angle, rad; and current, A, work of the supply and heat, J, by then (3,).
         """
+        if self.servo is not None:
+            own, turned = torque / abs(self._gear), self._gear * (angle - self._start)
+            return self._controller.time_until(own, turned, time), np.zeros(3)
         of = self.circuit
         assert of is not None
         most = of.voltage / of.resistance

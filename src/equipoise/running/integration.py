@@ -168,6 +168,8 @@ class Integration:
         assert now is not None
         if self.driver.on and self.driver.circuit is not None and not self.driver.lags:
             now.electric[0] = self.driver.current(np.asarray(speed))
+        self.driver.begins(angle, speed)
+        self.corner = self.driver.ramp_end or inf
         self._record(now)
         self.direction = copysign(1.0, speed)
         if speed == 0.0 and not self._sets_off(now):
@@ -221,17 +223,20 @@ class Integration:
         self.track.append(np.array(rows))
 
     def _switched_on(self, now: Instant) -> Instant:
-        """The instant itself, or, where a current has to grow first, when the crank leaves its
-        rest.
+        """The instant itself, or, where a current has to grow first, or a reference to run ahead,
+        when the crank leaves its rest.
         """
         driver = self.driver
-        if not driver.lags or now.speed or self.direction != driver.sense:
+        delayed = driver.lags or driver.remembers
+        if not delayed or now.speed or self.direction != driver.sense:
             return now
         acting, holding = self.equation.at_rest(now.angle)
         needed = holding[driver.sense] - driver.sense * acting
         if needed <= 0:
             return now
-        time, electric = driver.until(needed * (1 + AT_REST))
+        time, electric = driver.until(needed * (1 + AT_REST), now.angle, now.time)
+        if time <= now.time:
+            return now
         later = replace(now, time=time, electric=electric)
         self._record(later)
         return later
@@ -318,7 +323,7 @@ class Integration:
                 return None
             speed = self.direction * np.sqrt(2 * energy / inertia)
             current = self._current(speed, paths, begin)
-            torques = self._torques(values, speed, current)
+            torques = self._torques(values, speed, self._driving(speed, current, paths, begin))
             missed = began + paths @ np.sum(torques, axis=0) - energy
             most = float(np.max(np.abs(missed)))
             if most <= CLOSE * np.max(energy):
@@ -378,28 +383,39 @@ class Integration:
             return self.driver.currents(speed, paths, float(begin.electric[0]))
         return self.driver.current(speed)
 
+    def _driving(self, speed: Array, current: Array, paths: Array, begin: Instant) -> Array:
+        """Torque of the drive (N,), N m, at the nodes of a piece that is passed at these speeds
+        (N,), with these currents (N,), A.
+        """
+        if self.driver.lags:
+            return self.driver.torque_of(current)
+        if not self.driver.remembers:
+            return self.driver.torque(speed)
+        angle = begin.angle + paths @ np.ones(len(speed))
+        return self.driver.torque_at(speed, angle, begin.time + paths @ (1 / speed))
+
     def _slopes(
         self, values: Array, speed: Array, torques: Array, piece: tuple[Array, Instant]
     ) -> Array:
         """Of the sum of torques (N, N) at the nodes by the logarithm of the energy at each: only
-        the same one, but for a motor whose current knows what was before.
+        the same one, but for a motor whose torque depends on what was before.
         """
-        if not self.driver.lags:
-            nudged = self._torques(values, speed * (1 + NUDGE), self.driver.current(speed))
-            return np.diag(np.sum(nudged - torques, axis=0) / (2 * NUDGE))
-        columns = []
-        for own in np.eye(len(speed)):
-            faster = speed * (1 + NUDGE * own)
-            nudged = self._torques(values, faster, self._current(faster, *piece))
-            columns.append(np.sum(nudged - torques, axis=0) / (2 * NUDGE))
-        return np.stack(columns, axis=1)
 
-    def _torques(self, columns: Array, speed: Array, current: Array) -> Array:
+        def nudged(faster: Array) -> Array:
+            current = self._current(faster, *piece)
+            driving = self._driving(faster, current, *piece)
+            changed = self._torques(values, faster, driving) - torques
+            return np.asarray(np.sum(changed, axis=0) / (2 * NUDGE))
+
+        if not (self.driver.lags or self.driver.remembers):
+            return np.diag(nudged(speed * (1 + NUDGE)))
+        return np.stack([nudged(speed * (1 + NUDGE * own)) for own in np.eye(len(speed))], axis=1)
+
+    def _torques(self, columns: Array, speed: Array, driving: Array) -> Array:
         """Of each source, of the brake where there is one, and of the drive, (K + 1, ...) or
-        (K + 2, ...); current : of the motor (...), A, by which it drives where it lags.
+        (K + 2, ...); driving : of the drive (...), N m.
         """
-        lags, braking = self.driver.lags, self._braking()
-        driving = self.driver.torque_of(current) if lags else self.driver.torque(speed)
+        braking = self._braking()
         sources = self.equation.torques(columns, speed, driving + sum(braking), self.direction)
         if braking:
             sources = np.concatenate([sources, np.full((1, *np.shape(speed)), braking[0])])
@@ -442,6 +458,7 @@ class Integration:
 
     def _times(self) -> Iterator[tuple[str, float]]:
         yield "time", self.limits.time
+        yield "corner", self.corner if self.driver.on else inf
         yield "off", self._off(self.limits.off_time)
 
     def _off(self, limit: float) -> float:
@@ -490,10 +507,12 @@ class Integration:
         found = self._instant(end)
         return self._happens(kind, replace(found, angle=edge) if kind == "edge" else found)
 
-    def _rates(self, _: float, state: Array) -> list[float]:
+    def _rates(self, time: float, state: Array) -> list[float]:
         angle, speed, driver = float(state[0]), float(state[1]), self.driver
         electric: list[float] = [0.0] * ELECTRIC
-        if driver.circuit is None:
+        if driver.remembers:
+            driving = float(driver.torque_at(state[1], state[0], np.asarray(time)))
+        elif driver.circuit is None:
             driving = float(driver.torque(np.asarray(speed)))
         else:
             current = state[2] if driver.lags else driver.current(state[1])
@@ -515,6 +534,9 @@ class Integration:
             return self._passes(now)
         if kind == "halt":
             return self._halts(now)
+        if kind == "corner":  # where a reference speed stops to change, and nothing happens
+            self.corner = inf
+            return now
         if kind == "rest":
             if abs(now.speed) > SLOW * self.usual:
                 return now
@@ -548,6 +570,8 @@ class Integration:
     def _halts(self, now: Instant) -> Instant | None:
         """At speed 0: turn back, or stay."""
         now = replace(now, speed=0.0)
+        if self.driver.remembers:
+            return self._waits(now)
         if self.driver.on and self.direction == self.driver.sense:
             self._note("stall", now)
             return None
@@ -555,6 +579,23 @@ class Integration:
             return None
         self._note("reversal", now)
         return now if len(self.events) < MOST_REVERSALS else None
+
+    def _waits(self, now: Instant) -> Instant | None:
+        """At speed 0, with a motor whose torque changes with time: turn back where it is too weak
+        yet to hold the crank, stay until it is strong enough, or for good.
+        """
+        before = self.direction
+        if not self._sets_off(now):
+            return None
+        acting, holding = self.equation.at_rest(now.angle)
+        driving = self.driver.torque_at(np.zeros(()), np.asarray(now.angle), np.asarray(now.time))
+        net = acting + float(driving)
+        if abs(net) > holding[copysign(1.0, net)]:
+            self.direction = copysign(1.0, net)
+            if self.direction != before:
+                self._note("reversal", now)
+            return now if len(self.events) < MOST_REVERSALS else None
+        return self._switched_on(now)
 
     def _note(self, kind: str, now: Instant) -> None:
         self.events.append(Event(kind, now.time, now.angle, now.speed))

@@ -322,7 +322,9 @@ def _result(equation: CrankEquation, found: Integration, flywheel: Flywheel | No
     electric, work = np.array(work[:ELECTRIC]), work[ELECTRIC:]
     switched = next((event.time for event in found.events if event.kind == "off"), inf)
     driver = Driver(machine)
-    driving = driver.torque_of(electric[0]) if driver.lags else driver.torque(crank_speed)
+    driver.begins(float(crank_angle[0]), float(crank_speed[0]))
+    driving = driver.torque_at(crank_speed, crank_angle, time)
+    driving = driver.torque_of(electric[0]) if driver.lags else driving
     torque = np.where(time <= switched, driving, 0.0)
     brake = [BRAKE] if driver.brake else []
     names = [*(source.key for source in equation.sources), *brake, DRIVE]

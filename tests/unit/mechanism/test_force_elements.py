@@ -17,7 +17,9 @@ FOUR = crank_rocker()
 LINE = Motor(300.0, 2.0)
 TABLE = MotorTable((0.0, 300.0), (2.0, 0.0))
 CURVE = Motor(table=TABLE)
-EITHER = "give either no_load_speed and stall_torque, or torque, or table, or dc, or induction"
+EITHER = (
+    "give either no_load_speed and stall_torque, or torque, or table, or dc, or induction, or servo"
+)
 
 
 def wrong(where: str, words: str, motor: Motor) -> None:

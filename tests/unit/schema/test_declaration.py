@@ -44,6 +44,7 @@ from equipoise.mechanism.parts.machine import Frame, Machine, Position
 from equipoise.mechanism.parts.racks import Rack
 from equipoise.mechanism.parts.rolling_bearings import RollingBearing
 from equipoise.mechanism.parts.sections import LinkSection
+from equipoise.mechanism.parts.servo_motors import ServoMotor
 from equipoise.mechanism.parts.springs import Spring
 from equipoise.mechanism.parts.torsion_springs import TorsionSpring
 from equipoise.schema import finding, models, schemas
@@ -66,7 +67,7 @@ DOCUMENTED: dict[str, type[Frozen]] = {
     for of in (
         Machine, shown_units.ShownUnits, drives.Drive, drives.FurtherDrive, laws.AngleLaw,
         laws.AngleSegment, laws.LengthLaw, laws.LengthSegment, force_elements.Motor, DcMotor,
-        InductionMotor, Frame,
+        InductionMotor, ServoMotor, Frame,
         links.Link, LinkSection,
         bodies.Body, bodies.Hole, sliders.Bearing, sliders.Slider, gears.Gear,
         joint_properties.JointProperties, RollingBearing,

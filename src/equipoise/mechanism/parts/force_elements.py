@@ -35,8 +35,11 @@ from equipoise.mechanism.checks import (
 )
 from equipoise.mechanism.parts.dc_motors import DcMotor
 from equipoise.mechanism.parts.induction_motors import InductionMotor
+from equipoise.mechanism.parts.servo_motors import ServoMotor
 
-MOTOR_KINDS = (("no_load_speed", "stall_torque"), ("table",), ("torque",), ("dc",), ("induction",))
+MOTOR_KINDS = (
+    ("no_load_speed", "stall_torque"), ("table",), ("torque",), ("dc",), ("induction",), ("servo",),
+)  # fmt: skip
 """Keys of a motor of which it has those of one kind."""
 MEAN_SPEEDS = ("held", "free")
 OUTSIDE = ("zero", "hold", "wrap")
@@ -199,8 +202,8 @@ class Motor(Frozen):
     """
 
     called = to_say("{what} of the motor")
-    file_order = ("no_load_speed", "stall_torque", "torque", "table", "dc", "induction", "ratio",
-                  "inertia", "mean_speed")  # fmt: skip
+    file_order = ("no_load_speed", "stall_torque", "torque", "table", "dc", "induction", "servo",
+                  "ratio", "inertia", "mean_speed")  # fmt: skip
     conditions: ClassVar[Conditions] = {
         "oneOf": [
             needs(*kind)
@@ -251,6 +254,9 @@ class Motor(Frozen):
     induction: InductionMotor | None = key(
         Table(InductionMotor, headed=True), "an induction motor, instead of a curve", default=None
     )
+    servo: ServoMotor | None = key(
+        Table(ServoMotor, headed=True), "a servo motor, instead of a curve", default=None
+    )
 
     @property
     def rows(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
@@ -261,6 +267,8 @@ class Motor(Frozen):
             return self.table.speed, self.table.torque
         if self.torque is not None:
             return (0.0, 1.0), (self.torque, self.torque)
+        if self.servo is not None:
+            return self.servo.rows
         line = self.dc or self
         assert line.no_load_speed is not None and line.stall_torque is not None
         return (0.0, line.no_load_speed), (line.stall_torque, 0.0)
@@ -382,12 +390,11 @@ def wrong_motor(where: str, motor: Motor) -> Iterator[ModelError]:
     """Everything that is wrong with a motor."""
     line, table = (motor.no_load_speed, motor.stall_torque), motor.table
     where_table = f"{where}.table"
-    given = [line.count(None) < 2, table is not None, motor.torque is not None]
-    given += [motor.dc is not None, motor.induction is not None]
+    given = [any(getattr(motor, name) is not None for name in kind) for kind in MOTOR_KINDS]
     if sum(given) != 1 or line.count(None) == 1:
         told = Note(
             "give either {no_load_speed} and {stall_torque}, or torque, or table, or dc, or "
-            "induction",
+            "induction, or servo",
             **key_names("no_load_speed", "stall_torque"),
         )
         yield ModelError(where, told)
