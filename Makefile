@@ -118,6 +118,7 @@ bench: $(VENV)/.installed-test
 	$(BIN)/python benchmarks/balancing.py
 	$(BIN)/python benchmarks/tools.py
 	$(BIN)/python benchmarks/studies.py
+	$(BIN)/python benchmarks/sharing.py
 	$(BIN)/python benchmarks/startup.py
 	$(BIN)/python benchmarks/report.py
 	$(BIN)/python benchmarks/live_page.py
