@@ -382,3 +382,10 @@ def test_a_load_of_two_turns_makes_a_cycle_of_two() -> None:
     three = replace(stroke, table=eq.mechanism.LoadTable((0.0, 6 * pi), ((1.0, 1.0),)))
     both = replace(once, loads=(*once.loads, three))
     assert eq.mechanism.assemble(both).cycle.turns == 6
+
+
+def test_a_slip_of_units_is_said_in_a_unit_that_can_be_read() -> None:
+    """46.73 m, where it was 4.673e+04 mm."""
+    (note,) = remarked(eq.load("yamashita-1").with_link("coupler", inertia=1500.0))
+    assert "a radius of gyration of 46.73 m, for a link of 234.9 mm" in note
+    assert "e+" not in note

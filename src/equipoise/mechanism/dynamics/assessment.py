@@ -17,6 +17,7 @@ from equipoise.mechanism.dynamics.undecided import undecided
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.kinematics.crossing import crossings
 from equipoise.mechanism.parts.machine import FRAME, Machine, size_of
+from equipoise.quantities import told
 
 BARS = (kernels.rrr, kernels.parallelogram)
 """Kernels of two links and three pins."""
@@ -253,8 +254,8 @@ def _odd_masses(machine: Machine) -> Iterator[Note]:
                 "links.{link}.inertia gives a radius of gyration of {gyration}, for a link of "
                 "{size}; check its unit",
                 link=name,
-                gyration=f"{gyration * 1e3:.4g} mm",
-                size=f"{size * 1e3:.4g} mm",
+                gyration=told(gyration, "length"),
+                size=told(size, "length"),
             )
         x, y = link.center_of_mass
         px, py = next(iter(link.points.values()))
@@ -268,21 +269,21 @@ def _odd_lengths(linkage: Linkage) -> Iterator[Note]:
     """Links that are joined at a pin, one of which is so much longer that its unit may be wrong."""
     machine = linkage.machine
     sizes = {name: size_of(link.points) for name, link in machine.links.items()}
-    told: set[frozenset[str]] = set()
+    pairs: set[frozenset[str]] = set()
     for bodies in bodies_at(machine.bodies).values():
         ends = sorted((b for b in bodies if sizes.get(b)), key=lambda body: sizes[body])
-        if len(ends) < 2 or frozenset(ends) in told:
+        if len(ends) < 2 or frozenset(ends) in pairs:
             continue
         short, long = ends[0], ends[-1]
-        told.add(frozenset(ends))
+        pairs.add(frozenset(ends))
         if sizes[long] > ODD_LENGTH * sizes[short]:
             yield Note(
                 "links.{long} is {far} long, and {short}, which it is joined to, {near}; check "
                 "their units",
                 long=long,
                 short=short,
-                far=f"{sizes[long] * 1e3:.4g} mm",
-                near=f"{sizes[short] * 1e3:.4g} mm",
+                far=told(sizes[long], "length"),
+                near=told(sizes[short], "length"),
             )
 
 
