@@ -15,6 +15,7 @@ from decimal import Decimal, InvalidOperation, localcontext
 from functools import cache
 from math import isfinite
 from types import MappingProxyType
+from unicodedata import normalize
 
 from equipoise.errors import UsageError, meant
 from equipoise.i18n import Note
@@ -293,6 +294,14 @@ def _tree(text: str) -> tuple[ast.expr, dict[str, Amount]]:
         raise SyntaxError(text)
     written = _quantities().sub(as_name, text.strip().removeprefix("="))
     return ast.parse(written.strip(), mode="eval").body, quantities
+
+
+def spelled(name: str) -> str:
+    """A name as Python's grammar has it, which takes all forms of a letter for the same.
+
+    Keyboards write the micro sign, which it reads as the Greek letter, and half-width kana.
+    """
+    return normalize("NFKC", name)
 
 
 def names_in(text: str) -> set[str]:

@@ -30,7 +30,7 @@ from equipoise.quantities import (
     typeset,
     with_measured,
 )
-from equipoise.quantities.expressions import names_in
+from equipoise.quantities.expressions import names_in, spelled
 from equipoise.quantities.units import KINDS, Dimension
 from equipoise.schema.entries import Document
 from equipoise.schema.writing import WorkedOut
@@ -245,7 +245,7 @@ def _parameters(machine: Machine) -> Iterator[Field]:
     amounts = amounts_of(machine.parameters)
     for name, given in machine.parameters.items():
         if not (isinstance(given, str) and names_in(given)):
-            path, amount = KeyPath((PARAMETERS, name)), amounts[name]
+            path, amount = KeyPath((PARAMETERS, name)), amounts[spelled(name)]
             put = partial(_with_parameter, path, amount.dimension)
             yield Field(str(path), PARAMETERS, name, amount.dimension, float(amount.number), put)
 

@@ -15,8 +15,9 @@ from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.outputs.declaring import declared
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.objectives import balanced_names
-from equipoise.mechanism.parts.parameters import SIGN
+from equipoise.mechanism.parts.parameters import SIGN, amounts_of
 from equipoise.quantities import clean, format_exact, parse_expression, pattern, told
+from equipoise.quantities.expressions import Names, names_in
 from equipoise.schema.entries import Document, entry_of, kind_at, own_keys, tables_below
 from equipoise.schema.writing import value_text
 from equipoise.web.completing import completed
@@ -45,16 +46,19 @@ def entered(design: Design, entry: Entry) -> Design:
         document = document.without(entry.place)
     else:
         kind = kind_at(document.of, entry.place)
-        values = {name: _worked_out(kind.type, name, one) for name, one in entry.values.items()}
+        names = amounts_of(design.own.parameters)
+        values = {
+            name: _worked_out(kind.type, name, one, names) for name, one in entry.values.items()
+        }
         document = document.put(entry.place, values, entry.name)
     own = completed(document, entry, design.own).machine(entry.files)
     return replace(design, own=own, counterweights=_that_fit(design, own))
 
 
-def _worked_out(of: type[Frozen], name: str, value: Any) -> Any:
+def _worked_out(of: type[Frozen], name: str, value: Any, names: Names) -> Any:
     """A value of a form, where it is a sum or product of quantities as the quantity that it is.
 
-    One that begins with the sign of expressions stays in the file as it is.
+    names : parameters.  An expression that has them, or the sign of expressions, stays as it is.
     """
     one = own_keys(of).get(name)
     if one is None or not isinstance(one.kind, Quantity) or not isinstance(value, str):
@@ -63,9 +67,11 @@ def _worked_out(of: type[Frozen], name: str, value: Any) -> Any:
         return value
     dimension = one.kind.dimension
     try:
-        worked_out = parse_expression(value.strip(), dimension)
+        worked_out = parse_expression(value.strip(), dimension, names)
     except UsageError:
         return value  # its reader tells what is wrong
+    if names_in(value):
+        return f"{SIGN}{value.strip()}"
     is_plain = re.fullmatch(pattern(dimension), value.strip())
     return value if is_plain else format_exact(clean(worked_out, dimension), dimension)
 

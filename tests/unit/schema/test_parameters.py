@@ -9,8 +9,11 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import ModelError
+from equipoise.keys.paths import KeyPath
 from equipoise.schema.models import text_of
 from equipoise.schema.template import Template
+from equipoise.web.design import Design
+from equipoise.web.fields import fields_of
 
 FOUR_BAR = """schema = 1
 title = "Four-bar with parameters"
@@ -133,6 +136,27 @@ friction = "=crank/(300 mm)"
     )
     assert machine.joints[0].friction == 0.1
     assert 'friction = "=crank/(300 mm)"' in text_of(machine, {})
+
+
+@pytest.mark.parametrize("name", ["\N{MICRO SIGN}", "\uff78\uff97\uff9d\uff78", "クランク", "ﬁn"])
+def test_names_that_keyboards_write_in_another_form_stand_for_themselves(name: str) -> None:
+    text = FOUR_BAR.replace('crank = "30', f'"{name}" = "30').replace(
+        'base = "=4*crank', f'base = "=4*{name}'
+    )
+    text = text.replace('"=crank', f'"={name}').replace("*crank", f"*{name}")
+    machine = eq.loads(text)
+    assert machine.frame["D"] == (0.12, 0.0)
+    assert text_of(machine, {}).count(f"={name}") == 2
+    larger = fields_of(Design("", machine))[str(KeyPath(("parameters", name)))]
+    assert larger.typed(Design("", machine), "40 mm").own.frame["D"] == (0.16, 0.0)
+
+
+def test_two_forms_of_one_name_are_refused() -> None:
+    text = FOUR_BAR.replace(
+        "[parameters]\n", '[parameters]\n"\N{MICRO SIGN}" = 1\n"\N{GREEK SMALL LETTER MU}" = 2\n'
+    )
+    with pytest.raises(ModelError, match="is given twice; give another name"):
+        eq.loads(text)
 
 
 @pytest.mark.parametrize(

@@ -109,7 +109,16 @@ def test_forms_keep_expressions_and_take_new_ones(session: Session, tmp_path: Pa
         enter(session, entry["place"], entry["values"])
     rod = group(tables(session), "links")["entries"][1]
     enter(session, rod["place"], {**rod["values"], "mass": "=3*weight"}, name="coupler")
+    rocker = group(tables(session), "links")["entries"][2]
+    enter(
+        session,
+        rocker["place"],
+        {**rocker["values"], "mass": "weight + 5 g", "inertia": "2*3 kg mm^2"},
+    )
     text = SUMS.replace("links.rod", "links.coupler").replace('"=weight"', '"=3*weight"')
+    text = text.replace('"=weight*1.5"', '"=weight + 5 g"').replace(
+        'mm"]\ninertia = "300 kg', 'mm"]\ninertia = "6 kg'
+    )
     assert saved(session, tmp_path) == text
 
 

@@ -14,7 +14,7 @@ from equipoise.errors import ModelError, UsageError
 from equipoise.i18n import Note
 from equipoise.keys.paths import KeyPath
 from equipoise.quantities import Amount, Dimension, parse_amount, parse_expression
-from equipoise.quantities.expressions import Names, names_in, parse_number
+from equipoise.quantities.expressions import Names, names_in, parse_number, spelled
 from equipoise.quantities.reading import described
 from equipoise.quantities.units import OF_UNIT
 
@@ -27,7 +27,7 @@ MOST = 1000
 
 
 def amounts_of(parameters: object) -> Names:
-    """What the names of parameters stand for.
+    """What the names of parameters stand for, by the name as an expression has it.
 
     Parameters
     ----------
@@ -43,7 +43,14 @@ def amounts_of(parameters: object) -> Names:
         what = Note("there are {count}; give at most {most}", count=len(parameters), most=MOST)
         raise ModelError(PARAMETERS, what)
     amounts: dict[str, Amount] = {}
-    waiting = {name: _named_by(name, value) for name, value in parameters.items()}
+    given: dict[str, object] = {}
+    waiting: dict[str, set[str]] = {}
+    for name, value in parameters.items():
+        needed, key = _named_by(name, value), spelled(name)
+        if key in given:
+            what = Note("{name!r} is given twice; give another name", name=name)
+            raise ModelError(_place(name), what)
+        given[key], waiting[key] = value, needed
     while waiting:
         ready = [name for name, of in waiting.items() if not of & waiting.keys()]
         if not ready:
@@ -55,7 +62,7 @@ def amounts_of(parameters: object) -> Names:
             raise ModelError(_place(circle[0]), what)
         for name in ready:
             try:
-                amounts[name] = parse_amount(str(parameters[name]), amounts)
+                amounts[name] = parse_amount(str(given[name]), amounts)
             except UsageError as error:
                 raise ModelError(_place(name), error.note) from error
             del waiting[name]
