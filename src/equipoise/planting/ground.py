@@ -174,7 +174,7 @@ class GroundPath:
     def _measured(self, ways: Array, areas: Array) -> list[Loop]:
         """Loops between ways (L, 2), of areas (L,)."""
         crossing = self.place(ways[:, 0])
-        extents = [self._extent(*ways.T, axis).tolist() for axis in ("imag", "real")]
+        extents = [self._extent(ways[:, 0], ways[:, 1], axis).tolist() for axis in ("imag", "real")]
         return [
             Loop(
                 first=self.crank_angle(first),

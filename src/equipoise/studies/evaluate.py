@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
+from gc import collect
 from math import isfinite, nan, remainder
 from typing import TYPE_CHECKING, Any, cast
 
@@ -49,6 +50,8 @@ STANDING = (NO_ASSEMBLY, NO_FULL_TURN, CHANGE_POINT)
 """Reasons for which a linkage does not turn, so that no further command is asked."""
 MOST_SAMPLES = 2**19
 """Crank angles in a whole cycle, of however many turns, that are still tried."""
+LARGE = 2**12
+"""Crank angles in a turn from which the memory of a coarser analysis is freed before the next."""
 FAINT = 1e-9
 """Share of the largest signal beside it below which a signal is rounding."""
 
@@ -267,6 +270,8 @@ def _figures_of(model: Machine | Tool, asked: Request, study: Study) -> tuple[li
     most = min(MOST_ANGLES, MOST_SAMPLES // values.get("turns", 1))
     while 2 * number <= most:
         number *= 2
+        if number >= LARGE:
+            collect()  # analyses refer to themselves, and their arrays would pile up
         values = analyzed(machine, number, asked.wanted)
         before, found = found, [read(values, steps) for steps in asked.steps]
         calm = calm + 1 if _still(values, asked.steps, before, found, tolerance) else 0

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import gc
 import json
 import re
+import weakref
 from dataclasses import replace
 from typing import Any
 
@@ -16,6 +18,7 @@ from equipoise.design.spreads import Range
 from equipoise.design.variables import Variable
 from equipoise.errors import ModelError, UsageError
 from equipoise.quantities import SI
+from equipoise.results import analysis as analysis_module
 from equipoise.results.analysis import ABOUT, BESIDE_OUTPUTS, BY_ORDER, FOUR_BAR, order_values
 from equipoise.results.outputs import unit_of
 from equipoise.schema.template import Template
@@ -299,6 +302,28 @@ def test_the_tolerance_decides_how_many_crank_angles() -> None:
         errors.append(abs(computed(given).figures[0, 0] - exact.peak) / exact.rms)
         assert errors[-1] < tolerance
     assert errors[0] > 3 * errors[1]
+
+
+def test_a_coarser_analysis_is_gone_before_the_next_finer_one(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Analyses refer to themselves, so that all of them would lie in memory at once."""
+    analyses: list[weakref.ref[eq.Analysis]] = []
+    of = analysis_module.analyze
+
+    def noted(machine: eq.Machine, angles: int) -> eq.Analysis:
+        if angles > 8000:
+            assert all(one() is None for one in analyses)
+        analyses.append(weakref.ref(found := of(machine, angles)))
+        return found
+
+    monkeypatch.setattr(analysis_module, "analyze", noted)
+    gc.disable()
+    try:
+        computed(study("yamashita-1", "links.rocker.mass", "drive_torque.peak", tolerance=1e-12))
+    finally:
+        gc.enable()
+    assert len(analyses) > 6
 
 
 def test_a_fixed_number_of_crank_angles() -> None:

@@ -80,7 +80,7 @@ def _figures(loads: SectionLoads, angles: Array, period: float) -> LinkStress:
     stress = float(abs(stresses[side, k, n]))
     pressed = max(-float(np.min(loads.axial)), 0.0)
     buckles = section.buckling_load(loads.length)
-    cycles, fatigue_safety = _fatigue(loads)
+    cycles, fatigue_safety = _fatigue(loads, stresses)
     return LinkStress(
         FIBRES[int(side)],
         stress,
@@ -100,7 +100,7 @@ def _figures(loads: SectionLoads, angles: Array, period: float) -> LinkStress:
     )
 
 
-def _fatigue(loads: SectionLoads) -> tuple[float | None, float | None]:
+def _fatigue(loads: SectionLoads, stresses: Array) -> tuple[float | None, float | None]:
     """Cycles of the machine to failure at the worst place, None where it is endless; and safety
     of the fatigue limit.
     """
@@ -109,7 +109,7 @@ def _fatigue(loads: SectionLoads) -> tuple[float | None, float | None]:
         return None, None
     line = WoehlerLine(section.fatigue_limit, section.knee_cycles, section.slope)
     worst, largest = 0.0, 0.0
-    for fibre in loads.stresses:
+    for fibre in stresses:
         for stress in fibre[loads.fixed]:
             counted = rainflow(stress, repeats=True)
             worst = max(worst, damage(counted, line, section.tensile_strength))

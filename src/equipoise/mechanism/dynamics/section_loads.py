@@ -11,7 +11,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cached_property
 from itertools import chain
 from typing import Any
 
@@ -81,7 +80,7 @@ class SectionLoads:
     bending: Array
     fixed: Array
 
-    @cached_property
+    @property
     def stresses(self) -> Array:
         """Normal stress (2, K, N) in the left and the right outermost fibre, Pa."""
         of = self.section
@@ -92,7 +91,11 @@ class SectionLoads:
     @property
     def stress(self) -> Array:
         """Largest size of the normal stress anywhere along the link (N,), Pa."""
-        return np.asarray(np.max(np.abs(self.stresses), axis=(0, 1)))
+        of, largest = self.section, np.zeros(self.axial.shape[1])
+        for axial, bending in zip(self.axial, self.bending, strict=True):  # few at once: memory
+            bent = np.abs(bending) * of.outermost / of.second_moment
+            largest = np.maximum(largest, np.abs(axial) / of.area + bent)
+        return np.asarray(of.stress_concentration * largest)
 
     @property
     def bending_moment(self) -> Array:
@@ -133,14 +136,15 @@ def section_loads(motion: Motion, solved: Pass, link: str) -> SectionLoads:
         own = lump * (still + growing * end)
         ends.append((np.full(len(turn), end), own, cross(1j * mass.aside, own)))
     grid = np.linspace(0.0, length, CUTS)
-    cuts = [(np.full(len(turn), s), False) for s in grid]
+    cuts: list[tuple[Any, bool]] = [(s, False) for s in grid]
     cuts += [(s, behind) for s in at for behind in (False, True)]
-    cuts.append((np.full(len(turn), length), True))
-    loads = [_cut(s, behind, ends, (still, growing), mass, length) for s, behind in cuts]
-    axial, shear, bending = np.moveaxis(np.array(loads), 1, 0)
-    places = np.array([s for s, _ in cuts])
+    cuts.append((length, True))
+    places, loads = np.empty((len(cuts), len(turn))), np.empty((3, len(cuts), len(turn)))
+    for k, (s, behind) in enumerate(cuts):
+        places[k] = s
+        loads[:, k] = _cut(s, behind, ends, (still, growing), mass, length)
     fixed = np.array([True] * CUTS + [bool(np.ptp(s) == 0) for s, _ in cuts[CUTS:]])
-    return SectionLoads(body.section, length, mass, places, axial, shear, bending, fixed)
+    return SectionLoads(body.section, length, mass, places, loads[0], loads[1], loads[2], fixed)
 
 
 def _field(
@@ -163,14 +167,17 @@ def _field(
 
 
 def _cut(
-    s: Array,
+    s: Any,
     behind: bool,
     ends: list[tuple[Array, Array, Array]],
     field: tuple[Array, Array],
     mass: MassAlongLine,
     length: float,
 ) -> tuple[Array, Array, Array]:
-    """Axial force, shear force and moment (N,) at places (N,), before or behind what acts there."""
+    """Axial force, shear force and moment (N,), before or behind what acts at a place.
+
+    s : the place along the line, m, the same at all crank angles or (N,).
+    """
     (q, k), density = field, mass.rod / length
     force = density * (q * s + k * s**2 / 2)
     moment = -density * (q.imag * s**2 / 2 + k.imag * s**3 / 6) - mass.aside * force.real
