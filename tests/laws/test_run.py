@@ -82,6 +82,35 @@ def test_a_stiff_start_is_followed_by_angle(monkeypatch: pytest.MonkeyPatch) -> 
     assert found.crank_speed[-1] == pytest.approx(speed_by_scipy(machine, found), rel=1e-8)
 
 
+def test_near_a_steady_state_a_piece_takes_few_rounds(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each is begun with what the cycle before has gained there, so that 30 turns take 0.3 s; the
+    motion is that of a run without that knowledge.
+    """
+    counts = {"_torques": 0, "_by_angle": 0}
+
+    def counted(name: str) -> Any:
+        original = getattr(Integration, name)
+
+        def call(self: Integration, *values: Any) -> Any:
+            counts[name] += 1
+            if forgets:
+                self.cycle_before.clear()
+            return original(self, *values)
+
+        return call
+
+    for name in counts:
+        monkeypatch.setattr(Integration, name, counted(name))
+    machine = eq.load("transplanter").with_drive(motor=Motor(270 * pi / 30, 20.0))
+    forgets = False
+    found = eq.run(machine, turns=10)
+    assert counts["_torques"] < 3 * counts["_by_angle"]
+    forgets = True
+    anew = eq.run(machine, turns=10)
+    assert found.end.time == pytest.approx(anew.end.time, rel=1e-12)
+    assert found.end.speed == pytest.approx(anew.end.speed, rel=1e-11)
+
+
 def speed_by_scipy(machine: eq.Machine, found: Run) -> float:
     """Crank speed at the end of a run, rad/s, integrated in time from its second cycle on."""
     equation, driver = CrankEquation(machine), Driver(machine)

@@ -118,14 +118,20 @@ class Instant:
     electric: Array = field(default_factory=lambda: np.zeros(ELECTRIC))
 
 
+Gained = tuple[Array, Array | None]
+"""Kinetic energies (N,), J, gained up to the nodes of a part, and the inverse (N, N) of Newton's
+method there."""
+
+
 @dataclass(frozen=True, eq=False)
 class Part:
     """A piece of the table, or a part of it.
 
-    ends : crank angles, rad.  values : (C, NODES) at its nodes.
-    coefficients : (NODES,) of the reduced inertia.
+    place : what is the same in every cycle.  ends : crank angles, rad.
+    values : (C, NODES) at its nodes.  coefficients : (NODES,) of the reduced inertia.
     """
 
+    place: tuple[float, ...]
     ends: tuple[float, float]
     values: Array
     coefficients: Array
@@ -141,6 +147,8 @@ class Integration:
     track : rows of time, angle, speed, current, its two works, and works, at the nodes of the
         solution.
     begins : instants at which a cycle begins.
+    cycle_before : of each part, by its place, what was gained when it was passed last: near a
+        steady state Newton's method takes a round or two from there.
     """
 
     def __init__(self, equation: CrankEquation, driver: Driver, limits: Limits) -> None:
@@ -151,6 +159,7 @@ class Integration:
         self.begins: list[Instant] = []
         self.direction = 1.0
         self.halvings = 0
+        self.cycle_before: dict[tuple[float, ...], Gained] = {}
 
     def follow(self, angle: float, speed: float) -> None:
         """Run from a crank angle, rad, and speed, rad/s, until something ends it."""
@@ -293,12 +302,15 @@ class Integration:
         """
         near, far = ends[:: int(self.direction)]
         if not self.halvings and begin.angle == near:
-            return Part(ends, self.table.values[:, k], self.table.coefficients[k][0])
+            return Part(
+                (k, self.direction), ends, self.table.values[:, k], self.table.coefficients[k][0]
+            )
         far = begin.angle + (far - begin.angle) * 0.5**self.halvings
         low, high = min(begin.angle, far), max(begin.angle, far)
         half = (ends[1] - ends[0]) / 2
         places = (low - ends[0]) / half - 1, (high - ends[0]) / half - 1
-        return Part((low, high), *self.table.within(k, *places))
+        place = (k, self.direction, *(round(one, 9) for one in places))
+        return Part(place, (low, high), *self.table.within(k, *places))
 
     def _slows(self, now: Instant) -> bool:
         """Whether the speed of the crank falls."""
@@ -311,30 +323,19 @@ class Integration:
         """The motion in a piece by places from -1 to 1 in it: an instant, and rows of the track;
         None where the crank is so slow that the angle is no clock.
         """
-        values, ends = part.values, part.ends
-        inertia, half = values[0], (ends[1] - ends[0]) / 2
+        ends = part.ends
+        half = (ends[1] - ends[0]) / 2
         start = min(max((begin.angle - ends[0]) / half - 1, -1.0), 1.0)
         paths = half * (PATHS[start] if start in PATHS else integral_to(POINTS, start))
         began = float(part.inertia_at(start)) * begin.speed**2 / 2
-        energy = np.full(len(POINTS), began)
-        inverse, before = None, inf
-        for _ in range(MOST_ITERATIONS):
-            if not np.all(energy > 0):
-                return None
-            speed = self.direction * np.sqrt(2 * energy / inertia)
-            current = self._current(speed, paths, begin)
-            torques = self._torques(values, speed, self._driving(speed, current, paths, begin))
-            missed = began + paths @ np.sum(torques, axis=0) - energy
-            most = float(np.max(np.abs(missed)))
-            if most <= CLOSE * np.max(energy):
-                break
-            if inverse is None or most > QUICK * before:
-                slopes = self._slopes(values, speed, torques, (paths, begin)) / energy
-                inverse = np.linalg.inv(np.eye(len(POINTS)) - paths @ slopes)
-            before = most
-            energy = energy + inverse @ missed
-        else:
+        before = self.cycle_before.get(part.place)
+        solution = before and self._iterated((begin, began), part, paths, before)
+        if solution is None:
+            anew = np.zeros(len(POINTS)), None
+            solution = self._iterated((begin, began), part, paths, anew)
+        if solution is None:
             return None
+        self.cycle_before[part.place], speed, current, torques = solution
         pace = 1 / speed
         resolved = RESOLVED if self.equation.friction is None else WITH_CORNERS
         for smooth in (pace, current) if self.driver.lags else (pace,):
@@ -342,6 +343,37 @@ class Integration:
                 return None
         rates = np.array([pace, *pace * self.driver.electric_rates(current, speed), *torques])
         return self._dense(begin, part, (start, began, rates))
+
+    def _iterated(
+        self, start: tuple[Instant, float], part: Part, paths: Array, guess: Gained
+    ) -> tuple[Gained, Array, Array, Array] | None:
+        """Newton's method for the kinetic energies at the nodes of a piece: what it has gained up
+        to them, speeds (N,), currents (N,) and torques (K, N) there; None where it has no solution.
+
+        start : instant, and kinetic energy then, J.
+        paths : (N, N), integrals by crank angle up to each node.
+        guess : energies gained, and an inverse of Newton's method where one is known.
+        """
+        begin, began = start
+        energy, inverse = began + guess[0], guess[1]
+        before = inf
+        for _ in range(MOST_ITERATIONS):
+            if not np.all(energy > 0):
+                return None
+            speed = self.direction * np.sqrt(2 * energy / part.values[0])
+            current = self._current(speed, paths, begin)
+            driving = self._driving(speed, current, paths, begin)
+            torques = self._torques(part.values, speed, driving)
+            missed = began + paths @ np.sum(torques, axis=0) - energy
+            most = float(np.max(np.abs(missed)))
+            if most <= CLOSE * np.max(energy):
+                return (energy - began, inverse), speed, current, torques
+            if inverse is None or most > QUICK * before:
+                slopes = self._slopes(part.values, speed, torques, (paths, begin)) / energy
+                inverse = np.linalg.inv(np.eye(len(POINTS)) - paths @ slopes)
+            before = most
+            energy = energy + inverse @ missed
+        return None
 
     def _dense(
         self, begin: Instant, part: Part, found: tuple[float, float, Array]
