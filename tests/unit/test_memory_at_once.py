@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import tracemalloc
 from collections.abc import Callable
 from pathlib import Path
@@ -10,18 +11,28 @@ from typing import Any
 import numpy as np
 import pytest
 
+import equipoise as eq
 from equipoise.balancing import box_bounds, multi_row
 from equipoise.balancing.box_bounds import largest_reading
 from equipoise.balancing.multi_row import Cost, RowSignals, Term
 from equipoise.balancing.phase_grid import Grid
 from equipoise.cli import run
 from equipoise.cli.worker import Call, reply_to
+from equipoise.design.spreads import Range
+from equipoise.design.variables import Variable
 from equipoise.limits import memory_limit, out_of_memory
 from equipoise.mechanism.assembly.shared import least
 from equipoise.mechanism.parts.balance import Measure, Objective
+from equipoise.schema.template import Template
 from equipoise.signals import Array, Periodic
+from equipoise.studies.commands import analyzed
+from equipoise.studies.design_space import Output, Sampling
+from equipoise.studies.evaluate import OneByOne
+from equipoise.studies.study import Study
+from surface.running import example_text
 
 TURNS, ORDERS = 200, 6000
+MANY_ANGLES = 70_000
 
 
 def amplitudes(*shape: int) -> Array:
@@ -84,6 +95,31 @@ def test_what_is_computed_in_parts_is_that_of_the_whole(
     assert some.values(phases) == pytest.approx(values, rel=1e-12)
     for part, whole in zip(largest_reading(some, total), readings, strict=True):
         assert part == pytest.approx(whole, rel=1e-12)
+
+
+@pytest.mark.parametrize("figure", ["drive_torque.peak", "links.rod.stress.peak"])
+def test_a_design_with_a_section_holds_what_is_asked_for(figure: str) -> None:
+    """Loads in every cut of the rod at every crank angle were held, and every other output."""
+    text = example_text("slider-crank-engine")
+    model = Template(f"{text}\n[links.rod.section]\nheight = '22 mm'\nwidth = '10 mm'\n")
+    mass = Variable("links.rod.mass", Range(0.3, 0.4))
+    drawn = Sampling("sobol", 16)
+    design = OneByOne(Study("Study", model, (mass,), (Output(figure),), drawn, angles=40_000))
+    assert peak_of(lambda: design(np.array([[0.35]]))) < 200
+
+
+def test_an_analysis_of_many_crank_angles_is_given_back_at_once() -> None:
+    machine = eq.load("slider-crank-engine")
+    _ = analyzed(machine, 8, {"summary"})
+    gc.collect()
+    gc.disable()
+    tracemalloc.start()
+    try:
+        _ = analyzed(machine, MANY_ANGLES, {"summary"})["summary"]
+        assert tracemalloc.get_traced_memory()[0] / 2**20 < 10
+    finally:
+        tracemalloc.stop()
+        gc.enable()
 
 
 def test_joint_forces_that_statics_leaves_open_at_many_crank_angles() -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -35,7 +35,7 @@ from equipoise.quantities import Dimension, column_heading
 from equipoise.results.declaring import OWN, Declarations, ResultOutput, values_of
 from equipoise.results.lost_contacts import lost_contacts
 from equipoise.results.named_figures import figures_by_name
-from equipoise.results.outputs import Outputs
+from equipoise.results.outputs import Output, Outputs
 from equipoise.results.result import Result
 from equipoise.signals import Array, Figures, Periodic
 
@@ -49,6 +49,8 @@ SPLIT = 1000
 """Bytes that forces by cause and link, and their text, take at a crank angle for the square of the
 number of links: as measured of four.
 """
+AT_ONCE = 2**21
+"""Values of outputs of which figures are taken at once."""
 LATERAL = ("roll_moment", "yaw_moment")
 """Moments about x and y, from linkages side by side."""
 ANGLES = 360
@@ -160,11 +162,17 @@ class Analysis(Result):
     @cached_property
     def summary(self) -> Mapping[str, Figures]:
         """Mean, RMS, peak and extremes of outputs, by name."""
-        ones = self.outputs.summed
-        if not ones:
-            return Named("output", ())
-        found = self.resolved.motion.figures_of_each(np.array([one.resolved for one in ones]))
-        return Named("output", zip((one.name for one in ones), found, strict=True))
+        return self._figures(self.outputs.summed)
+
+    def _figures(self, ones: Sequence[Output]) -> Mapping[str, Figures]:
+        """Those of some outputs, by name; of so many at once as leave memory to others."""
+        motion, found = self.resolved.motion, Named[Figures]("output", ())
+        some = max(1, AT_ONCE // len(motion.crank_angle))
+        for begin in range(0, len(ones), some):
+            part = ones[begin : begin + some]
+            told = motion.figures_of_each(np.array([one.resolved for one in part]))
+            found.update(zip((one.name for one in part), told, strict=True))
+        return found
 
     @cached_property
     def together(self) -> Mapping[str, Array]:
@@ -248,7 +256,11 @@ class Analysis(Result):
         return Named("output", ((one.name, one.periodic) for one in self.outputs.ordered))
 
     def to_dict(
-        self, split: bool = False, outputs: Iterable[str] = (), strokes: bool = True
+        self,
+        split: bool = False,
+        outputs: Iterable[str] = (),
+        strokes: bool = True,
+        wanted: Collection[str] | None = None,
     ) -> Values:
         """The machine-readable output, in SI units: dicts, numbers and arrays (N,).
 
@@ -257,6 +269,7 @@ class Analysis(Result):
             that are infinite somewhere.
         strokes : whether to tell figures of sliders, rockers and cams, and notes: some
             milliseconds.
+        wanted : names of the outputs that stand in arrays and summary; None for all.
         """
         result: Values = {
             **self._heading,
@@ -278,7 +291,8 @@ class Analysis(Result):
             if not self.machine.has_crank and self.motion.whole_cycle:
                 works = self.resolved.forces.work
                 result["drives"] = {link: {"work": work} for link, work in works.items()}
-        for one in self.outputs.arrays:
+        arrays = self.outputs.arrays
+        for one in (one for one in arrays if wanted is None or one.name in wanted):
             *keys, last = one.path
             values = result
             for key in keys:
@@ -293,13 +307,21 @@ class Analysis(Result):
             for table, name, figures in figures_by_name(self):
                 result.setdefault(table, {}).setdefault(name, {}).update(figures.to_dict())
             result["notes"] = list(map(str, self.notes))
+        return result | {"summary": self._summary_of(wanted)}
+
+    def _summary_of(self, wanted: Collection[str] | None) -> Values:
+        """The summary as plain data, of outputs of some names, or of all."""
+        if wanted is None:
+            found = self.summary
+        else:
+            found = self._figures([one for one in self.outputs.summed if one.name in wanted])
         summary: Values = {
             name: {**vars(figure), "peak_to_peak": figure.peak_to_peak}
-            for name, figure in self.summary.items()
+            for name, figure in found.items()
         }
         if self.four_bar is not None:
             summary["four_bar"] = values_of(self.four_bar, FOUR_BAR)
-        return result | {"summary": summary}
+        return summary
 
     @property
     def _heading(self) -> Values:

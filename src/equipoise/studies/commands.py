@@ -7,6 +7,7 @@ left out.
 
 from __future__ import annotations
 
+import gc
 import re
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -33,24 +34,48 @@ Wanted = Collection[str] | None
 MOST_ORDERS = 100
 """Of harmonics, as many as ``equipoise analyze --orders`` gives."""
 SPLIT = {"by_cause", "by_link"}
+BY_NAME = {"summary", "by_order", "outputs"}
+"""Tables of outputs by their whole names."""
+LARGE, MANY = 2**12, 2**16
+"""Crank angles in a turn, and in a cycle, beyond which an analysis is freed before the next."""
 
 
-def analyzed(machine: Machine, angles: int, wanted: Wanted) -> Values:
-    """`equipoise analyze`, with ``--split`` and ``--orders`` where their keys are wanted."""
+def analyzed(
+    machine: Machine,
+    angles: int,
+    wanted: Wanted,
+    ways: Sequence[tuple[Step, ...]] | None = None,
+) -> Values:
+    """`equipoise analyze`, with ``--split`` and ``--orders`` where their keys are wanted.
+
+    ways : to figures, of whose outputs alone arrays and summary are told; None for all outputs.
+    """
     from equipoise.results.analysis import LEAST_ANGLES, analyze, order_values
     from equipoise.results.named_figures import NAMED_FIGURES
 
     analysis = analyze(machine, angles)
     split = analysis.solved is not None and (wanted is None or not SPLIT.isdisjoint(wanted))
+    outputs = analysis.outputs
+    names = [one.name for one in outputs if ways is None or _lead_to(ways, one.name, one.path)]
     further: list[str] = []
     if wanted is None or "outputs" in wanted:  # those that are had by their names alone
-        further = [one.name for one in analysis.outputs if one.declared.unbounded]
+        further = [name for name in names if outputs[name].declared.unbounded]
     figures = wanted is None or not {"strokes", *NAMED_FIGURES}.isdisjoint(wanted)
-    values = analysis.to_dict(split, further, figures)
+    values = analysis.to_dict(split, further, figures, None if ways is None else names)
     ordered = analysis.solved is not None and angles >= LEAST_ANGLES
     if ordered and (wanted is None or "by_order" in wanted):
         values["by_order"] = order_values(analysis, MOST_ORDERS, 0.0)
+    if angles > LARGE or angles * values.get("turns", 1) > MANY:
+        del analysis, outputs
+        gc.collect()  # an analysis and its outputs hold each other
     return values
+
+
+def _lead_to(ways: Sequence[tuple[Step, ...]], name: str, path: tuple[str, ...]) -> bool:
+    """Whether one of several ways leads to an output, by its name or its path in nested values."""
+    return any(
+        way[: len(path)] == path or (way[0] in BY_NAME and way[1:2] == (name,)) for way in ways
+    )
 
 
 def _planted(model: Machine | Tool, wanted: Wanted) -> Values:

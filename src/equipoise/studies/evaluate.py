@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
-from gc import collect
 from math import isfinite, nan, remainder
 from typing import TYPE_CHECKING, Any, cast
 
@@ -50,8 +49,6 @@ STANDING = (NO_ASSEMBLY, NO_FULL_TURN, CHANGE_POINT)
 """Reasons for which a linkage does not turn, so that no further command is asked."""
 MOST_SAMPLES = 2**19
 """Crank angles in a whole cycle, of however many turns, that are still tried."""
-LARGE = 2**12
-"""Crank angles in a turn from which the memory of a coarser analysis is freed before the next."""
 FAINT = 1e-9
 """Share of the largest signal beside it below which a signal is rounding."""
 
@@ -260,21 +257,21 @@ def _figures_of(model: Machine | Tool, asked: Request, study: Study) -> tuple[li
         values = COMMANDS[asked.command](model, asked.wanted)
         return [read(values, steps) for steps in asked.steps], True
     machine = cast("Machine", model)
-    values = analyzed(machine, angles or ANGLES, asked.wanted)
-    found = [read(values, steps) for steps in asked.steps]
     if angles is not None:
-        return found, True
+        values = analyzed(machine, angles, asked.wanted, asked.steps)
+        return [read(values, steps) for steps in asked.steps], True
+    values = analyzed(machine, ANGLES, asked.wanted)
+    found = [read(values, steps) for steps in asked.steps]
+    faint = {str(one[0]): FAINT * _beside(values, str(one[0])) for one in asked.steps}
     number, calm = ANGLES, 0
     # Extremes, and their places, may stand still once by chance.
     needed = 1 if all(figure_name(one) in ("mean", "rms") for one in asked.steps) else 2
     most = min(MOST_ANGLES, MOST_SAMPLES // values.get("turns", 1))
     while 2 * number <= most:
         number *= 2
-        if number >= LARGE:
-            collect()  # analyses refer to themselves, and their arrays would pile up
-        values = analyzed(machine, number, asked.wanted)
+        values = analyzed(machine, number, asked.wanted, asked.steps)
         before, found = found, [read(values, steps) for steps in asked.steps]
-        calm = calm + 1 if _still(values, asked.steps, before, found, tolerance) else 0
+        calm = calm + 1 if _still(values, asked.steps, before, found, faint, tolerance) else 0
         if calm == needed:
             return found, True
     return found, False
@@ -285,9 +282,13 @@ def _still(
     steps: Sequence[tuple[Step, ...]],
     before: Sequence[float],
     now: Sequence[float],
+    faint: Mapping[str, float],
     tolerance: float,
 ) -> bool:
-    """Whether figures have kept, within a share of the RMS of the signal that each is of."""
+    """Whether figures have kept, within a share of the RMS of the signal that each is of.
+
+    faint : by the table in which a figure stands, below what a signal is rounding.
+    """
     for one, old, new in zip(steps, before, now, strict=True):
         change = abs(new - old)
         if figure_name(one) in PLACES:
@@ -295,14 +296,14 @@ def _still(
         if change == 0 or not (isfinite(old) and isfinite(new)):
             continue  # what is missing will not come with further crank angles
         size = scale(values, one)
-        if change > tolerance * size and change > tolerance * FAINT * _beside(values, one):
+        if change > tolerance * size and change > tolerance * faint[str(one[0])]:
             return False
     return True
 
 
-def _beside(values: Values, steps: Sequence[Step]) -> float:
-    """RMS of the largest signal in the same table, of which others may be the rounding."""
-    table = values["summary"] if steps[0] in ("summary", "by_order") else values.get(str(steps[0]))
+def _beside(values: Values, key: str) -> float:
+    """RMS of the largest signal in a table, of which others may be the rounding."""
+    table = values["summary" if key == "by_order" else key] if key in values else None
     return max(_sizes(table), default=0.0)
 
 

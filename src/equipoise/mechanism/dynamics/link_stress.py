@@ -75,21 +75,23 @@ def link_stresses(forces: Forces) -> Mapping[str, LinkStress]:
 
 
 def _figures(loads: SectionLoads, angles: Array, period: float) -> LinkStress:
-    section, stresses = loads.section, loads.stresses
-    side, k, n = np.unravel_index(int(np.argmax(np.abs(stresses))), stresses.shape)
-    stress = float(abs(stresses[side, k, n]))
-    pressed = max(-float(np.min(loads.axial)), 0.0)
+    section, most = loads.section, loads.envelope
+    side, k = np.unravel_index(int(np.argmax(most.stresses)), most.stresses.shape)
+    cut = loads.cuts[int(k)]
+    n = int(np.argmax(np.abs(loads.in_fibres(loads.in_cut(cut))[side])))
+    stress = float(most.stresses[side, k])
+    pressed = max(most.compression, 0.0)
     buckles = section.buckling_load(loads.length)
-    cycles, fatigue_safety = _fatigue(loads, stresses)
+    cycles, fatigue_safety = _fatigue(loads)
     return LinkStress(
         FIBRES[int(side)],
         stress,
-        float(loads.places[k, n]),
+        float(cut.at[n]),
         float(angles[n]),
-        max(float(np.max(loads.axial)), 0.0),
+        max(most.tension, 0.0),
         pressed,
-        float(np.max(np.abs(loads.shear))),
-        float(np.max(np.abs(loads.bending))),
+        most.shear,
+        float(np.max(most.bending_moment)),
         section.yield_strength / stress if section.yield_strength and stress else None,
         buckles / pressed if buckles is not None and pressed > 0 else None,
         fatigue_safety,
@@ -100,7 +102,7 @@ def _figures(loads: SectionLoads, angles: Array, period: float) -> LinkStress:
     )
 
 
-def _fatigue(loads: SectionLoads, stresses: Array) -> tuple[float | None, float | None]:
+def _fatigue(loads: SectionLoads) -> tuple[float | None, float | None]:
     """Cycles of the machine to failure at the worst place, None where it is endless; and safety
     of the fatigue limit.
     """
@@ -109,8 +111,8 @@ def _fatigue(loads: SectionLoads, stresses: Array) -> tuple[float | None, float 
         return None, None
     line = WoehlerLine(section.fatigue_limit, section.knee_cycles, section.slope)
     worst, largest = 0.0, 0.0
-    for fibre in stresses:
-        for stress in fibre[loads.fixed]:
+    for cut in (one for one in loads.cuts if one.fixed):
+        for stress in loads.in_fibres(loads.in_cut(cut)):
             counted = rainflow(stress, repeats=True)
             worst = max(worst, damage(counted, line, section.tensile_strength))
             amplitudes = amplitudes_about_zero(counted, section.tensile_strength)

@@ -9,10 +9,11 @@ acts on the part before a cut, with weight and inertia, is held by what the part
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import chain
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -59,54 +60,144 @@ class MassAlongLine:
 
 
 @dataclass(frozen=True, eq=False)
+class Cut:
+    """A place at which a link is cut.
+
+    at : (N,) from its first point, m.  behind : whether what acts there lies before it.
+    """
+
+    at: Array
+    behind: bool
+
+    @property
+    def fixed(self) -> bool:
+        """Whether it is the same at all crank angles."""
+        return bool(np.ptp(self.at) == 0)
+
+
+class Loads(NamedTuple):
+    """What the part of a link behind a cut exerts on the part before it, over crank angles (N,).
+
+    axial : force, N, positive in tension.  shear : force, N, positive to the left of the line.
+    bending : moment, N m, counterclockwise.
+    """
+
+    axial: Array
+    shear: Array
+    bending: Array
+
+
+class Envelope(NamedTuple):
+    """What is largest in size of all cuts of a link.
+
+    stress, bending_moment : (N,) Pa and N m.  axial_force : (N,) with its sign, N.
+    stresses : (2, K) over fibres and cuts, of all crank angles, Pa.
+    tension, compression, shear : of all cuts and crank angles, N.
+    """
+
+    stress: Array
+    bending_moment: Array
+    axial_force: Array
+    stresses: Array
+    tension: float
+    compression: float
+    shear: float
+
+
+@dataclass(frozen=True, eq=False)
 class SectionLoads:
     """Loads in cuts of a link: (K, N) over places and crank angles.
 
+    What is largest of all cuts is had of one cut after the other, as all of them together hold some
+    hundred numbers a crank angle.
+
     section : of the link.  length : of its line, m.  mass : along it.
-    places : from its first point, m; twice where something acts: before and behind.  The last is
-        behind all of the link, where nothing is left to be held.
-    axial : force, N, positive in tension.  shear : force, N, and
-    bending : moment, N m, that the part behind a cut exerts on the part before it; the force is
-        positive to the left of the line, the moment counterclockwise.
-    fixed : (K,) whether a place is the same at all crank angles.
+    cuts : (K,), two where something acts: before and behind.  The last is behind all of the link,
+        where nothing is left to be held.
+    field : weight less inertia of a unit of mass, see `_field`.
+    ends : place, force and torque (N,) of all that acts at one place.
     """
 
     section: LinkSection
     length: float
     mass: MassAlongLine
-    places: Array
-    axial: Array
-    shear: Array
-    bending: Array
-    fixed: Array
+    cuts: Sequence[Cut]
+    field: tuple[Array, Array]
+    ends: Sequence[tuple[Array, Array, Array]]
 
-    @property
-    def stresses(self) -> Array:
-        """Normal stress (2, K, N) in the left and the right outermost fibre, Pa."""
+    def in_cut(self, cut: Cut) -> Loads:
+        """Loads (N,) in a cut."""
+        return _loads(cut, self.ends, self.field, self.mass, self.length)
+
+    def in_fibres(self, loads: Loads) -> Array:
+        """Normal stress (2, N) in the left and the right outermost fibre, Pa."""
         of = self.section
-        bent = self.bending * of.outermost / of.second_moment
-        drawn = self.axial / of.area
+        bent = loads.bending * of.outermost / of.second_moment
+        drawn = loads.axial / of.area
         return of.stress_concentration * np.array([drawn - bent, drawn + bent])
+
+    @cached_property
+    def envelope(self) -> Envelope:
+        """What is largest of all cuts."""
+        zero = np.zeros(len(self.cuts[0].at))
+        stress, bent, drawn = zero, zero, zero
+        stresses, ends = [], []
+        for cut in self.cuts:
+            loads = self.in_cut(cut)
+            sizes = np.abs(self.in_fibres(loads))
+            stresses.append(np.max(sizes, axis=1))
+            stress = np.maximum(stress, np.max(sizes, axis=0))
+            bent = np.maximum(bent, np.abs(loads.bending))
+            drawn = np.where(np.abs(loads.axial) > np.abs(drawn), loads.axial, drawn)
+            ends.append((np.max(loads.axial), -np.min(loads.axial), np.max(np.abs(loads.shear))))
+        most = np.max(ends, axis=0).tolist()
+        return Envelope(stress, bent, drawn, np.transpose(stresses), *most)
 
     @property
     def stress(self) -> Array:
         """Largest size of the normal stress anywhere along the link (N,), Pa."""
-        of, largest = self.section, np.zeros(self.axial.shape[1])
-        for axial, bending in zip(self.axial, self.bending, strict=True):  # few at once: memory
-            bent = np.abs(bending) * of.outermost / of.second_moment
-            largest = np.maximum(largest, np.abs(axial) / of.area + bent)
-        return np.asarray(of.stress_concentration * largest)
+        return self.envelope.stress
 
     @property
     def bending_moment(self) -> Array:
         """Largest size of the bending moment along the link (N,), N m."""
-        return np.asarray(np.max(np.abs(self.bending), axis=0))
+        return self.envelope.bending_moment
 
     @property
     def axial_force(self) -> Array:
         """The axial force (N,) that is largest in size along the link, N."""
-        at = np.argmax(np.abs(self.axial), axis=0)
-        return np.asarray(np.take_along_axis(self.axial, at[None], axis=0)[0])
+        return self.envelope.axial_force
+
+    @property
+    def places(self) -> Array:
+        """Places of all cuts from the first point of the link, m."""
+        return np.array([cut.at for cut in self.cuts])
+
+    @property
+    def fixed(self) -> Array:
+        """(K,) whether a place is the same at all crank angles."""
+        return np.array([cut.fixed for cut in self.cuts])
+
+    @property
+    def axial(self) -> Array:
+        """Axial force in all cuts, N, positive in tension."""
+        return np.array([self.in_cut(cut).axial for cut in self.cuts])
+
+    @property
+    def shear(self) -> Array:
+        """Shear force in all cuts, N, positive to the left of the line."""
+        return np.array([self.in_cut(cut).shear for cut in self.cuts])
+
+    @property
+    def bending(self) -> Array:
+        """Bending moment in all cuts, N m, counterclockwise."""
+        return np.array([self.in_cut(cut).bending for cut in self.cuts])
+
+    @property
+    def stresses(self) -> Array:
+        """Normal stress (2, K, N) in the left and the right outermost fibre, Pa."""
+        found = [self.in_fibres(self.in_cut(cut)) for cut in self.cuts]
+        return np.stack(found, axis=1)
 
 
 def section_loads(motion: Motion, solved: Pass, link: str) -> SectionLoads:
@@ -136,15 +227,11 @@ def section_loads(motion: Motion, solved: Pass, link: str) -> SectionLoads:
         own = lump * (still + growing * end)
         ends.append((np.full(len(turn), end), own, cross(1j * mass.aside, own)))
     grid = np.linspace(0.0, length, CUTS)
-    cuts: list[tuple[Any, bool]] = [(s, False) for s in grid]
-    cuts += [(s, behind) for s in at for behind in (False, True)]
-    cuts.append((length, True))
-    places, loads = np.empty((len(cuts), len(turn))), np.empty((3, len(cuts), len(turn)))
-    for k, (s, behind) in enumerate(cuts):
-        places[k] = s
-        loads[:, k] = _cut(s, behind, ends, (still, growing), mass, length)
-    fixed = np.array([True] * CUTS + [bool(np.ptp(s) == 0) for s, _ in cuts[CUTS:]])
-    return SectionLoads(body.section, length, mass, places, loads[0], loads[1], loads[2], fixed)
+    count = len(turn)
+    cuts = [Cut(np.broadcast_to(s, count), False) for s in grid]
+    cuts += [Cut(s, behind) for s in at for behind in (False, True)]
+    cuts.append(Cut(np.broadcast_to(length, count), True))
+    return SectionLoads(body.section, length, mass, cuts, (still, growing), ends)
 
 
 def _field(
@@ -166,26 +253,23 @@ def _field(
     return full(motion, still, complex), full(motion, growing, complex)
 
 
-def _cut(
-    s: Any,
-    behind: bool,
-    ends: list[tuple[Array, Array, Array]],
+def _loads(
+    cut: Cut,
+    ends: Sequence[tuple[Array, Array, Array]],
     field: tuple[Array, Array],
     mass: MassAlongLine,
     length: float,
-) -> tuple[Array, Array, Array]:
-    """Axial force, shear force and moment (N,), before or behind what acts at a place.
-
-    s : the place along the line, m, the same at all crank angles or (N,).
-    """
+) -> Loads:
+    """Axial force, shear force and moment (N,) in a cut, before or behind what acts there."""
     (q, k), density = field, mass.rod / length
+    s = cut.at
     force = density * (q * s + k * s**2 / 2)
     moment = -density * (q.imag * s**2 / 2 + k.imag * s**3 / 6) - mass.aside * force.real
     for place, own, torque in ends:
-        counts = place <= s if behind else (place < s)
+        counts = place <= s if cut.behind else (place < s)
         force = force + counts * own
         moment = moment + counts * (torque + (place - s) * own.imag)
-    return -force.real, -force.imag, -moment
+    return Loads(-force.real, -force.imag, -moment)
 
 
 def _acting_on(motion: Motion, solved: Pass, link: str) -> Iterator[tuple[Any, Any, Any]]:
