@@ -43,6 +43,7 @@ from equipoise.balancing.policy import (
     MASS_PRICE,
     MOST_ADDED_MASS,
     NOTICED,
+    QUIET_GAUGE,
 )
 from equipoise.balancing.problem import Problem
 from equipoise.balancing.remedies import (
@@ -201,7 +202,7 @@ class _Adviser:
             return
         large = [one for one in self.before.headline if _is_aim(one)]
         gauges = [one for one in large if one.output.startswith(GAUGES)]
-        if gauges and (aims := gauge_aims(self.machine)):
+        if gauges and (aims := self.gauge_aims):
             yield aims
         for one in large:
             if one not in gauges:
@@ -375,9 +376,18 @@ class _Adviser:
         return beyond_masses(self.before.analysis, self.before.headline, self.mounts)
 
     @cached_property
+    def gauge_aims(self) -> tuple[Objective, ...]:
+        """What gauges read that are loud beside the loudest, each against its limit."""
+        read = {one.output: one.excess for one in self.before.headline
+                if one.output.startswith(GAUGES)}  # fmt: skip
+        least = QUIET_GAUGE * max(read.values(), default=0.0)
+        aims = gauge_aims(self.machine)
+        return tuple(one for one in aims if read.get(one.output, least) >= least)
+
+    @cached_property
     def mounts(self) -> ResonantMounts | None:
         """The resonance beside a speed at which the machine runs, and other mounts."""
-        aims = gauge_aims(self.machine)
+        aims = self.gauge_aims
         if not aims:
             return None
         speeds = {speed for one in aims for speed in one.speeds} or {self.machine.drive.speed}

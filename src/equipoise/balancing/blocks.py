@@ -10,11 +10,12 @@ from equipoise.balancing.compared import FAINT, WORSE
 from equipoise.balancing.objectives import unit_of as si_unit
 from equipoise.balancing.outcome import (
     advice_blocks,
+    beside_mounts,
     beside_the_aim,
     large_besides,
     large_figures,
+    mounts_beside_change,
     nothing_told,
-    sentences_beyond_masses,
 )
 from equipoise.balancing.told import (
     capital,
@@ -101,7 +102,8 @@ def balanced_headline(found: Balanced, alone: bool = False) -> Iterator[Block]:
     if found.advice is not None:
         yield from map(Text, beside_the_aim(found))
     yield from (Text(line, "worse") for line in worst_told(found))
-    details = [*sentences_beyond_masses(found)]  # of which the last are left out first
+    yield from map(Text, mounts_beside_change(found))
+    details = [*beside_mounts(found)]  # of which the last are left out first
     if found.advice is not None:
         details += large_besides(found)
     yield from (Text(line, is_detail=found.advice is not None) for line in details)

@@ -19,6 +19,7 @@ from equipoise.balancing.policy import (
     SHAFT_RATIOS,
     STEADY,
     THICKEST_DISC,
+    THINNEST_DISC,
 )
 from equipoise.errors import EquipoiseError
 from equipoise.i18n import say, to_say
@@ -32,8 +33,8 @@ from equipoise.results.yardsticks import FigureAssessment
 
 DIGITS = 2
 """Of a flywheel's inertia."""
-GRID = 10e-3
-"""m, to which a diameter is rounded down."""
+GRID, PLATE_GRID = 10e-3, 1e-3
+"""m, to which a diameter is rounded down, and a thickness up."""
 STEEL = MATERIALS["steel"]
 
 
@@ -42,9 +43,9 @@ class Flywheel:
     """A steel disc that is missing on a shaft.
 
     fluctuation : share of the mean speed, from slowest to fastest, that it allows.
-    inertia : kg m2, on a shaft that turns `ratio` times as fast as the crank.
+    inertia : kg m2, that is missing on a shaft that turns `ratio` times as fast as the crank.
     is_shaft_assumed : whether the file gives no motor whose shaft that is.
-    diameter, thickness : m.  mass : kg.
+    diameter, thickness, mass : m and kg, of a disc in whole millimetres that has as much or more.
     """
 
     fluctuation: float
@@ -57,7 +58,7 @@ class Flywheel:
 
     declared: ClassVar[Declarations] = {
         "fluctuation": ResultOutput("share of the mean speed that it allows"),
-        "inertia": ResultOutput("on its shaft", "inertia"),
+        "inertia": ResultOutput("that is missing on its shaft", "inertia"),
         "ratio": ResultOutput("turns of its shaft in one of the crank"),
         "is_shaft_assumed": ResultOutput(
             "whether that is another shaft than those of the crank and of the motor that the file "
@@ -147,15 +148,31 @@ def _disc_of(analysis: Analysis, missing: float, share: float, ratio: float) -> 
     motor = machine.drive.motor
     fastest = abs(ratio * analysis.motion.speed)
     widest = min(2 * size_of_links(machine), 2 * RIM_SPEED / fastest)
-    diameter = floor(widest / GRID) * GRID or widest
     inertia = _rounded_up(missing / ratio**2)
-    mass = 8 * inertia / diameter**2
-    thickness = ceil(1e3 * mass / (STEEL * pi / 4 * diameter**2)) / 1e3
+    diameter, thickness = _turned(inertia, widest)
+    mass = STEEL * thickness * pi / 4 * diameter**2
     most = (HEAVIEST_FLYWHEEL if ratio == 1 else HEAVIEST_ASIDE) * machine.mass
     if mass > most or thickness > THICKEST_DISC * diameter:
         return None
     is_assumed = ratio != 1 and (motor is None or ratio != motor.ratio)
     return Flywheel(share, inertia, ratio, is_assumed, diameter, thickness, mass)
+
+
+def _turned(inertia: float, widest: float) -> tuple[float, float]:
+    """Diameter and thickness, m, of the widest steel disc that is thick enough, of the inertia or
+    little more.
+    """
+    per_thickness = STEEL * pi / 32  # of the diameter to the fourth
+
+    def least(diameter: float) -> float:
+        return ceil(inertia / (per_thickness * diameter**4) / PLATE_GRID - 1e-9) * PLATE_GRID
+
+    limit = min(widest, (inertia / (per_thickness * THINNEST_DISC)) ** (1 / 5))
+    diameter = floor(limit / GRID + 1e-9) * GRID or limit
+    thickness = least(diameter)
+    while diameter > GRID and least(diameter - GRID) <= thickness:  # what rounding up has left
+        diameter -= GRID
+    return diameter, thickness
 
 
 def _rounded_up(value: float) -> float:
@@ -175,16 +192,17 @@ def flywheel_sentences(found: Flywheels, crank: str, links: float) -> Iterator[s
         on_crank = to_say("Flywheel on {crank}: {discs}.")
         on_motor = to_say("Flywheel on the shaft of the motor: {discs}.")
         assumed = to_say(
-            "Flywheel, assuming a shaft {ratio} times as fast as {crank}, such as a motor's, which "
-            "the file does not give: {discs}."
+            "Flywheel on a shaft {ratio} times as fast as {crank}, which the file does not give "
+            "and the machine would need: {discs}."
         )
         discs = say("; ").join(_disc(one, links) for one in same)
         template = on_crank if ratio == 1 else assumed if is_assumed else on_motor
         yield say(template, crank=crank, ratio=f"{ratio:.4g}", discs=discs)
     if _lets_swing(found.choices):
         yield say(
-            "A motor that lets the speed swing so far then gives {mean} ({power}) instead of up to "
-            "{most}.",
+            "A motor that lets the speed swing so far then gives {mean} at {crank} ({power}) instead "
+            "of up to {most}.",
+            crank=crank,
             mean=told(found.mean_torque, "torque", digits=3),
             power=told(found.power, "power", digits=3),
             most=told(found.largest_torque, "torque", digits=3),
@@ -201,8 +219,8 @@ def _lets_swing(choices: Iterable[Flywheel]) -> bool:
 
 def _disc(one: Flywheel, links: float) -> str:
     return say(
-        "{inertia}, a steel disc of {diameter} by {thickness} and {mass} ({ratio} times the moving "
-        "links), keeps its speed within {share} %",
+        "at least {inertia}, as of a steel disc of {diameter} by {thickness} and {mass} ({ratio} "
+        "times the moving links), keeps its speed within {share} %",
         inertia=told(one.inertia, "inertia", digits=2),
         diameter=told(one.diameter, "length", "mm", digits=3),
         thickness=told(one.thickness, "length", "mm", digits=2),

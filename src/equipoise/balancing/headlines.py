@@ -18,7 +18,6 @@ from equipoise.balancing.policy import (
     TRIFLE,
 )
 from equipoise.balancing.problem import Problem
-from equipoise.errors import ModelError, ResponseError
 from equipoise.mechanism.outputs.declared import declared
 from equipoise.mechanism.parts.balance import Limit, Objective
 from equipoise.mechanism.parts.machine import Machine
@@ -26,7 +25,7 @@ from equipoise.mechanism.parts.objectives import GAUGES, MEASURES, ROWS
 from equipoise.results.analysis import Analysis, analyze
 from equipoise.results.yardsticks import FigureAssessment, assess, assess_parts
 from equipoise.signals import Array
-from equipoise.vibration.forced import respond
+from equipoise.vibration.forced import readings_of
 
 Assessment = tuple[FigureAssessment, ...]
 Pair = tuple[FigureAssessment, FigureAssessment]
@@ -150,12 +149,7 @@ class AssessedMachine:
 def assessed(machine: Machine) -> AssessedMachine:
     """A machine at constant speed against its yardsticks."""
     analysis = analyze(machine, acceleration=0.0)
-    readings = None
-    if machine.support is not None and machine.support.gauges:
-        try:
-            readings = respond(machine).gauges
-        except (ModelError, ResponseError):  # without a steady state gauges tell nothing
-            readings = None
+    readings = readings_of(machine, machine.drive.speed)
     return AssessedMachine(analysis, assess(analysis, readings), assess_parts(analysis))
 
 

@@ -142,7 +142,12 @@ def reasons_to_leave(found: Balanced) -> Iterator[str]:
     """Why the masses are best left as they are."""
     advice = found.advice
     assert advice is not None
-    if found.changes:
+    largest = next(iter(advice.before), None)
+    own = found.original.balance
+    asked = own is not None and bool(own.objectives)
+    if (largest is None or not largest.is_large) and not (asked and found.changes):
+        yield say("Leave the machine as it is: nothing is large beside its yardstick.")
+    elif found.changes:
         yield say(
             "Leave the masses as they are: the best that fits the room that is assumed, "
             "{remedy}, takes {gain} % off {aims}; {why}.",
@@ -151,15 +156,13 @@ def reasons_to_leave(found: Balanced) -> Iterator[str]:
             gain=percent(max(found.gain, 0.0), 1),
             why=why_not(found),
         )
-    elif not (largest := next(iter(advice.before), None)) or not largest.is_large:
-        yield say("Leave the machine as it is: nothing is large beside its yardstick.")
-    elif largest.is_shaking:
+    elif largest is not None and largest.is_shaking:
         yield say(
             "Leave the masses as they are: in the room that is assumed, no change of a mass about "
             "a pivot of the frame makes {aims} noticeably smaller.",
             aims=aims_told(found),
         )
-    else:
+    elif largest is not None:
         yield say(
             "No counterweight that fits helps here: the trouble is {figure}.",
             figure=largest.label.said(),
@@ -170,9 +173,19 @@ def sentences_beyond_masses(found: Balanced) -> Iterator[str]:
     """What helps beyond masses, with the change that is offered, if one is; without one, other
     mounts stand before that masses are best left.
     """
+    yield from mounts_beside_change(found)
+    yield from beside_mounts(found)
+
+
+def mounts_beside_change(found: Balanced) -> Iterator[str]:
+    """Other mounts that a machine with a change that was advised needs first."""
+    if found.advice is not None and found.helps:
+        yield from _mounts_first(found.advice)
+
+
+def beside_mounts(found: Balanced) -> Iterator[str]:
+    """What helps beyond masses and mounts."""
     if found.advice is not None:
-        if found.helps:
-            yield from _mounts_first(found.advice)
         machine = found.machine if found.helps else found.original
         yield from sentences_beyond(found.advice.beyond, machine, found.helps)
         yield from _with_more_room(found)

@@ -97,6 +97,12 @@ HUB = 0.25
 MOST_TAKEN = 0.5
 """Share of a link's mass that is taken off it at most: the rest bears its load."""
 
+# -- gauges ----------------------------------------------------------------------------------------
+
+QUIET_GAUGE = 1 / 3
+"""Share of what the loudest gauge reads, each over its limit, below which a gauge is not what a
+change is for: it may not grow, but to quiet it would cost what the loudest needs."""
+
 # -- mounts ----------------------------------------------------------------------------------------
 
 AMPLIFIED = 1.5
@@ -119,14 +125,14 @@ STEADY, COARSE = 0.05, 0.2
 presses and crushers (Norton, Design of Machinery, table 11-4)."""
 MISSED_INERTIA = 0.1
 """Share of a flywheel's inertia that nobody misses."""
-SHAFT_RATIOS = (1, 2, 3, 4, 5, 6, 8, 10)
+SHAFT_RATIOS = (1, 2, 3, 4, 5, 6, 8, 10, 12, 16, 24)
 """Turns of a flywheel's shaft in one of the crank: of a crank that turns slowly, as of a press, it
 sits on the shaft of the motor or of a belt, where the square of the ratio less will do.  The shaft
 of a motor that the file gives comes first of those that are faster than the crank."""
 RIM_SPEED = 40.0
 """m/s, that a disc's edge may have: usual for cast iron, safe for steel."""
-THICKEST_DISC = 1 / 3
-"""Thickness of a disc over its diameter."""
+THINNEST_DISC, THICKEST_DISC = 1 / 30, 1 / 3
+"""Thickness of a disc over its diameter: a thinner one flutters, and cannot be turned true."""
 HEAVIEST_FLYWHEEL, HEAVIEST_ASIDE = 2.0, 1.0
 """Mass of a flywheel over that of the moving links beyond which a faster shaft is looked at: on the
 crank, and on a shaft that the machine may have for it."""

@@ -44,7 +44,7 @@ class ResonantMounts:
     mounts : names of those that its mode strains.
     factor : times their stiffness and damping that helps; None where none of those tried does.
     gain : share of what the gauges read that is gone with that; 0 without.
-    away : rad/s, speed from which on the resonance no longer amplifies the motion.
+    away : rad/s, speed beyond which, on the side of `near`, it no longer amplifies the motion.
     """
 
     speed: float
@@ -62,7 +62,7 @@ class ResonantMounts:
         "mounts": ResultOutput("those that its mode strains"),
         "factor": ResultOutput("times their stiffness and damping that helps, or null"),
         "gain": ResultOutput("share of what the gauges read that is gone with that"),
-        "away": ResultOutput("from which on it no longer amplifies", "angular speed"),
+        "away": ResultOutput("beyond which it no longer amplifies", "angular speed"),
     }
 
 
@@ -99,7 +99,8 @@ def resonant_mounts_for(
     assert edges is not None
     low, high = (share * resonance.speed for share in edges)
     avoid = resonance.avoid or (low, high)
-    return ResonantMounts(abs(resonance.speed), abs(speed), avoid, names, factor, gone, abs(high))
+    away = abs(low if abs(speed) < abs(resonance.speed) else high)
+    return ResonantMounts(abs(resonance.speed), abs(speed), avoid, names, factor, gone, away)
 
 
 def _amplified_between(damping: float, times: float = AMPLIFIED) -> tuple[float, float] | None:
@@ -123,7 +124,8 @@ def _loud_beside(
 ) -> list[tuple[Resonance, float]]:
     """Loud resonances beside any of some speeds, and the speed nearest to each."""
     drive = linear.body.machine.drive
-    low, high = around(drive, speeds[0])
+    ends = [end for speed in speeds for end in around(drive, speed)]
+    low, high = min(ends, key=abs), max(ends, key=abs)  # else the loudest may lie outside
     loud = [one for one in resonances(linear, low, high) if one.is_loud]
     slowest, fastest = min(map(abs, speeds)), max(map(abs, speeds))
     beside = []
@@ -196,15 +198,24 @@ def _scaled(mounts: Mapping[str, Mount], names: Sequence[str], factor: float) ->
 def mount_sentences(found: ResonantMounts) -> Iterator[str]:
     """Which resonance lies beside the speed, and what moves it away."""
     low, high = sorted(map(abs, found.avoid))
-    yield say(
+    beside = to_say(
         "First move the resonance at {speed} rpm (keep away from {low} to {high} rpm), beside "
-        "which it runs at {near} rpm, or run above {away} rpm.",
+        "which it runs at {near} rpm"
+    )
+    amplifies = to_say(
+        "First move the resonance at {speed} rpm, which amplifies the motion at {near} rpm too"
+    )
+    above, below = to_say("run above {away} rpm"), to_say("run below {away} rpm")
+    is_within = low <= found.near <= high
+    first = say(
+        beside if is_within else amplifies,
         speed=brief(found.speed / PER_RPM),
         low=number(low / PER_RPM),
         high=number(high / PER_RPM),
         near=brief(found.near / PER_RPM),
-        away=brief(found.away / PER_RPM),
     )
+    other = say(above if found.away > found.near else below, away=brief(found.away / PER_RPM))
+    yield say("{first}, or {other}.", first=first, other=other)
     if found.factor is None:
         return
     softer = to_say(

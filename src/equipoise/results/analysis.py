@@ -68,7 +68,7 @@ class Analysis(Result):
 
     blocks_in = "results.analysis_blocks.shown_blocks"
     pictures_in = "figures.pictures.analysis_pictures"
-    headline_in: ClassVar[str] = "results.headline.analysis_headline"
+    headline_in: ClassVar[str] = "vibration.headline.analysis_headline"
 
     motion: Motion
     solved: Forces | None

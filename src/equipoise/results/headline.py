@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.dynamics.forces import massless
+from equipoise.mechanism.parts.objectives import GAUGES
 from equipoise.quantities import told
 from equipoise.results.blocks import Block, Facts, Notes, Text, broken_if
 from equipoise.results.drive_blocks import driven
@@ -34,17 +35,25 @@ NEXT_TO_ONE = to_say("Nothing else is large; what comes nearest to its yardstick
 NEXT_TO_NONE = to_say("Nothing is large; what comes next to its yardstick")
 
 
-def analysis_headline(analysis: Analysis, alone: bool = False) -> Iterator[Block]:
+def analysis_headline(
+    analysis: Analysis,
+    alone: bool = False,
+    readings: Mapping[str, GaugeReading] | None = None,
+) -> Iterator[Block]:
     """The verdict and what else is large; alone also what the machine is, and what to look at next.
 
     alone : whether nothing follows, as on a terminal.
+    readings : of gauges, as of `assess`.
     """
-    entries = assess(analysis)
+    entries = assess(analysis, readings)
     first = verdict(entries)
-    yield from verdict_blocks(analysis)
+    yield from verdict_blocks(analysis, readings)
     if alone:
         yield Text(what_it_is(analysis))
+    is_of_gauge = first is not None and first.output.startswith(GAUGES)
     rest = [one for one in entries if one is not first]
+    if is_of_gauge:  # `respond` has the others
+        rest = [one for one in rest if not one.output.startswith(GAUGES)]
     large = [one for one in rest if one.is_large]
     if shown := large[:MOST_LARGE] or rest[:MOST_SMALL]:
         lines = tuple(sentence(one, analysis.machine.crank_turns) for one in shown)

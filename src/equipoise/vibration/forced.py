@@ -8,7 +8,7 @@ one of them, run down on the other.  So the range is then gone through both ways
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import cast, get_args
 
@@ -22,7 +22,7 @@ from equipoise.vibration.body import MISSING
 from equipoise.vibration.exact import solve_exact
 from equipoise.vibration.linear import DEFAULT_EXCITATION_MODEL, ExcitationModel, Linear
 from equipoise.vibration.resonance import warned
-from equipoise.vibration.response import MODELS, Model, Response, range_shown
+from equipoise.vibration.response import MODELS, GaugeSignals, Model, Response, range_shown
 from equipoise.vibration.small_motion import respond_coupled, respond_linear
 
 STANDSTILL = Note("a crank that stands still shakes nothing; give another speed")
@@ -306,3 +306,15 @@ def respond(
         return replace(found, notes=(*left_out(machine), *found.notes))
     near = warned(linear or Linear.of(machine, excitation_model_of(model)), found.speed)
     return replace(found, notes=(*left_out(machine), *near, *found.notes))
+
+
+def readings_of(machine: Machine, speed: float) -> Mapping[str, GaugeSignals] | None:
+    """What the gauges of a machine read at a speed, rad/s, by name; None where there are none, or
+    no steady state from which they could be read.
+    """
+    if machine.support is None or not machine.support.gauges or massless(machine):
+        return None
+    try:
+        return respond(machine, speed).gauges
+    except (ModelError, ResponseError):
+        return None

@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING
 from equipoise.errors import EquipoiseError
 from equipoise.i18n import said, say, to_say
 from equipoise.quantities import PER_RPM, brief
-from equipoise.results.analysis import analyze
+from equipoise.results import headline
+from equipoise.results.analysis import Analysis, analyze
 from equipoise.results.blocks import Block, Facts, Notes, Text, broken_if
 from equipoise.results.drive_blocks import driven
 from equipoise.results.headline import look_at_next
 from equipoise.results.outputs import shown_in
 from equipoise.results.yardsticks import assess, sentence, verdict
-from equipoise.vibration.forced import excitation_model_of
+from equipoise.vibration.forced import excitation_model_of, readings_of
 from equipoise.vibration.linear import Linear
 from equipoise.vibration.resonance import around, resonance_note, resonances
 from equipoise.vibration.response import MODELS
@@ -25,6 +26,15 @@ if TYPE_CHECKING:
 
 MOST_NOTES, MOST_GAUGES, MOST_LOUD = 3, 6, 3
 """Notes, gauges and resonances that stand first; the others follow with all tables."""
+
+
+def analysis_headline(analysis: Analysis, alone: bool = False) -> Iterator[Block]:
+    """What stands first of an analysis, of a machine on a support also by what its gauges read.
+
+    alone : whether nothing follows, as on a terminal.
+    """
+    readings = readings_of(analysis.machine, analysis.motion.speed)
+    yield from headline.analysis_headline(analysis, alone, readings)
 
 
 def response_headline(response: Response, alone: bool = False) -> Iterator[Block]:

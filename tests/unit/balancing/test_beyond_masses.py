@@ -114,19 +114,21 @@ def test_a_flywheel_is_a_disc_that_can_be_turned_and_run() -> None:
         for one in flywheels.choices:
             rings = np.linspace(0, one.diameter / 2, 20001)
             middle = (rings[1:] + rings[:-1]) / 2
-            mass = one.mass / (pi * one.diameter**2 / 4) * 2 * pi * middle * np.diff(rings)
-            assert np.sum(mass * middle**2) == pytest.approx(one.inertia, rel=1e-6)
+            mass = 7850 * one.thickness * 2 * pi * middle * np.diff(rings)
+            assert np.sum(mass) == pytest.approx(one.mass, rel=1e-6)
+            inertia = np.sum(mass * middle**2)
+            per_millimetre = inertia / one.thickness * 1e-3  # which rounding up may add
+            assert one.inertia * (1 - 1e-6) <= inertia < one.inertia + per_millimetre
+            assert 1 / 30 * (1 - 1e-6) <= one.thickness / one.diameter <= 1 / 3
             speed = abs(found_for(name).original.drive.speed) * one.ratio
             assert speed * one.diameter / 2 <= 40 * (1 + 1e-9)
-            plate = 7850 * one.thickness * pi * one.diameter**2 / 4
-            assert one.mass <= plate <= one.mass + 7850 * 1e-3 * pi * one.diameter**2 / 4
 
 
 def test_engines_are_told_their_flywheel_though_the_force_is_larger() -> None:
     """The torque of the four-stroke engine swings by 16 times its mean; its force is first."""
     flywheels = beyond("four-stroke-engine").flywheels
     assert flywheels is not None
-    assert "Flywheel on crank: 0.029 kg m²" in said("four-stroke-engine")
+    assert "Flywheel on crank: at least 0.029 kg m²" in said("four-stroke-engine")
 
 
 def test_a_press_is_told_what_its_motor_gives() -> None:
@@ -146,7 +148,7 @@ def test_a_flywheel_on_a_faster_shaft_names_what_is_assumed() -> None:
     """A pump without a motor has such a shaft only if its motor is there."""
     machine = eq.load("plunger-pump")
     told = said("plunger-pump")
-    assert "Flywheel, assuming a shaft 4 times as fast as crank, such as a motor's, which" in told
+    assert "Flywheel on a shaft 4 times as fast as crank, which the file does not give" in told
     motor = Motor(stall_torque=20.0, no_load_speed=400.0, ratio=3.5)
     driven = eq.analyze(machine.with_drive(motor=motor), acceleration=0.0)
     flywheels = flywheels_for(driven, assess(driven))
@@ -241,7 +243,8 @@ def test_a_resonance_beside_the_speed_is_moved_first() -> None:
     assert np.array(mounts.avoid) / RPM == pytest.approx([221, 277.5], abs=0.5)
     assert mounts.mounts == ("front_along", "back_along")
     assert said("sieve").index("First move") < said("sieve").index("Leave the masses")
-    first = said("sieve").index("First move the resonance at 255 rpm (keep away from 221.1 to")
+    words = "First move the resonance at 255 rpm, which amplifies the motion at 280 rpm too"
+    first = said("sieve").index(words)  # and not that it is to keep away from speeds that it does
     assert first < said("sieve").index("2 times softer would take 45 % off")
 
 
@@ -290,12 +293,13 @@ def test_a_damped_resonance_that_amplifies_by_half_is_named_beside_a_counterweig
     assert found.helps and mounts is not None
     assert mounts.mounts == ("along", "across") and mounts.factor == 2.0
     assert "First move the resonance at 411 rpm" in said("exudyn-slider-crank")
+    assert mounts.away == mounts.avoid[0] < mounts.near < mounts.speed
+    assert "or run below" in said("exudyn-slider-crank")
     mode = Linear.of(found.original).modes[0]
     for speed, order in ((mounts.avoid[0], 0), (mounts.avoid[1], 2)):
         ratio = speed / mode.natural_frequency
         moved = 1 / abs(1 - ratio**2 + 2j * mode.damping_ratio * ratio)
         assert ratio**order * moved == pytest.approx(1.5, rel=1e-9)
-    assert mounts.away == pytest.approx(mounts.avoid[1])
 
 
 # -- what is unbalanced ----------------------------------------------------------------------------

@@ -32,6 +32,7 @@ VERDICTS = {
     "cam-pusher": "Lift-off speed of the crank: 583 rpm",
     "twin-engine": "Rocking moment, peak: 116 N m",
     "quick-return": "Drive torque, peak to peak: 211 N m",
+    "sieve": "Velocity at stand_along, RMS: 143 mm/s",
 }
 
 
