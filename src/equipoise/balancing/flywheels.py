@@ -200,8 +200,8 @@ def flywheel_sentences(found: Flywheels, crank: str, links: float) -> Iterator[s
         yield say(template, crank=crank, ratio=f"{ratio:.4g}", discs=discs)
     if _lets_swing(found.choices):
         yield say(
-            "A motor that lets the speed swing so far then gives {mean} at {crank} ({power}) instead "
-            "of up to {most}.",
+            "A motor that lets the speed swing so far then gives {mean} at {crank} ({power}) "
+            "instead of up to {most}.",
             crank=crank,
             mean=told(found.mean_torque, "torque", digits=3),
             power=told(found.power, "power", digits=3),
