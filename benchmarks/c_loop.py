@@ -18,7 +18,7 @@ import numpy as np
 
 from equipoise.codegen.emission import C, Lines, boundary
 from equipoise.codegen.figures import KINDS
-from equipoise.codegen.source import Source
+from equipoise.codegen.source import TermSource
 from equipoise.codegen.terms import ANGLE, BOTH, DESIGN
 
 ALWAYS = ["-O3", "-march=native", "-ffast-math", "-shared", "-fPIC"]
@@ -47,7 +47,7 @@ def gcc() -> str | None:
     return told.stdout.strip()
 
 
-def compiled(source: Source, flags: list[str], folder: Path) -> Loop:
+def compiled(source: TermSource, flags: list[str], folder: Path) -> Loop:
     """The loop of a source: called with table (P, T) and grid (G, N), it returns (P, R)."""
     number = len(list(folder.iterdir()))
     program, library = folder / f"loop{number}.c", folder / f"loop{number}.so"
@@ -85,7 +85,7 @@ def crashes(loop: Loop, table: np.ndarray, grid: np.ndarray) -> str:
 # -- writing ---------------------------------------------------------------------------------------
 
 
-def in_c(source: Source) -> str:
+def in_c(source: TermSource) -> str:
     """The loop as a C program, of the same terms."""
     assert not source.running and not source.carried, "nothing but arithmetic is compared"
     by_angle = boundary(source.outputs, ANGLE)

@@ -20,7 +20,7 @@ from equipoise.mechanism.kinematics.tip import TipCurve
 from equipoise.mechanism.parts.gear_shapes import GearShape
 from equipoise.planting.designs import Designs
 from equipoise.planting.figures import tip_figures
-from equipoise.planting.goals import Problem
+from equipoise.planting.goals import PlantingProblem
 from equipoise.planting.stroke import soil_crossings
 from timing import in_turn, report
 
@@ -84,7 +84,7 @@ def one_by_one() -> object:
 
 def searched(machine: eq.Machine, **vary: tuple[float, float]) -> Callable[[], object]:
     """What judges a generation of designs, as a search does."""
-    problem = Problem(Designs(machine, {"tip.x": (0.12, 0.14), **vary}), GOALS)
+    problem = PlantingProblem(Designs(machine, {"tip.x": (0.12, 0.14), **vary}), GOALS)
     low, high = problem.designs.bounds
     rng = np.random.default_rng(1)
     return lambda: problem.judge(low + (high - low) * rng.random((JUDGED, len(low))))

@@ -11,7 +11,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.balancing.multi_row import Rows, Term
-from equipoise.balancing.phase_grid import Grid
+from equipoise.balancing.phase_grid import PhaseGrid
 from equipoise.balancing.phase_polish import Tops, square_with_slopes
 from equipoise.balancing.phase_search import PhaseSearch
 from equipoise.balancing.phasing import choose_phases
@@ -122,7 +122,7 @@ def test_grid_by_pairs_of_rows(wishes: list[Objective]) -> None:
     """Tables of pairs give what the orders' sums give, on every arrangement of three rows."""
     machine = side_by_side(TYPE_II, (0.0, 0.4, 0.9))
     cost = PhaseSearch(machine, tuple(wishes), Phases(), "sum").cost
-    grid = Grid(cost, 12)
+    grid = PhaseGrid(cost, 12)
     assert grid.count == 12 * 13 // 2
     told: list[int] = []
     cells = grid.best(told.append)

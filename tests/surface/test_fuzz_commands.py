@@ -31,7 +31,7 @@ from typing import Any
 import pytest
 import tomli_w
 
-from equipoise.cli.worker import Call, reply_to
+from equipoise.cli.worker import ToolCall, reply_to
 from equipoise.exchange.formats import FORMATS
 from equipoise.web.messages import read
 from equipoise.web.replies import packed
@@ -309,7 +309,7 @@ def open_page(file: str) -> None:
 
 def as_tool(name: str) -> None:
     """What the agents' server answers."""
-    reply = reply_to(Call(name, {"file": "model.toml"}, str(Path.cwd())))
+    reply = reply_to(ToolCall(name, {"file": "model.toml"}, str(Path.cwd())))
     assert json.dumps(asdict(reply), allow_nan=False)
     assert "Traceback" not in reply.text
 

@@ -19,13 +19,10 @@ FILES = sorted(ROOT.rglob("*.py"))
 TOP = Path(__file__).parents[2]
 PAGES = [*sorted((TOP / "docs").glob("*.md")), TOP / "README.md", TOP / "CONTRIBUTING.md"]
 AMBIGUOUS = """
-    Answer Arrow BalanceShafts Band Best Block Body Call Carried Change Column Conditions
-    Contact Coupled Curve Designs Document Drawn Drive Entry Estimate Excitation Field Fit
-    Flag Flywheel Folder Format Found Grid Guide Instant Key Kind Line Listing Look Mark
-    Named Number Outcome Outline Output Outputs Page Pair Part Path Picture Pieces Planes
-    Pose Problem Proof Push Pushing Quantity Reading Record Reply Row Rows Scale Seat
-    Section Segment Session Shape Signal Slot Solved Source Step Stroke Swing Swinging Table
-    Task Term Text Together Told Tool Track Tube Unit Variants View Work _Search
+    Best Body Call Change Curve Estimate Excitation Flywheel Format Kind Line Listing
+    Number Output Outputs Pair Part Path Picture Pieces Planes Pose Pushing Reading
+    Record Row Rows Scale Section Segment Shape Solved Stroke Swinging Table Task Term
+    Text Told Variants Work
 """
 """Names of several classes, each of which is to get a name of its own; no further ones."""
 FILE, FUNCTION = 800, 60

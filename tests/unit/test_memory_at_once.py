@@ -15,9 +15,9 @@ import equipoise as eq
 from equipoise.balancing import box_bounds, multi_row
 from equipoise.balancing.box_bounds import largest_reading
 from equipoise.balancing.multi_row import Cost, RowSignals, Term
-from equipoise.balancing.phase_grid import Grid
+from equipoise.balancing.phase_grid import PhaseGrid
 from equipoise.cli import run
-from equipoise.cli.worker import Call, reply_to
+from equipoise.cli.worker import ToolCall, reply_to
 from equipoise.design.spreads import Range
 from equipoise.design.variables import Variable
 from equipoise.limits import memory_limit, out_of_memory
@@ -78,8 +78,8 @@ def test_readings_of_many_boxes(measure: Measure) -> None:
 
 def test_a_grid_whose_table_is_too_large_is_none() -> None:
     few = Cost((term("peak", orders=20, turns=1),))
-    assert Grid(few, 360).affordable
-    assert not Grid(Cost((term("peak", orders=20),)), 72 * TURNS).affordable
+    assert PhaseGrid(few, 360).affordable
+    assert not PhaseGrid(Cost((term("peak", orders=20),)), 72 * TURNS).affordable
 
 
 @pytest.mark.parametrize("measure", ["peak", "peak_to_peak", "area", "rms"])
@@ -149,6 +149,6 @@ def test_memory_that_is_used_up_is_a_sentence_of_commands_and_of_agents_calls(
     monkeypatch.delenv("EQUIPOISE_MEMORY", raising=False)
     assert run(["analyze", "yamashita-1"]) == 2
     assert capsys.readouterr().err.startswith(f"equipoise: {begin}")
-    reply = reply_to(Call("analyze", {"file": "yamashita-1"}, str(tmp_path)))
+    reply = reply_to(ToolCall("analyze", {"file": "yamashita-1"}, str(tmp_path)))
     assert reply.wrong
     assert reply.text.startswith(begin)

@@ -30,7 +30,7 @@ from equipoise.balancing.headlines import (
 from equipoise.balancing.multi_row import Rows, Term
 from equipoise.balancing.objectives import unit_of
 from equipoise.balancing.optimisation import balance, in_phases
-from equipoise.balancing.phase_bound import Proof
+from equipoise.balancing.phase_bound import PhaseProof
 from equipoise.balancing.phase_search import PhaseSearch
 from equipoise.balancing.phasing import phasing_of
 from equipoise.balancing.policy import (
@@ -421,7 +421,7 @@ def _in_whole_degrees(found: Balanced) -> Balanced:
     whole = np.radians(np.round(np.degrees(phases))) % search.cost.period
     if np.array_equal(whole, phases):
         return found
-    proof = Proof(whole, found.phasing.bound, found.looked_at, complete=True)
+    proof = PhaseProof(whole, found.phasing.bound, found.looked_at, complete=True)
     phasing = replace(phasing_of(search, whole, proof), notes=found.phasing.notes)
     return in_phases(machine, plan, phasing, found.method, found.scope)
 

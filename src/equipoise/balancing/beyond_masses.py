@@ -20,8 +20,8 @@ from equipoise.balancing.centered_arms import (
 from equipoise.balancing.cylinder_sizes import Cylinder, cylinder_for, cylinder_sentences
 from equipoise.balancing.end_weights import EndWeights, end_sentences, end_weights_for
 from equipoise.balancing.first_order import (
-    BalanceShafts,
     FirstOrder,
+    FirstOrderShafts,
     PistonBalance,
     balance_shafts_for,
     piston_balance_for,
@@ -79,7 +79,7 @@ class Beyond:
 
     flywheels: Flywheels | None
     counterbalance: Counterbalance | None
-    shafts: BalanceShafts | None
+    shafts: FirstOrderShafts | None
     piston: PistonBalance | None
     cylinder: Cylinder | None
     transmission: PoorTransmission | None
@@ -99,7 +99,7 @@ class Beyond:
         "shafts": ResultOutput(
             "there: two balance shafts as fast as the crank, beside the change that is "
             "offered, or null",
-            of=BalanceShafts.declared,
+            of=FirstOrderShafts.declared,
         ),
         "piston": ResultOutput(
             "there: how much of a piston is balanced, or null", of=PistonBalance.declared

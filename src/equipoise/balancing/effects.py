@@ -173,7 +173,7 @@ class Effects:
         pole = in_frame(self.machine.frame, self.motion.linkage.pivot if about is None else about)
         start, columns = (
             one.component(one.vector(Found(self.motion, forces_of(self, pole)), item))
-            for forces_of in (Present, Unit)
+            for forces_of in (Present, UnitResponse)
         )
         return Signal(start, self.full(columns), self.motion.turns, self.motion.sampling)
 
@@ -341,7 +341,7 @@ class Present(Solved):
         return replace(self.effects.start.across, exerted=exerted_in(self.solved))
 
 
-class Unit(Solved):
+class UnitResponse(Solved):
     """Of a unit of each number; arrays (K, N)."""
 
     @property

@@ -36,7 +36,7 @@ CRANK_ROD_PISTON = 3
 
 
 @dataclass(frozen=True)
-class BalanceShafts:
+class FirstOrderShafts:
     """Two shafts as fast as the crank, one each way, against the force of order 1.
 
     forward, backward : kg m, of what turns with the crank and against it.  gain : share of the RMS
@@ -137,7 +137,7 @@ class FirstOrder:
 
 def balance_shafts_for(
     analysis: Analysis, entries: tuple[FigureAssessment, ...]
-) -> BalanceShafts | None:
+) -> FirstOrderShafts | None:
     """Balance shafts against the shaking force; None where it is not large enough for them, or
     little of it is of order 1.
 
@@ -151,7 +151,7 @@ def balance_shafts_for(
     if gain < WORTH_NAMING:
         return None
     square = analysis.resolved.motion.speed**2
-    return BalanceShafts(abs(first.ahead) / square, abs(first.against) / square, gain)
+    return FirstOrderShafts(abs(first.ahead) / square, abs(first.against) / square, gain)
 
 
 def piston_balance_for(
@@ -204,7 +204,7 @@ def _stroke_of(machine: Machine) -> float | None:
 
 
 def shafts_sentence(
-    shafts: BalanceShafts, crank: str, changed: bool, piston: PistonBalance | None = None
+    shafts: FirstOrderShafts, crank: str, changed: bool, piston: PistonBalance | None = None
 ) -> str:
     """What balance shafts bring.
 

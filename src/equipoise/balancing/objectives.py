@@ -17,7 +17,7 @@ import numpy as np
 from equipoise.balancing.design_variables import with_parameters
 from equipoise.balancing.effects import Effects, Signal
 from equipoise.balancing.levers import OWN, arm_of, moment_of_row
-from equipoise.balancing.program import Affine, Block, Program
+from equipoise.balancing.program import Affine, ConeRows, Program
 from equipoise.errors import ModelError
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.dynamics.parameters import parameter_values
@@ -316,15 +316,15 @@ def bound_measure(
         )
         inner = Affine(parts.reshape(len(parts), -1).T, numbers, starts.ravel())
         rows, slope = _beside(bound, count, inner), Affine.fixed(np.tile([1.0, 0.0, 0.0], count))
-        program.gradually(Block("second-order", rows, 3, name, slope))
+        program.gradually(ConeRows("second-order", rows, 3, name, slope))
     elif measure == "peak":
         for sign in (1.0, -1.0):
             slope = Affine.fixed(np.ones(count))
-            program.gradually(Block("nonnegative", bound + sign * value, 1, name, slope))
+            program.gradually(ConeRows("nonnegative", bound + sign * value, 1, name, slope))
     elif measure == "peak_to_peak":
         high, low = program.numbers(2)
         for place, sign in ((high, -1.0), (low, 1.0)):
-            program.gradually(Block("nonnegative", Affine.of(place, 1.0) + sign * value))
+            program.gradually(ConeRows("nonnegative", Affine.of(place, 1.0) + sign * value))
         program.nonnegative(bound - Affine.of([high, low], [1.0, 1.0]), name, one)
     else:
         from scipy import sparse

@@ -17,7 +17,7 @@ from equipoise.balancing.geared import with_shafts
 from equipoise.balancing.phase_search import PhaseSearch
 from equipoise.balancing.phasing import Phasing, choose_phases
 from equipoise.balancing.problem import Problem
-from equipoise.balancing.rows_and_masses import Together
+from equipoise.balancing.rows_and_masses import JointPhaseMassOptimizer
 from equipoise.balancing.solution import Solution
 from equipoise.balancing.workshop import Change
 from equipoise.errors import MassError, UsageError
@@ -117,7 +117,7 @@ def balance_rows(machine: Machine, plan: Balance, progress: Progress | None = No
                 raise
             first = None
         problem = Problem.of(machine, linkage) if first is None else first.problem
-        together = Together(problem, search)
+        together = JointPhaseMassOptimizer(problem, search)
         solution, phasing = together.run(first, told)
         method = Note("branch and bound over all phases of the rows and all masses")
         scope = together.scope

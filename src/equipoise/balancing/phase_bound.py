@@ -36,7 +36,7 @@ cost; infinite where these are no better than is known."""
 
 
 @dataclass(frozen=True, eq=False)
-class Proof:
+class PhaseProof:
     """phases : the best that were found (m,), rad.  bound : of the cost.  boxes : looked at.
 
     complete : whether the search ended as near to the best as it was to come.
@@ -57,7 +57,7 @@ def prove(
     close: float = CLOSE,
     prices: tuple[float, ...] = (),
     progress: Callable[[int, int], None] = lambda done, total: None,
-) -> Proof:
+) -> PhaseProof:
     """Bound the cost from below over all phases, and over all numbers; row 1 is at 0.
 
     Parameters
@@ -70,17 +70,17 @@ def prove(
     prices = prices or (0.0,) * len(cost.limits)
     bounder = Bounder.of(cost, numbers, prices)
     known = float(cost.values(phases)) if least is None else least
-    return _Search(cost, bounder, improve, close).run(phases, known, progress)
+    return _PhaseSearch(cost, bounder, improve, close).run(phases, known, progress)
 
 
 @dataclass(frozen=True, eq=False)
-class _Search:
+class _PhaseSearch:
     cost: Cost
     bounder: Bounder
     improve: Improve
     close: float
 
-    def run(self, phases: Array, least: float, progress: Callable[[int, int], None]) -> Proof:
+    def run(self, phases: Array, least: float, progress: Callable[[int, int], None]) -> PhaseProof:
         best, looked, room = phases, 1, self.close * self.cost.whole
         most = MOST_BOXES // (2 if len(self.numbers.low) else 1)
         batch = min(BATCH, self.bounder.most_at_once)
@@ -104,7 +104,7 @@ class _Search:
             left = min(left, float(np.min(boxes.bounds[closed], initial=np.inf)))
             boxes = boxes.of(~closed)
         bound = min(least, left, float(np.min(boxes.bounds, initial=np.inf)))
-        return Proof(best, bound, looked, bound >= least - (1 + 1e-6) * room)
+        return PhaseProof(best, bound, looked, bound >= least - (1 + 1e-6) * room)
 
     @property
     def numbers(self) -> Numbers:

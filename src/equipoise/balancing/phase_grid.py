@@ -44,7 +44,7 @@ swap of two rows is made."""
 
 
 @dataclass(frozen=True, eq=False)
-class Grid:
+class PhaseGrid:
     """Arrangements of the rows on phases that are whole multiples of a step; row 1 is at 0.
 
     levels : how many phases there are in a period.
@@ -214,12 +214,12 @@ def distinct(found: Array, period: float, apart: Sequence[float], most: int) -> 
     return found[kept]
 
 
-def coarsened(cost: Cost, levels: int) -> Grid | None:
+def coarsened(cost: Cost, levels: int) -> PhaseGrid | None:
     """The finest grid that can be looked at as a whole, of divisors of `levels`."""
     least = FEWEST * cost.terms[0].signals.turns
     for divisor in range(1, levels // least + 1):
         if levels % divisor == 0:
-            grid = Grid(cost, levels // divisor)
+            grid = PhaseGrid(cost, levels // divisor)
             if grid.affordable:
                 return grid
     return None

@@ -20,7 +20,7 @@ import numpy as np
 from equipoise.balancing.multi_row import NOTHING, Combine, Cost, Rows, RowSignals, Term
 from equipoise.balancing.phase_grid import (
     BETTER,
-    Grid,
+    PhaseGrid,
     Twist,
     alike,
     coarsened,
@@ -169,7 +169,7 @@ class PhaseSearch:
         return self.cost.period / self.levels
 
     @cached_property
-    def grid(self) -> Grid | None:
+    def grid(self) -> PhaseGrid | None:
         """The first grid; None where even the coarsest one has too many arrangements."""
         return coarsened(self.cost, self.levels)
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from equipoise.balancing.multi_row import Combine, Term
 from equipoise.balancing.objectives import unit_of
-from equipoise.balancing.phase_bound import Proof, prove
+from equipoise.balancing.phase_bound import PhaseProof, prove
 from equipoise.balancing.phase_search import PhaseSearch, Progress, with_phases
 from equipoise.errors import UsageError
 from equipoise.i18n import Note
@@ -124,7 +124,7 @@ def choose_phases(
     return phasing_of(search, found, proof)
 
 
-def phasing_of(search: PhaseSearch, found: Array, proof: Proof) -> Phasing:
+def phasing_of(search: PhaseSearch, found: Array, proof: PhaseProof) -> Phasing:
     """What phases (m,) relative to row 1 bring."""
     present, cost, grid, force = search.present, search.cost, search.grid, search.force
     moved = not np.all(found == search.present)

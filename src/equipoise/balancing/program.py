@@ -28,7 +28,7 @@ STRIDE, BROKEN, MOST_ROUNDS = 12, 3e-9, 30
 rows are added."""
 
 
-Cutter = Callable[[Array], "list[Block]"]
+Cutter = Callable[[Array], "list[ConeRows]"]
 
 
 class NoSolutionError(EquipoiseError):
@@ -101,7 +101,7 @@ class Affine:
 
 
 @dataclass(frozen=True, eq=False)
-class Block:
+class ConeRows:
     """Rows that lie in a cone; second-order cones stand one after the other, `size` rows each.
 
     name : of the limit that it stands for.
@@ -123,7 +123,7 @@ class Block:
         """How many cones, or single rows, there are."""
         return len(self.rows.constant) // self.size
 
-    def of(self, groups: Array) -> Block:
+    def of(self, groups: Array) -> ConeRows:
         """Some of the cones or rows."""
         places = (groups[:, None] * self.size + np.arange(self.size)).ravel()
         slope = None if self.slope is None else self.slope.of_rows(places)
@@ -156,9 +156,9 @@ class Program:
     """
 
     count: int = 0
-    blocks: list[Block] = field(default_factory=list)
+    blocks: list[ConeRows] = field(default_factory=list)
     cost: dict[int, float] = field(default_factory=dict)
-    waiting: list[Block] = field(default_factory=list)
+    waiting: list[ConeRows] = field(default_factory=list)
     cutters: list[Cutter] = field(default_factory=list)
     parent: Program | None = None
     tolerances: tuple[float, ...] = TOLERANCES
@@ -170,17 +170,17 @@ class Program:
 
     def zero(self, rows: Affine) -> None:
         """Rows that must be 0."""
-        self.blocks.append(Block("zero", rows))
+        self.blocks.append(ConeRows("zero", rows))
 
     def nonnegative(self, rows: Affine, name: str = "", slope: Affine | None = None) -> None:
         """Rows that must not be negative."""
-        self.blocks.append(Block("nonnegative", rows, 1, name, slope))
+        self.blocks.append(ConeRows("nonnegative", rows, 1, name, slope))
 
     def cones(self, rows: Affine, size: int, name: str = "", slope: Affine | None = None) -> None:
         """Groups of `size` rows, the first of which is at least the length of the others."""
-        self.blocks.append(Block("second-order", rows, size, name, slope))
+        self.blocks.append(ConeRows("second-order", rows, size, name, slope))
 
-    def gradually(self, block: Block) -> None:
+    def gradually(self, block: ConeRows) -> None:
         """A block of many rows, equally spaced round a cycle, few of which will matter."""
         self.waiting.append(block)
         self.blocks.append(block.of(np.arange(0, block.groups, STRIDE)))
@@ -188,7 +188,7 @@ class Program:
     def rotated(self, x: Affine, y: Affine, z: Affine, lift: int | None = None) -> None:
         """x y >= |z|^2 with x, y >= 0: one row each of x and y, any number of z."""
         rows = stacked(x + y, x - y, 2.0 * z)
-        self.blocks.append(Block("second-order", rows, len(rows.constant), lift=lift))
+        self.blocks.append(ConeRows("second-order", rows, len(rows.constant), lift=lift))
 
     def copy(self) -> Program:
         """To which more can be added without changing what this one asks."""
@@ -236,14 +236,14 @@ class Program:
             found = replace(again, bound=max(found.bound, again.bound))
         return found
 
-    def _cut(self, cuts: list[Block]) -> None:
+    def _cut(self, cuts: list[ConeRows]) -> None:
         """Add blocks; those that belong to a place take the place of the last of the same name."""
         local = {block.local for block in cuts if block.local}
         self.blocks = [block for block in self.blocks if block.local not in local] + cuts
         if self.parent is not None:
             self.parent._cut(cuts)
 
-    def _broken(self, x: Array) -> Iterator[Block]:
+    def _broken(self, x: Array) -> Iterator[ConeRows]:
         """Rows of the waiting blocks that a solution breaks most, each among its neighbours."""
         for block in self.waiting:
             slack = block.slack(x)

@@ -21,7 +21,7 @@ from equipoise.balancing.effects import Effects
 from equipoise.balancing.jumping_rows import JumpingDesigns
 from equipoise.balancing.multi_row import Cost, RowSignals, Term
 from equipoise.balancing.objectives import Near, of_rows_alone, read, reading_of
-from equipoise.balancing.phase_bound import Proof, prove
+from equipoise.balancing.phase_bound import PhaseProof, prove
 from equipoise.balancing.phase_grid import distinct
 from equipoise.balancing.phase_polish import Step, most_steps, polished
 from equipoise.balancing.phase_search import PhaseSearch, Progress, stepped, with_phases
@@ -49,7 +49,7 @@ bound may miss; of a limit, by which it counts as kept."""
 
 
 @dataclass(frozen=True, eq=False)
-class Found:
+class PhaseMassSolution:
     """cost, with phases (m,) relative to row 1, rad, and with the masses of a solution."""
 
     cost: float
@@ -57,7 +57,7 @@ class Found:
     solution: Solution
 
 
-class Together:
+class JointPhaseMassOptimizer:
     """Masses and phases of one problem.
 
     problem : of masses, with the rows as they are.  search : of phases, for the same machine.
@@ -65,7 +65,7 @@ class Together:
 
     def __init__(self, problem: Problem, search: PhaseSearch) -> None:
         self.problem, self.search = _counting_alike(problem, search), search
-        self.best: Found | None = None
+        self.best: PhaseMassSolution | None = None
         self.tries, self.turns = TRIES, problem.effects.motion.turns
         self.after: Step = lambda: None
         self.period = 2 * pi * self.turns
@@ -123,13 +123,13 @@ class Together:
                 error = refused
         return error
 
-    def _proof(self, progress: Progress) -> Proof:
+    def _proof(self, progress: Progress) -> PhaseProof:
         assert self.best is not None
         known = self.best
         try:
             numbers = self._numbers
         except NoSolutionError:
-            return Proof(known.phases, 0.0, 0, False)
+            return PhaseProof(known.phases, 0.0, 0, False)
         start = self._cost(known.solution, 0.0)
         paid, scales = known.solution.best.prices, map(self.problem.scale, self._measured)
         most = zip(self._measured, scales, self._scales, strict=True)
@@ -147,7 +147,7 @@ class Together:
         other = prove(free, found.phases, _no_better, numbers, best, CLOSE, progress=progress)
         return other if other.bound > found.bound else found
 
-    def _laid_out(self, proof: Proof) -> tuple[Solution, Phasing]:
+    def _laid_out(self, proof: PhaseProof) -> tuple[Solution, Phasing]:
         """The best, with equal rows swapped against twist."""
         assert self.best is not None
         solution = self.best.solution
@@ -214,7 +214,7 @@ class Together:
             # by how little a limit may be passed counts for the search, not for the proof
             value = float(replace(cost, limits=()).values(phases))
         if self.best is None or value < self.best.cost:
-            self.best = Found(value, phases % self.period, solution)
+            self.best = PhaseMassSolution(value, phases % self.period, solution)
         return value
 
     # -- as functions of phases and numbers --------------------------------------------------------

@@ -20,7 +20,7 @@ import numpy as np
 
 from equipoise.balancing.branch_and_bound import Square
 from equipoise.balancing.design_variables import Bound, DesignVariables
-from equipoise.balancing.program import Affine, Block, Program, stacked
+from equipoise.balancing.program import Affine, ConeRows, Program, stacked
 from equipoise.balancing.workshop import SPREAD, Change, pieces_of
 from equipoise.i18n import Note, to_say
 from equipoise.mechanism.assembly.steps import size_of_bodies
@@ -257,7 +257,7 @@ class AddedWeight(DesignVariables):
         value, slope = self._bound(m)
         program.cones(stacked(Affine.of(place, slope, value - slope * m), moment), 3)
 
-    def _cuts(self, places: Array, x: Array) -> list[Block]:
+    def _cuts(self, places: Array, x: Array) -> list[ConeRows]:
         """Tangents that cut off a moment which no sector of its mass has."""
         m, sx, sy = (float(value) for value in x[places])
         m = min(max(m, 0.0), self._full)

@@ -179,7 +179,7 @@ class Drawn(Printed):
 
 @Parameter(name="*")
 @dataclass(frozen=True)
-class Folder(Shown):
+class PictureFolder(Shown):
     """Where pictures go, and as what."""
 
     out: Out = None

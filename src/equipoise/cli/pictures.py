@@ -26,7 +26,7 @@ from equipoise.cli.options import (
     read_by,
     wants,
 )
-from equipoise.cli.outputs import Folder, tell, tell_pictures, write_pictures
+from equipoise.cli.outputs import PictureFolder, tell, tell_pictures, write_pictures
 from equipoise.cli.plan import read_objective
 from equipoise.cli.progress import counted
 from equipoise.errors import ModelError, UsageError
@@ -66,7 +66,7 @@ def plot(
     output: Names = None,
     at: Annotated[Any, read_by(_crank_angles, '"0 deg, 45 deg"')] = None,
     speed: AnySpeed = None,
-    pictures: Folder = Folder(),
+    pictures: PictureFolder = PictureFolder(),
 ) -> None:
     """Every picture of a linkage or a tool: motion, forces, vibration, balance.
 
@@ -142,7 +142,7 @@ def landscape(
     points: Annotated[int, count(5, MOST_POINTS)] = POINTS,
     speed: Speed = None,
     workers: WorkerCount = None,
-    pictures: Folder = Folder(),
+    pictures: PictureFolder = PictureFolder(),
 ) -> None:
     """An output over two numbers of a machine.
 

@@ -55,7 +55,7 @@ def so_far() -> str:
 
 
 @dataclass(frozen=True)
-class Step:
+class ProgressStep:
     """How far work is.
 
     done, total : parts of it.
@@ -70,7 +70,7 @@ class Step:
     more: Mapping[str, str] = field(default_factory=dict)
 
 
-Show = Callable[[Callable[[], Step], bool], None]
+Show = Callable[[Callable[[], ProgressStep], bool], None]
 
 
 @contextmanager
@@ -101,7 +101,7 @@ def _shown(first: float = SECONDS) -> Iterator[Show]:
 
 
 def _checking(show: Show) -> Show:
-    def checked(step: Callable[[], Step], last: bool) -> None:
+    def checked(step: Callable[[], ProgressStep], last: bool) -> None:
         check()
         show(step, last)
 
@@ -114,9 +114,9 @@ class _Log:
     def __init__(self, first: float) -> None:
         self.start, self.last = monotonic(), 0.0
         self.next = first
-        self.step: Callable[[], Step] | None = None
+        self.step: Callable[[], ProgressStep] | None = None
 
-    def add(self, step: Callable[[], Step], last: bool) -> None:
+    def add(self, step: Callable[[], ProgressStep], last: bool) -> None:
         self.step = step
         if monotonic() - self.start < self.next and not last:
             return
@@ -140,12 +140,12 @@ class _Bar:
     def __init__(self) -> None:
         from rich.progress import BarColumn, Progress, TextColumn
 
-        self.step: Callable[[], Step] | None = None
+        self.step: Callable[[], ProgressStep] | None = None
         columns = (TextColumn("{task.fields[share]}"), BarColumn(), TextColumn("{task.fields[at]}"))
         self.bar = Progress(*columns)
         self.task = self.bar.add_task("", total=None, share="begins", at="")
 
-    def add(self, step: Callable[[], Step], last: bool) -> None:
+    def add(self, step: Callable[[], ProgressStep], last: bool) -> None:
         self.step = step
 
     def __rich__(self) -> RenderableType:
@@ -169,7 +169,7 @@ def counted(what: str) -> Iterator[Callable[[int, int], None]]:
     """Yield what long work calls with how many of its parts are done, and how many there are."""
     with _shown() as show:
         yield lambda done, total: show(
-            lambda: Step(done, total, f"{what} {done} of {total}"), False
+            lambda: ProgressStep(done, total, f"{what} {done} of {total}"), False
         )
 
 
@@ -178,10 +178,10 @@ def generations() -> Iterator[Callable[[int, int, float], None]]:
     """Yield what a search calls with its generation, the most there can be, and the best cost."""
     start = monotonic()
 
-    def step(done: int, most: int, cost: float) -> Step:
+    def step(done: int, most: int, cost: float) -> ProgressStep:
         left = (most - done) * (monotonic() - start) / done
         share, at = f"generation {done} of at most {most}", f"cost {cost:.4g}"
-        return Step(done, max(done, most), share, f"{at}, at most {time_told(left)} left")
+        return ProgressStep(done, max(done, most), share, f"{at}, at most {time_told(left)} left")
 
     with _shown(0.0) as show:
         yield lambda done, most, cost: show(lambda: step(done, most, cost), False)
@@ -246,9 +246,9 @@ class Watched:
         self.told(self.tally.progress())
 
 
-def _on_the_way(progress: Progress, units: Mapping[str, Unit], ago: float) -> Step:
+def _on_the_way(progress: Progress, units: Mapping[str, Unit], ago: float) -> ProgressStep:
     share = 100 * progress.done / progress.total if progress.total else 100.0
-    return Step(
+    return ProgressStep(
         progress.done,
         progress.total,
         f"{share:.0f} %, {progress.done} of {progress.total} designs",
@@ -257,10 +257,12 @@ def _on_the_way(progress: Progress, units: Mapping[str, Unit], ago: float) -> St
     )
 
 
-def _in_the_end(last: Progress, units: Mapping[str, Unit]) -> Step:
+def _in_the_end(last: Progress, units: Mapping[str, Unit]) -> ProgressStep:
     computed = f"{last.computed} designs computed in {time_told(last.seconds)}"
     rate = rate_told(last.computed / max(last.seconds, 1e-9))
-    return Step(last.done, last.total, computed, rate, _best_and_failures("best", last, units))
+    return ProgressStep(
+        last.done, last.total, computed, rate, _best_and_failures("best", last, units)
+    )
 
 
 def _best_and_failures(name: str, progress: Progress, units: Mapping[str, Unit]) -> dict[str, str]:

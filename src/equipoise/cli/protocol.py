@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from equipoise import __version__
 from equipoise.cli.options import wants
-from equipoise.cli.worker import Call, Reply
+from equipoise.cli.worker import ToolCall, ToolReply
 from equipoise.errors import UsageError, needed
 from equipoise.folders import Folder
 
@@ -118,7 +118,7 @@ def server_of(workers: Workers) -> Server[Any]:
     )
 
 
-def result_of(reply: Reply, folder: Path) -> CallToolResult:
+def result_of(reply: ToolReply, folder: Path) -> CallToolResult:
     """A reply as the protocol wants it, with its pictures."""
     from mcp import types
 
@@ -172,7 +172,7 @@ class Workers:
     short: CapacityLimiter
     waiting: list[Process] = field(default_factory=list)
 
-    async def answer(self, name: str, given: dict[str, Any], long: bool) -> Reply:
+    async def answer(self, name: str, given: dict[str, Any], long: bool) -> ToolReply:
         """What a tool answers; where this is cancelled, the work ends.
 
         long : whether it may take minutes; such calls wait for each other, and others do not.
@@ -184,7 +184,7 @@ class Workers:
             try:
                 if not self.waiting:  # so that the next call need not wait for imports
                     self.waiting.append(await self._start())
-                told = await _asked(process, Call(name, given, str(self.folder)))
+                told = await _asked(process, ToolCall(name, given, str(self.folder)))
             finally:
                 if told and not long and len(self.waiting) < SHORT_CALLS:
                     self.waiting.append(process)
@@ -192,8 +192,8 @@ class Workers:
                     with anyio.CancelScope(shield=True):
                         await _end(process)
         if not told:
-            return Reply(DIED.format(status=process.returncode), {}, (), wrong=True)
-        return Reply(**json.loads(told))
+            return ToolReply(DIED.format(status=process.returncode), {}, (), wrong=True)
+        return ToolReply(**json.loads(told))
 
     async def _start(self) -> Process:
         import anyio
@@ -202,7 +202,7 @@ class Workers:
         return await anyio.open_process(words, stderr=subprocess.DEVNULL, cwd=self.folder)
 
 
-async def _asked(process: Process, call: Call) -> bytes:
+async def _asked(process: Process, call: ToolCall) -> bytes:
     """The line that a process answers; empty where it has died."""
     import anyio
 

@@ -91,7 +91,7 @@ def animate(
         With .gif and .mp4: light lines on a dark ground.  An SVG follows the reader's screen.
     """
     from equipoise.figures.points import followed
-    from equipoise.figures.stage import Arrow, check_seconds, check_width
+    from equipoise.figures.stage import ForceArrow, check_seconds, check_width
     from equipoise.results.analysis import analyze
     from equipoise.schema.files import write
     from equipoise.schema.opening import kind_of_text, opened
@@ -126,7 +126,7 @@ def animate(
         else:
             found = analyze(machine, count)
             scene = _swinging(found, exaggerate)
-            options["arrow"] = Arrow.of(found) if force else None
+            options["arrow"] = ForceArrow.of(found) if force else None
         if trace is None:
             options["traced"] = () if mode is not None else followed(found.motion)
         data = _animated(scene, machine.title, kind, options)

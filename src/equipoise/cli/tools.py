@@ -66,7 +66,7 @@ class CommandOutput:
 
 
 @dataclass(frozen=True)
-class Tool:
+class CommandTool:
     """A command, such as ``balance trade-off``, as the tool ``balance_trade_off``."""
 
     words: tuple[str, ...]
@@ -170,16 +170,16 @@ class Tool:
         return {key: value for key, one, value in named if drawn and one and _allows(one, value)}
 
 
-def tools() -> dict[str, Tool]:
+def tools() -> dict[str, CommandTool]:
     """Every command that is of use to a program, by its tool's name."""
     found = (one for name in sorted(app.resolved_commands()) for one in _below((name,), app[name]))
     return {one.name: one for one in found if one.words[0] not in LEFT_OUT}
 
 
-def _below(words: tuple[str, ...], command: App) -> Iterator[Tool]:
+def _below(words: tuple[str, ...], command: App) -> Iterator[CommandTool]:
     if words[-1].startswith("-"):
         return
-    yield Tool(words, command)
+    yield CommandTool(words, command)
     for name in command:
         if not name.startswith("-"):
             yield from _below((*words, name), command[name])

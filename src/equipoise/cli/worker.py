@@ -1,8 +1,8 @@
 """Calls of a program, computed in a process of their own: ``python -m equipoise.cli.worker``.
 
-Each line that it reads is a `Call` as JSON, and each that it writes the `Reply`.  It ends with its
-standard input, so that nothing computes on for a server that is gone, and SIGINT interrupts it as
-Ctrl-C does: files are all written or none is.
+Each line that it reads is a `ToolCall` as JSON, and each that it writes the `ToolReply`.  It ends
+with its standard input, so that nothing computes on for a server that is gone, and SIGINT
+interrupts it as Ctrl-C does: files are all written or none is.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from typing import Any
 
 
 @dataclass(frozen=True)
-class Call:
+class ToolCall:
     """A tool's name, its arguments, and the folder in which it runs."""
 
     name: str
@@ -27,7 +27,7 @@ class Call:
 
 
 @dataclass(frozen=True)
-class Reply:
+class ToolReply:
     """What a tool answers: its text, values and files; or, with `wrong`, a sentence alone."""
 
     text: str
@@ -36,7 +36,7 @@ class Reply:
     wrong: bool = False
 
 
-def reply_to(call: Call) -> Reply:
+def reply_to(call: ToolCall) -> ToolReply:
     """Run a command; what is wrong is told in the product's sentence."""
     from cyclopts import CycloptsError
 
@@ -50,10 +50,10 @@ def reply_to(call: Call) -> Reply:
             raise UsageError(unknown(call.name, known, "command"))
         answer = known[call.name].answer(call.given, Path(call.folder))
     except (EquipoiseError, CycloptsError) as error:
-        return Reply(str(error), {}, (), wrong=True)
+        return ToolReply(str(error), {}, (), wrong=True)
     except MemoryError as error:
-        return Reply(str(out_of_memory(error)), {}, (), wrong=True)
-    return Reply(answer.text, answer.values, tuple(map(str, answer.written)))
+        return ToolReply(str(out_of_memory(error)), {}, (), wrong=True)
+    return ToolReply(answer.text, answer.values, tuple(map(str, answer.written)))
 
 
 def _read(lines: Queue[bytes]) -> None:
@@ -77,7 +77,7 @@ def main() -> None:
     try:
         tools()  # imports the commands while there is nothing to do
         while True:
-            call = Call(**json.loads(lines.get()))
+            call = ToolCall(**json.loads(lines.get()))
             with recorded():
                 reply = reply_to(call)
             answers.write(f"{json.dumps(asdict(reply))}\n")

@@ -24,7 +24,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.codegen.figures import KINDS
-from equipoise.codegen.source import Source
+from equipoise.codegen.source import TermSource
 
 Array = np.ndarray[Any, Any]
 Loop = Callable[[Array, Array, Array], None]
@@ -60,7 +60,7 @@ def processors() -> int:
 _one_at_a_time = Lock()
 
 
-def run_loop(source: Source, table: Array, grid: Array) -> Array:
+def run_loop(source: TermSource, table: Array, grid: Array) -> Array:
     """What a loop gathers (P, R) of designs (P, T) over a grid (G, N)."""
     out = np.empty((len(table), len(source.gathered.columns)))
     if engine() == "numpy":
@@ -195,7 +195,7 @@ def _instruction(name: str, count: int, fastmath: tuple[str, ...] = ()) -> Any:
     return intrinsic(of_one if count == 1 else of_two)
 
 
-def run_numpy(out: Array, source: Source, table: Array, grid: Array) -> None:
+def run_numpy(out: Array, source: TermSource, table: Array, grid: Array) -> None:
     """Fill what a loop would gather, some designs at a time."""
     if source.carried:
         with np.errstate(all="ignore"):
@@ -215,7 +215,7 @@ def run_numpy(out: Array, source: Source, table: Array, grid: Array) -> None:
                 out[some, k] = KINDS[kind].gathered(x, shares)
 
 
-def march_numpy(out: Array, source: Source, table: Array, grid: Array) -> None:
+def march_numpy(out: Array, source: TermSource, table: Array, grid: Array) -> None:
     """Fill that where crank angles follow from each other: all designs go round together."""
     carried: Sequence[Any] = [np.full(len(table), one.start) for one in source.carried]
     gathered: dict[int, list[Array]] = {}

@@ -32,7 +32,7 @@ from equipoise.codegen.figures import (
     Gathered,
 )
 from equipoise.codegen.march import STEPS, March
-from equipoise.codegen.source import Source
+from equipoise.codegen.source import TermSource
 from equipoise.codegen.trace import FAR, Trace
 from equipoise.errors import UsageError
 from equipoise.keys.paths import KeyPath
@@ -97,7 +97,7 @@ def _grid(theta: Array, turns: int) -> JumpSampling:
     return JumpSampling(theta, np.zeros(len(theta)), theta, turns, 0)
 
 
-def grid_of(source: Source, theta: Array, shares: Array | None = None) -> Array:
+def grid_of(source: TermSource, theta: Array, shares: Array | None = None) -> Array:
     """Rows (G, N) of what the source wants to know of crank angles (N,), rad.
 
     shares : (N,) of each in a mean, where the source asks for them; none if None.
@@ -128,7 +128,7 @@ def sizes_of(machine: Machine, signals: Iterable[str]) -> dict[str, Any]:
 
 
 @dataclass(frozen=True, eq=False)
-class Designs:
+class DesignBatch:
     """Some designs (P) of a machine.
 
     table : (P, T) numbers, as the source wants them.
@@ -146,7 +146,9 @@ class Designs:
         return {name: size[some, 0] if np.ndim(size) else size for name, size in found.items()}
 
 
-def designs_of(source: Source, base: Linkage, paths: Sequence[str], values: Array) -> Designs:
+def designs_of(
+    source: TermSource, base: Linkage, paths: Sequence[str], values: Array
+) -> DesignBatch:
     """Designs of a base by the numbers (P, d) that vary, SI units, and their paths."""
     columns = {path: values[:, k, None] for k, path in enumerate(paths)}
     machine = with_columns(base.machine, columns)
@@ -158,7 +160,7 @@ def designs_of(source: Source, base: Linkage, paths: Sequence[str], values: Arra
         for column, part in enumerate(("real", "imag")[: 1 + slot.vector], slot.column):
             table[:, column] = np.ravel(np.real(getattr(value, part)))
             table[refused, column] = getattr(own, part)
-    return Designs(table, refused, machine)
+    return DesignBatch(table, refused, machine)
 
 
 class Batch:
@@ -245,7 +247,7 @@ class Batch:
 
     # -- crank angles ------------------------------------------------------------------------------
 
-    def _settled(self, designs: Designs) -> tuple[Array, Array]:
+    def _settled(self, designs: DesignBatch) -> tuple[Array, Array]:
         """Figures and reasons, with as many crank angles as it takes."""
         count = self.angles or FIRST
         found = self._at(designs.table, self._sampling(count))

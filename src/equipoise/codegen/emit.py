@@ -17,7 +17,7 @@ from equipoise.codegen.coupled import can_trace_followers
 from equipoise.codegen.figures import Figure, Gathered
 from equipoise.codegen.loops import can_trace
 from equipoise.codegen.shared_forces import check_shared
-from equipoise.codegen.source import Source, source_of
+from equipoise.codegen.source import TermSource, source_of
 from equipoise.codegen.steps import trace_demands, trace_joints, trace_motion
 from equipoise.codegen.terms import angle_of
 from equipoise.codegen.trace import Trace
@@ -302,7 +302,7 @@ def emit(
     paths: Collection[str] | None = None,
     has_shares: bool = False,
     alone: bool = False,
-) -> Source:
+) -> TermSource:
     """Trace the steps of a linkage, with the signals that are gathered.
 
     paths : of the numbers in which designs differ; None of one design.

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.codegen.emission import C, Lines
-from equipoise.codegen.source import Source
+from equipoise.codegen.source import TermSource
 from equipoise.codegen.terms import ANGLE, BOTH, DESIGN, Term, reached, substituted
 from equipoise.codegen.trace import Row
 from equipoise.errors import UsageError
@@ -28,7 +28,7 @@ GIVEN = ("speed", "acceleration")
 """Numbers of the drive that are handed to the function."""
 
 
-def in_c(source: Source, linkage: Linkage, names: Sequence[str]) -> str:
+def in_c(source: TermSource, linkage: Linkage, names: Sequence[str]) -> str:
     """C of ``state(theta, speed, acceleration, out)``, which fills in the signals of these names.
 
     Raises
@@ -45,7 +45,7 @@ def in_c(source: Source, linkage: Linkage, names: Sequence[str]) -> str:
     return "\n".join([HEAD, *lines.tables, head, "{", *(f"    {one}" for one in body), "}", ""])
 
 
-def _known(source: Source, linkage: Linkage, values: list[Any]) -> Iterator[tuple[Term, Any]]:
+def _known(source: TermSource, linkage: Linkage, values: list[Any]) -> Iterator[tuple[Term, Any]]:
     """Arguments, with the numbers and functions of the crank angle that take their place."""
     arguments = {one.args[0]: one for one in reached(values) if one.op == "argument"}
     for slot in source.slots:

@@ -15,7 +15,7 @@ import numpy as np
 from equipoise.codegen.emission import JAVASCRIPT, Lines, boundary
 from equipoise.codegen.emit import emit
 from equipoise.codegen.figures import Gathered
-from equipoise.codegen.source import Source
+from equipoise.codegen.source import TermSource
 from equipoise.codegen.terms import (
     ANGLE,
     BOTH,
@@ -56,7 +56,7 @@ class Script:
     text: str
     names: tuple[str, ...]
     paths: tuple[str, ...]
-    source: Source
+    source: TermSource
 
     def numbers(self, linkage: Linkage) -> Array:
         """Numbers (T,) of a linkage of the same build, for a script without paths."""
@@ -97,7 +97,7 @@ def javascript(
 
 
 def _of_numbers(
-    source: Source, linkage: Linkage, outputs: list[Any], numbers: Mapping[str, float]
+    source: TermSource, linkage: Linkage, outputs: list[Any], numbers: Mapping[str, float]
 ) -> list[Any]:
     """Outputs with what follows from these numbers in the place of slots."""
     graph = next((one.graph for one in reached(outputs)), Graph())
@@ -122,7 +122,7 @@ class _Writer:
     own, by_angle : what the design, and the crank angle alone, decide, of which others are made.
     """
 
-    def __init__(self, source: Source, outputs: list[Any]) -> None:
+    def __init__(self, source: TermSource, outputs: list[Any]) -> None:
         self.outputs = outputs
         self.by_angle = boundary(source.outputs, ANGLE)
         self.own = boundary(self.outputs, DESIGN)

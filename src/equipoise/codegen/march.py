@@ -9,7 +9,7 @@ import numpy as np
 
 from equipoise.codegen.figures import NO_FULL_TURN, NOT_COMPUTED
 from equipoise.codegen.loops import MARCH
-from equipoise.codegen.source import Source
+from equipoise.codegen.source import TermSource
 from equipoise.codegen.trace import Array
 from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.assembly.newton import JUMP, SETTLED
@@ -28,12 +28,12 @@ class March:
     source : whose loop it is.  begin : that crank angle, within the cycle of `period` (rad).
     """
 
-    source: Source
+    source: TermSource
     begin: float
     period: float
 
     @classmethod
-    def of(cls, source: Source, base: Linkage) -> March | None:
+    def of(cls, source: TermSource, base: Linkage) -> March | None:
         """The march of a source; None where each crank angle stands alone."""
         position = base.machine.position
         if not source.carried or position is None:

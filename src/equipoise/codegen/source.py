@@ -1,6 +1,6 @@
 """What a loop over designs and crank angles computes, and the loop as source.
 
-`Source` holds the terms of what is gathered, and what has to be handed to a loop: columns of a
+`TermSource` holds the terms of what is gathered, and what has to be handed to a loop: columns of a
 table, one row a design, and rows of a grid, one column a crank angle.  Its loop is compiled by
 Numba; NumPy runs `states`, the same terms on arrays.
 
@@ -24,7 +24,7 @@ from equipoise.codegen.figures import KINDS, Gathered
 from equipoise.codegen.loops import WATCHED
 from equipoise.codegen.polynomials import without_calls
 from equipoise.codegen.terms import ANGLE, BOTH, DESIGN, Term, reached
-from equipoise.codegen.trace import Array, Carried, Row, Slot, Trace
+from equipoise.codegen.trace import Array, Recurrence, Row, Slot, Trace
 from equipoise.signals import ROUNDING
 
 PLACE = {"highest": "{x} - {g} >", "lowest": "{g} - {x} >"}
@@ -37,7 +37,7 @@ HEAD = '"""Written by equipoise.codegen from the steps of a linkage."""'
 
 
 @dataclass(frozen=True)
-class Source:
+class TermSource:
     """Terms of what a loop gathers, with what has to be handed to it.
 
     values : by the names of what is gathered.
@@ -64,7 +64,7 @@ class Source:
     weakest: slice
     strongest: slice
     nearest: slice
-    carried: tuple[Carried, ...]
+    carried: tuple[Recurrence, ...]
     following: tuple[Any, ...]
     ends: Mapping[str, list[int]]
     has_shares: bool = False
@@ -155,7 +155,7 @@ def _function(text: str) -> Callable[..., tuple[Any, ...]]:
 
 def source_of(
     trace: Trace, wanted: Gathered, signals: Mapping[str, Any], has_shares: bool = False
-) -> Source:
+) -> TermSource:
     """The source of what is wanted of a trace; signals : their values by name."""
     numbers = trace.numbers()
     margins = {f"margin {k}": number for k, (number, _) in enumerate(numbers)}
@@ -171,7 +171,7 @@ def source_of(
     places = pairwise(accumulate(map(len, columns), initial=0))
     _, weakest, strongest, nearest, last = (slice(*both) for both in places)
     watches = [*enumerate(ends.values(), last.start)]
-    return Source(
+    return TermSource(
         {**signals, **margins, **cosines},
         tuple(trace.slots.values()),
         trace.width,
@@ -192,7 +192,7 @@ def source_of(
 # -- the loop --------------------------------------------------------------------------------------
 
 
-def _loop(source: Source, lines: Lines) -> Iterator[str]:
+def _loop(source: TermSource, lines: Lines) -> Iterator[str]:
     columns = {column: f"g{k}" for k, column in enumerate(source.gathered.columns)}
     own = boundary(lines.outputs, DESIGN)
     yield "def loop(table, grid, out):"
@@ -221,14 +221,14 @@ def _of_design(lines: Lines, own: Sequence[Term]) -> Iterator[str]:
     yield from lines.write((DESIGN,), own)
 
 
-def _of_angle(source: Source, first: int = 0) -> Iterator[str]:
+def _of_angle(source: TermSource, first: int = 0) -> Iterator[str]:
     """Lines for the grid's rows from this one on."""
     rows = [f"r{k}" for k in range(len(source._by_angle))]
     rows += ["share"] * source.has_shares
     return (f"{name} = grid[{k}, k]" for k, name in enumerate(rows, first))
 
 
-def _march(source: Source, lines: Lines) -> Iterator[str]:
+def _march(source: TermSource, lines: Lines) -> Iterator[str]:
     """The loop where crank angles follow from each other: some designs go round side by side.
 
     What they have of their own lies in `work`, each value of all of them in a row.
@@ -282,7 +282,7 @@ def _march(source: Source, lines: Lines) -> Iterator[str]:
 
 
 def _gathering(
-    source: Source,
+    source: TermSource,
     columns: Mapping[tuple[str, str], str],
     signals: Mapping[str, str],
     number: str = "k",

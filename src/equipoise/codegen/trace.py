@@ -57,7 +57,7 @@ class Row:
 
 
 @dataclass(frozen=True)
-class Carried:
+class Recurrence:
     """A value that each crank angle has from the one before.
 
     before : the argument.  start : of every design.  watch : what its last value decides, a key of
@@ -99,7 +99,7 @@ class Trace:
         self.slots: dict[str, Slot] = {}
         self.rows: dict[str, Row] = {}
         self.running: dict[str, Any] = {}
-        self.carried: list[Carried] = []
+        self.carried: list[Recurrence] = []
         self.following: dict[Term, Any] = {}
         self.width = 0
         self.fixed = linkage.shared is not None and paths is not None
@@ -148,7 +148,7 @@ class Trace:
         if isinstance(start, complex):
             return Pair(self.carry(start.real, watch), self.carry(start.imag, watch))
         before = self.graph.argument(f"c{len(self.carried)}", BOTH)
-        self.carried.append(Carried(before, float(start), watch))
+        self.carried.append(Recurrence(before, float(start), watch))
         return before
 
     def carry_on(self, before: Any, value: Any) -> None:

@@ -61,7 +61,7 @@ SAME = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
-class Signal:
+class AccelerationSignal:
     """Acceleration (axes, N), m/s2, at equal steps of time.
 
     rate : samples a second.
@@ -121,7 +121,7 @@ def fade(count: int, rate: float) -> Array:
     return np.asarray(np.sin(np.pi / 2 * np.minimum(from_end / FADE, 1.0)) ** 2)
 
 
-def signal(time: Any, acceleration: Any, periodic: bool = False) -> Signal:
+def signal(time: Any, acceleration: Any, periodic: bool = False) -> AccelerationSignal:
     """A record, checked; see `weigh_signal`.
 
     Raises
@@ -135,7 +135,7 @@ def signal(time: Any, acceleration: Any, periodic: bool = False) -> Signal:
     at = uneven(times)
     if at is not None:
         raise UsageError(f"time: sample {at + 1}, at {times[at]:.6g} s, {UNEVEN_STEPS}")
-    found = Signal(values, (len(times) - 1) / float(times[-1] - times[0]), periodic)
+    found = AccelerationSignal(values, (len(times) - 1) / float(times[-1] - times[0]), periodic)
     if periodic:
         span = np.ptp(values, axis=1)
         if np.any(span > 0) and np.all(np.abs(values[:, -1] - values[:, 0]) <= SAME * span):

@@ -18,14 +18,14 @@ import numpy as np
 
 from equipoise.errors import UsageError
 from equipoise.figures.captions import Label, captions, ruler_ends
-from equipoise.figures.stage import Arrow, Moves, Stage, check_seconds, check_width
+from equipoise.figures.stage import ForceArrow, Moves, Stage, check_seconds, check_width
 from equipoise.i18n import said, say
 from equipoise.mechanism.parts.machine import unknown
 from equipoise.symbols.looks import DARK, LIGHT, LOOKS, Colors, pixels
 from equipoise.symbols.pieces import pieces
 from equipoise.symbols.scene import Scene
 from equipoise.symbols.shapes import Array, Shape, arrow
-from equipoise.symbols.tracks import Track
+from equipoise.symbols.tracks import PieceTrack
 
 HEAD = 13.0
 """Length of the head of an arrow, units."""
@@ -73,7 +73,7 @@ def laid_out(
     traced: Collection[str] = (),
     frames: int = 60,
     width: int = 640,
-    arrow: Arrow | None = None,
+    arrow: ForceArrow | None = None,
 ) -> Moving:
     """Lay out a machine.
 
@@ -134,8 +134,8 @@ def _force(stage: Stage) -> Iterator[Part]:
     longest = float(shaft.max())
     shapes = arrow("force", longest)
     tracks = (
-        Track(foot, angle, shaft / longest),
-        Track(foot + reach, angle, short),
+        PieceTrack(foot, angle, shaft / longest),
+        PieceTrack(foot + reach, angle, short),
     )
     for shape, track in zip(shapes, tracks, strict=True):
         yield Part((_stroke(stage, shape),), stage.moves(track))
@@ -162,7 +162,7 @@ def animated_svg(
     seconds: float = 2.0,
     frames: int = 60,
     width: int = 640,
-    arrow: Arrow | None = None,
+    arrow: ForceArrow | None = None,
 ) -> str:
     """A linkage that moves, the same text on every run.
 

@@ -15,7 +15,7 @@ from equipoise.i18n import say
 from equipoise.results.charts import Panel
 
 if TYPE_CHECKING:
-    from equipoise.figures.legend import Key
+    from equipoise.figures.legend import LegendKey
 
 LIKE, ALIGNED = 5.0, 1.3
 """From how much less than others a panel spans that is drawn larger than they are; over the longest
@@ -43,7 +43,7 @@ class Cell:
     right: float = 0.0
     above: float = 0.0
     below: float = 0.0
-    keys: tuple[Key, ...] = ()
+    keys: tuple[LegendKey, ...] = ()
     beside: bool = False
     """Whether its legend stands on the line of its title."""
     titles: tuple[str, ...] = ()

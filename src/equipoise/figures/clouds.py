@@ -32,7 +32,7 @@ MARGIN = 0.05
 
 
 @dataclass(frozen=True, eq=False)
-class Designs:
+class CloudDesigns:
     """Designs (K) that were chosen, among all.
 
     by : what they were chosen by, and which way.  numbers : names of what varies.
@@ -107,7 +107,7 @@ class Designs:
         return Axis(label, unit_of(told), scale, room=MARGIN)  # type: ignore[arg-type]
 
 
-def counted(designs: Designs) -> str:
+def counted(designs: CloudDesigns) -> str:
     """How many designs there are, and of which kinds."""
     cloud = designs.cloud
     counts = {"count": cloud.kept + cloud.beyond + cloud.failed}
@@ -121,12 +121,12 @@ def counted(designs: Designs) -> str:
     return say(", ").join(told)
 
 
-def in_words(designs: Designs, names: Iterable[str]) -> list[str]:
+def in_words(designs: CloudDesigns, names: Iterable[str]) -> list[str]:
     """What numbers and figures are called."""
     return [unit_in(designs.units, name).called for name in names]
 
 
-def keys_for(designs: Designs, pairs: Iterable[Pair] = ()) -> tuple[tuple[str, str], ...]:
+def keys_for(designs: CloudDesigns, pairs: Iterable[Pair] = ()) -> tuple[tuple[str, str], ...]:
     """What a legend tells of points over these pairs; of lines from axis to axis where none."""
     cloud, pairs = designs.cloud, [*pairs]
     sign = "" if pairs else " line"

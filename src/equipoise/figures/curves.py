@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.figures.sheet import MIDDLE, Array, Box, Labels, Sheet, Signs, Stroke, Words
-from equipoise.figures.style import INK, SMALL, Look, look_of, mixed
+from equipoise.figures.style import INK, SMALL, DrawingStyle, look_of, mixed
 from equipoise.figures.view import Scale, View, corners_of, ends_of, ticks_of
 from equipoise.results.charts import Area, Bars, Cells, Curve, Panel, Rule
 from equipoise.symbols import looks
@@ -42,7 +42,7 @@ def draw_curve(view: View, curve: Curve, number: int) -> None:
             line = Stroke(longer, look.color, look.width, look.lengths, clip=view.box)
             view.sheet.add(line, look.order)
         if len(alone):
-            dot = Look(look.color, sign=".", size=2.5)
+            dot = DrawingStyle(look.color, sign=".", size=2.5)
             view.sheet.add(signs_at(alone, dot, view.box), look.order)
     if look.sign:
         at = _spaced(places, number, view.box) if look.spaced else np.flatnonzero(there)
@@ -80,7 +80,7 @@ def _spaced(places: Array, number: int, box: Box) -> Array:
     return np.asarray(nearest[np.all(inside, axis=1)])
 
 
-def signs_at(places: Array, look: Look, clip: Box | None = None) -> Signs:
+def signs_at(places: Array, look: DrawingStyle, clip: Box | None = None) -> Signs:
     """Signs at places (N, 2) of the sheet."""
     width = max(look.width, 1.0)
     return Signs(places, look.sign, look.size, look.color, look.inside, width, clip)
@@ -169,7 +169,7 @@ def draw_rule(view: View, rule: Rule) -> None:
         view.sheet.add(words, 7.0)
 
 
-def draw_arrow(view: View, tail: complex, head: complex, look: Look) -> None:
+def draw_arrow(view: View, tail: complex, head: complex, look: DrawingStyle) -> None:
     """An arrow between two places, complex, SI units."""
     (start,), (end,) = (view.places(z.real, z.imag) for z in (tail, head))
     way = end - start

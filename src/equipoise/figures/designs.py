@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from equipoise.figures.clouds import Designs, Own, Pair, counted, in_words, keys_for
+from equipoise.figures.clouds import CloudDesigns, Own, Pair, counted, in_words, keys_for
 from equipoise.figures.parallel import parallel
 from equipoise.figures.shared import by_name, continued, groups
 from equipoise.figures.studies import PERCENT, Units, unit_of
@@ -61,7 +61,7 @@ def best_charts(
     labels = [str(number) for number in found.designs.tolist()]
     table = np.hstack([found.values, found.figures])[: None if aimed else 0]
     given = (title, found.by, found.numbers, store.wishes, units, table, labels)
-    designs = Designs(*given, store.in_blocks, store.size, own, found.trade_off, aimed)
+    designs = CloudDesigns(*given, store.in_blocks, store.size, own, found.trade_off, aimed)
     return charts_of(designs)
 
 
@@ -72,17 +72,17 @@ def searched_charts(found: Searched, units: Units, own: Own | None = None) -> di
     table = np.hstack([found.values, found.figures])
     given = (study.title, found.objectives, study.paths, study.outputs, units, table, labels)
     front = found.figures[:, [study.names.index(name) for name in found.objectives]]
-    designs = Designs(*given, lambda: [(0, found.tried)], len(found.tried.values), own, front)
+    designs = CloudDesigns(*given, lambda: [(0, found.tried)], len(found.tried.values), own, front)
     return {**charts_of(designs), "search": grown(found, units)}
 
 
-def charts_of(designs: Designs) -> dict[str, Chart]:
+def charts_of(designs: CloudDesigns) -> dict[str, Chart]:
     """Every chart of them by its name."""
     fronts = [front(designs)] if len(designs.by) > 1 else []
     return by_name([*fronts, *over_numbers(designs), *parallel(designs)])
 
 
-def front(designs: Designs) -> Chart:
+def front(designs: CloudDesigns) -> Chart:
     """Every two aims against each other."""
     pairs = list(combinations(designs.by, 2))
     alone = len(pairs) == 1
@@ -101,7 +101,7 @@ def front(designs: Designs) -> Chart:
     )
 
 
-def over_numbers(designs: Designs) -> Iterator[Chart]:
+def over_numbers(designs: CloudDesigns) -> Iterator[Chart]:
     """The first aim over each number that varies."""
     aim = designs.aim
     every = [name for name in designs.numbers if name != aim]
@@ -115,7 +115,7 @@ def over_numbers(designs: Designs) -> Iterator[Chart]:
         yield Chart(own, designs.title, what, panels, columns, False, keys, words=told)
 
 
-def _against(designs: Designs, pair: Pair, alone: bool = False) -> Panel:
+def _against(designs: CloudDesigns, pair: Pair, alone: bool = False) -> Panel:
     """All designs, the chosen ones and the model itself over two columns."""
     first, second = pair
     x, y = (designs.axis(name, way=alone or name not in designs.numbers) for name in pair)
@@ -147,7 +147,7 @@ def _against(designs: Designs, pair: Pair, alone: bool = False) -> Panel:
     )
 
 
-def _told(designs: Designs, column: Array, alone: bool) -> Sequence[int]:
+def _told(designs: CloudDesigns, column: Array, alone: bool) -> Sequence[int]:
     """Which of the chosen designs are named: the ends of a front, the nearest to broken limits."""
     if not len(column):
         return ()

@@ -18,7 +18,7 @@ from matplotlib.transforms import Affine2D
 from equipoise.errors import UsageError, needed
 from equipoise.figures.animation import Moving, Part, Stroke, laid_out
 from equipoise.figures.paint import settings
-from equipoise.figures.stage import RATES, Arrow, check_seconds, check_width, in_a_turn
+from equipoise.figures.stage import RATES, ForceArrow, check_seconds, check_width, in_a_turn
 from equipoise.symbols.looks import DARK, LIGHT, LOOKS, Colors, Look
 from equipoise.symbols.shapes import Array
 
@@ -44,7 +44,7 @@ def gif(
     traced: Collection[str] = (),
     seconds: float = 2.0,
     width: int = 640,
-    arrow: Arrow | None = None,
+    arrow: ForceArrow | None = None,
     dark: bool = False,
     told: Told | None = None,
 ) -> bytes:
@@ -89,7 +89,7 @@ def mp4(
     seconds: float = 2.0,
     turns: int | None = None,
     width: int = 640,
-    arrow: Arrow | None = None,
+    arrow: ForceArrow | None = None,
     dark: bool = False,
     told: Told | None = None,
 ) -> bytes:
@@ -129,7 +129,7 @@ def _prepared(
     seconds: float,
     kind: str,
     width: int,
-    arrow: Arrow | None,
+    arrow: ForceArrow | None,
 ) -> Moving:
     check_seconds(seconds)
     check_width(width)

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from equipoise.figures.cells import Cell, cell_of, make_room, share
-from equipoise.figures.legend import APART, KEY, Key, draw_legend, keys_of, kind_of, rows_of
+from equipoise.figures.legend import APART, KEY, LegendKey, draw_legend, keys_of, kind_of, rows_of
 from equipoise.figures.panel import LEAD, draw, flag_height, frame
 from equipoise.figures.sheet import Sheet, Words, lines_of, width_of
 from equipoise.figures.style import INK, LARGE, LINES, NORMAL, SMALL
@@ -41,7 +41,7 @@ def lay_out(chart: Chart, wide: float = WIDE, headed: bool = True) -> Sheet:
     """
     sheet = Sheet(wide, 0.0, said(chart.title))
     top = _heading(sheet, chart) if headed else TOP
-    keys = [Key(role, name, kind_of(role)) for role, name in chart.keys]
+    keys = [LegendKey(role, name, kind_of(role)) for role, name in chart.keys]
     keys += [key for panel in chart.panels for key in keys_of(panel, chart_level=True)]
     keys = [*dict.fromkeys(keys)]
     top = draw_legend(sheet, keys, EDGE, wide - EDGE, top) + (5 if keys else 2)

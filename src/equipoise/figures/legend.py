@@ -20,7 +20,7 @@ KEY, SAMPLE, APART = 13.5, 20.0, 14.0
 
 
 @dataclass(frozen=True)
-class Key:
+class LegendKey:
     """An entry of a legend: how something looks, and its name."""
 
     role: str
@@ -42,9 +42,9 @@ def kind_of(role: str) -> str:
     return "patch" if look.fill and not look.sign else "line"
 
 
-def keys_of(panel: Panel, chart_level: bool) -> list[Key]:
+def keys_of(panel: Panel, chart_level: bool) -> list[LegendKey]:
     """What has a name in a panel: what the chart's legend tells, or that of the panel itself."""
-    found = [Key(c.role, c.label, "line", c.dashed) for c in panel.curves if c.label]
+    found = [LegendKey(c.role, c.label, "line", c.dashed) for c in panel.curves if c.label]
     if panel.keyed:
         found = [] if chart_level else found
     elif not chart_level:
@@ -53,15 +53,15 @@ def keys_of(panel: Panel, chart_level: bool) -> list[Key]:
         patches: Sequence[Any] = (*panel.bars, *panel.areas, *panel.outlines)
         kinds = ("patch", patches), ("line", panel.lines), ("sign", panel.marks)
         for kind, every in (*kinds, ("patch", panel.bands)):
-            found += [Key(one.role, one.label, kind) for one in every if one.label]
+            found += [LegendKey(one.role, one.label, kind) for one in every if one.label]
         if panel.surface is not None and panel.surface.lacking:
-            found.append(Key("off", panel.surface.lacking, "patch"))
+            found.append(LegendKey("off", panel.surface.lacking, "patch"))
     return [*dict.fromkeys(found)]
 
 
-def rows_of(keys: list[Key], room: float) -> list[list[Key]]:
+def rows_of(keys: list[LegendKey], room: float) -> list[list[LegendKey]]:
     """Entries of a legend in rows."""
-    rows: list[list[Key]] = []
+    rows: list[list[LegendKey]] = []
     left = 0.0
     for key in keys:
         wide = key.width + APART
@@ -73,7 +73,9 @@ def rows_of(keys: list[Key], room: float) -> list[list[Key]]:
     return rows
 
 
-def draw_legend(sheet: Sheet, keys: list[Key], left: float, right: float, top: float) -> float:
+def draw_legend(
+    sheet: Sheet, keys: list[LegendKey], left: float, right: float, top: float
+) -> float:
     """Draw entries below each other in rows; where they end."""
     for row in rows_of(keys, right - left):
         x = left
@@ -87,7 +89,7 @@ def draw_legend(sheet: Sheet, keys: list[Key], left: float, right: float, top: f
     return top
 
 
-def _sample(sheet: Sheet, key: Key, x: float, y: float) -> None:
+def _sample(sheet: Sheet, key: LegendKey, x: float, y: float) -> None:
     if key.role in LOOKS:
         draw_shapes(sheet, sample_of(key.role), lambda z: np.array([x + SAMPLE / 2, y]), 1.0, 6.0)
         return

@@ -20,7 +20,17 @@ from equipoise.figures.curves import (
     signs_at,
 )
 from equipoise.figures.sheet import MIDDLE, Array, Stroke, Text, Words, spread, width_of
-from equipoise.figures.style import GRID, INK, KINDS, LINES, NORMAL, PALE, SMALL, Look, look_of
+from equipoise.figures.style import (
+    GRID,
+    INK,
+    KINDS,
+    LINES,
+    NORMAL,
+    PALE,
+    SMALL,
+    DrawingStyle,
+    look_of,
+)
 from equipoise.figures.view import View, corners_of
 from equipoise.results.charts import Mark, Panel
 
@@ -111,7 +121,7 @@ def _rings(view: View) -> None:
     view.sheet.add(Stroke(lines, PALE, 0.6, clip=view.box), 0.5)
 
 
-def _level(view: View, at: float, look: Look, axis: str) -> None:
+def _level(view: View, at: float, look: DrawingStyle, axis: str) -> None:
     """A line from end to end at a value of an axis, where that is in sight."""
     left, top, right, bottom = view.box
     if axis == "y":
@@ -192,7 +202,11 @@ def _marks(view: View) -> None:
         apart.append((mark, place))
         look = look_of(mark.role)
         if mark.sign:
-            signs = look if look.sign and not look.spaced else Look(look.color, sign="o", size=4.0)
+            signs = (
+                look
+                if look.sign and not look.spaced
+                else DrawingStyle(look.color, sign="o", size=4.0)
+            )
             view.sheet.add(signs_at(place[None], signs), max(look.order, 4.0))
             view.labels.reserve(float(place[0]), float(place[1]), max(signs.size / 2, 2.0))
     for mark, (x, y) in apart:

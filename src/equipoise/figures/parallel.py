@@ -7,12 +7,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from equipoise.figures.clouds import Designs, counted, keys_for
+from equipoise.figures.clouds import CloudDesigns, counted, keys_for
 from equipoise.figures.shared import continued, groups
 from equipoise.figures.sheet import lines_of
 from equipoise.figures.style import SMALL
 from equipoise.i18n import say
-from equipoise.results.charts import Array, Axis, Chart, Curve, Flag, Panel, Rule
+from equipoise.results.charts import Array, Axis, Chart, Curve, Panel, PlaceLabel, Rule
 from equipoise.studies.cloud import SOME
 
 RULES, TALL, WIDE = 8, 190.0, 470.0
@@ -21,7 +21,7 @@ BEST = 10
 """Chosen designs that are drawn as lines."""
 
 
-def parallel(designs: Designs) -> Iterator[Chart]:
+def parallel(designs: CloudDesigns) -> Iterator[Chart]:
     """Numbers and figures as axes side by side, a line for each design."""
     others = [name for name in designs.names if name != designs.aim]
     some, chosen = len(designs.cloud.good), len(designs.table)
@@ -38,7 +38,7 @@ def parallel(designs: Designs) -> Iterator[Chart]:
         yield Chart(f"parallel{suffix}", designs.title, what, (panel,), keys=keys, words=words)
 
 
-def _rules(designs: Designs, names: Sequence[str]) -> Panel:
+def _rules(designs: CloudDesigns, names: Sequence[str]) -> Panel:
     columns, cloud, model = designs.columns, designs.cloud, designs.model
     axes = {}
     for name in names:
@@ -87,8 +87,8 @@ def _share(axis: Axis, values: Array | float) -> Array:
     return np.asarray((at - low) / (high - low))
 
 
-def _flag(at: int, axis: Axis, count: int) -> Flag:
+def _flag(at: int, axis: Axis, count: int) -> PlaceLabel:
     """Words above an axis, in lines as wide as there is room."""
     lines = lines_of(axis.label, WIDE / count - 8, SMALL)
     texts = [*lines, axis.unit_name] if axis.unit_name else lines
-    return Flag(float(at), tuple(texts))
+    return PlaceLabel(float(at), tuple(texts))

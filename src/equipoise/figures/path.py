@@ -11,7 +11,7 @@ import numpy as np
 from equipoise.figures.linkage import drawn
 from equipoise.figures.shared import angle_step
 from equipoise.figures.style import short
-from equipoise.figures.tip_paths import INSTANTS, Instant, Paths
+from equipoise.figures.tip_paths import INSTANTS, PathInstant, Paths
 from equipoise.i18n import say
 from equipoise.results.charts import Array, Arrow, Axis, Chart, Curve, Mark, Panel, quantity
 from equipoise.symbols.shapes import soil
@@ -128,7 +128,7 @@ def _ground_panel(paths: Paths, held: tuple[complex, complex]) -> Panel:
     )
 
 
-def _outside(instants: list[Instant], ahead: bool) -> list[Instant]:
+def _outside(instants: list[PathInstant], ahead: bool) -> list[PathInstant]:
     """Instants over ground with their names outside, and clear of the dimension."""
     places = {one.name: one.place for one in instants}
     wishes = {"lowest": -135.0 if ahead else -45.0}
@@ -137,7 +137,7 @@ def _outside(instants: list[Instant], ahead: bool) -> list[Instant]:
     return [replace(one, away=wishes.get(one.name, one.away)) for one in instants]
 
 
-def _names(instants: Sequence[Instant], lower: float = 0.0) -> Iterator[Mark]:
+def _names(instants: Sequence[PathInstant], lower: float = 0.0) -> Iterator[Mark]:
     """What the instants are; lower : how far below their places, m."""
     for one in instants:
         yield Mark.of(one.place - 1j * lower, say(INSTANTS[one.name]), "ink", one.away, sign=False)
@@ -178,12 +178,12 @@ def _senses(paths: Paths, over_ground: bool) -> Iterator[Arrow]:
         yield Arrow(head - 0.03 * size * (head - tail) / (abs(head - tail) or 1.0), head, "main")
 
 
-def _ticks(paths: Paths) -> Iterator[tuple[Instant, complex]]:
+def _ticks(paths: Paths) -> Iterator[tuple[PathInstant, complex]]:
     """Round crank angles on the path, and half a short line across it there."""
     size = float(np.ptp(paths.on_machine(paths.cycle).imag))
     for angle in range(0, 360 * paths.curve.turns, angle_step(paths.curve.turns)):
         place, away = paths.place_and_away(paths.sense * np.radians(angle), over_ground=False)
-        yield Instant(str(angle), place, away), 0.012 * size * np.exp(1j * np.radians(away))
+        yield PathInstant(str(angle), place, away), 0.012 * size * np.exp(1j * np.radians(away))
 
 
 def _hill_spacing(

@@ -22,7 +22,7 @@ from equipoise.figures.style import free_name, short
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.kinematics.tip import largest, smallest
 from equipoise.quantities import Dimension
-from equipoise.results.charts import Array, Axis, Band, Chart, Curve, Flag, Line, Mark, Panel
+from equipoise.results.charts import Array, Axis, Band, Chart, Curve, Line, Mark, Panel, PlaceLabel
 
 if TYPE_CHECKING:
     from equipoise.planting.summary import PlantingFigures
@@ -105,10 +105,10 @@ def stay_panel(
     )
 
 
-def _flags(figures: PlantingFigures) -> tuple[Flag, ...]:
+def _flags(figures: PlantingFigures) -> tuple[PlaceLabel, ...]:
     """What the events are, and when."""
     at = {text: figures[f"{name}.crank_angle"] for name, text in EVENTS.items()}
-    return tuple(Flag(angle, (say(text), degrees_told(angle))) for text, angle in at.items())
+    return tuple(PlaceLabel(angle, (say(text), degrees_told(angle))) for text, angle in at.items())
 
 
 def _chart(

@@ -214,7 +214,7 @@ UNBOUNDED = 5e3
 
 
 @dataclass(frozen=True, eq=False)
-class Named:
+class SpeedCurve:
     """Values (S,) against speed, and what they are called."""
 
     name: str
@@ -234,14 +234,16 @@ def bounded(values: Array) -> Array:
     return np.asarray(finite[finite <= UNBOUNDED * np.median(finite)])
 
 
-def ordered(read: Mapping[str, Array]) -> list[Named]:
+def ordered(read: Mapping[str, Array]) -> list[SpeedCurve]:
     """Curves that are named, in their order; behind them the quieter ones that are not."""
-    found = [Named(name, values) for name, values in read.items()]
+    found = [SpeedCurve(name, values) for name, values in read.items()]
     loudest = sorted(found, key=lambda one: -one.largest)[: len(KINDS)]
     return [c for c in found if c in loudest] + [c for c in found if c not in loudest]
 
 
-def curves_of(x: Array, found: Sequence[Named], stable: Array | None = None) -> tuple[Curve, ...]:
+def curves_of(
+    x: Array, found: Sequence[SpeedCurve], stable: Array | None = None
+) -> tuple[Curve, ...]:
     """Curves over places (S,), dashed where they are not stable; the quieter ones share a name."""
     drawn = []
     quieter = say("{count} quieter ones", count=len(found) - len(KINDS))
@@ -260,7 +262,7 @@ def curves_of(x: Array, found: Sequence[Named], stable: Array | None = None) -> 
 
 
 def log_ends(
-    found: Sequence[Named], below: float, above: float, more: Any = ()
+    found: Sequence[SpeedCurve], below: float, above: float, more: Any = ()
 ) -> tuple[float, float]:
     """Ends of a log axis that holds curves and some more values, with room as factors."""
     every = np.concatenate([*(bounded(one.values) for one in found), np.asarray(more, float)])

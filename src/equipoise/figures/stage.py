@@ -17,7 +17,7 @@ from equipoise.results.charts import Axis, quantity
 from equipoise.symbols.clear import clear_angle
 from equipoise.symbols.scene import Scene
 from equipoise.symbols.shapes import FOOT, Array
-from equipoise.symbols.tracks import Track
+from equipoise.symbols.tracks import PieceTrack
 
 if TYPE_CHECKING:
     from equipoise.results.analysis import Analysis
@@ -41,7 +41,7 @@ WIDTHS = 100, 3840
 
 
 @dataclass(frozen=True, eq=False)
-class Arrow:
+class ForceArrow:
     """The shaking force, and where it is drawn.
 
     place : complex, m.  force : (N,) complex, N, at the crank angles of the scene.
@@ -53,7 +53,7 @@ class Arrow:
     of_one: bool = False
 
     @classmethod
-    def of(cls, analysis: Analysis) -> Arrow:
+    def of(cls, analysis: Analysis) -> ForceArrow:
         """That of a machine whose masses are known."""
         forces, of_one = analysis.forces, len(analysis.machine.rows) > 1
         return cls(forces.about, forces.shaking_force.value, of_one)
@@ -67,7 +67,7 @@ class Stage:
     """
 
     scene: Scene
-    arrow: Arrow | None
+    arrow: ForceArrow | None
     frames: int
     width: int
 
@@ -231,7 +231,7 @@ class Stage:
         """Of N values as many as a smooth line needs."""
         return values[:: max(1, int(len(values) / max(self.turns, 1) / IN_A_TURN))]
 
-    def moves(self, track: Track) -> Moves:
+    def moves(self, track: PieceTrack) -> Moves:
         """The motion of a part at the instants."""
         count, angle = len(track.angle), -track.angle
         turns = round((angle[-1] - angle[0]) * count / (count - 1) / (2 * np.pi))

@@ -22,7 +22,7 @@ SMALL, NORMAL, LARGE = 7.5, 8.5, 10.5
 
 
 @dataclass(frozen=True)
-class Look:
+class DrawingStyle:
     """How something is drawn.
 
     dashes : lengths over the width.  sign : a marker, as Matplotlib calls it, of so many points.
@@ -71,138 +71,138 @@ KINDS = (
 POINTS, DIM = "#6b9fc9", "#c4c4c4"
 """Of what is many, and of that of it which is not wanted; in grey one is lighter."""
 
-LOOKS: dict[str, Look] = {
-    "main": Look(),
-    "ink": Look(INK),
-    "lines": Look(LINES, 0.9),
-    "strong": Look(INK, 1.8),
-    "dashed ink": Look(INK, 1.2, (4.0, 2.0)),
-    "stress": Look(STRESS, 1.8, order=3.4),
-    "faint": Look(FAINT, 0.9, order=2),
-    "thin": Look(MAIN, 1.0),
-    "zero": Look(FAINT, 0.8, order=1),
+LOOKS: dict[str, DrawingStyle] = {
+    "main": DrawingStyle(),
+    "ink": DrawingStyle(INK),
+    "lines": DrawingStyle(LINES, 0.9),
+    "strong": DrawingStyle(INK, 1.8),
+    "dashed ink": DrawingStyle(INK, 1.2, (4.0, 2.0)),
+    "stress": DrawingStyle(STRESS, 1.8, order=3.4),
+    "faint": DrawingStyle(FAINT, 0.9, order=2),
+    "thin": DrawingStyle(MAIN, 1.0),
+    "zero": DrawingStyle(FAINT, 0.8, order=1),
     # rows, and before and after: the thin line lies on the strong one, so that both are seen
-    "one": Look(LINES, 0.9, order=3.1),
-    "all": Look(MAIN, 1.9),
-    "before": Look(LINES, 0.9, order=3.1),
-    "after": Look(MAIN, 1.9),
-    "unchanged": Look(LINES, 1.3),
-    "bar before": Look(LINES, fill=FAINT),
-    "bar after": Look(MAIN, fill=MAIN),
+    "one": DrawingStyle(LINES, 0.9, order=3.1),
+    "all": DrawingStyle(MAIN, 1.9),
+    "before": DrawingStyle(LINES, 0.9, order=3.1),
+    "after": DrawingStyle(MAIN, 1.9),
+    "unchanged": DrawingStyle(LINES, 1.3),
+    "bar before": DrawingStyle(LINES, fill=FAINT),
+    "bar after": DrawingStyle(MAIN, fill=MAIN),
     # several signals of one quantity
-    "several 1": Look(MAIN),
-    "several 2": Look(STRESS, dashes=(5, 1.6)),
-    "several 3": Look(INK, dashes=(6, 1.6, 1.2, 1.6)),
-    "several 4": Look(EARTH, dashes=(1.3, 1.1)),
-    "several 5": Look(LINES, dashes=(10, 3)),
-    "several 6": Look(POINTS),
-    "air": Look(LINES, dashes=(4, 1.6)),
-    "soil signal": Look(STRESS),
+    "several 1": DrawingStyle(MAIN),
+    "several 2": DrawingStyle(STRESS, dashes=(5, 1.6)),
+    "several 3": DrawingStyle(INK, dashes=(6, 1.6, 1.2, 1.6)),
+    "several 4": DrawingStyle(EARTH, dashes=(1.3, 1.1)),
+    "several 5": DrawingStyle(LINES, dashes=(10, 3)),
+    "several 6": DrawingStyle(POINTS),
+    "air": DrawingStyle(LINES, dashes=(4, 1.6)),
+    "soil signal": DrawingStyle(STRESS),
     # lines and shades
-    "mean": Look(LINES, 0.9, LONG, order=2),
-    "entry": Look(LINES, 0.9, LONG, order=2),
-    "lowest": Look(LINES, 0.9, DOT_DASH, order=2),
-    "exit": Look(LINES, 0.9, DOTS, order=2),
-    "soil": Look("", fill=SOIL, order=0.1),
-    "off": Look("", fill=PALE, order=0.1),
-    "forbidden": Look("", fill=PALE, opacity=0.55, order=0.1),
-    "quiet band": Look("", fill=QUIET, order=0.1),
-    "loud band": Look("", fill=LOUD, order=0.2),
-    "loud": Look(LINES, 0.8, MEDIUM, order=1.5),
-    "quiet": Look(FAINT, 0.5, (1.5, 2), order=1.4),
-    "natural": Look(FAINT, 0.8, (1.5, 2), order=1.5),
-    "not stable": Look(INK, 1.5, (2.2, 1.3)),
-    "work": Look(LINES, 0.9, DOT_DASH, order=1.7),
-    "station line": Look(FAINT, 0.6, order=1),
-    "action": Look(INK, 1.2, (1, 2.4), order=2.2),
-    "limit": Look(INK, 1.6, (1, 1), order=2.2),
-    "action value": Look(LINES, 1.0, (3.7, 1.6), order=2),
-    "limit value": Look(LINES, 1.0, order=2),
-    "now": Look(INK, 1.0, DOTS, order=2),
+    "mean": DrawingStyle(LINES, 0.9, LONG, order=2),
+    "entry": DrawingStyle(LINES, 0.9, LONG, order=2),
+    "lowest": DrawingStyle(LINES, 0.9, DOT_DASH, order=2),
+    "exit": DrawingStyle(LINES, 0.9, DOTS, order=2),
+    "soil": DrawingStyle("", fill=SOIL, order=0.1),
+    "off": DrawingStyle("", fill=PALE, order=0.1),
+    "forbidden": DrawingStyle("", fill=PALE, opacity=0.55, order=0.1),
+    "quiet band": DrawingStyle("", fill=QUIET, order=0.1),
+    "loud band": DrawingStyle("", fill=LOUD, order=0.2),
+    "loud": DrawingStyle(LINES, 0.8, MEDIUM, order=1.5),
+    "quiet": DrawingStyle(FAINT, 0.5, (1.5, 2), order=1.4),
+    "natural": DrawingStyle(FAINT, 0.8, (1.5, 2), order=1.5),
+    "not stable": DrawingStyle(INK, 1.5, (2.2, 1.3)),
+    "work": DrawingStyle(LINES, 0.9, DOT_DASH, order=1.7),
+    "station line": DrawingStyle(FAINT, 0.6, order=1),
+    "action": DrawingStyle(INK, 1.2, (1, 2.4), order=2.2),
+    "limit": DrawingStyle(INK, 1.6, (1, 1), order=2.2),
+    "action value": DrawingStyle(LINES, 1.0, (3.7, 1.6), order=2),
+    "limit value": DrawingStyle(LINES, 1.0, order=2),
+    "now": DrawingStyle(INK, 1.0, DOTS, order=2),
     # modes and orders
-    "mode": Look(MAIN, 1.4),
-    "order": Look(LINES, 0.8, order=2),
-    "meeting": Look(STRESS, 1.3, sign="o", size=7, hollow=True, order=4),
-    "shape": Look(MAIN, 1.5),
-    "other end": Look(FAINT, 1.0, MEDIUM, order=2),
-    "node": Look(STRESS, 1.4, sign="x", size=5, order=5),
-    "hand": Look(LINES, 1.0, sign="s", size=4.5, order=4, fill=INK),
-    "harness or ground": Look(LINES, 1.0, sign="^", size=5, hollow=True, order=4),
-    "station": Look(LINES, 1.0, sign="o", size=4.5, hollow=True, order=4),
-    "quiet speed": Look(LINES, 1.0, sign="v", size=5.5, order=5),
+    "mode": DrawingStyle(MAIN, 1.4),
+    "order": DrawingStyle(LINES, 0.8, order=2),
+    "meeting": DrawingStyle(STRESS, 1.3, sign="o", size=7, hollow=True, order=4),
+    "shape": DrawingStyle(MAIN, 1.5),
+    "other end": DrawingStyle(FAINT, 1.0, MEDIUM, order=2),
+    "node": DrawingStyle(STRESS, 1.4, sign="x", size=5, order=5),
+    "hand": DrawingStyle(LINES, 1.0, sign="s", size=4.5, order=4, fill=INK),
+    "harness or ground": DrawingStyle(LINES, 1.0, sign="^", size=5, hollow=True, order=4),
+    "station": DrawingStyle(LINES, 1.0, sign="o", size=4.5, hollow=True, order=4),
+    "quiet speed": DrawingStyle(LINES, 1.0, sign="v", size=5.5, order=5),
     # clouds
-    "kept": Look(POINTS, 0.0, sign=".", size=2.4, order=2.2),
-    "beyond": Look(DIM, 0.0, sign=".", size=1.7, order=2.1),
-    "failed": Look(INK, 0.0, sign="x", size=3.0, order=2.3),
-    "kept line": Look(POINTS, 0.5, order=2.2),
-    "beyond line": Look(DIM, 0.5, order=2.1),
-    "design": Look(STRESS, 0.0, sign="o", size=4.5, order=4.2),
-    "design line": Look(STRESS, 1.3, order=3.3),
-    "front": Look(STRESS, 1.0, order=4.1),
-    "rule": Look(INK, 0.9, order=3.6),
-    "own line": Look(INK, 1.5, MEDIUM, order=3.4),
-    "own": Look(INK, 1.0, sign="D", size=6.5, hollow=True, order=4),
-    "best": Look(MAIN, 1.6, sign="o", size=4.5),
-    "least": Look(STRESS, 1.0, sign="P", size=9, order=6),
-    "model": Look(INK, 1.2, order=4),
-    "bound": Look(STRESS, 1.6, (4, 1.6), order=4),
-    "machines": Look(MAIN, fill=MAIN),
-    "outside": Look(FAINT, fill=FAINT),
-    "part": Look(MAIN, fill=MAIN, order=3.2),
-    "whole": Look(FAINT, fill=FAINT, order=2),
-    "interval": Look(INK, 0.9, order=4),
-    "samples": Look(FAINT, 0.0, sign=".", size=2.2, order=2),
-    "fit": Look(MAIN, 0.9),
-    "turning": Look(STRESS, 1.0, sign="o", size=4, hollow=True, order=4),
-    "zeros": Look(STRESS, 1.0, sign="o", size=5, hollow=True, order=4),
-    "even": Look(LINES, 0.8, MEDIUM, order=1),
-    "task": Look(MAIN, 1.0, sign="o", size=5, hollow=True, order=5),
-    "day": Look(INK, 1.6, sign="D", size=5, order=6),
-    "broken": Look(STRESS, 3.0, sign="x", size=8, order=6),
-    "warned": Look(EARTH, 1.6, sign="^", size=7, order=6),
-    "broken stretch": Look(STRETCH, 6.0, order=2.5),
-    "unweighted": Look(FAINT, 1.0, fill=FAINT, opacity=0.5),
-    "weighted": Look(MAIN, 1.0, fill=MAIN, opacity=0.5, order=3.1),
-    "dial": Look(FAINT, 0.8, order=1),
-    "stand": Look(LINES, 0.9, sign="stand", size=10, hollow=True, order=2.5),
-    "point": Look(MAIN, 1.0, sign="o", size=2.6),
-    "pivot": Look(LINES, 1.0, sign="o", size=3),
-    "point path": Look(POINTS, 0.8, order=1.2),
-    "path in soil": Look(STRESS, 2.8, order=3.1),
-    "other unit": Look(FAINT, 0.9, MEDIUM, order=2),
-    "tick": Look(MAIN, 0.8, order=3),
-    "dimension": Look(INK, 0.7, order=4),
-    "crossing": Look(INK, 1.2, sign="x", size=5, order=4),
-    "room": Look(LINES, 0.9, (5.5, 3.3), order=2.3),
-    "gear": Look(STRESS, 0.9, (9.0, 2.2, 1.7, 2.2), order=2.3),
-    "added mass": Look(MAIN, 1.0, fill=MAIN, opacity=0.45, order=3.1),
-    "point mass": Look(MAIN, 1.0, sign="o", size=7.5, order=3.4),
-    "move": Look(STRESS, 1.4, sign="o", size=4.5, order=3.6),
-    "old center": Look(STRESS, 1.0, sign="o", size=4.5, hollow=True, order=3.6),
-    "swing": Look(MAIN, 1.5, order=1.2),
-    "other swing": Look(STRESS, 1.5, MEDIUM, order=1.2),
-    "gauge way": Look(INK, 0.9, order=1.25),
-    "mean size": Look(LINES, 0.9, LONG, order=2),
+    "kept": DrawingStyle(POINTS, 0.0, sign=".", size=2.4, order=2.2),
+    "beyond": DrawingStyle(DIM, 0.0, sign=".", size=1.7, order=2.1),
+    "failed": DrawingStyle(INK, 0.0, sign="x", size=3.0, order=2.3),
+    "kept line": DrawingStyle(POINTS, 0.5, order=2.2),
+    "beyond line": DrawingStyle(DIM, 0.5, order=2.1),
+    "design": DrawingStyle(STRESS, 0.0, sign="o", size=4.5, order=4.2),
+    "design line": DrawingStyle(STRESS, 1.3, order=3.3),
+    "front": DrawingStyle(STRESS, 1.0, order=4.1),
+    "rule": DrawingStyle(INK, 0.9, order=3.6),
+    "own line": DrawingStyle(INK, 1.5, MEDIUM, order=3.4),
+    "own": DrawingStyle(INK, 1.0, sign="D", size=6.5, hollow=True, order=4),
+    "best": DrawingStyle(MAIN, 1.6, sign="o", size=4.5),
+    "least": DrawingStyle(STRESS, 1.0, sign="P", size=9, order=6),
+    "model": DrawingStyle(INK, 1.2, order=4),
+    "bound": DrawingStyle(STRESS, 1.6, (4, 1.6), order=4),
+    "machines": DrawingStyle(MAIN, fill=MAIN),
+    "outside": DrawingStyle(FAINT, fill=FAINT),
+    "part": DrawingStyle(MAIN, fill=MAIN, order=3.2),
+    "whole": DrawingStyle(FAINT, fill=FAINT, order=2),
+    "interval": DrawingStyle(INK, 0.9, order=4),
+    "samples": DrawingStyle(FAINT, 0.0, sign=".", size=2.2, order=2),
+    "fit": DrawingStyle(MAIN, 0.9),
+    "turning": DrawingStyle(STRESS, 1.0, sign="o", size=4, hollow=True, order=4),
+    "zeros": DrawingStyle(STRESS, 1.0, sign="o", size=5, hollow=True, order=4),
+    "even": DrawingStyle(LINES, 0.8, MEDIUM, order=1),
+    "task": DrawingStyle(MAIN, 1.0, sign="o", size=5, hollow=True, order=5),
+    "day": DrawingStyle(INK, 1.6, sign="D", size=5, order=6),
+    "broken": DrawingStyle(STRESS, 3.0, sign="x", size=8, order=6),
+    "warned": DrawingStyle(EARTH, 1.6, sign="^", size=7, order=6),
+    "broken stretch": DrawingStyle(STRETCH, 6.0, order=2.5),
+    "unweighted": DrawingStyle(FAINT, 1.0, fill=FAINT, opacity=0.5),
+    "weighted": DrawingStyle(MAIN, 1.0, fill=MAIN, opacity=0.5, order=3.1),
+    "dial": DrawingStyle(FAINT, 0.8, order=1),
+    "stand": DrawingStyle(LINES, 0.9, sign="stand", size=10, hollow=True, order=2.5),
+    "point": DrawingStyle(MAIN, 1.0, sign="o", size=2.6),
+    "pivot": DrawingStyle(LINES, 1.0, sign="o", size=3),
+    "point path": DrawingStyle(POINTS, 0.8, order=1.2),
+    "path in soil": DrawingStyle(STRESS, 2.8, order=3.1),
+    "other unit": DrawingStyle(FAINT, 0.9, MEDIUM, order=2),
+    "tick": DrawingStyle(MAIN, 0.8, order=3),
+    "dimension": DrawingStyle(INK, 0.7, order=4),
+    "crossing": DrawingStyle(INK, 1.2, sign="x", size=5, order=4),
+    "room": DrawingStyle(LINES, 0.9, (5.5, 3.3), order=2.3),
+    "gear": DrawingStyle(STRESS, 0.9, (9.0, 2.2, 1.7, 2.2), order=2.3),
+    "added mass": DrawingStyle(MAIN, 1.0, fill=MAIN, opacity=0.45, order=3.1),
+    "point mass": DrawingStyle(MAIN, 1.0, sign="o", size=7.5, order=3.4),
+    "move": DrawingStyle(STRESS, 1.4, sign="o", size=4.5, order=3.6),
+    "old center": DrawingStyle(STRESS, 1.0, sign="o", size=4.5, hollow=True, order=3.6),
+    "swing": DrawingStyle(MAIN, 1.5, order=1.2),
+    "other swing": DrawingStyle(STRESS, 1.5, MEDIUM, order=1.2),
+    "gauge way": DrawingStyle(INK, 0.9, order=1.25),
+    "mean size": DrawingStyle(LINES, 0.9, LONG, order=2),
 }
 """Role -> look."""
 LOOKS |= {
     f"quiet speed {number}": replace(LOOKS["quiet speed"], color=color)
     for number, (color, _) in enumerate(KINDS)
 }
-KIND = Look(width=1.5, size=4.5, hollow=True, spaced=True)
+KIND = DrawingStyle(width=1.5, size=4.5, hollow=True, spaced=True)
 LOOKS |= {
     f"kind {number}": replace(KIND, color=color, sign=sign, order=round(3.9 - 0.1 * number, 1))
     for number, (color, sign) in enumerate(KINDS)
 }
 LOOKS |= {
-    f"instant {name}": Look(INK, 1.1, sign=sign, size=5, hollow=True, order=4)
+    f"instant {name}": DrawingStyle(INK, 1.1, sign=sign, size=5, hollow=True, order=4)
     for name, sign in zip(
         ("pick-up", "entry", "lowest", "release", "exit"), ("D", "v", "o", "s", "^"), strict=True
     )
 }
 SEVERAL = sum(role.startswith("several ") for role in LOOKS)
 """Signals of one quantity that are told apart; further ones look like the first again."""
-LOOKS["quieter"] = Look(FAINT, 0.7, order=2.5)
+LOOKS["quieter"] = DrawingStyle(FAINT, 0.7, order=2.5)
 
 
 def mixed(color: str, share: float) -> str:
@@ -211,7 +211,7 @@ def mixed(color: str, share: float) -> str:
     return "#" + "".join(f"{round(255 + share * (part - 255)):02x}" for part in parts)
 
 
-def look_of(role: str, dashed: bool = False) -> Look:
+def look_of(role: str, dashed: bool = False) -> DrawingStyle:
     """The look of a role, ``meeting 5.5`` of so many points; or the same, dashed."""
     name, _, size = role.rpartition(" ")
     if name == "meeting":

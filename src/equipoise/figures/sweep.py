@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from equipoise.figures.shared import (
-    Named,
+    SpeedCurve,
     bounded,
     by_name,
     curves_of,
@@ -31,10 +31,10 @@ from equipoise.results.charts import (
     Band,
     Chart,
     Curve,
-    Flag,
     Line,
     Mark,
     Panel,
+    PlaceLabel,
     shown,
 )
 
@@ -111,7 +111,7 @@ def fraction(order: float) -> str:
     return str(Fraction(order).limit_denominator(1000))
 
 
-def peaks(axis: Axis, speed: Array, found: Sequence[Named]) -> tuple[Mark, ...]:
+def peaks(axis: Axis, speed: Array, found: Sequence[SpeedCurve]) -> tuple[Mark, ...]:
     """Value and speed at the highest places of the loudest of the named curves."""
     marks: list[Mark] = []
     named = [*enumerate(found[: len(KINDS)])]
@@ -136,7 +136,7 @@ def own_speed(sweep: Sweep) -> tuple[Line, ...]:
     return (Line(at, "work", told),) if low <= at <= high else ()
 
 
-def at_work(axis: Axis, sweep: Sweep, found: Sequence[Named]) -> Iterator[Mark]:
+def at_work(axis: Axis, sweep: Sweep, found: Sequence[SpeedCurve]) -> Iterator[Mark]:
     """Value of the named curves at the speed of the machine, where it is in sight."""
     least, most = ends(axis)
     for line in own_speed(sweep):
@@ -184,14 +184,14 @@ def mounts(sweep: Sweep) -> Chart:
         names = [curve.label for curve in panels[0].curves if curve.label in handed]
         found = ordered(handed)  # as the first panel has them, if it has all
         if len(names) == len(handed):
-            found = [Named(name, handed[name]) for name in names]
+            found = [SpeedCurve(name, handed[name]) for name in names]
         panels.append(_panel(sweep, say("transmissibility"), "", False, found))
         what += "; " + say("transmissibility: its RMS over the shaking force's")
     return _chart(sweep, "mounts", what, panels)
 
 
 def _panel(
-    sweep: Sweep, label: str, quantity: str, rotation: bool, found: Sequence[Named]
+    sweep: Sweep, label: str, quantity: str, rotation: bool, found: Sequence[SpeedCurve]
 ) -> Panel:
     """Curves over one axis; where it is a quantity, with their highest peaks."""
     heard = np.concatenate([bounded(one.values) for one in found])
@@ -212,10 +212,10 @@ def _panel(
     return Panel(speed_axis(sweep), y, curves_of(speed, found, sweep.stable), marks, **parts)
 
 
-def flags(resonances: Sequence[Resonance]) -> tuple[Flag, ...]:
+def flags(resonances: Sequence[Resonance]) -> tuple[PlaceLabel, ...]:
     """Order and mode of resonances, the quietest left out first."""
     return tuple(
-        Flag(abs(r.speed), (fraction(r.order), str(r.mode)), r.share)
+        PlaceLabel(abs(r.speed), (fraction(r.order), str(r.mode)), r.share)
         for r in sorted(resonances, key=lambda r: abs(r.speed))
     )
 
@@ -263,7 +263,7 @@ def resonance_map(sweep: Sweep) -> Chart:
             text = say("order {order}", order=fraction(order))
             asides.append(Aside(order * high, text))
         elif order * low < top:
-            above.append(Flag(top / order, (fraction(order),), order))
+            above.append(PlaceLabel(top / order, (fraction(order),), order))
     if first > last:  # the names stand where the lines leave at the right
         asides = [a for a in asides if a.role == "mode"]
     panel = Panel(

@@ -15,9 +15,9 @@ from equipoise.i18n import say, to_say
 from equipoise.mechanism.kinematics.motion import move
 from equipoise.mechanism.parts.support import AXES, FREEDOMS, PLANAR
 from equipoise.results.charts import quantity, shown
-from equipoise.symbols.carrier import Swing
+from equipoise.symbols.carrier import SupportSwing
 from equipoise.symbols.clear import clear_angle
-from equipoise.symbols.drives import Drive
+from equipoise.symbols.drives import DriveSign
 from equipoise.symbols.scene import Scene
 from equipoise.symbols.shapes import Array
 
@@ -127,7 +127,7 @@ def in_mode(free: FreeVibration, number: int, instants: int = INSTANTS) -> Scene
     still = Scene.of(move(free.machine, ANGLES))
     angle = still.crank_angle[clear_angle(still)]
     scene = Scene.of(move(free.machine, np.full(instants, angle)))
-    drive = Drive(scene.drive.link, scene.drive.pivot, 0)
+    drive = DriveSign(scene.drive.link, scene.drive.pivot, 0)
     scene = replace(scene, crank_angle=_phases(instants), drives=(drive,))
     mode = ModeSwing.of(scene, number, free.modes[number - 1], free.coordinates)
     if not mode.seen:
@@ -143,7 +143,7 @@ def in_mode(free: FreeVibration, number: int, instants: int = INSTANTS) -> Scene
 def _with(scene: Scene, values: Array, told: list[str]) -> Scene:
     """A scene whose support has six displacements (6, N), m and rad."""
     surge, heave, pitch = (values[FREEDOMS.index(name)] for name in PLANAR)
-    return replace(scene, swing=Swing(surge + 1j * heave, pitch, tuple(told)))
+    return replace(scene, swing=SupportSwing(surge + 1j * heave, pitch, tuple(told)))
 
 
 def _size(scene: Scene) -> float:

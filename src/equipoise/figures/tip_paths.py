@@ -36,7 +36,7 @@ INSTANTS = {
 
 
 @dataclass(frozen=True)
-class Instant:
+class PathInstant:
     """An instant on a path: its name, place (m, complex) and direction away from the path, deg."""
 
     name: str
@@ -122,7 +122,7 @@ class Paths:
             label = say("path of {point}", point=short(arm.tip, 12))
             yield Curve.of(place(ways, number), label, f"several {number + 1}")
 
-    def instants(self, over_ground: bool) -> Iterator[Instant]:
+    def instants(self, over_ground: bool) -> Iterator[PathInstant]:
         """Instants of the first hill that is drawn, on either path; over ground no pick-up."""
         lowest = self.way_of("lowest", self.start)
         for name in [*INSTANTS][1:] if over_ground else INSTANTS:
@@ -131,7 +131,7 @@ class Paths:
             if f"{key}.crank_angle" in self.figures.figures and released:
                 before = key in ("entry", "pick_up")
                 way = self.way_of(key, lowest - self.curve.period if before else lowest)
-                yield Instant(name, *self.place_and_away(way, over_ground))
+                yield PathInstant(name, *self.place_and_away(way, over_ground))
 
     def place_and_away(self, way: float, over_ground: bool) -> tuple[complex, float]:
         """Where the tip is, and the direction (deg) that points out of its path."""

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from equipoise.figures.shared import Named, curves_of, ends, log_ends
+from equipoise.figures.shared import SpeedCurve, curves_of, ends, log_ends
 from equipoise.figures.style import short
 from equipoise.figures.tool_shaft import plane_named, turns_told
 from equipoise.figures.tool_speeds import RATE, engine_axis, hand_peaks, work_line, work_mark
@@ -209,7 +209,7 @@ def design(found: ToolDesign) -> Chart:
     hands = plan.hands if plan is not None else ()
     before, after = (
         [
-            Named(name, grip.a_hv)
+            SpeedCurve(name, grip.a_hv)
             for name, grip in grips(respond_tool(tool, found.speed)).items()
             if not hands or name in hands
         ]

@@ -20,10 +20,10 @@ from equipoise.results.charts import (
     Axis,
     Chart,
     Curve,
-    Flag,
     Line,
     Mark,
     Panel,
+    PlaceLabel,
     quantity,
     shown,
 )
@@ -87,7 +87,7 @@ def shaft_lines(tool: Tool) -> tuple[Line, ...]:
     return tuple(Line(station.position, "station line") for station in tool.stations)
 
 
-def station_flags(tool: Tool) -> tuple[Flag, ...]:
+def station_flags(tool: Tool) -> tuple[PlaceLabel, ...]:
     """Names of the stations; where there are too many, of those that matter most."""
 
     def weight(station: Station) -> tuple[bool, bool, float]:
@@ -97,7 +97,7 @@ def station_flags(tool: Tool) -> tuple[Flag, ...]:
     chosen = sorted(tool.stations, key=weight, reverse=True)[:MOST_NAMES]
     ranked = sorted(chosen, key=lambda one: one.position)
     return tuple(
-        Flag(one.position, (short(one.name, LONGEST),), 1.0 + len(chosen) - chosen.index(one))
+        PlaceLabel(one.position, (short(one.name, LONGEST),), 1.0 + len(chosen) - chosen.index(one))
         for one in ranked
     )
 

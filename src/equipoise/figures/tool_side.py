@@ -28,10 +28,10 @@ from equipoise.results.charts import (
     Axis,
     Chart,
     Curve,
-    Flag,
     Line,
     Mark,
     Panel,
+    PlaceLabel,
     quantity,
     shown,
 )
@@ -116,12 +116,12 @@ def side_design(found: ToolDesign) -> Chart:
     )
 
 
-def _named(tool: Tool) -> tuple[Flag, ...]:
+def _named(tool: Tool) -> tuple[PlaceLabel, ...]:
     """Stations with where they are."""
     places = {one.name: quantity(one.position, "length", "mm") for one in tool.stations}
     by_label = {short(name, LONGEST): place for name, place in places.items()}
     return tuple(
-        Flag(one.at, (*one.texts, by_label[one.texts[0]]), one.weight)
+        PlaceLabel(one.at, (*one.texts, by_label[one.texts[0]]), one.weight)
         for one in station_flags(tool)
     )
 
@@ -150,7 +150,7 @@ def _at_work(tool: Tool) -> Iterator[Panel]:
 
 def _panel(
     scene: ToolScene,
-    flags: tuple[Flag, ...] = (),
+    flags: tuple[PlaceLabel, ...] = (),
     title: str = "",
     moved: Sequence[tuple[float, float]] = (),
     remark: str = "",

@@ -12,7 +12,7 @@ import numpy as np
 from equipoise.exposure.blocks import VERDICTS
 from equipoise.exposure.daily import ACTION, EIGHT_HOURS, LIMIT
 from equipoise.exposure.weighting import factor
-from equipoise.figures.shared import Named, by_name, curves_of, ends, log_ends, ordered
+from equipoise.figures.shared import SpeedCurve, by_name, curves_of, ends, log_ends, ordered
 from equipoise.figures.style import KINDS, short
 from equipoise.figures.tool_shaft import MOST_MODES, plane_named, turns_told
 from equipoise.i18n import say, to_say
@@ -24,10 +24,10 @@ from equipoise.results.charts import (
     Axis,
     Chart,
     Curve,
-    Flag,
     Line,
     Mark,
     Panel,
+    PlaceLabel,
     shown,
 )
 
@@ -74,12 +74,12 @@ def work_mark(lines: Sequence[Line], y: Axis, above: bool = True) -> tuple[Mark,
     )
 
 
-def mode_lines(frequency: Array, axis: Axis) -> tuple[tuple[Line, ...], tuple[Flag, ...]]:
+def mode_lines(frequency: Array, axis: Axis) -> tuple[tuple[Line, ...], tuple[PlaceLabel, ...]]:
     """Light lines where an engine's turns meet natural frequencies, rad/s, and their numbers."""
     low, high = ends(axis)
     every = enumerate(frequency.tolist(), 1)
     inside = [(number, one) for number, one in every if low <= one <= high][:MOST_MODES]
-    flags = tuple(Flag(at, (str(number),), 1 / number) for number, at in inside)
+    flags = tuple(PlaceLabel(at, (str(number),), 1 / number) for number, at in inside)
     return tuple(Line(at, "natural") for _, at in inside), flags
 
 
@@ -131,7 +131,9 @@ def transmission(found: Transmissions, plane: int, modes: ToolModes | None) -> C
     return Chart(name, found.tool.title, what, (size, phases), keys=tuple(keys))
 
 
-def _quiet(found: Transmissions, curves: Sequence[Named], plane: int, low: float) -> Iterator[Mark]:
+def _quiet(
+    found: Transmissions, curves: Sequence[SpeedCurve], plane: int, low: float
+) -> Iterator[Mark]:
     """Marks at quiet speeds, on the curves, with their speeds."""
     for number, curve in enumerate(curves[: len(KINDS)]):
         for speed in found.stations[curve.name].quiet[plane].tolist():
@@ -223,7 +225,7 @@ def _of_hands(
     return Chart(name, tool.title, f"{what}, {hours}", (panel,))
 
 
-def hand_peaks(tool: Tool, speed: Array, curves: Sequence[Named], y: Axis) -> Iterator[Mark]:
+def hand_peaks(tool: Tool, speed: Array, curves: Sequence[SpeedCurve], y: Axis) -> Iterator[Mark]:
     """Acceleration and speed at the highest place of curves.
 
     Where nothing takes power there is no highest place.

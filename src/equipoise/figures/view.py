@@ -20,7 +20,7 @@ from equipoise.figures.sheet import (
     Words,
     width_of,
 )
-from equipoise.figures.style import INK, SMALL, Look
+from equipoise.figures.style import INK, SMALL, DrawingStyle
 from equipoise.quantities import typeset
 from equipoise.results.charts import Array, Axis, Panel
 
@@ -226,12 +226,12 @@ class View:
         """Places (N, 2) on the sheet of values in SI units."""
         return np.column_stack(np.broadcast_arrays(self.x.at(x), self.y.at(y)))
 
-    def line(self, places: Array, look: Look, order: float | None = None) -> None:
+    def line(self, places: Array, look: DrawingStyle, order: float | None = None) -> None:
         """A line (N, 2) on the sheet, not clipped."""
         stroke = Stroke((places,), look.color, look.width, look.lengths)
         self.sheet.add(stroke, look.order if order is None else order)
 
-    def area(self, look: Look, *places: Array) -> None:
+    def area(self, look: DrawingStyle, *places: Array) -> None:
         """Filled areas, each (N, 2), cut at the axes."""
         color = look.inside
         stroke = Stroke(places, fill=color, opacity=look.opacity, closed=True, clip=self.box)

@@ -157,7 +157,7 @@ class Symmetric(NamedTuple):
     tt: Any
 
 
-class Step(NamedTuple):
+class SegmentTransfer(NamedTuple):
     """A segment that was crossed: its transfer matrix, M and its determinant."""
 
     over: Transfer
@@ -181,7 +181,7 @@ class Chain:
 
 
 @dataclass(frozen=True, eq=False)
-class Carried:
+class CondensedStiffness:
     """The dynamic stiffness carried through a chain.
 
     stiffness : Z after the station of each node (N).
@@ -190,7 +190,7 @@ class Carried:
 
     chain: Chain
     stiffness: Sequence[Symmetric]
-    steps: Sequence[Step]
+    steps: Sequence[SegmentTransfer]
 
 
 @dataclass(frozen=True, eq=False)
@@ -202,7 +202,7 @@ class States:
 
 
 @np.errstate(all="ignore")  # whoever asks looks whether the answer is finite
-def carry(chain: Chain) -> Carried:
+def carry(chain: Chain) -> CondensedStiffness:
     """Carry the dynamic stiffness from the left end, which is free, to the right one."""
     first = chain.stations[0]
     z = Symmetric(first.across, 0.0, first.turning)
@@ -212,10 +212,10 @@ def carry(chain: Chain) -> Carried:
         z = Symmetric(z.aa + station.across, z.at, z.tt + station.turning)
         steps.append(step)
         stiffness.append(z)
-    return Carried(chain, stiffness, steps)
+    return CondensedStiffness(chain, stiffness, steps)
 
 
-def _cross(over: Transfer, z: Symmetric) -> tuple[Step, Symmetric]:
+def _cross(over: Transfer, z: Symmetric) -> tuple[SegmentTransfer, Symmetric]:
     """Over one segment."""
     m_aa = over.ww + over.wv * z.aa + over.wm * z.at
     m_at = over.wt + over.wv * z.at + over.wm * z.tt
@@ -231,11 +231,11 @@ def _cross(over: Transfer, z: Symmetric) -> tuple[Step, Symmetric]:
         (n_at * m_aa - n_aa * m_at) / determinant,
         (n_tt * m_aa - n_ta * m_at) / determinant,
     )
-    return Step(over, m_aa, m_at, m_ta, m_tt, determinant), after
+    return SegmentTransfer(over, m_aa, m_at, m_ta, m_tt, determinant), after
 
 
 @np.errstate(all="ignore")
-def solve(carried: Carried, loads: Sequence[Pair | None]) -> States:
+def solve(carried: CondensedStiffness, loads: Sequence[Pair | None]) -> States:
     """The motion under harmonic forces and couples on the nodes; None for no load there.
 
     At a resonance without damping it is not finite.
@@ -275,7 +275,7 @@ def _less(g: Pair, load: Pair | None) -> Pair:
     return g if load is None else Pair(g.across - load.across, g.turning - load.turning)
 
 
-def _back(step: Step, q: Pair, g: Pair) -> Pair:
+def _back(step: SegmentTransfer, q: Pair, g: Pair) -> Pair:
     """Motion at the left end of a segment, from that at its right end."""
     over = step.over
     w = q.across - (over.wv * g.across + over.wm * g.turning)
@@ -287,7 +287,7 @@ def _back(step: Step, q: Pair, g: Pair) -> Pair:
 
 
 @np.errstate(all="ignore")
-def count(carried: Carried) -> Array:
+def count(carried: CondensedStiffness) -> Array:
     """How many natural frequencies lie below that of a chain without damping (Wittrick-Williams).
 
     With each segment shorter than `segment.longest`, none has a frequency of its own with its ends
@@ -311,7 +311,7 @@ def _negative(first: Array, determinant: Array) -> Array:
     return np.where(determinant < 0, 1, np.where(first < 0, 2, 0))
 
 
-def log_determinant(carried: Carried) -> tuple[Any, Any]:
+def log_determinant(carried: CondensedStiffness) -> tuple[Any, Any]:
     """Logarithm of the characteristic function, and its derivative by the first variable.
 
     The function is the determinant of the matrix from the motion of the left end to the force that

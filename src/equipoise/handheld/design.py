@@ -12,8 +12,8 @@ from equipoise.errors import ModelError, ResponseError
 from equipoise.handheld.design_plan import KEYS, DesignLimit, DesignPlan
 from equipoise.handheld.duals import Dual
 from equipoise.handheld.exposed import (
-    Band,
     BandFigures,
+    SpeedBand,
     grips,
     mean_over_band,
     values_of,
@@ -46,7 +46,7 @@ class Search:
     """
 
     def __init__(self, tool: Tool, design: DesignPlan, speed: Array) -> None:
-        self.tool, self.design, self.band = tool, design, Band(tool, speed, LEAST)
+        self.tool, self.design, self.band = tool, design, SpeedBand(tool, speed, LEAST)
         self.numbers: list[Number] = [(one.station, one.key) for one in design.variables]
         self.low = np.array([one.low for one in design.variables])
         self.wide = np.array([one.high for one in design.variables]) - self.low

@@ -16,7 +16,7 @@ from equipoise.exposure.weighting import squared_factor
 from equipoise.handheld.chain import carry, solve
 from equipoise.handheld.design_plan import KEYS
 from equipoise.handheld.duals import Dual
-from equipoise.handheld.layout import Field, Layout, check_coverage
+from equipoise.handheld.layout import HarmonicField, Layout, check_coverage
 from equipoise.handheld.model import PLANES, Tool, Work
 from equipoise.handheld.reciprocal import Number, Reciprocal
 from equipoise.handheld.response import (
@@ -219,7 +219,7 @@ class BandFigures(NamedTuple):
     forces: dict[str, Dual]
 
 
-class Band:
+class SpeedBand:
     """A tool over a band of speeds (S,), rad/s; what does not depend on a design is done once.
 
     least : share of the largest force below which an order is left out.
@@ -260,7 +260,7 @@ class Band:
         layout, s = Layout(self.tool, self.highest, changed), 1j * self.frequency
         carried = carry(layout.chain(s))
         loads = loads_on(layout, self.shakes, self.orders, self.speed)
-        field = Field(layout, s, solve(carried, loads))
+        field = HarmonicField(layout, s, solve(carried, loads))
         names = [one.name for one in self.tool.grips]
         by = Reciprocal(field, carried, [*names, *held], numbers if slopes else ())
         squares = {name: weighted_squares(self.frequency, by.moved(name)) for name in names}
@@ -298,7 +298,7 @@ def tool_sensitivities(tool: Tool, speed: Array) -> dict[Number, float]:
     In m/s2 for each SI unit; of a pair of numbers, by both together.
     """
     numbers = [(one.name, key) for one in tool.stations for key in KEYS if has(one, key)]
-    means = [mean_over_band(one) for one in Band(tool, speed).felt(numbers).hands.values()]
+    means = [mean_over_band(one) for one in SpeedBand(tool, speed).felt(numbers).hands.values()]
     worst = max(means, key=lambda one: float(one.value[0]))
     slopes = worst.slopes[:, 0] / (2 * np.sqrt(worst.value))
     return dict(zip(numbers, slopes.tolist(), strict=True))

@@ -297,7 +297,7 @@ class Line(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Field:
+class HarmonicField:
     """The answer of a layout at complex frequencies s (1 or 2, F)."""
 
     layout: Layout

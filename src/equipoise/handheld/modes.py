@@ -20,7 +20,7 @@ from equipoise.handheld.frequencies import (
     rigid_modes,
     scale_of,
 )
-from equipoise.handheld.layout import Field, Kind, Layout
+from equipoise.handheld.layout import HarmonicField, Kind, Layout
 from equipoise.handheld.model import PLANES, Station, Tool
 from equipoise.i18n import Note, to_say
 from equipoise.results.declaring import NOTES, Declarations, ResultOutput
@@ -322,7 +322,7 @@ def _loaded(layout: Layout, s: Array, places: Array, kind: Kind) -> tuple[Array,
         for k in range(len(layout.nodes))
     ]
     states = solve(carry(layout.chain(s, kind)), loads)
-    line = Field(layout, np.broadcast_to(s, (2, s.shape[-1])), states, kind).at(places)
+    line = HarmonicField(layout, np.broadcast_to(s, (2, s.shape[-1])), states, kind).at(places)
     return line.displacement, line.slope
 
 

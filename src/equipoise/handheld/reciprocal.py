@@ -22,9 +22,9 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.handheld.chain import Carried, Pair, States, solve
+from equipoise.handheld.chain import CondensedStiffness, Pair, States, solve
 from equipoise.handheld.duals import Dual, value_of
-from equipoise.handheld.layout import Field, Layout
+from equipoise.handheld.layout import HarmonicField, Layout
 from equipoise.signals import Array
 
 Number = tuple[str, str]
@@ -39,7 +39,11 @@ class Reciprocal:
     """
 
     def __init__(
-        self, field: Field, carried: Carried, watched: Sequence[str], numbers: Sequence[Number]
+        self,
+        field: HarmonicField,
+        carried: CondensedStiffness,
+        watched: Sequence[str],
+        numbers: Sequence[Number],
     ) -> None:
         self.field, self.carried, self.numbers = field, carried, numbers
         self.row = {name: k for k, name in enumerate(dict.fromkeys(watched))}

@@ -11,7 +11,7 @@ import numpy as np
 
 from equipoise.errors import MassError, ModelError, ResponseError, UsageError
 from equipoise.handheld.chain import Pair, carry, solve
-from equipoise.handheld.layout import Field, Layout, Line, check_coverage
+from equipoise.handheld.layout import HarmonicField, Layout, Line, check_coverage
 from equipoise.handheld.model import Excitation, Tool
 from equipoise.i18n import Note
 from equipoise.mechanism.dynamics.forces import forces, massless
@@ -135,7 +135,7 @@ class ToolResponse(Result):
     speed: Array
     orders: Array
     shakes: tuple[Shake, ...]
-    field: Field
+    field: HarmonicField
 
     blocks_in = "handheld.blocks.response_blocks"
     pictures_in = "figures.tool_shaft.response_charts"
@@ -269,7 +269,7 @@ def respond_tool(tool: Tool, speed: float | Iterable[float] | Array) -> ToolResp
     return ToolResponse(tool, speeds, orders, all_shakes, field)
 
 
-def _check_finite(field: Field, orders: Array, speeds: Array) -> None:
+def _check_finite(field: HarmonicField, orders: Array, speeds: Array) -> None:
     """No resonance is met exactly, without damping."""
     finite = [np.all(np.isfinite(part), axis=0) for pair in field.states.motion for part in pair]
     if np.all(finite):
@@ -301,11 +301,13 @@ def checked_speeds(speed: float | Iterable[float] | Array) -> Array:
     return speeds
 
 
-def shaken(layout: Layout, all_shakes: Sequence[Shake], orders: Array, speeds: Array) -> Field:
+def shaken(
+    layout: Layout, all_shakes: Sequence[Shake], orders: Array, speeds: Array
+) -> HarmonicField:
     """The field of a layout under what shakes, at all orders and speeds."""
     s = 1j * np.multiply.outer(orders, speeds).reshape(1, -1)
     loads = loads_on(layout, all_shakes, orders, speeds)
-    return Field(layout, s, solve(carry(layout.chain(s)), loads))
+    return HarmonicField(layout, s, solve(carry(layout.chain(s)), loads))
 
 
 def loads_on(

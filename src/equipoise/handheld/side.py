@@ -5,10 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from equipoise.handheld.model import Excitation, Station, Tool
-from equipoise.handheld.shaft import Shaft
-from equipoise.handheld.shaft import Tube as Profile
+from equipoise.handheld.shaft import Shaft, Tube
 from equipoise.signals import Array
-from equipoise.symbols.tool import Seat, ToolScene, Tube
+from equipoise.symbols.tool import SeatSign, ToolScene, TubeSign
 
 AT_END = 0.03
 """Share of the shaft within which a station is at an end."""
@@ -33,14 +32,14 @@ def _motor(tool: Tool) -> Station | None:
     return max(found, key=lambda one: one.mass, default=None)
 
 
-def _seat(tool: Tool, one: Station, motor: Station | None) -> Seat:
+def _seat(tool: Tool, one: Station, motor: Station | None) -> SeatSign:
     acting = [cause for cause in tool.excitations if cause.station == one.name]
     part = ""
     if one is motor:
         part = "engine" if any(cause.linkage is not None for cause in acting) else "motor"
     elif motor is not None and _end(tool, one) not in (0, _end(tool, motor)):
         part = "blade"
-    return Seat(
+    return SeatSign(
         one.name,
         one.position,
         one.mass,
@@ -64,13 +63,13 @@ def _end(tool: Tool, one: Station) -> int:
     return -1 if share < AT_END else int(share > 1 - AT_END)
 
 
-def _tubes(shaft: Shaft) -> list[Tube]:
+def _tubes(shaft: Shaft) -> list[TubeSign]:
     """Parts of the shaft; one whose diameter is not told, as where tubes overlap, has the most
     of those beside it.
     """
     own = {(part.start, part.stop): part.profile for part in shaft.segments}
     found = [(a, b, own.get((a, b), shaft.profile)) for a, b, _ in shaft.pieces]
-    wide = [one.outer_diameter if isinstance(one, Profile) else 0.0 for *_, one in found]
+    wide = [one.outer_diameter if isinstance(one, Tube) else 0.0 for *_, one in found]
     both = [max(wide[max(k - 1, 0) : k + 2]) for k in range(len(wide))]
     sizes = (own or beside for own, beside in zip(wide, both, strict=True))
-    return [Tube(a, b, size) for (a, b, _), size in zip(found, sizes, strict=True)]
+    return [TubeSign(a, b, size) for (a, b, _), size in zip(found, sizes, strict=True)]

@@ -11,7 +11,7 @@ import numpy as np
 
 from equipoise.errors import UsageError
 from equipoise.i18n import say, to_say
-from equipoise.measured.fits import Quantity, WholeFit, fit_whole, line_of_swings
+from equipoise.measured.fits import FittedValue, WholeFit, fit_whole, line_of_swings
 from equipoise.measured.record import Kind, Record, positive
 from equipoise.measured.turning import Turns, find_turns
 from equipoise.quantities import in_unit, number
@@ -19,7 +19,7 @@ from equipoise.results.blocks import Block, Cell, Column, Notes, Span, Table, Te
 from equipoise.results.result import Result
 from equipoise.signals import Array
 
-Quantities = dict[str, Quantity]
+Quantities = dict[str, FittedValue]
 
 MUCH_CORRELATED = 3.0
 """Points over which a residual is correlated, from where on it is told."""
@@ -322,7 +322,7 @@ def _rows(decay: Decay, unit: str, scale: float) -> Iterator[tuple[Cell, ...]]:
         yield label, *_cells(decay.by_line[name], factor), *_cells(decay.by_record[name], factor)
 
 
-def _cells(quantity: Quantity, scale: float) -> tuple[Cell, Cell]:
+def _cells(quantity: FittedValue, scale: float) -> tuple[Cell, Cell]:
     """A value and its interval, with as many digits as make two of half the interval."""
     value, low, high = quantity.value, quantity.low, quantity.high
     if low is None or high is None:

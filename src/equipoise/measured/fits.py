@@ -20,7 +20,7 @@ STEP = 1e-30
 
 
 @dataclass(frozen=True)
-class Quantity:
+class FittedValue:
     """A value with the ends of its confidence interval, None where nothing is known of them."""
 
     value: float
@@ -32,7 +32,7 @@ class Quantity:
         """Whether it cannot be told from zero; false where the interval is not known."""
         return self.low is not None and self.high is not None and self.low <= 0 <= self.high
 
-    def apart_from(self, other: Quantity) -> bool:
+    def apart_from(self, other: FittedValue) -> bool:
         """Whether the two intervals have nothing in common; false where one is not known."""
         if self.low is None or self.high is None or other.low is None or other.high is None:
             return False
@@ -60,7 +60,7 @@ class Constants:
     covariance: Array | None
     factor: float
 
-    def quantities(self, kind: Kind, stiffness: float | None) -> dict[str, Quantity]:
+    def quantities(self, kind: Kind, stiffness: float | None) -> dict[str, FittedValue]:
         """Every quantity by name, in SI units; see `_quantities`."""
         point = np.array([self.damped, self.loss, self.friction])
         values = _quantities(point.astype(complex), kind, stiffness)
@@ -71,20 +71,20 @@ class Constants:
             found[name] = self._interval(value.real, gradient)
         return found
 
-    def line(self) -> dict[str, Quantity]:
+    def line(self) -> dict[str, FittedValue]:
         """Slope n and intercept m of the line of half-swings."""
         n = float(np.exp(-self.loss))
         slope = self._interval(n, np.array([0.0, -n, 0.0]))
         rise = np.array([0.0, 2 * self.friction * n, -2 * (1 + n)])
         return {"slope": slope, "intercept": self._interval(-2 * self.friction * (1 + n), rise)}
 
-    def _interval(self, value: float, gradient: Array) -> Quantity:
+    def _interval(self, value: float, gradient: Array) -> FittedValue:
         value = float(value)
         if self.covariance is None:
-            return Quantity(value)
+            return FittedValue(value)
         variance = float(gradient @ self.covariance @ gradient)
         half = self.factor * max(0.0, variance) ** 0.5
-        return Quantity(value, value - half, value + half)
+        return FittedValue(value, value - half, value + half)
 
 
 def _quantities(point: Array, kind: Kind, stiffness: float | None) -> dict[str, Any]:

@@ -18,7 +18,7 @@ __all__ = [
     "MODES",
     "SIDES",
     "Bodies",
-    "Named",
+    "NamedItems",
     "Vector",
     "bodies_at",
     "check_kept",
@@ -52,7 +52,7 @@ LONGEST_NAME = 200
 """Far beyond any machine; they keep a file of nonsense from running for hours."""
 
 
-class Named(dict[str, Value]):
+class NamedItems(dict[str, Value]):
     """A dict that says which names there are when one is asked for that is not."""
 
     def __init__(self, kind: str, items: Iterable[tuple[str, Value]]) -> None:

@@ -17,7 +17,7 @@ from equipoise.planting.names import (
     OF_AN_INSTANT,
     PATH,
     SOIL,
-    Named,
+    NamedFigure,
     dimension_of,
 )
 from equipoise.planting.stroke import finger_base
@@ -37,7 +37,7 @@ UNITS: dict[Dimension, str] = {"time": "ms", "angular speed": "rpm", "length": "
 
 
 @dataclass(frozen=True)
-class Page:
+class FigureCells:
     """Figures as cells; crank angles count from `zero`, rad."""
 
     figures: PlantingFigures
@@ -90,7 +90,7 @@ def planting_blocks(figures: PlantingFigures, zero: float = 0.0) -> Iterator[Blo
 
     zero : direction (rad) from which crank angles count.
     """
-    pages = [Page(arm, zero) for arm in figures.arms]
+    pages = [FigureCells(arm, zero) for arm in figures.arms]
     yield from map(Text, _heading(pages))
     yield from map(_instants, pages)
     yield _values(say("Path of the tip"), PATH, pages)
@@ -107,7 +107,7 @@ def planting_blocks(figures: PlantingFigures, zero: float = 0.0) -> Iterator[Blo
         yield Notes(figures.notes)
 
 
-def _heading(pages: Sequence[Page]) -> Iterator[str]:
+def _heading(pages: Sequence[FigureCells]) -> Iterator[str]:
     figures = pages[0].figures
     drive, speed = figures.machine.drive, figures["speed"]
     yield say(
@@ -129,7 +129,7 @@ def _heading(pages: Sequence[Page]) -> Iterator[str]:
         yield say("Crank angles count from {angle}.", angle=angle(pages[0].zero, 2))
 
 
-def _instants(page: Page) -> Table:
+def _instants(page: FigureCells) -> Table:
     names = [name for name in INSTANTS if page.get(f"{name}.crank_angle") is not None]
     if page.figures.curve.arm.release is None:
         names.remove("release")
@@ -150,7 +150,7 @@ def _instants(page: Page) -> Table:
     return Table(page.titled(title), columns, tuple(rows))
 
 
-def _in_time(page: Page, names: list[str]) -> list[str]:
+def _in_time(page: FigureCells, names: list[str]) -> list[str]:
     """Instants in the order of time, from the first of `INSTANTS` on."""
     figures, sense = page.figures, 1 if page.figures["speed"] > 0 else -1
     ways = {name: sense * figures[f"{name}.crank_angle"] for name in names}
@@ -158,10 +158,10 @@ def _in_time(page: Page, names: list[str]) -> list[str]:
     return sorted(names, key=lambda name: round(ways[name] - start, 9) % period)
 
 
-def _values(title: str, figures: dict[str, Named], pages: Sequence[Page]) -> Table:
+def _values(title: str, figures: dict[str, NamedFigure], pages: Sequence[FigureCells]) -> Table:
     """Figures of all arms beside each other; what is of the machine stands with the first."""
 
-    def cell_of(page: Page, name: str) -> Cell:
+    def cell_of(page: FigureCells, name: str) -> Cell:
         shared = page is not pages[0] and name in SHARED
         return None if shared else page.cell(name)
 
@@ -175,7 +175,7 @@ def _values(title: str, figures: dict[str, Named], pages: Sequence[Page]) -> Tab
     return Table(title, (Column(""), *map(Column, values)), rows)
 
 
-def _extremes(page: Page) -> Table:
+def _extremes(page: FigureCells) -> Table:
     rows = tuple(
         (
             say(one.words),
@@ -189,7 +189,7 @@ def _extremes(page: Page) -> Table:
     return Table(title, columns, rows)
 
 
-def _ratios(page: Page) -> Iterator[Block]:
+def _ratios(page: FigureCells) -> Iterator[Block]:
     rows: list[tuple[Cell, ...]] = []
     for link in page.figures.machine.links:
         ends = [page.at(f"ratio.{link}.{end}", f"ratio.{link}.{end}_at") for end in ("min", "max")]
@@ -200,7 +200,7 @@ def _ratios(page: Page) -> Iterator[Block]:
         yield Table(say("Angular velocity over that of the drive"), columns, tuple(rows))
 
 
-def _visits(page: Page) -> Iterator[Block]:
+def _visits(page: FigureCells) -> Iterator[Block]:
     rows = tuple(
         (*map(page.turned, (one.entry, one.exit, one.deepest)), Value(one.depth))
         for one in page.figures.visits
@@ -212,7 +212,7 @@ def _visits(page: Page) -> Iterator[Block]:
         yield Table(title, columns, rows)
 
 
-def _loops(page: Page) -> Iterator[Block]:
+def _loops(page: FigureCells) -> Iterator[Block]:
     rows: tuple[tuple[Cell, ...], ...] = tuple(
         (
             page.turned(loop.first),
@@ -234,7 +234,7 @@ def _loops(page: Page) -> Iterator[Block]:
         yield Text(page.titled(text))
 
 
-def _clearances(pages: Sequence[Page]) -> Iterator[Block]:
+def _clearances(pages: Sequence[FigureCells]) -> Iterator[Block]:
     figures = pages[0].figures
     bodies = dict.fromkeys(figures.machine.links, pages[0])
     bodies |= {f"tip {page.figures.tip}": page for page in pages}
@@ -253,7 +253,7 @@ def _clearances(pages: Sequence[Page]) -> Iterator[Block]:
     yield Table(title, columns, tuple(rows))
 
 
-def _limits(pages: Sequence[Page]) -> Iterator[Block]:
+def _limits(pages: Sequence[FigureCells]) -> Iterator[Block]:
     """Limits of acceleration; a highest speed that is below the machine's stands out."""
     speed = abs(pages[0].figures.machine.drive.speed)
     rows: list[tuple[Cell, ...]] = []
@@ -275,7 +275,7 @@ def _limits(pages: Sequence[Page]) -> Iterator[Block]:
         yield Table(say("Limits of the tip's acceleration"), columns, tuple(rows))
 
 
-def _forces(page: Page) -> Iterator[Block]:
+def _forces(page: FigureCells) -> Iterator[Block]:
     forces = page.figures.forces
     if forces is None:
         return

@@ -43,7 +43,7 @@ def check_asks(goal: Requirement) -> None:
 
 
 @dataclass(frozen=True, eq=False)
-class Outcome:
+class GoalOutcome:
     """Designs judged, P of them.
 
     off : (P, T) targets, in steps.  slack : (P, L) limits, in steps, negative outside.
@@ -56,7 +56,7 @@ class Outcome:
     worst: Array
 
     @classmethod
-    def joined(cls, parts: Sequence[Outcome]) -> Outcome:
+    def joined(cls, parts: Sequence[GoalOutcome]) -> GoalOutcome:
         """What came of all parts, one after the other."""
         names = [one.name for one in fields(cls)]
         return cls(*(np.concatenate([getattr(one, name) for one in parts]) for name in names))
@@ -78,7 +78,7 @@ class Outcome:
         return opened
 
 
-class Problem:
+class PlantingProblem:
     """Designs of a machine and the goals that they have to meet; a context manager, which ends the
     processes that judge them.
 
@@ -108,7 +108,7 @@ class Problem:
         ]
         make = partial(_judging, *designs.given, self.goals)
         self.evaluate = PooledEvaluator(
-            self.judge_here, make, Outcome.joined, workers, together=TOGETHER
+            self.judge_here, make, GoalOutcome.joined, workers, together=TOGETHER
         )
 
     def __enter__(self) -> Self:
@@ -122,12 +122,12 @@ class Problem:
         """Whether a figure is to become small or large."""
         return any(goal.make for goal in self.goals)
 
-    def judge(self, values: Array) -> Outcome:
+    def judge(self, values: Array) -> GoalOutcome:
         """Judge designs (P, n), together with processes of this machine where that takes long."""
         self.judged += len(values)
         return self.evaluate(values)
 
-    def judge_here(self, values: Array) -> Outcome:
+    def judge_here(self, values: Array) -> GoalOutcome:
         """Judge designs (P, n) in this process; of none does the result depend on the others."""
         machines, worst = self._built(values)
         good = worst > OPEN
@@ -144,7 +144,7 @@ class Problem:
                 off.append(goal.off(column) / scale)
             slack += [part / scale for part in goal.slack(column)]
             size = size + goal.size(column) / scale
-        return Outcome(_columns(off, len(values)), _columns(slack, len(values)), size, worst)
+        return GoalOutcome(_columns(off, len(values)), _columns(slack, len(values)), size, worst)
 
     def _built(self, values: Array) -> tuple[list[Machine | None], Array]:
         """Machines, and the smallest number (P,) of any of their dyads round the turn."""
@@ -169,9 +169,9 @@ def _judging(
     vary: Mapping[str, tuple[float, float]] | None,
     sense: Sense,
     goals: Sequence[Requirement],
-) -> Callable[[Array], Outcome]:
+) -> Callable[[Array], GoalOutcome]:
     """In another process: what judges designs."""
-    return Problem(Designs(machine, vary, sense), goals).judge_here
+    return PlantingProblem(Designs(machine, vary, sense), goals).judge_here
 
 
 def _figures(

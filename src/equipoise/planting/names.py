@@ -10,7 +10,7 @@ from equipoise.i18n import say, to_say
 from equipoise.quantities import Dimension
 
 
-class Named(NamedTuple):
+class NamedFigure(NamedTuple):
     """A figure in words, and its dimension; None of a plain number."""
 
     words: str
@@ -27,51 +27,53 @@ INSTANTS = {
 }
 """Columns of the table of instants; it begins with the first that there is."""
 OF_AN_INSTANT = {
-    "crank_angle": Named(to_say("crank angle"), "angle"),
-    "x": Named(to_say("x"), "length"),
-    "y": Named(to_say("y"), "length"),
-    "velocity.x": Named(to_say("velocity x"), "speed"),
-    "velocity.y": Named(to_say("velocity y"), "speed"),
-    "velocity.size": Named(to_say("velocity"), "speed"),
-    "velocity.direction": Named(to_say("direction of velocity"), "angle"),
-    "acceleration.x": Named(to_say("acceleration x"), "acceleration"),
-    "acceleration.y": Named(to_say("acceleration y"), "acceleration"),
-    "acceleration.size": Named(to_say("acceleration"), "acceleration"),
-    "acceleration.direction": Named(to_say("direction of acceleration"), "angle"),
-    "ground_velocity.x": Named(to_say("over ground: velocity x"), "speed"),
-    "ground_velocity.size": Named(to_say("over ground: velocity"), "speed"),
-    "ground_velocity.direction": Named(to_say("over ground: direction"), "angle"),
-    "attitude": Named(to_say("attitude of the finger"), "angle"),
+    "crank_angle": NamedFigure(to_say("crank angle"), "angle"),
+    "x": NamedFigure(to_say("x"), "length"),
+    "y": NamedFigure(to_say("y"), "length"),
+    "velocity.x": NamedFigure(to_say("velocity x"), "speed"),
+    "velocity.y": NamedFigure(to_say("velocity y"), "speed"),
+    "velocity.size": NamedFigure(to_say("velocity"), "speed"),
+    "velocity.direction": NamedFigure(to_say("direction of velocity"), "angle"),
+    "acceleration.x": NamedFigure(to_say("acceleration x"), "acceleration"),
+    "acceleration.y": NamedFigure(to_say("acceleration y"), "acceleration"),
+    "acceleration.size": NamedFigure(to_say("acceleration"), "acceleration"),
+    "acceleration.direction": NamedFigure(to_say("direction of acceleration"), "angle"),
+    "ground_velocity.x": NamedFigure(to_say("over ground: velocity x"), "speed"),
+    "ground_velocity.size": NamedFigure(to_say("over ground: velocity"), "speed"),
+    "ground_velocity.direction": NamedFigure(to_say("over ground: direction"), "angle"),
+    "attitude": NamedFigure(to_say("attitude of the finger"), "angle"),
 }
 PATH = {
-    "curve.height": Named(to_say("height of the curve"), "length"),
-    "curve.width": Named(to_say("width of the curve"), "length"),
-    "curve.length": Named(to_say("length of the curve"), "length"),
-    "curve.lift": Named(to_say("rise above the soil"), "length"),
-    "curve.smallest_radius.value": Named(to_say("smallest radius of the curve"), "length"),
-    "ground.smallest_radius.value": Named(to_say("smallest radius over ground"), "length"),
-    "hill_spacing": Named(to_say("distance of hills"), "length"),
-    "hills.smallest_distance": Named(to_say("smallest distance of hills"), "length"),
-    "hills.largest_distance": Named(to_say("largest distance of hills"), "length"),
-    "planting_frequency": Named(to_say("planting frequency"), "frequency"),
+    "curve.height": NamedFigure(to_say("height of the curve"), "length"),
+    "curve.width": NamedFigure(to_say("width of the curve"), "length"),
+    "curve.length": NamedFigure(to_say("length of the curve"), "length"),
+    "curve.lift": NamedFigure(to_say("rise above the soil"), "length"),
+    "curve.smallest_radius.value": NamedFigure(to_say("smallest radius of the curve"), "length"),
+    "ground.smallest_radius.value": NamedFigure(to_say("smallest radius over ground"), "length"),
+    "hill_spacing": NamedFigure(to_say("distance of hills"), "length"),
+    "hills.smallest_distance": NamedFigure(to_say("smallest distance of hills"), "length"),
+    "hills.largest_distance": NamedFigure(to_say("largest distance of hills"), "length"),
+    "planting_frequency": NamedFigure(to_say("planting frequency"), "frequency"),
 }
 SOIL = {
-    "soil.depth": Named(to_say("depth in the soil"), "length"),
-    "soil.crank_travel": Named(to_say("crank travel in the soil"), "angle"),
-    "soil.time": Named(to_say("time in the soil"), "time"),
-    "soil.path_length_ground": Named(to_say("path in the soil over ground"), "length"),
-    "soil.path_length_machine": Named(to_say("path in the soil relative to the machine"), "length"),
-    "soil.ground_distance": Named(to_say("ground distance from entry to exit"), "length"),
-    "soil.hole_length": Named(to_say("length of the hole at the surface"), "length"),
-    "soil.max_acceleration.value": Named(
+    "soil.depth": NamedFigure(to_say("depth in the soil"), "length"),
+    "soil.crank_travel": NamedFigure(to_say("crank travel in the soil"), "angle"),
+    "soil.time": NamedFigure(to_say("time in the soil"), "time"),
+    "soil.path_length_ground": NamedFigure(to_say("path in the soil over ground"), "length"),
+    "soil.path_length_machine": NamedFigure(
+        to_say("path in the soil relative to the machine"), "length"
+    ),
+    "soil.ground_distance": NamedFigure(to_say("ground distance from entry to exit"), "length"),
+    "soil.hole_length": NamedFigure(to_say("length of the hole at the surface"), "length"),
+    "soil.max_acceleration.value": NamedFigure(
         to_say("largest acceleration in the soil"), "acceleration"
     ),
 }
 EXTREMES = {
-    "max_speed": Named(to_say("largest velocity of the tip"), "speed"),
-    "min_speed": Named(to_say("smallest velocity of the tip"), "speed"),
-    "max_acceleration": Named(to_say("largest acceleration of the tip"), "acceleration"),
-    "min_acceleration": Named(to_say("smallest acceleration of the tip"), "acceleration"),
+    "max_speed": NamedFigure(to_say("largest velocity of the tip"), "speed"),
+    "min_speed": NamedFigure(to_say("smallest velocity of the tip"), "speed"),
+    "max_acceleration": NamedFigure(to_say("largest acceleration of the tip"), "acceleration"),
+    "min_acceleration": NamedFigure(to_say("smallest acceleration of the tip"), "acceleration"),
 }
 FIGURES = {
     **PATH,
@@ -79,15 +81,15 @@ FIGURES = {
     **{f"{name}.value": one for name, one in EXTREMES.items()},
 }
 SHAKEN = {
-    "shaking_force.rms": Named(to_say("RMS of the shaking force"), "force"),
-    "shaking_force.peak": Named(to_say("largest shaking force"), "force"),
-    "shaking_moment.rms": Named(to_say("RMS of the shaking moment"), "torque"),
-    "shaking_moment.peak": Named(to_say("largest shaking moment"), "torque"),
-    "drive_torque.rms": Named(to_say("RMS of the drive torque in the air"), "torque"),
-    "drive_torque.peak": Named(to_say("largest drive torque in the air"), "torque"),
+    "shaking_force.rms": NamedFigure(to_say("RMS of the shaking force"), "force"),
+    "shaking_force.peak": NamedFigure(to_say("largest shaking force"), "force"),
+    "shaking_moment.rms": NamedFigure(to_say("RMS of the shaking moment"), "torque"),
+    "shaking_moment.peak": NamedFigure(to_say("largest shaking moment"), "torque"),
+    "drive_torque.rms": NamedFigure(to_say("RMS of the drive torque in the air"), "torque"),
+    "drive_torque.peak": NamedFigure(to_say("largest drive torque in the air"), "torque"),
 }
 """Of inertia, which a search may ask for; the moment is about the drive's pivot."""
-LINKAGE = {"transmission.min": Named(to_say("smallest transmission angle"), "angle")}
+LINKAGE = {"transmission.min": NamedFigure(to_say("smallest transmission angle"), "angle")}
 OF_INSTANTS = ("crank_angle", "velocity.size", "acceleration.size", "attitude")
 OTHERS = (
     *(f"{name}.{key}" for name in ("pick_up", "entry", "lowest", "exit") for key in OF_INSTANTS),

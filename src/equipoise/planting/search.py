@@ -20,7 +20,7 @@ from equipoise.mechanism.assembly.family import Family
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.planting.designs import Designs, Sense
-from equipoise.planting.goals import LIMITS, Problem
+from equipoise.planting.goals import LIMITS, PlantingProblem
 from equipoise.planting.summary import PlantingFigures, plant
 from equipoise.results.result import Result
 from equipoise.signals import Array
@@ -140,12 +140,16 @@ def fit_planting(
     ModelError, MotionError : the machine to start from cannot be used.
     """
     _check(machine, seed, generations, population)
-    with Problem(Designs(machine, vary, sense), goals, workers) as problem:
+    with PlantingProblem(Designs(machine, vary, sense), goals, workers) as problem:
         return _fit(problem, seed, generations, population, progress)
 
 
 def _fit(
-    problem: Problem, seed: int, generations: int, population: int, progress: Progress | None
+    problem: PlantingProblem,
+    seed: int,
+    generations: int,
+    population: int,
+    progress: Progress | None,
 ) -> Fit:
     evolution = _Evolution(problem, seed, generations, progress)
     best = evolution.rounds(population)
@@ -192,7 +196,7 @@ class _Evolution:
     """Differential evolution, round after round, within a number of generations in all."""
 
     def __init__(
-        self, problem: Problem, seed: int, generations: int, progress: Progress | None
+        self, problem: PlantingProblem, seed: int, generations: int, progress: Progress | None
     ) -> None:
         self.problem, self.generations, self.progress = problem, generations, progress
         self.generator = np.random.default_rng(seed)
@@ -264,7 +268,7 @@ class _Evolution:
         return bool(before) and before[0] - now < STILL * (1 + abs(now))
 
 
-def _polished(problem: Problem, starts: Array) -> Iterator[Array]:
+def _polished(problem: PlantingProblem, starts: Array) -> Iterator[Array]:
     """Designs (1, n) nearest to the targets; it ends once one of them meets them all."""
     for start in starts:
         found = _nearest(problem, start)[None]
@@ -273,7 +277,7 @@ def _polished(problem: Problem, starts: Array) -> Iterator[Array]:
             return
 
 
-def _nearest(problem: Problem, start: Array) -> Array:
+def _nearest(problem: PlantingProblem, start: Array) -> Array:
     """The design (n,) with the least squares of targets and violated limits.
 
     Its numbers are scaled to their limits, 0 to 1.
@@ -310,7 +314,7 @@ def _nearest(problem: Problem, start: Array) -> Array:
     return design
 
 
-def _best(problem: Problem, candidates: Array) -> tuple[Array, PlantingFigures]:
+def _best(problem: PlantingProblem, candidates: Array) -> tuple[Array, PlantingFigures]:
     """The best design (n,) that turns fully and keeps the limits, looked at closely."""
     outcome = problem.judge(candidates)
     for k in np.lexsort([outcome.cost, ~outcome.kept]):

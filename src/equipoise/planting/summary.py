@@ -12,7 +12,7 @@ import numpy as np
 
 from equipoise.errors import ModelError, UsageError
 from equipoise.i18n import Note
-from equipoise.mechanism.checks import Named
+from equipoise.mechanism.checks import NamedItems
 from equipoise.mechanism.dynamics.forces import Forces, forces, massless
 from equipoise.mechanism.kinematics.jumps import resolved
 from equipoise.mechanism.kinematics.motion import MOST_ANGLES, Motion, move
@@ -255,7 +255,7 @@ def plant(machine: Machine, speed: float | str | None = None) -> PlantingFigures
     notes = tuple(note for arm in (first, *further) for note in arm.notes)
     return replace(
         first,
-        figures=Named("figure", known.items()),
+        figures=NamedItems("figure", known.items()),
         further=tuple(further),
         notes=(*_machine_notes(curve, known), *notes),
     )
@@ -269,7 +269,7 @@ def _read_off(curve: TipCurve) -> PlantingFigures:
     found = tip_figures(curve, np.array([main.entry]), np.array([main.exit]), breaks[None])
     crossed = tray_crossings(curve)
     values = _of_drive(curve) | {name: float(value[0]) for name, value in found.items()}
-    known = Named("figure", ((n, value) for n, value in values.items() if isfinite(value)))
+    known = NamedItems("figure", ((n, value) for n, value in values.items() if isfinite(value)))
     notes = _notes(curve, stays, crossed, known)
     return PlantingFigures(
         curve=curve,

@@ -21,7 +21,7 @@ from equipoise.present.drawing import drawings
 from equipoise.present.findings import Findings, ToolFindings, find
 from equipoise.present.fonts import check_pdf
 from equipoise.present.headlines import seen_in
-from equipoise.present.pages import Document, page, pdf
+from equipoise.present.pages import ReportDocument, page, pdf
 from equipoise.present.sources import sources
 from equipoise.present.summary import answers, check_whole_cycle, tiles
 from equipoise.present.tool_headlines import judged
@@ -75,7 +75,7 @@ def build(
     language: str = "en",
     command: str = "",
     together: bool = False,
-) -> Document:
+) -> ReportDocument:
     """Everything that a report tells, in a language.
 
     command : that makes it again.
@@ -94,7 +94,7 @@ def build(
         return replace(made, units=chosen_units())
 
 
-def _of_linkage(found: Findings, language: str, command: str, together: bool) -> Document:
+def _of_linkage(found: Findings, language: str, command: str, together: bool) -> ReportDocument:
     machine, analysis = found.machine, found.analysis
     drawn = drawings(found, together)
     blocks: Parts = {"model": [*drawn.get("model", []), *model_blocks(machine)]}
@@ -115,7 +115,7 @@ def _of_linkage(found: Findings, language: str, command: str, together: bool) ->
     if found.balanced is not None:
         blocks["balance"] = [*balance_blocks(found), *drawn.get("balance", [])]
     seen = {name: seen_in(name, found) for name in blocks}
-    return Document(
+    return ReportDocument(
         language,
         said(machine.title),
         driven(machine, analysis.motion.speed),
@@ -157,7 +157,7 @@ def balance_blocks(found: Findings) -> Iterator[Block]:
         yield from map(Text, nothing_told(balanced))
 
 
-def _of_tool(found: ToolFindings, language: str, command: str) -> Document:
+def _of_tool(found: ToolFindings, language: str, command: str) -> ReportDocument:
     blocks: list[Block | Section] = [*drawings(found).get("tool", [])]
     if found.design is not None:
         blocks.extend(design_blocks(found.design))
@@ -170,7 +170,7 @@ def _of_tool(found: ToolFindings, language: str, command: str) -> Document:
         rpm = number(found.tool.operation.speed / PER_RPM)
         subtitle = say("hand-held tool, engine at {speed} rpm", speed=rpm)
     named: Parts = {"model": [*of_tools.model_blocks(found.tool)], "tool": blocks}
-    return Document(
+    return ReportDocument(
         language,
         said(found.tool.title),
         subtitle,
@@ -236,7 +236,7 @@ def parted(blocks: Iterable[Block | Section]) -> tuple[list[Block | Section], li
 def _animation(found: Findings) -> str:
     from equipoise.figures.animation import animated_svg
     from equipoise.figures.points import followed
-    from equipoise.figures.stage import Arrow
+    from equipoise.figures.stage import ForceArrow
     from equipoise.symbols.scene import Scene
 
     analysis = found.analysis
@@ -249,7 +249,7 @@ def _animation(found: Findings) -> str:
         scene,
         title=found.machine.title,
         traced=followed(analysis.motion),
-        arrow=None if analysis.solved is None else Arrow.of(analysis),
+        arrow=None if analysis.solved is None else ForceArrow.of(analysis),
         width=440,  # as wide as it stands on the page, so that its texts have their size
     )
 
@@ -341,7 +341,7 @@ def check(outs: Iterable[str | os.PathLike[str]], language: str) -> None:
         check_pdf(language)
 
 
-def write_document(document: Document, outs: Iterable[str | os.PathLike[str]]) -> None:
+def write_document(document: ReportDocument, outs: Iterable[str | os.PathLike[str]]) -> None:
     """Write a document as each of these files."""
     from equipoise.schema.files import write_all
 

@@ -13,12 +13,12 @@ from equipoise.figures import drawn as svg_of
 from equipoise.i18n import say
 from equipoise.present.findings import Findings, ToolFindings
 from equipoise.present.pictures import SECTIONS, each
-from equipoise.results.blocks import Drawn
+from equipoise.results.blocks import SvgPicture
 
 if TYPE_CHECKING:
     from multiprocessing.connection import Connection
 
-Drawings = dict[str, list[Drawn]]
+Drawings = dict[str, list[SvgPicture]]
 """Pictures by section."""
 
 
@@ -76,6 +76,6 @@ def _draw(found: Findings | ToolFindings, sections: Collection[str]) -> Drawings
         chart = picture.draw()
         told = say("; ").join((chart.what, *chart.words))
         svg, wide = svg_of(chart)
-        block = Drawn(picture.name, told, svg, picture.seen(), say(picture.caption), wide)
+        block = SvgPicture(picture.name, told, svg, picture.seen(), say(picture.caption), wide)
         drawn.setdefault(picture.section, []).append(block)
     return drawn

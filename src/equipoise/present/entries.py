@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from equipoise.results.charts import Chart
 
 
-class Entry(NamedTuple):
+class PictureEntry(NamedTuple):
     """Name, caption, what draws it, and what is seen in it."""
 
     name: str
@@ -22,13 +22,13 @@ class Entry(NamedTuple):
 
 def pages(
     name: str, caption: str, make: Callable[[], Iterable[Chart]], seen: Callable[[], str] = str
-) -> Iterator[Entry]:
+) -> Iterator[PictureEntry]:
     """What goes on over several pictures; how many, only their charts tell."""
     for number, chart in enumerate(make(), 1):
         if number == 1:
-            yield Entry(name, caption, partial(made, chart), seen)
+            yield PictureEntry(name, caption, partial(made, chart), seen)
         else:
-            yield Entry(f"{name}-{number}", caption, partial(made, chart))
+            yield PictureEntry(f"{name}-{number}", caption, partial(made, chart))
 
 
 def made(chart: Chart) -> Chart:

@@ -26,7 +26,7 @@ from equipoise.present.colors import colored, colors
 from equipoise.present.fonts import boxes, check_pdf, families, installed
 from equipoise.present.layout import Looks
 from equipoise.quantities import Units, showing
-from equipoise.results.blocks import Block, Drawn, Emphasis, Section, Table
+from equipoise.results.blocks import Block, Emphasis, Section, SvgPicture, Table
 from equipoise.results.blocks import Text as RunningText
 from equipoise.symbols.looks import LIGHT
 
@@ -48,7 +48,7 @@ class Tile:
 
 
 @dataclass(frozen=True)
-class Answer:
+class SummaryAnswer:
     """A part of the summary: what it answers, and the answer in sentences.
 
     worse : those of the sentences that say what gets worse, which stand out.
@@ -60,7 +60,7 @@ class Answer:
 
 
 @dataclass(frozen=True)
-class Document:
+class ReportDocument:
     """A whole report.
 
     language : its code.  subtitle : what runs, how fast.  animation : SVG, empty where none moves.
@@ -75,7 +75,7 @@ class Document:
     subtitle: str
     description: str
     tiles: tuple[Tile, ...]
-    summary: tuple[Answer, ...]
+    summary: tuple[SummaryAnswer, ...]
     animation: str
     sections: tuple[Section, ...]
     appendix: tuple[Section, ...] = ()
@@ -140,7 +140,7 @@ def part_of_page(title: str, blocks: Iterable[Block | Section], picture: str = "
     return template.render(language=spoken(), title=title, blocks=(*blocks,), image=image)
 
 
-def page(document: Document) -> str:
+def page(document: ReportDocument) -> str:
     """A document as HTML."""
     with document.spoken():
         template = _environment().get_template("report.html.j2")
@@ -201,12 +201,12 @@ def _runs(blocks: Iterable[Block | Section]) -> Iterator[tuple[str, list[Block |
         yield kind, list(members)
 
 
-def paired(drawn: Iterable[Drawn]) -> list[list[Drawn]]:
+def paired(drawn: Iterable[SvgPicture]) -> list[list[SvgPicture]]:
     """Pictures in rows: two of half a page's width each, or a wide one; in their order but for
     wide ones, which do not part two that stand side by side.
     """
-    rows: list[list[Drawn]] = []
-    waiting: list[Drawn] = []
+    rows: list[list[SvgPicture]] = []
+    waiting: list[SvgPicture] = []
     for one in drawn:
         row = [one] if one.wide else [*waiting, one]
         if one.wide or len(row) == 2:
@@ -219,7 +219,7 @@ def flowed(blocks: Iterable[Block | Section]) -> Iterator[tuple[str, list[Any]]]
     """Blocks of a kind together, pictures in rows; one without a neighbour before tables is packed
     with these.
     """
-    lone: list[Drawn] = []
+    lone: list[SvgPicture] = []
     for kind, members in _runs(blocks):
         if kind == "drawn":
             *rows, last = paired(members)  # type: ignore[arg-type]
@@ -257,19 +257,19 @@ LEAST = 0.7
 """Scale below which its letters would be too small to read."""
 
 
-def _source(document: Document) -> str:
+def _source(document: ReportDocument) -> str:
     """A document as Typst reads it."""
     with document.spoken():
         of = {"labels": _labels(), "families": families(document.language)}
         return _template().render(document=document, **of)
 
 
-def boxed_in_pdf(document: Document) -> str:
+def boxed_in_pdf(document: ReportDocument) -> str:
     """Letters of a document for which its PDF has boxes, as no font of this computer has them."""
     return boxes(_source(document))
 
 
-def pdf(document: Document) -> bytes:
+def pdf(document: ReportDocument) -> bytes:
     """A document as PDF."""
     check_pdf(document.language)
     import typst

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from equipoise.i18n import to_say
 from equipoise.present import headlines as seen
 from equipoise.present import support_headlines as gauged
-from equipoise.present.entries import Entry, made, pages
+from equipoise.present.entries import PictureEntry, made, pages
 from equipoise.present.findings import Findings, ToolFindings
 from equipoise.present.tool_pictures import of_tool
 
@@ -56,7 +56,7 @@ def each(
     """Those of some sections one by one: what only later ones need is not computed before."""
     from equipoise.figures.style import free_name
 
-    parts: dict[str, Callable[[Any], Iterator[Entry]]] = {"tool": of_tool}
+    parts: dict[str, Callable[[Any], Iterator[PictureEntry]]] = {"tool": of_tool}
     if isinstance(found, Findings):
         parts = {"model": partial(_model, at=at), **OF_LINKAGE}
     taken: dict[str, None] = {}
@@ -70,41 +70,45 @@ def each(
 # -- of a linkage; nothing of what it does not have ------------------------------------------------
 
 
-def _model(found: Findings, at: Sequence[float] | None) -> Iterator[Entry]:
+def _model(found: Findings, at: Sequence[float] | None) -> Iterator[PictureEntry]:
     from equipoise.figures.linkage import linkage
     from equipoise.figures.side import side
 
     caption = to_say("The linkage to scale, with its joints, links and centres of mass.")
     draw = partial(linkage, found.analysis, at)
-    yield Entry("linkage", caption, draw, partial(seen.heaviest, found.analysis))
+    yield PictureEntry("linkage", caption, draw, partial(seen.heaviest, found.analysis))
     if found.analysis.machine.has_planes:
         caption = to_say("The planes of links, masses and bearings, from the side and to scale.")
-        yield Entry("side", caption, partial(side, found.analysis, at))
+        yield PictureEntry("side", caption, partial(side, found.analysis, at))
 
 
-def _motion(found: Findings) -> Iterator[Entry]:
+def _motion(found: Findings) -> Iterator[PictureEntry]:
     from equipoise.figures.couplings import ratios
     from equipoise.figures.linkage import centrodes, rolling
     from equipoise.figures.points import curves, hodograph, main_kinematics
 
     analysis = found.analysis
     caption = to_say("Paths of the points of the moving links, with marks at equal times.")
-    yield Entry("curves", caption, partial(curves, analysis), partial(seen.longest, analysis))
+    yield PictureEntry(
+        "curves", caption, partial(curves, analysis), partial(seen.longest, analysis)
+    )
     caption = to_say("Velocity and acceleration of these points: the ends of their arrows.")
-    yield Entry("hodograph", caption, partial(hodograph, analysis), partial(seen.fastest, analysis))
+    yield PictureEntry(
+        "hodograph", caption, partial(hodograph, analysis), partial(seen.fastest, analysis)
+    )
     if rolling(analysis):
         caption = to_say("Centrodes: paths of instant centres in the frame and in the link.")
-        yield Entry("centrodes", caption, partial(centrodes, analysis))
+        yield PictureEntry("centrodes", caption, partial(centrodes, analysis))
     caption = to_say("Motion over crank angle: position, velocity and acceleration.")
     for chart in main_kinematics(analysis) if len(analysis.crank_angle) > 1 else ():
         told = partial(seen.kinematic, analysis, chart.name)
-        yield Entry(chart.name, caption, partial(made, chart), told)
+        yield PictureEntry(chart.name, caption, partial(made, chart), told)
     caption = to_say("Speed ratio of gears over crank angle.")
     for chart in ratios(analysis) if len(analysis.crank_angle) > 1 else ():
-        yield Entry(chart.name, caption, partial(made, chart))
+        yield PictureEntry(chart.name, caption, partial(made, chart))
 
 
-def _planting(found: Findings) -> Iterator[Entry]:
+def _planting(found: Findings) -> Iterator[PictureEntry]:
     figures = found.planting
     if figures is None:
         return
@@ -112,11 +116,11 @@ def _planting(found: Findings) -> Iterator[Entry]:
     from equipoise.figures.planting import joints, ratio, tips, torque
 
     caption = to_say("Path of the planting finger relative to the machine and over the ground.")
-    yield Entry("path", caption, partial(path, figures), partial(seen.planted, figures))
+    yield PictureEntry("path", caption, partial(path, figures), partial(seen.planted, figures))
     caption = to_say("Angular velocity of a link over that of the crank.")
     for link in figures.machine.links:
         if link != figures.machine.drive.link:
-            yield Entry(
+            yield PictureEntry(
                 f"ratio-{link}",
                 caption,
                 partial(ratio, figures, link),
@@ -124,33 +128,35 @@ def _planting(found: Findings) -> Iterator[Entry]:
             )
     caption = to_say("Velocity and acceleration of the finger's tip relative to the machine.")
     for chart in tips(figures):
-        yield Entry(f"tip-{chart.name}", caption, partial(made, chart))
+        yield PictureEntry(f"tip-{chart.name}", caption, partial(made, chart))
     if figures.forces is not None:
         caption = to_say("Drive torque with and without the forces of the soil.")
-        yield Entry(
+        yield PictureEntry(
             "soil-torque", caption, partial(torque, figures), partial(seen.resisted, figures)
         )
         caption = to_say("Forces in the joints with and without the forces of the soil.")
-        yield Entry("soil-joints", caption, partial(joints, figures))
+        yield PictureEntry("soil-joints", caption, partial(joints, figures))
 
 
-def _forces(found: Findings) -> Iterator[Entry]:
+def _forces(found: Findings) -> Iterator[PictureEntry]:
     analysis = found.analysis
     if analysis.solved is None:
         return
     from equipoise.figures import forces
 
     caption = to_say("Shaking force as a polar diagram: the end of its arrow over the cycle.")
-    yield Entry("polar", caption, partial(forces.polar, analysis), partial(seen.pushed, found))
+    yield PictureEntry(
+        "polar", caption, partial(forces.polar, analysis), partial(seen.pushed, found)
+    )
     caption = to_say("Shaking force over crank angle.")
-    yield Entry(
+    yield PictureEntry(
         "force",
         caption,
         partial(forces.force, analysis),
         partial(seen.peaked, analysis, "shaking_force", "force"),
     )
     caption = to_say("Shaking moment over crank angle.")
-    yield Entry(
+    yield PictureEntry(
         "moment",
         caption,
         partial(forces.moment, analysis),
@@ -160,7 +166,7 @@ def _forces(found: Findings) -> Iterator[Entry]:
     of_torque = to_say("Drive torque over crank angle, and what it is for.")
     of_force = to_say("Drive force over crank angle, and what it is for.")
     for number, one in enumerate(drives, 1):
-        yield Entry(
+        yield PictureEntry(
             "torque" if number == 1 else f"torque-{number}",
             of_force if one.pushes else of_torque,
             partial(forces.torque, analysis, number),
@@ -174,12 +180,12 @@ def _forces(found: Findings) -> Iterator[Entry]:
             "Shaking force, shaking moment and drive force by orders of the crank angle."
         )
         caption = of_force if pushes else of_torque
-        yield Entry(
+        yield PictureEntry(
             "spectrum", caption, partial(forces.spectrum, analysis), partial(seen.ordered, found)
         )
 
 
-def _joints(found: Findings) -> Iterator[Entry]:
+def _joints(found: Findings) -> Iterator[PictureEntry]:
     if found.analysis.solved is None or not found.analysis.forces.joints:
         return
     from equipoise.figures.analysis import joint_polars, joints
@@ -187,7 +193,7 @@ def _joints(found: Findings) -> Iterator[Entry]:
 
     caption = to_say("Tension of the strands of belts over crank angle.")
     for chart in strands(found.analysis):
-        yield Entry(chart.name, caption, partial(made, chart))
+        yield PictureEntry(chart.name, caption, partial(made, chart))
     caption = to_say("Forces in the joints over crank angle.")
     yield from pages(
         "joints",
@@ -204,13 +210,13 @@ def _joints(found: Findings) -> Iterator[Entry]:
     )
 
 
-def _vibration(found: Findings) -> Iterator[Entry]:
+def _vibration(found: Findings) -> Iterator[PictureEntry]:
     from equipoise.figures import sweep, vibration
 
     if (response := found.response) is not None:
         caption = to_say("Vibration at a gauge of the support over a cycle.")
         for name in response.gauges:
-            yield Entry(
+            yield PictureEntry(
                 f"gauge-{name}",
                 caption,
                 partial(vibration.gauge, response, name),
@@ -231,7 +237,7 @@ def _vibration(found: Findings) -> Iterator[Entry]:
             partial(gauged.mounted, response),
         )
         caption = to_say("Torque and speed of the drive on the moving support.")
-        yield Entry(
+        yield PictureEntry(
             "drive",
             caption,
             partial(vibration.drive, response),
@@ -240,14 +246,14 @@ def _vibration(found: Findings) -> Iterator[Entry]:
     if (over_speed := found.sweep) is not None:
         caption = to_say("Vibration at the gauges against speed.")
         for quantity in ("displacement", "velocity", "acceleration"):
-            yield Entry(
+            yield PictureEntry(
                 f"response-{quantity}",
                 caption,
                 partial(sweep.gauges, over_speed, quantity),
                 partial(gauged.resonant, over_speed, quantity),
             )
         caption = to_say("Where orders of the crank meet natural frequencies.")
-        yield Entry(
+        yield PictureEntry(
             "resonance-map",
             caption,
             partial(sweep.resonance_map, over_speed),
@@ -255,16 +261,16 @@ def _vibration(found: Findings) -> Iterator[Entry]:
         )
         if over_speed.mounts:
             caption = to_say("Forces in the mounts against speed.")
-            yield Entry("mounts-speed", caption, partial(sweep.mounts, over_speed))
+            yield PictureEntry("mounts-speed", caption, partial(sweep.mounts, over_speed))
 
 
-def _modes(found: Findings) -> Iterator[Entry]:
+def _modes(found: Findings) -> Iterator[PictureEntry]:
     from equipoise.figures.modes import mode_chart
 
     if found.modes is not None:
         caption = to_say("Shape of a natural vibration of the machine on its support.")
         for number in range(1, len(found.modes.modes) + 1):
-            yield Entry(
+            yield PictureEntry(
                 f"mode-{number}",
                 caption,
                 partial(mode_chart, found.modes, number),
@@ -272,7 +278,7 @@ def _modes(found: Findings) -> Iterator[Entry]:
             )
 
 
-def _balance(found: Findings) -> Iterator[Entry]:
+def _balance(found: Findings) -> Iterator[PictureEntry]:
     balanced = found.balanced
     if balanced is None or not found.helped:
         return
@@ -283,7 +289,7 @@ def _balance(found: Findings) -> Iterator[Entry]:
     of_linkage = any(change.kind != "phases" for change in balanced.changes)
     if of_linkage:
         caption, draw = to_say("What to change, to scale."), partial(changes, balanced)
-        yield Entry("changes", caption, draw, partial(seen.added, found))
+        yield PictureEntry("changes", caption, draw, partial(seen.added, found))
     caption = to_say("What was made small or limited, before and after, by crank angle and order.")
     yield from pages("aims", caption, partial(aims, balanced), partial(seen.reached, balanced))
     if of_linkage:
@@ -296,7 +302,7 @@ def _balance(found: Findings) -> Iterator[Entry]:
             else to_say("Drive torque, before and after."),
         }
         for name, chart in signals(balanced).items():
-            yield Entry(
+            yield PictureEntry(
                 f"balanced-{name}",
                 captions[name],
                 partial(made, chart),
@@ -304,14 +310,14 @@ def _balance(found: Findings) -> Iterator[Entry]:
             )
     if balanced.phasing is not None:
         both = balanced.original, balanced.machine
-        yield Entry("phases", to_say("Phases of the rows."), partial(phases, *both))
+        yield PictureEntry("phases", to_say("Phases of the rows."), partial(phases, *both))
         caption = to_say("Shaking force of all rows together, before and after.")
-        yield Entry(
+        yield PictureEntry(
             "rows", caption, partial(together, *both), partial(seen.compared, found, "rows")
         )
 
 
-OF_LINKAGE: dict[str, Callable[[Findings], Iterator[Entry]]] = {
+OF_LINKAGE: dict[str, Callable[[Findings], Iterator[PictureEntry]]] = {
     "motion": _motion,
     "planting": _planting,
     "forces": _forces,

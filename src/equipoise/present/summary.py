@@ -13,7 +13,7 @@ from equipoise.i18n import say, to_say
 from equipoise.mechanism.outputs.spoken import joint_named, named
 from equipoise.planting.summary import PlantingFigures
 from equipoise.present.findings import Findings
-from equipoise.present.pages import Answer, Tile
+from equipoise.present.pages import SummaryAnswer, Tile
 from equipoise.present.shaking import Shaking, acting, largest_joint
 from equipoise.quantities import (
     PER_RPM,
@@ -38,22 +38,22 @@ LEADING = 0.5
 """Share of the mean square from which one order is told as the whole."""
 
 
-def answers(found: Findings) -> Iterator[Answer]:
+def answers(found: Findings) -> Iterator[SummaryAnswer]:
     """The summary, a question at a time; what the file does not tell is left out."""
     if found.analysis.solved is None:
         missing = say("Forces are not computed, because masses of links are missing.")
-        yield Answer(say("What shakes"), (missing,))
+        yield SummaryAnswer(say("What shakes"), (missing,))
     else:
         shaking = Shaking.of(found)
-        yield Answer(say("What shakes, and how much"), tuple(_shaken(found, shaking)))
-        yield Answer(say("Why"), tuple(_why(found)))
+        yield SummaryAnswer(say("What shakes, and how much"), tuple(_shaken(found, shaking)))
+        yield SummaryAnswer(say("Why"), tuple(_why(found)))
         if found.balanced is not None:
             worse = tuple(worse_told(found.balanced)) if found.helped else ()
-            yield Answer(say("What helps most"), tuple(helps_told(found.balanced)), worse)
+            yield SummaryAnswer(say("What helps most"), tuple(helps_told(found.balanced)), worse)
     if vibration := tuple(vibration_told(found)):
-        yield Answer(say("What that does to the support"), vibration)
+        yield SummaryAnswer(say("What that does to the support"), vibration)
     if planting := tuple(planting_told(found)):
-        yield Answer(say("Planting"), planting)
+        yield SummaryAnswer(say("Planting"), planting)
 
 
 def tiles(found: Findings) -> Iterator[Tile]:

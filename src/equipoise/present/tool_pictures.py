@@ -7,21 +7,21 @@ from functools import partial
 
 from equipoise.i18n import to_say
 from equipoise.present import tool_headlines as seen
-from equipoise.present.entries import Entry, pages
+from equipoise.present.entries import PictureEntry, pages
 from equipoise.present.findings import ToolFindings
 
 
-def of_tool(found: ToolFindings) -> Iterator[Entry]:
+def of_tool(found: ToolFindings) -> Iterator[PictureEntry]:
     """The tool itself, modes, transmission, what the hands get, and the design."""
     from equipoise.figures import tool_designs, tool_shaft, tool_side, tool_speeds
 
     modes, transmission = found.modes, found.transmission
     planes = ("", "-lateral")[: 1 if found.tool.alike else 2]
     caption = to_say("The tool from the side, at rest and as it is deflected at work.")
-    yield Entry("side", caption, partial(tool_side.side, found.tool))
+    yield PictureEntry("side", caption, partial(tool_side.side, found.tool))
     if modes is not None:
         caption = to_say("The tool from the side in its lowest natural vibrations.")
-        yield Entry("side-modes", caption, partial(tool_side.side_modes, modes))
+        yield PictureEntry("side-modes", caption, partial(tool_side.side_modes, modes))
         caption = to_say("Shapes of the natural vibrations of the shaft.")
         for plane, name in enumerate(planes):
             drawn = partial(tool_shaft.shapes, modes, plane)
@@ -30,22 +30,24 @@ def of_tool(found: ToolFindings) -> Iterator[Entry]:
         caption = to_say("Share of a shaking force that comes to what holds the tool.")
         for plane, name in enumerate(planes):
             draw = partial(tool_speeds.transmission, transmission, plane, modes)
-            yield Entry(
+            yield PictureEntry(
                 f"transmission{name}", caption, draw, partial(seen.passed, transmission, plane)
             )
     if found.sweep is not None and found.sweep.response is not None:
         caption = to_say("Bending moment and displacement along the shaft.")
-        yield Entry("moment", caption, partial(tool_shaft.moment, found.sweep.response, None))
+        yield PictureEntry(
+            "moment", caption, partial(tool_shaft.moment, found.sweep.response, None)
+        )
     if found.exposure is not None:
         caption = to_say("Acceleration of the hands against speed of the engine.")
-        yield Entry(
+        yield PictureEntry(
             "acceleration",
             caption,
             partial(tool_speeds.acceleration, found.exposure),
             partial(seen.worst, found),
         )
         caption = to_say("Daily exposure of the hands, with what is allowed.")
-        yield Entry(
+        yield PictureEntry(
             "exposure",
             caption,
             partial(tool_speeds.weighted, found.exposure),
@@ -53,11 +55,11 @@ def of_tool(found: ToolFindings) -> Iterator[Entry]:
         )
     if found.design is not None:
         caption = to_say("The tool from the side before and after what is changed.")
-        yield Entry("side-design", caption, partial(tool_side.side_design, found.design))
+        yield PictureEntry("side-design", caption, partial(tool_side.side_design, found.design))
         caption = to_say(
             "What the hand that gets most gets over the band of speeds, before and after."
         )
-        yield Entry(
+        yield PictureEntry(
             "design",
             caption,
             partial(tool_designs.design, found.design),

@@ -19,7 +19,7 @@ from equipoise.handheld.hand_blocks import figure_named, varied_named
 from equipoise.handheld.response import respond_tool
 from equipoise.i18n import say, to_say
 from equipoise.present.findings import ToolFindings
-from equipoise.present.pages import Answer, Tile
+from equipoise.present.pages import SummaryAnswer, Tile
 from equipoise.present.tool_headlines import worst_at_work
 from equipoise.quantities import PER_RPM, Dimension, brief, change, display, percent
 from equipoise.signals import highest_at
@@ -57,18 +57,18 @@ def tool_tiles(found: ToolFindings) -> Iterator[Tile]:
         yield Tile(say("by the changes below"), told, "%", say("vibration of the hand"))
 
 
-def tool_answers(found: ToolFindings) -> Iterator[Answer]:
+def tool_answers(found: ToolFindings) -> Iterator[SummaryAnswer]:
     """The summary, a question at a time."""
     if found.exposure is not None:
-        yield Answer(say("What the hands get"), tuple(_felt(found.exposure)))
+        yield SummaryAnswer(say("What the hands get"), tuple(_felt(found.exposure)))
         if why := tuple(_why(found.tool)):
-            yield Answer(say("Why"), why)
+            yield SummaryAnswer(say("Why"), why)
     elif found.transmission is not None:
-        yield Answer(say("What comes to the hands"), tuple(_transmitted(found)))
+        yield SummaryAnswer(say("What comes to the hands"), tuple(_transmitted(found)))
     if found.modes is not None:
-        yield Answer(say("Natural frequencies"), tuple(_near(found, found.modes)))
+        yield SummaryAnswer(say("Natural frequencies"), tuple(_near(found, found.modes)))
     if found.design is not None:
-        yield Answer(say("What helps most"), tuple(_helps(found.design)))
+        yield SummaryAnswer(say("What helps most"), tuple(_helps(found.design)))
 
 
 def _felt(exposure: ToolExposure) -> Iterator[str]:

@@ -13,7 +13,7 @@ from equipoise.errors import MassError, UsageError
 from equipoise.i18n import Note, to_say
 from equipoise.limits import check_memory
 from equipoise.mechanism.assembly.linkage import Linkage
-from equipoise.mechanism.checks import Named
+from equipoise.mechanism.checks import NamedItems
 from equipoise.mechanism.dynamics.assessment import FourBar, four_bar, remarks
 from equipoise.mechanism.dynamics.bearing_life import BearingLife, bearing_lives
 from equipoise.mechanism.dynamics.cam_contacts import CamFigures, cam_figures
@@ -166,7 +166,7 @@ class Analysis(Result):
 
     def _figures(self, ones: Sequence[Output]) -> Mapping[str, Figures]:
         """Those of some outputs, by name; of so many at once as leave memory to others."""
-        motion, found = self.resolved.motion, Named[Figures]("output", ())
+        motion, found = self.resolved.motion, NamedItems[Figures]("output", ())
         some = max(1, AT_ONCE // len(motion.crank_angle))
         for begin in range(0, len(ones), some):
             part = ones[begin : begin + some]
@@ -253,7 +253,7 @@ class Analysis(Result):
                 f"got {in_a_turn} crank angles in a turn; orders need {LEAST_ANGLES} and more, or "
                 "high ones are taken for low ones"
             )
-        return Named("output", ((one.name, one.periodic) for one in self.outputs.ordered))
+        return NamedItems("output", ((one.name, one.periodic) for one in self.outputs.ordered))
 
     def to_dict(
         self,

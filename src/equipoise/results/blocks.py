@@ -182,7 +182,7 @@ class Picture:
 
 
 @dataclass(frozen=True)
-class Drawn:
+class SvgPicture:
     """A picture as SVG, as it has been drawn, without its heading.
 
     caption : what is drawn.  seen : what is seen in it.  instead : for those who cannot see it.
@@ -207,7 +207,7 @@ class Listing:
     text: str
 
 
-Block = Text | Facts | Table | Notes | Picture | Drawn | Listing
+Block = Text | Facts | Table | Notes | Picture | SvgPicture | Listing
 
 
 @dataclass(frozen=True)

@@ -181,7 +181,7 @@ class Mark:
 
 
 @dataclass(frozen=True)
-class Flag:
+class PlaceLabel:
     """Words above the axes, in one or more rows, with a line down to a place of the x axis.
 
     weight : where there is no room for all, those that weigh less are left out.
@@ -283,7 +283,7 @@ class Panel:
     areas: tuple[Area, ...] = ()
     arrows: tuple[Arrow, ...] = ()
     outlines: tuple[Outline, ...] = ()
-    flags: tuple[Flag, ...] = ()
+    flags: tuple[PlaceLabel, ...] = ()
     flag_words: tuple[str, ...] = ()
     asides: tuple[Aside, ...] = ()
     cells: tuple[Cells, ...] = ()

@@ -25,7 +25,7 @@ Content = Mapping[str, Any]
 
 
 @dataclass(frozen=True)
-class Found:
+class NumberLocation:
     """Where a number stands.
 
     place : of the number itself, or of the vector or pair of planes whose `part` it is.
@@ -39,7 +39,7 @@ class Found:
     rest: str = ""
 
 
-def find(content: Content, kind: Kind, path: str) -> Found:
+def find(content: Content, kind: Kind, path: str) -> NumberLocation:
     """Where the number of a path stands.
 
     Raises
@@ -53,15 +53,15 @@ def find(content: Content, kind: Kind, path: str) -> Found:
         group = _group(here, step, kind) if count == len(steps) - 1 else None
         if group is not None:
             part = XYZ[step] if isinstance(step, int) else step
-            return Found(place, group.numbers[part], group, part)
+            return NumberLocation(place, group.numbers[part], group, part)
         if kind == "tool" and place[-1:] == ("linkage",) and isinstance(here, str):
-            return Found(place, rest=str(KeyPath(steps[count:])))
+            return NumberLocation(place, rest=str(KeyPath(steps[count:])))
         here = _below(content, kind, path, place / step, here)
         place = place / step
     number = read_number(here, isinstance(here, int) and is_whole(kind, place))
     if number is None:
         raise ModelError(path, _no_number(path, here))
-    return Found(place, number)
+    return NumberLocation(place, number)
 
 
 def all_numbers(content: Content) -> dict[str, Number]:
@@ -179,7 +179,7 @@ def _no_number(path: str, here: Any) -> Note | str:
     return f"{path} is {what}; give the path of one number"
 
 
-Given = tuple[str, Found, float]
+Given = tuple[str, NumberLocation, float]
 """Path of a number, where it stands, and what is to stand there."""
 
 
@@ -207,7 +207,9 @@ def replaced(content: Content, given: Iterable[Given]) -> dict[str, Any]:
     return with_values(content, changes)
 
 
-def _check_company(path: str, found: Found, beside: Mapping[str, float], taken: bool) -> None:
+def _check_company(
+    path: str, found: NumberLocation, beside: Mapping[str, float], taken: bool
+) -> None:
     """Refuse a number that others have changed already."""
     if taken or found.part in beside or (beside and not found.part):
         raise ModelError(path, f"{path} is a number that varies already; leave one of them out")
@@ -225,7 +227,7 @@ SHARE = "%"
 _QUANTITY = re.compile(rf"{NUMBER} +(\S.*)")
 
 
-def unit_in(content: Mapping[str, Any], found: Found) -> str:
+def unit_in(content: Mapping[str, Any], found: NumberLocation) -> str:
     """Unit in which a model file gives a number; one that is usual where it has none.
 
     Returns
@@ -256,7 +258,7 @@ def handy(dimension: Dimension) -> str:
     return KINDS[dimension].printed[0]
 
 
-def _given(content: Mapping[str, Any], found: Found) -> Iterator[Any]:
+def _given(content: Mapping[str, Any], found: NumberLocation) -> Iterator[Any]:
     """What stands in the file where a number does: first its own text, then those beside it."""
     try:
         here = found.place.read(content)

@@ -23,7 +23,7 @@ from equipoise.keys.paths import KeyPath, with_values
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.schema.finding import (
-    Found,
+    NumberLocation,
     all_numbers,
     find,
     handy,
@@ -70,7 +70,7 @@ class Template:
     ) -> None:
         self.text, self.source = text, source
         self._known: Known = dict(known or {})
-        self._found: dict[str, Found] = {}
+        self._found: dict[str, NumberLocation] = {}
         self._lifts: dict[str, Lift | None] = {}
         with in_file(source):
             self._content = model_content(text)
@@ -230,7 +230,7 @@ class Template:
 
     # -- inside ------------------------------------------------------------------------------------
 
-    def _find(self, path: str) -> Found:
+    def _find(self, path: str) -> NumberLocation:
         if path not in self._found:
             self._found[path] = find(self._content, self.kind, path)
         return self._found[path]

@@ -26,7 +26,7 @@ from equipoise.keys import (
 )
 from equipoise.keys import Kind as KeyKind
 from equipoise.keys.paths import KeyPath
-from equipoise.schema.finding import Content, Found
+from equipoise.schema.finding import Content, NumberLocation
 from equipoise.schema.numbers import vector_of
 from equipoise.schema.opening import Kind, document_of
 
@@ -76,7 +76,11 @@ def plain_word(key: Key) -> str:
 
 
 def words_of(
-    content: Content, kind: Kind, found: Found, others: Collection[str] = (), known: int = 0
+    content: Content,
+    kind: Kind,
+    found: NumberLocation,
+    others: Collection[str] = (),
+    known: int = 0,
 ) -> Note | None:
     """The number that stands at a place in words; None where its keys have none.
 
@@ -147,7 +151,7 @@ def _below(here: Any, step: str | int) -> Any:
     return here[step] if isinstance(here, list) and isinstance(step, int) else None
 
 
-def _length(content: Content, found: Found) -> Note | None:
+def _length(content: Content, found: NumberLocation) -> Note | None:
     """The length of a body from the point in its origin to one whose distance from there it is."""
     if found.place[-2:-1] != ("points",) or found.part not in ("x", "distance"):
         return None

@@ -6,12 +6,12 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from equipoise.mechanism.assembly.cam_fits import Fit, fitted, sharpest
+from equipoise.mechanism.assembly.cam_fits import CamFit, fitted, sharpest
 from equipoise.mechanism.assembly.cam_shapes import Shape
 from equipoise.mechanism.formulas.kernels import cross
 from equipoise.mechanism.parts.cams import Cam
 from equipoise.symbols.part_signs import Surroundings
-from equipoise.symbols.shapes import Array, Mark, circle, line
+from equipoise.symbols.shapes import Array, BodyMark, circle, line
 
 CORNERS = 360
 """Of a cam's surface."""
@@ -21,7 +21,7 @@ BEYOND = 0.15
 """How much farther a flat face reaches than the cam touches it, over the base radius."""
 
 
-def cam_sign(cam: Cam, around: Surroundings) -> Iterator[Mark]:
+def cam_sign(cam: Cam, around: Surroundings) -> Iterator[BodyMark]:
     """A cam and what rides on it; a knife's edge is a point, and has a sign already."""
     fit = fitted(around.machine(), around.joints, cam)
     shape = fit.shape(np.linspace(0.0, 2 * np.pi, CORNERS, endpoint=False))
@@ -29,17 +29,19 @@ def cam_sign(cam: Cam, around: Surroundings) -> Iterator[Mark]:
     if cam.closed_by == "groove":
         flanks = {"groove": shape.beside(2 * shape.radius), **flanks}
     for role, flank in flanks.items():
-        yield Mark(cam.driver, fit.cam_pin, line(role, *flank, closed=True), (cam.table, cam.name))
+        yield BodyMark(
+            cam.driver, fit.cam_pin, line(role, *flank, closed=True), (cam.table, cam.name)
+        )
     if cam.closed_by == "ribs":
         inside = -min(RIB * cam.base_radius, sharpest(fit)[0] / 2)
-        yield Mark(cam.driver, fit.cam_pin, line("rib", *shape.beside(inside), closed=True))
+        yield BodyMark(cam.driver, fit.cam_pin, line("rib", *shape.beside(inside), closed=True))
     if cam.rides == "roller":
-        yield Mark(cam.driven, cam.point, circle("rider", 0j, cam.roller_radius))
+        yield BodyMark(cam.driven, cam.point, circle("rider", 0j, cam.roller_radius))
     elif cam.rides == "flat":
-        yield Mark(cam.driven, cam.point, line("face", *_face(fit, shape)))
+        yield BodyMark(cam.driven, cam.point, line("face", *_face(fit, shape)))
 
 
-def _face(fit: Fit, shape: Shape) -> Array:
+def _face(fit: CamFit, shape: Shape) -> Array:
     """Both ends of a flat face, from its point and in the follower's axes, m."""
     along = cross(shape.ride.normal, shape.contact[0] - shape.ride.place)
     beyond = BEYOND * fit.cam.base_radius

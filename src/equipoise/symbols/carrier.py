@@ -35,7 +35,7 @@ ASIDE = 1.3 * HALF
 
 
 @dataclass(frozen=True, eq=False)
-class Swing:
+class SupportSwing:
     """How a support moves in the plane of the drawing at N crank angles, larger than true.
 
     place : displacement of its reference, (N,) complex, m.  angle : (N,) rad.

@@ -7,12 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from equipoise.mechanism.kinematics.motion import Motion
-from equipoise.mechanism.parts.machine import Drive as Driving
-from equipoise.mechanism.parts.machine import FurtherDrive
+from equipoise.mechanism.parts.machine import Drive, FurtherDrive
 
 
 @dataclass(frozen=True)
-class Drive:
+class DriveSign:
     """The link that is driven, the point that it turns about, and its sense: 1, -1, or 0.
 
     swings : angles of the link between which it goes to and fro, rad, where it does not turn.
@@ -26,12 +25,12 @@ class Drive:
     between: tuple[str, str] | None = None
 
     @classmethod
-    def each(cls, motion: Motion) -> tuple[Drive, ...]:
+    def each(cls, motion: Motion) -> tuple[DriveSign, ...]:
         """Those of a machine in motion."""
         return tuple(cls._of(drive, motion) for drive in motion.machine.driven)
 
     @classmethod
-    def _of(cls, drive: Driving | FurtherDrive, motion: Motion) -> Drive:
+    def _of(cls, drive: Drive | FurtherDrive, motion: Motion) -> DriveSign:
         angle, pivot = motion.links[drive.link].angle, motion.linkage.anchors[drive.link]
         law = drive.stroke or drive.motion
         if law is None or law.windings:

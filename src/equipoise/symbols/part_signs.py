@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from equipoise.mechanism.assembly.joints import Structure
 from equipoise.mechanism.checks import Bodies
 from equipoise.mechanism.parts.element_kinds import PartKind
-from equipoise.symbols.shapes import Mark
+from equipoise.symbols.shapes import BodyMark
 
 if TYPE_CHECKING:
     from equipoise.mechanism.parts.machine import Machine, Slider
@@ -36,7 +36,7 @@ class Surroundings:
     travel: Callable[[Slider], Any]
 
 
-Sign = Callable[[Any, Surroundings], Iterator[Mark]]
+Sign = Callable[[Any, Surroundings], Iterator[BodyMark]]
 
 
 @cache
@@ -47,7 +47,7 @@ def sign_of(kind: type[PartKind]) -> Sign | None:
     return found
 
 
-def signs_of(table: str, part: PartKind, around: Surroundings) -> list[Mark]:
+def signs_of(table: str, part: PartKind, around: Surroundings) -> list[BodyMark]:
     """The signs of a part, if its kind has one.  table : key of its list."""
     kind: Any = type(part)
     sign = sign_of(kind)
@@ -55,6 +55,6 @@ def signs_of(table: str, part: PartKind, around: Surroundings) -> list[Mark]:
     return [replace(mark, table=table, legend=part.legend) for mark in marks]
 
 
-def in_order(marks: Iterable[Mark]) -> tuple[Mark, ...]:
+def in_order(marks: Iterable[BodyMark]) -> tuple[BodyMark, ...]:
     """Marks, of which those come last that no other covers."""
     return tuple(sorted(marks, key=lambda mark: mark.shape.role in UPPERMOST))

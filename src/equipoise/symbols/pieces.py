@@ -10,9 +10,9 @@ import numpy as np
 from equipoise.mechanism.parts.machine import FRAME
 from equipoise.mechanism.parts.support import Mount, unit_vector
 from equipoise.symbols.carrier import foot, gauge, ground, strut, turning
-from equipoise.symbols.drives import Drive
+from equipoise.symbols.drives import DriveSign
 from equipoise.symbols.looks import LAYERS
-from equipoise.symbols.scene import WIDE, Body, Guide, Scene
+from equipoise.symbols.scene import WIDE, Body, GuideSign, Scene
 from equipoise.symbols.shapes import (
     PIN,
     Array,
@@ -35,7 +35,7 @@ from equipoise.symbols.shapes import (
     wheel,
     zigzag,
 )
-from equipoise.symbols.tracks import Hold, Track, track_of
+from equipoise.symbols.tracks import Hold, PieceTrack, track_of
 
 BESIDE = 0.6
 """How much farther than the machine the soil reaches, over its size: out of every picture."""
@@ -70,7 +70,7 @@ class Piece:
     part: tuple[str, str] | None = None
     table: str = ""
 
-    def track(self, scene: Scene, unit: float = 0.0) -> Track | None:
+    def track(self, scene: Scene, unit: float = 0.0) -> PieceTrack | None:
         """How it moves; None where it stands still.  unit : of signs, m; the scene's if 0."""
         return track_of(scene, self.hold, self.still, unit or scene.unit)
 
@@ -101,7 +101,7 @@ def pieces(scene: Scene, traced: Collection[str] = (), field: bool = True) -> li
     return [piece for piece in found if piece.shapes]
 
 
-def _part(guide: Guide) -> tuple[str, str]:
+def _part(guide: GuideSign) -> tuple[str, str]:
     return "slider", guide.name
 
 
@@ -209,7 +209,7 @@ def _stands(scene: Scene) -> Iterator[Piece]:
             yield Piece("guides", shapes, part=_part(guide))
 
 
-def _ends(scene: Scene, guide: Guide) -> tuple[Array, Array]:
+def _ends(scene: Scene, guide: GuideSign) -> tuple[Array, Array]:
     """First and last place of a block on its line, (N,) complex, m."""
     place = scene.places[guide.point]
     return place - guide.behind * guide.way, place + guide.ahead * guide.way
@@ -318,7 +318,7 @@ def _sense(scene: Scene) -> Iterator[Piece]:
             yield _arrow(scene, drive)
 
 
-def _arrow(scene: Scene, drive: Drive) -> Piece:
+def _arrow(scene: Scene, drive: DriveSign) -> Piece:
     (body,) = (body for body in scene.bodies if body.name == drive.link)
     center = scene.local(body, scene.places[drive.pivot])
     arms = scene.corners(body) - center

@@ -15,11 +15,11 @@ from equipoise.mechanism.kinematics.tip import surface_of
 from equipoise.mechanism.parts.bodies import place_of
 from equipoise.mechanism.parts.body_checks import Outline, outlines
 from equipoise.mechanism.parts.machine import FRAME, Link
-from equipoise.symbols.carrier import MOUNT, Carrier, Swing
-from equipoise.symbols.drives import Drive
+from equipoise.symbols.carrier import MOUNT, Carrier, SupportSwing
+from equipoise.symbols.drives import DriveSign
 from equipoise.symbols.part_signs import Surroundings, in_order, signs_of
 from equipoise.symbols.rows import ONE, Rows, rows_of
-from equipoise.symbols.shapes import Array, Mark, hull
+from equipoise.symbols.shapes import Array, BodyMark, hull
 from equipoise.symbols.wheels import Wheel, wheels_of
 
 
@@ -47,7 +47,7 @@ class Body:
 
 
 @dataclass(frozen=True, eq=False)
-class Guide:
+class GuideSign:
     """A sliding joint.
 
     point : of the block.  way : direction of its line, (N,) complex of size 1.
@@ -67,7 +67,7 @@ class Guide:
 
 
 @dataclass(frozen=True)
-class Field:
+class FieldSign:
     """What a machine plants into and picks up from.
 
     surface : height of the soil, m.  depth : below it, m, that the tip reaches.
@@ -115,17 +115,17 @@ class Scene:
     pin_radii: Mapping[str, float]
     mass_centers: Mapping[str, Array]
     wheels: tuple[Wheel, ...]
-    guides: tuple[Guide, ...]
+    guides: tuple[GuideSign, ...]
     springs: tuple[tuple[str, str], ...]
     angles: Mapping[str, Array]
-    drives: tuple[Drive, ...]
+    drives: tuple[DriveSign, ...]
     planned: tuple[tuple[str, str], ...] = ()
-    field: Field | None = None
+    field: FieldSign | None = None
     carrier: Carrier | None = None
-    swing: Swing | None = None
+    swing: SupportSwing | None = None
     room: tuple[complex, ...] = ()
     rows: Rows = ONE
-    marks: tuple[Mark, ...] = ()
+    marks: tuple[BodyMark, ...] = ()
 
     @classmethod
     def of(cls, motion: Motion) -> Scene:
@@ -148,7 +148,7 @@ class Scene:
             tuple(_guides(motion)),
             springs := tuple((spring.point, spring.to) for spring in machine.springs),
             {name: link.angle for name, link in motion.links.items()},
-            Drive.each(motion),
+            DriveSign.each(motion),
             tuple((one.point, one.to) for one in planned if (one.point, one.to) not in springs),
             _field(motion),
             Carrier.of(machine),
@@ -164,7 +164,7 @@ class Scene:
         return self if rows is ONE else replace(self, rows=rows)
 
     @property
-    def drive(self) -> Drive:
+    def drive(self) -> DriveSign:
         """The first of them."""
         return self.drives[0]
 
@@ -271,7 +271,7 @@ class Scene:
         marks = [corner[k] for mark in self.marks for corner in self.spots(mark)]
         return np.array([*(place[k] for place in self.places.values()), *wheels, *solids, *marks])
 
-    def spots(self, mark: Mark, outermost: bool = False) -> Array:
+    def spots(self, mark: BodyMark, outermost: bool = False) -> Array:
         """Where corners of a mark are, or of the box around a circle, (n, N) complex, m.
 
         outermost : whether those farthest out are enough, as many as a picture tells apart.
@@ -298,7 +298,7 @@ def _box(places: Array) -> tuple[complex, complex]:
     return complex(x.min(), y.min()), complex(x.max(), y.max())
 
 
-def _field(motion: Motion) -> Field | None:
+def _field(motion: Motion) -> FieldSign | None:
     planting = motion.machine.planting
     if planting is None:
         return None
@@ -309,7 +309,7 @@ def _field(motion: Motion) -> Field | None:
     places = [motion.points[arm.tip].place.imag for arm in planting.every_arm]
     lowest = float(np.min(places))
     depth = surface - lowest if planting.depth is None else planting.depth
-    return Field(surface, max(depth, 0.0), tuple(complex(*end) for end in planting.tray or ()))
+    return FieldSign(surface, max(depth, 0.0), tuple(complex(*end) for end in planting.tray or ()))
 
 
 def bodies_of(links: Mapping[str, Link]) -> Iterator[Body]:
@@ -328,7 +328,7 @@ def _solids(link: Link) -> Iterator[Outline]:
             yield [corner - origin for corner in corners], radius
 
 
-def _guides(motion: Motion) -> Iterator[Guide]:
+def _guides(motion: Motion) -> Iterator[GuideSign]:
     meshing = {(rack.rack, rack.carrier): rack.left for rack in motion.machine.racks}
     for slider in motion.machine.sliders:
         place = motion.points[slider.point].place
@@ -340,4 +340,4 @@ def _guides(motion: Motion) -> Iterator[Guide]:
         along = (place * way.conj()).real
         ends = along - along.min(), along.max() - along
         side = meshing.get((slider.link, slider.on), 0)
-        yield Guide(slider.name, slider.point, way, slider.on, *ends, side)
+        yield GuideSign(slider.name, slider.point, way, slider.on, *ends, side)

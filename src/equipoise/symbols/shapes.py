@@ -57,7 +57,7 @@ class Shape:
 
 
 @dataclass(frozen=True, eq=False)
-class Mark:
+class BodyMark:
     """A shape that moves with a body, maybe the frame: from a point of that, in the body's axes.
 
     part : list and name of what it tells, if a page can have that deleted by it.

@@ -9,7 +9,7 @@ import numpy as np
 from equipoise.mechanism.parts.circular_slots import CircularSlot
 from equipoise.mechanism.parts.curved_slots import CurvedSlot
 from equipoise.symbols.part_signs import Surroundings
-from equipoise.symbols.shapes import PIN, Array, Mark, Shape
+from equipoise.symbols.shapes import PIN, Array, BodyMark, Shape
 
 PLAY = 1.4
 """Between a pin and either edge of its slot, units."""
@@ -21,7 +21,7 @@ CAP = np.exp(1j * np.linspace(-np.pi / 2, np.pi / 2, 9))
 """Round ends, seen along the way ahead."""
 
 
-def circular_sign(slot: CircularSlot, around: Surroundings) -> Iterator[Mark]:
+def circular_sign(slot: CircularSlot, around: Surroundings) -> Iterator[BodyMark]:
     """The slot in its body."""
     first, last = slot.arc or (0.0, 2 * np.pi)
     angle = np.linspace(first, last, CORNERS)
@@ -29,17 +29,17 @@ def circular_sign(slot: CircularSlot, around: Surroundings) -> Iterator[Mark]:
     for shape in slot_shapes(
         slot.radius * way, 1j * way, not slot.arc, around.radii.get(slot.point)
     ):
-        yield Mark(slot.on, slot.center, shape)
+        yield BodyMark(slot.on, slot.center, shape)
 
 
-def curved_sign(slot: CurvedSlot, around: Surroundings) -> Iterator[Mark]:
+def curved_sign(slot: CurvedSlot, around: Surroundings) -> Iterator[BodyMark]:
     """The slot in its body."""
     curve, turn = slot.curve, np.exp(1j * slot.direction)
     s = np.linspace(0.0, curve.knots[-1], CORNERS)
     middle, first, *_ = curve.at(s)
     ahead = turn * first / abs(first)
     for shape in slot_shapes(turn * middle, ahead, slot.closed, around.radii.get(slot.point)):
-        yield Mark(slot.on, slot.origin, shape)
+        yield BodyMark(slot.on, slot.origin, shape)
 
 
 def slot_shapes(

@@ -13,7 +13,7 @@ from equipoise.mechanism.formulas.strands import LEFT, RIGHT
 from equipoise.mechanism.parts.belts import Belt
 from equipoise.mechanism.parts.racks import Rack
 from equipoise.symbols.part_signs import Surroundings
-from equipoise.symbols.shapes import Array, Mark, line
+from equipoise.symbols.shapes import Array, BodyMark, line
 
 MOST_TEETH = 80
 """That are drawn of a rack."""
@@ -21,7 +21,7 @@ SLOPE = tan(radians(20))
 """Of their flanks."""
 
 
-def strand_sign(belt: Belt, around: Surroundings) -> Iterator[Mark]:
+def strand_sign(belt: Belt, around: Surroundings) -> Iterator[BodyMark]:
     """Both strands, but where one pulley covers the other, as it may in a sketch."""
     driver, driven = coupling_pins(around.joints, belt)
     points = around.bodies[belt.carrier]
@@ -30,10 +30,10 @@ def strand_sign(belt: Belt, around: Surroundings) -> Iterator[Mark]:
         return
     for side in (LEFT, RIGHT):
         strand = line("strand", *strands.ends(side))
-        yield Mark(belt.carrier, driver, strand, (belt.table, belt.name))
+        yield BodyMark(belt.carrier, driver, strand, (belt.table, belt.name))
 
 
-def rack_sign(rack: Rack, around: Surroundings) -> Iterator[Mark]:
+def rack_sign(rack: Rack, around: Surroundings) -> Iterator[BodyMark]:
     """The rack, as far as its pinion rolls on it, and a radius more; a sketch may lack its guide or
     its pin.
     """
@@ -51,7 +51,7 @@ def rack_sign(rack: Rack, around: Surroundings) -> Iterator[Mark]:
     toward = 1j * rack.left  # the pinion, of a bar along the x axis
     corners = low + 1j * foot.imag + _bar(high - low, rack.radius, toward)
     bar = line("wheel", *(corners / guide.turn), closed=True)
-    yield Mark(rack.rack, guide.point, bar, (rack.table, rack.name))
+    yield BodyMark(rack.rack, guide.point, bar, (rack.table, rack.name))
 
 
 def _bar(length: float, radius: float, toward: complex) -> Array:

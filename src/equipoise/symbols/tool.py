@@ -11,7 +11,7 @@ import numpy as np
 from equipoise.symbols.carrier import MOUNT, SPRING, foot, ground, turning
 from equipoise.symbols.scene import WIDE
 from equipoise.symbols.shapes import Array, Shape, circle, line, sign
-from equipoise.symbols.tracks import Track
+from equipoise.symbols.tracks import PieceTrack
 
 DENSITY = 1000.0
 """Of bodies of which the mass alone is known, kg/m3: they are drawn as cubes of water."""
@@ -24,7 +24,7 @@ BLADE, TILT = 2.2, np.exp(0.55j)
 
 
 @dataclass(frozen=True)
-class Tube:
+class TubeSign:
     """A part of the shaft, m; of no diameter where that is not known."""
 
     start: float
@@ -33,7 +33,7 @@ class Tube:
 
 
 @dataclass(frozen=True)
-class Seat:
+class SeatSign:
     """What sits at a place of the shaft, m.
 
     mass : of a rigid body, absorber : of one on a spring, kg.  hands : that hold on there.
@@ -67,13 +67,13 @@ class ToolScene:
     along : places (X,) on it, m, and how far they are deflected: (N, X), m, to the scale drawn.
     """
 
-    shaft: tuple[Tube, ...]
-    seats: tuple[Seat, ...]
+    shaft: tuple[TubeSign, ...]
+    seats: tuple[SeatSign, ...]
     along: Array
     deflected: Array
 
     @cached_property
-    def tracks(self) -> Mapping[str, tuple[Track, Track]]:
+    def tracks(self) -> Mapping[str, tuple[PieceTrack, PieceTrack]]:
         """Of every seat: of what turns with the shaft, and of what stays upright."""
         slopes, found = np.gradient(self.deflected, self.along, axis=1), {}
         for one in self.seats:
@@ -82,7 +82,7 @@ class ToolScene:
                 for rows in (self.deflected, slopes)
             )
             place, none = one.place + 1j * high, np.zeros(len(high))
-            turned, upright = (Track(place, by, none + 1) for by in (np.arctan(slope), none))
+            turned, upright = (PieceTrack(place, by, none + 1) for by in (np.arctan(slope), none))
             found[one.name] = turned, upright
         return found
 
@@ -101,7 +101,7 @@ class ToolScene:
         low, high = (complex(end(corners.real), end(corners.imag)) for end in (np.min, np.max))
         return low - room, high + room
 
-    def pieces(self) -> list[tuple[str, Seat, bool, tuple[Shape, ...]]]:
+    def pieces(self) -> list[tuple[str, SeatSign, bool, tuple[Shape, ...]]]:
         """What every seat has, about its place on the shaft: layer, seat, whether it turns with the
         shaft, shapes.  The shaft lies between the layers ``below`` and ``above``.
         """
@@ -149,7 +149,7 @@ def _box(role: str, edge: float, middle: complex = 0, tall: float = 1.0) -> Shap
     return line(role, *(middle + half), closed=True)
 
 
-def _body(seat: Seat) -> Iterator[Shape]:
+def _body(seat: SeatSign) -> Iterator[Shape]:
     """A body by its mass; with a cylinder, or with a blade across its own axis."""
     edge = seat.edge
     if not edge or seat.hands or (seat.harness and not seat.part):
@@ -168,7 +168,7 @@ def _body(seat: Seat) -> Iterator[Shape]:
         yield circle("pin", 0, grown=3.6)
 
 
-def _held(seat: Seat) -> Iterator[Shape]:
+def _held(seat: SeatSign) -> Iterator[Shape]:
     """The belt, and springs and dampers to the ground."""
     if seat.harness:
         loop = 66j - 14j * np.exp(1j * np.linspace(0.15, 2, 9) * np.pi)
@@ -182,7 +182,7 @@ def _held(seat: Seat) -> Iterator[Shape]:
         yield from turning(0, 0, of_gauge=False)
 
 
-def _absorber(seat: Seat) -> Iterator[Shape]:
+def _absorber(seat: SeatSign) -> Iterator[Shape]:
     """A body on a spring below the shaft."""
     if not seat.absorber:
         return
@@ -197,7 +197,7 @@ FINGER, ROUND = 6.4, np.exp(1j * np.linspace(0, np.pi, 7))
 """Width of a finger, units; half a circle."""
 
 
-def _hands(seat: Seat) -> Iterator[Shape]:
+def _hands(seat: SeatSign) -> Iterator[Shape]:
     """Hands around the shaft, each with the arm that it comes from; an arrow of what shakes."""
     for hand in range(seat.hands):
         off = 32.0 * (hand - (seat.hands - 1) / 2)

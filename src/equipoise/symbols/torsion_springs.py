@@ -8,7 +8,7 @@ import numpy as np
 
 from equipoise.mechanism.parts.torsion_springs import TorsionSpring
 from equipoise.symbols.part_signs import Surroundings
-from equipoise.symbols.shapes import Array, Mark, sign
+from equipoise.symbols.shapes import Array, BodyMark, sign
 
 INNER, OUTER, TURNS, CORNERS = 6.0, 17.0, 2.25, 64
 """Radii of the spiral, units; its turns, and the corners of its line."""
@@ -16,11 +16,11 @@ END = 6.0
 """Units, of the straight end that holds on to the link."""
 
 
-def torsion_sign(spring: TorsionSpring, around: Surroundings) -> Iterator[Mark]:
+def torsion_sign(spring: TorsionSpring, around: Surroundings) -> Iterator[BodyMark]:
     """A spiral that turns with the link."""
     shared = around.joints.pins_between(spring.link, spring.on)
     point = shared[0] if shared else next(iter(around.bodies[spring.link]))
-    yield Mark(spring.link, point, sign("spiral", 0j, spiral()))
+    yield BodyMark(spring.link, point, sign("spiral", 0j, spiral()))
 
 
 def spiral() -> Array:

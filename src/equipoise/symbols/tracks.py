@@ -12,7 +12,7 @@ from equipoise.symbols.shapes import Array, Shape
 
 
 @dataclass(frozen=True, eq=False)
-class Track:
+class PieceTrack:
     """How a piece moves over N crank angles.
 
     place : of its origin, (N,) complex, m.  angle : (N,) rad, counterclockwise, counted on.
@@ -51,7 +51,7 @@ class Hold:
     rigid: bool = False
 
 
-def track_of(scene: Scene, hold: Hold | None, still: bool, unit: float) -> Track | None:
+def track_of(scene: Scene, hold: Hold | None, still: bool, unit: float) -> PieceTrack | None:
     """How signs with a hold, or without one, move; None where they stand still.
 
     still : whether they stand on the ground.  unit : of signs, m.
@@ -63,28 +63,30 @@ def track_of(scene: Scene, hold: Hold | None, still: bool, unit: float) -> Track
         return found
     if found is None:
         zero = 0 * scene.crank_angle
-        found = Track(zero + 0j, zero, zero + 1)
-    return Track(scene.swung(found.place), found.angle + scene.swing.angle, found.stretch)
+        found = PieceTrack(zero + 0j, zero, zero + 1)
+    return PieceTrack(scene.swung(found.place), found.angle + scene.swing.angle, found.stretch)
 
 
-def _in_frame(scene: Scene, hold: Hold) -> Track:
+def _in_frame(scene: Scene, hold: Hold) -> PieceTrack:
     """Motion with a link, on a guide or between two points, in the axes of the frame."""
     if hold.row:
         row = scene.rows.shown[hold.row - 1]
-        return Track(row.places[hold.point], row.angles[hold.link], np.ones(len(scene.crank_angle)))
+        return PieceTrack(
+            row.places[hold.point], row.angles[hold.link], np.ones(len(scene.crank_angle))
+        )
     place = scene.places[hold.point]
     if hold.link:
-        return Track(place, scene.angles[hold.link], np.ones(len(place)))
+        return PieceTrack(place, scene.angles[hold.link], np.ones(len(place)))
     if hold.guide:
         (way,) = (guide.way for guide in scene.guides if guide.name == hold.guide)
-        return Track(place, np.unwrap(np.angle(way)), np.ones(len(place)))
+        return PieceTrack(place, np.unwrap(np.angle(way)), np.ones(len(place)))
     way = scene.places[hold.to] - place
     length = abs(way)
     usual = length if hold.rigid else float(length.mean()) or 1.0
-    return Track(place, np.unwrap(np.angle(way)), length / usual)
+    return PieceTrack(place, np.unwrap(np.angle(way)), length / usual)
 
 
-def _strutted(scene: Scene, name: str, unit: float) -> Track:
+def _strutted(scene: Scene, name: str, unit: float) -> PieceTrack:
     """Motion of what is stretched between a mount's place on the support and its ground."""
     assert scene.carrier is not None
     mount = scene.carrier.support.mounts[name]
@@ -92,4 +94,4 @@ def _strutted(scene: Scene, name: str, unit: float) -> Track:
     at_rest, length = complex(*mount.point[:2]), MOUNT[0] * unit
     place = scene.swung(np.full(len(scene.crank_angle), at_rest))
     way = at_rest + length * scene.carrier.way(mount) - place
-    return Track(place, np.unwrap(np.angle(way)), abs(way) / length)
+    return PieceTrack(place, np.unwrap(np.angle(way)), abs(way) / length)

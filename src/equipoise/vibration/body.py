@@ -298,7 +298,7 @@ class Reading:
 
 
 @dataclass(frozen=True, eq=False)
-class Contact:
+class MountContact:
     """A mount: a spring and damper that may be preloaded, and may push on one side only."""
 
     name: str
@@ -317,11 +317,11 @@ class Contact:
         return force
 
 
-def contacts_of(body: Body, rest: Rest) -> tuple[Contact, ...]:
+def contacts_of(body: Body, rest: Rest) -> tuple[MountContact, ...]:
     """The mounts of a planar support."""
     found = []
     for name, mount in body.support.mounts.items():
         rates = mount.spring, mount.damper
         at = Reading.of(body, mount)
-        found.append(Contact(name, at, rest.preload[name], *rates, mount.one_sided))
+        found.append(MountContact(name, at, rest.preload[name], *rates, mount.one_sided))
     return tuple(found)

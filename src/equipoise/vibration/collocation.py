@@ -40,7 +40,7 @@ class System(Protocol):
 
 
 @dataclass(frozen=True, eq=False)
-class Conditions:
+class BoundaryConditions:
     """What closes the solution: begin (n, n) x(0) + end (n, n) x(L) = value (n,)."""
 
     begin: Array
@@ -48,7 +48,7 @@ class Conditions:
     value: Array
 
     @classmethod
-    def periodic(cls, count: int) -> Conditions:
+    def periodic(cls, count: int) -> BoundaryConditions:
         return cls(-np.eye(count), np.eye(count), np.zeros(count))
 
 
@@ -147,7 +147,7 @@ def nodes_of(points: Array) -> Array:
 
 
 def solve(
-    system: System, points: Array, guess: Callable[[Array], Array], conditions: Conditions
+    system: System, points: Array, guess: Callable[[Array], Array], conditions: BoundaryConditions
 ) -> Orbit:
     """Find a periodic solution by Newton's method.
 
@@ -194,7 +194,7 @@ def _slopes(rates: Rates, states: Array) -> Array:
     return rates(states.reshape(len(states), -1)).reshape(states.shape)
 
 
-def _misfit(orbit: Orbit, states: Array, conditions: Conditions) -> float:
+def _misfit(orbit: Orbit, states: Array, conditions: BoundaryConditions) -> float:
     """How far from a solution, each state beside its own size."""
     scale = np.maximum(np.max(np.abs(states), axis=(1, 2)), NOTHING)
     inner = np.abs(orbit.states - states).max(axis=(1, 2))
@@ -213,7 +213,7 @@ class _Step:
     monodromy: Array
 
 
-def _newton(rates: Rates, orbit: Orbit, states: Array, conditions: Conditions) -> _Step:
+def _newton(rates: Rates, orbit: Orbit, states: Array, conditions: BoundaryConditions) -> _Step:
     """One step of Newton's method, condensed interval by interval."""
     count, intervals, stages = states.shape
     h = np.diff(orbit.points)

@@ -29,7 +29,7 @@ from equipoise.mechanism.assembly.steps import size_of_bodies
 from equipoise.mechanism.kinematics.jumps import jumps_of_rows
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.signals import Array, within_period
-from equipoise.vibration.body import IN_PLANE, PITCH, Body, Contact, Rest, contacts_of
+from equipoise.vibration.body import IN_PLANE, PITCH, Body, MountContact, Rest, contacts_of
 from equipoise.vibration.collocation import Rates
 from equipoise.vibration.linkages import Sums, sums
 
@@ -61,7 +61,7 @@ class Coupled:
     inertia: float
     reference: complex
     free: tuple[int, ...]
-    contacts: tuple[Contact, ...]
+    contacts: tuple[MountContact, ...]
     torque: Torque | None = None
 
     @classmethod

@@ -22,7 +22,7 @@ from equipoise.mechanism.dynamics.forces import forces
 from equipoise.mechanism.kinematics.motion import move
 from equipoise.signals import Array, Periodic
 from equipoise.vibration.body import IN_PLANE, PITCH
-from equipoise.vibration.collocation import Conditions, Rates
+from equipoise.vibration.collocation import BoundaryConditions, Rates
 from equipoise.vibration.linear import Linear, gauges_of
 from equipoise.vibration.linkages import rows_of
 from equipoise.vibration.response import DriveSignals, GaugeSignals, MountForce, Response, in_words
@@ -213,7 +213,7 @@ def respond_coupled(linear: Linear, speed: float) -> Response:
         return np.concatenate([rough.values(theta), (rough.derivative() * speed).values(theta)])
 
     turns = rough.turns
-    found = steady(system, [guess], turns, Conditions.periodic(system.count))
+    found = steady(system, [guess], turns, BoundaryConditions.periodic(system.count))
     theta = np.arange(SAMPLES * turns) * (2 * pi / SAMPLES)
     states = found.orbit.at(np.mod(system.sense * theta, 2 * pi * turns))
     moved, moving, change = (

@@ -17,7 +17,7 @@ from equipoise.mechanism.kinematics.motion import move
 from equipoise.mechanism.parts.force_elements import Motor
 from equipoise.mechanism.parts.machine import Drive, Machine
 from equipoise.signals import Array
-from equipoise.vibration.collocation import NOTHING, RULE, Conditions, Orbit, System, solve
+from equipoise.vibration.collocation import NOTHING, RULE, BoundaryConditions, Orbit, System, solve
 from equipoise.vibration.coupled import Coupled, Torque
 from equipoise.vibration.linear import Linear
 from equipoise.vibration.linkages import rows_of
@@ -74,7 +74,7 @@ def steady(
     system: System,
     guesses: Iterable[Guess],
     turns: int,
-    conditions: Conditions,
+    conditions: BoundaryConditions,
     swings: float = 0.0,
     jumps: Array | tuple[()] = (),
 ) -> Steady:
@@ -129,7 +129,7 @@ def _first(tried: Iterable[Orbit | None]) -> Orbit:
     return unstable
 
 
-def _refined(system: System, orbit: Orbit, conditions: Conditions, most: int) -> Steady:
+def _refined(system: System, orbit: Orbit, conditions: BoundaryConditions, most: int) -> Steady:
     """The solution on a mesh of at most so many intervals, or a few more."""
     error, idle = _residuals(system, orbit), 0
     for _ in range(ROUNDS):
@@ -147,7 +147,9 @@ def _refined(system: System, orbit: Orbit, conditions: Conditions, most: int) ->
     return Steady(orbit, float(np.max(error)))
 
 
-def _tried(system: System, points: Array, guess: Guess, conditions: Conditions) -> Orbit | None:
+def _tried(
+    system: System, points: Array, guess: Guess, conditions: BoundaryConditions
+) -> Orbit | None:
     with np.errstate(all="ignore"):
         try:
             orbit = solve(system, points, guess, conditions)
@@ -296,9 +298,9 @@ def turns_of(machine: Machine) -> int:
     return assemble(machine).cycle.turns
 
 
-def conditions_of(system: Coupled) -> Conditions:
+def conditions_of(system: Coupled) -> BoundaryConditions:
     """What closes a period: everything comes back, and the mean speed is held where it is."""
-    conditions = Conditions.periodic(system.count)
+    conditions = BoundaryConditions.periodic(system.count)
     if system.torque is None:
         return conditions
     begin, end, value = conditions.begin.copy(), conditions.end.copy(), conditions.value.copy()
@@ -313,7 +315,7 @@ def conditions_of(system: Coupled) -> Conditions:
         value[shift] = 2 * pi * turns_of(system.machine) / abs(system.speed)
     else:
         begin[shift, shift] = 1.0
-    return Conditions(begin, end, value)
+    return BoundaryConditions(begin, end, value)
 
 
 def from_linear(

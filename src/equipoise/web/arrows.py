@@ -9,7 +9,7 @@ from equipoise.i18n import say
 from equipoise.mechanism.outputs.spoken import body_named
 from equipoise.quantities import Dimension, display
 from equipoise.results.analysis import Analysis
-from equipoise.web.block import Array, Block, Values
+from equipoise.web.block import Array, FloatBlock, Values
 
 
 def points_of(analysis: Analysis) -> list[str]:
@@ -18,7 +18,7 @@ def points_of(analysis: Analysis) -> list[str]:
     return sorted(analysis.motion.points, key=lambda name: name in frame)
 
 
-def arrows_of(analysis: Analysis, point: str, block: Block) -> list[Values]:
+def arrows_of(analysis: Analysis, point: str, block: FloatBlock) -> list[Values]:
     """What there is to show at a point; vectors over the crank angle go to the block.
 
     kind : ``velocity``, ``acceleration`` or ``force``.  array : its name in the block, (2 N,).

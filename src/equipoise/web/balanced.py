@@ -36,8 +36,8 @@ from equipoise.mechanism.parts.machine import Link, Machine
 from equipoise.quantities import clean, clean_place, display, told
 from equipoise.results.outputs import objective_named, shown_in
 from equipoise.web.design import Counterweight, Design, joined, pin_of, place_of_pin
-from equipoise.web.drawn import Drawn
-from equipoise.web.edits import Solved, solved
+from equipoise.web.drawn import Incomplete
+from equipoise.web.edits import Computed, solved
 from equipoise.web.figures import compared, figures_of
 from equipoise.web.messages import Message
 from equipoise.web.replies import Reply
@@ -249,7 +249,7 @@ def _center(link: Link) -> tuple[float, float]:
     return link.center_of_mass or (0.0, 0.0)
 
 
-def balanced_told(base: Solved, after: Solved, found: Balanced) -> Values:
+def balanced_told(base: Computed, after: Computed, found: Balanced) -> Values:
     """What to change, aims and every figure before and after, and what is proved.
 
     base, after : the design before and after, computed; what the page reads of these beside it is
@@ -279,7 +279,7 @@ def _taken_off(link: str, weight: Counterweight) -> str:
     return say("{link}: take off the counterweight of {mass}", link=link, mass=mass)
 
 
-def _read(base: Solved, after: Solved) -> dict[str, tuple[float, float]]:
+def _read(base: Computed, after: Computed) -> dict[str, tuple[float, float]]:
     """Figures before and after as the page shows them, by name; SI units."""
     if base.analysis.machine.drive.acceleration:  # which balancing leaves out
         return {}
@@ -318,17 +318,17 @@ def _figure(found: Balanced, name: str, before: float, after: float) -> Values:
 # -- what a page may ask ---------------------------------------------------------------------------
 
 
-class Session(Protocol):
+class BalanceSession(Protocol):
     """What answers need of a session."""
 
-    found: Solved | Drawn | None
-    before: Solved | None
+    found: Computed | Incomplete | None
+    before: Computed | None
     lock: Lock
 
-    def current(self) -> Solved:
+    def current(self) -> Computed:
         """The design that is."""
 
-    def go_to(self, found: Solved | Drawn, label: str) -> None:
+    def go_to(self, found: Computed | Incomplete, label: str) -> None:
         """Make another design the one that is."""
 
     def telling(self) -> AbstractContextManager[None]:
@@ -351,13 +351,13 @@ class Balancing:
     content: Values = field(default_factory=dict)
 
 
-def begun(session: Session, message: Message) -> Reply:
+def begun(session: BalanceSession, message: Message) -> Reply:
     """The reply that says that balancing has begun."""
     with session.telling():
         return Reply({"type": "busy", "seq": message.seq, "what": say("balancing")})
 
 
-def computed(session: Session, base: Solved, message: Message) -> Balancing:
+def computed(session: BalanceSession, base: Computed, message: Message) -> Balancing:
     """Balance a design; errors as of `balance`."""
     moved = base.moved
     found = balanced(moved, message.flag("hold", False))
@@ -372,7 +372,7 @@ def computed(session: Session, base: Solved, message: Message) -> Balancing:
 
 
 def adopted(
-    session: Session, base: Solved, balancing: Balancing, message: Message
+    session: BalanceSession, base: Computed, balancing: Balancing, message: Message
 ) -> Iterator[Reply]:
     """Show a balanced design as the next step.
 
@@ -395,11 +395,11 @@ def adopted(
     yield from session.told(message.seq)
 
 
-def _balance(session: Session, message: Message) -> Iterator[Reply]:
+def _balance(session: BalanceSession, message: Message) -> Iterator[Reply]:
     base = session.current()
     yield begun(session, message)
     yield from adopted(session, base, computed(session, base, message), message)
 
 
-ASKED: dict[str, Callable[[Session, Message], Iterator[Reply]]] = {"balance": _balance}
+ASKED: dict[str, Callable[[BalanceSession, Message], Iterator[Reply]]] = {"balance": _balance}
 """Answers to messages, by their kind."""

@@ -12,7 +12,7 @@ Values = dict[str, Any]
 
 
 @dataclass
-class Block:
+class FloatBlock:
     """Arrays one behind the other, as 32-bit floats, and where each begins."""
 
     places: dict[str, tuple[int, int]] = field(default_factory=dict)

@@ -11,7 +11,7 @@ from equipoise.i18n import LANGUAGES, speaking
 from equipoise.mechanism.checks import unknown
 from equipoise.schema.files import to_csv
 from equipoise.schema.models import taken_along
-from equipoise.web.edits import Solved
+from equipoise.web.edits import Computed
 from equipoise.web.messages import Message
 from equipoise.web.pictures import chart_of, drawing, film_of, linkage_at
 from equipoise.web.played import played
@@ -34,7 +34,7 @@ Replies = Callable[[str], Iterable[Reply]]
 """All that a page could be told of the design, in a language."""
 
 
-def downloaded(found: Solved, message: Message, told: Replies) -> tuple[dict[str, Any], bytes]:
+def downloaded(found: Computed, message: Message, told: Replies) -> tuple[dict[str, Any], bytes]:
     """Name and type of a file that a message asks for, and its bytes.
 
     The model comes with the texts of the tables that it names, by the names of their files.
@@ -65,11 +65,11 @@ Made = tuple[str, bytes]
 """What follows the name of the machine in that of the file, and its bytes."""
 
 
-def _csv(found: Solved, message: Message, stem: str) -> Made:
+def _csv(found: Computed, message: Message, stem: str) -> Made:
     return ".csv", to_csv(found.analysis).encode()
 
 
-def _report(found: Solved, message: Message, stem: str) -> Made:
+def _report(found: Computed, message: Message, stem: str) -> Made:
     from equipoise.present.composition import report_page
     from equipoise.present.findings import Findings
 
@@ -83,15 +83,15 @@ def _report(found: Solved, message: Message, stem: str) -> Made:
     return "-report.html", text.encode()
 
 
-def _film(found: Solved, message: Message, stem: str) -> Made:
+def _film(found: Computed, message: Message, stem: str) -> Made:
     return ".gif", film_of(found)
 
 
-def _drawing(found: Solved, message: Message, stem: str) -> Made:
+def _drawing(found: Computed, message: Message, stem: str) -> Made:
     return _rendered(linkage_at(found, message.whole("at", 0)), "drawing", message)
 
 
-def _chart(found: Solved, message: Message, stem: str) -> Made:
+def _chart(found: Computed, message: Message, stem: str) -> Made:
     name, choice = message.text("chart"), message.text("choice", "")
     return _rendered(chart_of(found, name, choice), choice if name == "output" else name, message)
 
@@ -107,7 +107,7 @@ def _rendered(picture: Any, name: str, message: Message) -> Made:
     return f"-{FORBIDDEN.sub('-', name.replace('.', '-'))}.{kind}", data
 
 
-def _interactive(found: Solved, message: Message, stem: str) -> Made:
+def _interactive(found: Computed, message: Message, stem: str) -> Made:
     from equipoise.exchange.formats import Job
     from equipoise.web.interactive import made
 
@@ -118,7 +118,7 @@ def _interactive(found: Solved, message: Message, stem: str) -> Made:
         return "-interactive.html", made(Job(found.analysis.machine)).encode()
 
 
-FILES: dict[str, Callable[[Solved, Message, str], Made]] = {
+FILES: dict[str, Callable[[Computed, Message, str], Made]] = {
     "csv": _csv,
     "report": _report,
     "drawing": _drawing,

@@ -17,8 +17,8 @@ from equipoise.symbols.looks import LOOKS
 from equipoise.symbols.pieces import Piece, pieces
 from equipoise.symbols.scene import Scene
 from equipoise.symbols.shapes import Shape
-from equipoise.web.block import Block, Values
-from equipoise.web.edits import Solved
+from equipoise.web.block import FloatBlock, Values
+from equipoise.web.edits import Computed
 
 UNIT = 1.25
 """Pixels: size of a unit of signs on a page."""
@@ -121,7 +121,7 @@ def shapes_of(shapes: Sequence[Shape]) -> list[list[Any]]:
     ]
 
 
-def moves_of(scene: Scene, block: Block) -> None:
+def moves_of(scene: Scene, block: FloatBlock) -> None:
     """Where everything of a drawing is over the crank angle, for the block."""
     block.add("crank_angle", scene.crank_angle)
     for name, place in scene.places.items():
@@ -134,7 +134,7 @@ def moves_of(scene: Scene, block: Block) -> None:
         block.add(f"guide.{guide.name}", guide.way)
 
 
-def ground_of(found: Solved, block: Block) -> Values:
+def ground_of(found: Computed, block: FloatBlock) -> Values:
     """Paths of planting tips over ground, for the block, and the soil that they go into."""
     planting, speed = found.analysis.machine.planting, found.motion.speed
     if planting is None or speed == 0:

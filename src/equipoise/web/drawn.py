@@ -16,15 +16,15 @@ from equipoise.mechanism.assembly.named_joints import pin_radii
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.parts.machine import FRAME, Machine
 from equipoise.quantities import DIGITS, display
-from equipoise.symbols.drives import Drive
+from equipoise.symbols.drives import DriveSign
 from equipoise.symbols.part_signs import Surroundings, in_order, signs_of
-from equipoise.symbols.scene import Guide, Scene, bodies_of
-from equipoise.symbols.shapes import Mark
+from equipoise.symbols.scene import GuideSign, Scene, bodies_of
+from equipoise.symbols.shapes import BodyMark
 from equipoise.symbols.wheels import Wheel, wheels_of
-from equipoise.web.block import Block, Values
+from equipoise.web.block import FloatBlock, Values
 from equipoise.web.design import Design
 from equipoise.web.drawing import moves_of, stage_of
-from equipoise.web.edits import Solved, edited, settled, solved
+from equipoise.web.edits import Computed, edited, settled, solved
 from equipoise.web.fields import Field, Scale
 from equipoise.web.lacking import lacking
 from equipoise.web.measures import Measure, held, measures_of
@@ -41,7 +41,7 @@ RAIL = 0.35
 
 
 @dataclass(frozen=True, eq=False)
-class Drawn:
+class Incomplete:
     """A sketch, and the sentence that tells why it does not move yet."""
 
     design: Sketch
@@ -53,7 +53,7 @@ class Drawn:
         return UsageError(Note("the machine is not finished: {lacks}", lacks=self.lacks))
 
 
-def drawn(sketch: Sketch) -> Solved | Drawn:
+def drawn(sketch: Sketch) -> Computed | Incomplete:
     """The machine that a sketch is, computed, or what it lacks."""
     told = lacking(sketch)
     if not told:
@@ -62,10 +62,10 @@ def drawn(sketch: Sketch) -> Solved | Drawn:
             return replace(found, stand=_stand(found, sketch))
         except EquipoiseError as error:
             told = error.told()
-    return Drawn(sketch, told)
+    return Incomplete(sketch, told)
 
 
-def _stand(found: Solved, sketch: Sketch) -> float:
+def _stand(found: Computed, sketch: Sketch) -> float:
     """Crank angle at which a machine is as it is drawn, rad; of a crank that cannot turn, the first
     at which its link, which swings, is there or next to it.
     """
@@ -76,25 +76,29 @@ def _stand(found: Solved, sketch: Sketch) -> float:
     return float(found.motion.crank_angle[np.argmin(np.abs(np.sin(off / 2)))])
 
 
-def tried(sketch: Sketch) -> Drawn:
+def tried(sketch: Sketch) -> Incomplete:
     """What is dragged: it stands where it is drawn until it is let go."""
     found = drawn(sketch)
-    return found if isinstance(found, Drawn) else Drawn(sketch, turning(found.analysis.machine))
+    return (
+        found
+        if isinstance(found, Incomplete)
+        else Incomplete(sketch, turning(found.analysis.machine))
+    )
 
 
-def computed(design: Design | Sketch) -> Solved | Drawn:
+def computed(design: Design | Sketch) -> Computed | Incomplete:
     """A step of what was done, computed."""
     return solved(design) if isinstance(design, Design) else drawn(design)
 
 
-def sketch_of(found: Solved | Drawn, at: int) -> Sketch:
+def sketch_of(found: Computed | Incomplete, at: int) -> Sketch:
     """What is shown as a sketch that can be changed; a machine as at a sample of its crank angle.
 
     Raises
     ------
     UsageError : there is no such sample.
     """
-    if isinstance(found, Drawn):
+    if isinstance(found, Incomplete):
         return found.design
     count = len(found.motion.crank_angle)
     if not 0 <= at < count:
@@ -104,32 +108,32 @@ def sketch_of(found: Solved | Drawn, at: int) -> Sketch:
     return Sketch.of(found, at)
 
 
-def finished(found: Solved | Drawn) -> Solved:
+def finished(found: Computed | Incomplete) -> Computed:
     """A machine that can be computed, or why it cannot yet."""
-    if isinstance(found, Drawn):
+    if isinstance(found, Incomplete):
         raise found.refusal
     return found
 
 
 def changed(
-    base: Solved | Drawn,
+    base: Computed | Incomplete,
     changes: list[Change],
     commit: bool,
-    near: Solved | Drawn | None = None,
-) -> Solved | Drawn:
+    near: Computed | Incomplete | None = None,
+) -> Computed | Incomplete:
     """What is shown with numbers set and points dragged.
 
     commit : whether it is let go.  near : what was tried last.
     """
-    if isinstance(base, Solved):
-        return edited(base, changes, near if isinstance(near, Solved) else None)
+    if isinstance(base, Computed):
+        return edited(base, changes, near if isinstance(near, Computed) else None)
     sketch = redrawn(base.design, changes)
     return drawn(sketch) if commit else tried(sketch)
 
 
-def with_entry(base: Solved | Drawn, entry: Entry) -> Solved | Drawn:
+def with_entry(base: Computed | Incomplete, entry: Entry) -> Computed | Incomplete:
     """What is shown with another table of its file, unfinished if it moves otherwise."""
-    if isinstance(base, Solved):
+    if isinstance(base, Computed):
         design = entered(base.design, entry)
         try:
             return settled(solved(design, None, base.swings is not None))
@@ -139,21 +143,21 @@ def with_entry(base: Solved | Drawn, entry: Entry) -> Solved | Drawn:
     return drawn(base.design.taking(own))
 
 
-def plain_of(found: Solved | Drawn) -> Machine:
+def plain_of(found: Computed | Incomplete) -> Machine:
     """The machine whose file has the tables that are shown: of a sketch what is known by now.
 
     Raises
     ------
     UsageError : it has no link yet.
     """
-    if isinstance(found, Solved):
+    if isinstance(found, Computed):
         return found.design.own
     if not found.design.links:
         raise UsageError(Note("the machine has no links yet; draw one first"))
     return replace(found.design.machine(), position=None)
 
 
-def status_of_sketch(found: Drawn) -> Values:
+def status_of_sketch(found: Incomplete) -> Values:
     """As `status_of` tells of a finished machine."""
     sketch = found.design
     drive = sketch.drive.link if sketch.drive else None
@@ -237,7 +241,9 @@ def scene_of(sketch: Sketch) -> Scene:
     """What there is to draw, at one place."""
     one = np.ones(1)
     guides = tuple(
-        Guide(slider.name, slider.point, way * one, slider.on, *2 * (RAIL * sketch.extent * one,))
+        GuideSign(
+            slider.name, slider.point, way * one, slider.on, *2 * (RAIL * sketch.extent * one,)
+        )
         for slider in sketch.sliders
         for way in [np.exp(1j * (sketch.pose(slider.on).angle + slider.direction))]
     )
@@ -275,7 +281,7 @@ def _wheels(sketch: Sketch) -> list[Wheel]:
         return []
 
 
-def _marks(sketch: Sketch) -> Iterator[Mark]:
+def _marks(sketch: Sketch) -> Iterator[BodyMark]:
     """Signs of parts, as far as what they need is there."""
     around = Surroundings(sketch.machine, sketch.joints, sketch.bodies, _radii(sketch),
                           sketch.travel)  # fmt: skip
@@ -289,19 +295,19 @@ def _radii(sketch: Sketch) -> dict[str, float]:
     return pin_radii(sketch.joints, sketch.rest.get("joints", ()))
 
 
-def _sense(sketch: Sketch) -> Drive:
+def _sense(sketch: Sketch) -> DriveSign:
     drive = sketch.drive
     if drive is None:
-        return Drive("", "", 0)
+        return DriveSign("", "", 0)
     pivots = [point for point in sketch.links[drive.link].points if point in sketch.frame]
     if len(pivots) != 1:
-        return Drive(drive.link, "", 0)
-    return Drive(drive.link, pivots[0], int(np.sign(drive.speed)))
+        return DriveSign(drive.link, "", 0)
+    return DriveSign(drive.link, pivots[0], int(np.sign(drive.speed)))
 
 
-def state_of_sketch(found: Drawn, scale: Scale) -> tuple[Values, bytes]:
+def state_of_sketch(found: Incomplete, scale: Scale) -> tuple[Values, bytes]:
     """Everything that a page draws of an unfinished machine: its place, and no charts."""
-    sketch, block = found.design, Block()
+    sketch, block = found.design, FloatBlock()
     scene = scene_of(sketch)
     moves_of(scene, block)
     length = display("length", [sketch.size])

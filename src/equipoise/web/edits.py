@@ -42,7 +42,7 @@ THERE = 1e-5
 
 
 @dataclass(frozen=True, eq=False)
-class Solved:
+class Computed:
     """A design with what it does.
 
     stand : crank angle at which it was drawn, rad; None where it has not just been made.
@@ -76,7 +76,7 @@ class Solved:
         return Scene.of(self.motion)
 
 
-def solved(design: Design, near: Solved | None = None, stuck: bool = True) -> Solved:
+def solved(design: Design, near: Computed | None = None, stuck: bool = True) -> Computed:
     """Compute a design; the errors are those of `analyze`.
 
     near : one of the same build that differs by little, if one is known.
@@ -92,7 +92,7 @@ def solved(design: Design, near: Solved | None = None, stuck: bool = True) -> So
             raise
         machine, swings, turns = found.machine, found.note, 1
     count = min(ANGLES, max(LEAST_ANGLES, MOST_SAMPLES // turns))
-    return Solved(design, analyze(machine, count), swings=swings)
+    return Computed(design, analyze(machine, count), swings=swings)
 
 
 def movable(machine: Machine) -> list[str]:
@@ -104,7 +104,7 @@ def movable(machine: Machine) -> list[str]:
     return list(names)
 
 
-def edited(base: Solved, changes: Iterable[Change], near: Solved | None = None) -> Solved:
+def edited(base: Computed, changes: Iterable[Change], near: Computed | None = None) -> Computed:
     """Change a design and compute it.
 
     near : a design that differs by less than the base does, if one is known.
@@ -135,7 +135,7 @@ def edited(base: Solved, changes: Iterable[Change], near: Solved | None = None) 
         return found
 
 
-def _agreeing(base: Solved, design: Design, goals: Goals, near: Solved) -> Solved | None:
+def _agreeing(base: Computed, design: Design, goals: Goals, near: Computed) -> Computed | None:
     """The design with what has to go along so that all joints fit, if that can be told."""
     if base.motion.linkage.shared is None:
         return None
@@ -155,7 +155,7 @@ def _set(design: Design, change: Setting) -> Design:
     return field.keeping(change.keep).typed(design, change.to)  # type: ignore[no-any-return]
 
 
-def _moved(base: Solved, design: Design, change: Drag) -> tuple[Design, complex]:
+def _moved(base: Computed, design: Design, change: Drag) -> tuple[Design, complex]:
     """A point dragged to a place of the frame, or as near as locked lengths let it, m."""
     machine, motion = design.own, base.motion
     if change.name not in movable(machine):
@@ -175,7 +175,7 @@ def _moved(base: Solved, design: Design, change: Drag) -> tuple[Design, complex]
     return design.with_machine(replace(machine, frame=frame, links=links, position=position)), to
 
 
-def _mass_moved(base: Solved, design: Design, change: Drag) -> Design:
+def _mass_moved(base: Computed, design: Design, change: Drag) -> Design:
     """The centre of mass of a link, with its counterweight, dragged to a place of the frame."""
     machine = design.own
     having = [name for name, link in machine.links.items() if link.has_mass]
@@ -232,7 +232,7 @@ def _position(machine: Machine, motion: Motion, change: Drag | None = None) -> P
     return Position(clean(float(angle), "angle"), points, angles)
 
 
-def settled(found: Solved) -> Solved:
+def settled(found: Computed) -> Computed:
     """The same, with its rough position where the machine now is, if it has one."""
     machine = found.design.own
     if machine.position is None:
@@ -241,7 +241,7 @@ def settled(found: Solved) -> Solved:
     return replace(found, design=found.design.with_machine(placed), stand=None)
 
 
-def _assembled(design: Design, goals: Goals, near: Solved, stuck: bool) -> Solved:
+def _assembled(design: Design, goals: Goals, near: Computed, stuck: bool) -> Computed:
     """Compute a design in which dragged points come to where they were put.
 
     One that is dragged across a line of its dyad needs that dyad on its other side.  One that comes
@@ -257,7 +257,7 @@ def _assembled(design: Design, goals: Goals, near: Solved, stuck: bool) -> Solve
     return found if _reaches(found, goals) else _turned_over(design, goals, stuck) or found
 
 
-def _turned_over(design: Design, goals: Goals, stuck: bool) -> Solved | None:
+def _turned_over(design: Design, goals: Goals, stuck: bool) -> Computed | None:
     """The design with one dyad on its other side, if the points then come where they were put."""
     for joint, side in design.own.assembly.items() if goals else ():
         if not _moves(design.own, joint, goals):
@@ -285,11 +285,11 @@ def _moves(machine: Machine, joint: str, points: Iterable[str]) -> bool:
     return any(point in machine.links[link].points for link in links for point in points)
 
 
-def _reaches(found: Solved, goals: Goals) -> bool:
+def _reaches(found: Computed, goals: Goals) -> bool:
     return not _missed(found, goals)
 
 
-def _missed(found: Solved, goals: Goals) -> list[str]:
+def _missed(found: Computed, goals: Goals) -> list[str]:
     """Points that are not where they were put."""
     points, near = found.motion.points, THERE * extent_of(found.design.own)
     return [
@@ -299,7 +299,7 @@ def _missed(found: Solved, goals: Goals) -> list[str]:
     ]
 
 
-def _told(found: Solved, goals: Goals) -> Solved:
+def _told(found: Computed, goals: Goals) -> Computed:
     """The same, with why the end of a cylinder, or a driven block, is not where it was put."""
     machine = found.design.own
     points = {one.name: one.point for one in machine.sliders}

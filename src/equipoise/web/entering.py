@@ -9,8 +9,8 @@ from threading import Lock
 from typing import Any, Protocol
 
 from equipoise.quantities import clean, format_exact
-from equipoise.web.drawn import Drawn, plain_of, sketch_of, with_entry
-from equipoise.web.edits import Solved
+from equipoise.web.drawn import Incomplete, plain_of, sketch_of, with_entry
+from equipoise.web.edits import Computed
 from equipoise.web.messages import Entry, Message
 from equipoise.web.replies import Reply
 from equipoise.web.sketch import Sketch
@@ -20,15 +20,15 @@ LONGER = 0.1
 """By how much a stroke is longer at its other end, over what it is."""
 
 
-class Session(Protocol):
+class EntrySession(Protocol):
     """What answers need of a session."""
 
     lock: Lock
 
-    def base(self) -> Solved | Drawn:
+    def base(self) -> Computed | Incomplete:
         """What is, finished or not."""
 
-    def go_to(self, found: Solved | Drawn, label: str) -> None:
+    def go_to(self, found: Computed | Incomplete, label: str) -> None:
         """Make another design the one that is."""
 
     def telling(self) -> AbstractContextManager[None]:
@@ -68,13 +68,13 @@ def _pushed(sketch: Sketch, values: Mapping[str, Any]) -> float | None:
     return next((sketch.travel(one) for one in named), None)
 
 
-def _tables(session: Session, message: Message) -> Iterator[Reply]:
+def _tables(session: EntrySession, message: Message) -> Iterator[Reply]:
     with session.telling():
         told = tables_of(plain_of(session.base()))
     yield Reply({"type": "tables", "seq": message.seq, **told})
 
 
-def _entry(session: Session, message: Message) -> Iterator[Reply]:
+def _entry(session: EntrySession, message: Message) -> Iterator[Reply]:
     with session.lock, session.telling():
         base = session.base()
         entry = stroked(sketch_of(base, 0), message.entry())
@@ -82,7 +82,7 @@ def _entry(session: Session, message: Message) -> Iterator[Reply]:
     yield from session.told(message.seq)
 
 
-ASKED: dict[str, Callable[[Session, Message], Iterator[Reply]]] = {
+ASKED: dict[str, Callable[[EntrySession, Message], Iterator[Reply]]] = {
     "tables": _tables,
     "entry": _entry,
 }

@@ -18,7 +18,7 @@ from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.parts.couplings import coupling_kinds
 from equipoise.mechanism.parts.machine import FRAME
 from equipoise.symbols.pieces import Piece, pieces
-from equipoise.symbols.scene import WIDE, Guide, Scene
+from equipoise.symbols.scene import WIDE, GuideSign, Scene
 from equipoise.symbols.shapes import Array, Shape
 from equipoise.symbols.slots import SLOTS
 from equipoise.web.block import Values
@@ -128,7 +128,7 @@ def _places(scene: Scene, body: str) -> Iterator[tuple[str, complex]]:
 
 
 def _corner(
-    scene: Scene, own: dict[str, complex], guides: list[Guide], place: complex
+    scene: Scene, own: dict[str, complex], guides: list[GuideSign], place: complex
 ) -> str | list[str | float] | None:
     near = SAME * WIDE * scene.unit
     for name, at in own.items():
@@ -145,7 +145,7 @@ def _corner(
     return None
 
 
-def _ends(scene: Scene, guide: Guide) -> tuple[complex, complex]:
+def _ends(scene: Scene, guide: GuideSign) -> tuple[complex, complex]:
     """Both ends of a block's path, in the axes of the body that has its line, m."""
     place = scene.places[guide.point]
     ends = place - guide.behind * guide.way, place + guide.ahead * guide.way

@@ -10,7 +10,7 @@ from equipoise.i18n import said
 from equipoise.results.analysis import analyze
 from equipoise.symbols.clear import clear_angle
 from equipoise.symbols.scene import Scene
-from equipoise.web.block import Block, Values
+from equipoise.web.block import FloatBlock, Values
 from equipoise.web.drawing import moves_of, stage_of
 from equipoise.web.kinds import search_words, section_of, sections
 from equipoise.web.openings import opened_example, titles
@@ -46,7 +46,7 @@ def _drawn(name: str) -> tuple[Values, bytes]:
     at : sample at which nothing hides anything else, where a picture stands still.
     """
     scene = Scene.of(analyze(opened_example(name).machine, SAMPLES).motion)
-    block = Block()
+    block = FloatBlock()
     moves_of(scene, block)
     told = {"at": clear_angle(scene), "scene": stage_of(scene, ()), "arrays": block.told}
     return told, block.data

@@ -13,7 +13,7 @@ MOST_STEPS = 500
 
 
 @dataclass(frozen=True)
-class Step:
+class HistoryStep:
     """A design, and what was done to get there."""
 
     design: Design | Sketch
@@ -24,9 +24,9 @@ class Step:
 class History:
     """Steps in the order in which they were made; `now` stands between `past` and `future`."""
 
-    now: Step
-    past: tuple[Step, ...] = ()
-    future: tuple[Step, ...] = ()
+    now: HistoryStep
+    past: tuple[HistoryStep, ...] = ()
+    future: tuple[HistoryStep, ...] = ()
 
     @property
     def first(self) -> Design | Sketch:
@@ -45,7 +45,7 @@ class History:
 
     def then(self, design: Design | Sketch, label: str) -> History:
         """One step more; what was taken back is forgotten."""
-        return History(Step(design, label), (*self.past[1 - MOST_STEPS :], self.now))
+        return History(HistoryStep(design, label), (*self.past[1 - MOST_STEPS :], self.now))
 
     def undone(self) -> History:
         """One step back, or a `UsageError`."""

@@ -12,7 +12,7 @@ from equipoise.schema.documents import dumps
 from equipoise.web.design import Design
 from equipoise.web.disk import NOT_OF_FILE, Disk
 from equipoise.web.downloads import downloaded
-from equipoise.web.edits import Solved
+from equipoise.web.edits import Computed
 from equipoise.web.gallery import pictured
 from equipoise.web.history import History
 from equipoise.web.messages import Message
@@ -22,14 +22,14 @@ SLOW = ("report", "drawing", "chart", "film", "played")
 """Files that take longer than a moment."""
 
 
-class Session(Protocol):
+class DesignsSession(Protocol):
     """What answers need of a session."""
 
     disk: Disk | None
     history: History | None
     wanted: tuple[str, ...]
 
-    def current(self) -> Solved:
+    def current(self) -> Computed:
         """The design that is."""
 
     def telling(self) -> AbstractContextManager[None]:
@@ -38,7 +38,7 @@ class Session(Protocol):
     def told(self, seq: int | None, *notes: str) -> Iterator[Reply]:
         """The design that is shown."""
 
-    def open(self, design: Design, found: Solved | None = None) -> None:
+    def open(self, design: Design, found: Computed | None = None) -> None:
         """Begin with a design."""
 
     def receive(self, message: Message) -> Iterator[Reply]:
@@ -48,7 +48,7 @@ class Session(Protocol):
         """What takes longer."""
 
 
-def _save(session: Session, message: Message) -> Iterator[Reply]:
+def _save(session: DesignsSession, message: Message) -> Iterator[Reply]:
     found, disk, history = session.current(), session.disk, session.history
     if disk is None or history is None:
         raise UsageError(Note(NOT_OF_FILE, name=found.design.name))
@@ -59,7 +59,7 @@ def _save(session: Session, message: Message) -> Iterator[Reply]:
     yield disk.told(message.seq, text)
 
 
-def _download(session: Session, message: Message) -> Iterator[Reply]:
+def _download(session: DesignsSession, message: Message) -> Iterator[Reply]:
     found = session.current()
     if message.text("kind") in SLOW:
         with session.telling():
@@ -80,7 +80,7 @@ def _download(session: Session, message: Message) -> Iterator[Reply]:
     yield Reply({"type": "file", "seq": message.seq, **content}, data)
 
 
-def _gallery(session: Session, message: Message) -> Iterator[Reply]:
+def _gallery(session: DesignsSession, message: Message) -> Iterator[Reply]:
     pictures = pictured()
     while True:
         with session.telling():  # left where this waits: whoever goes on may be another thread
@@ -92,7 +92,7 @@ def _gallery(session: Session, message: Message) -> Iterator[Reply]:
     yield Reply({"type": "gallery", "seq": message.seq})
 
 
-ASKED: dict[str, Callable[[Session, Message], Iterator[Reply]]] = {
+ASKED: dict[str, Callable[[DesignsSession, Message], Iterator[Reply]]] = {
     "save": _save,
     "download": _download,
     "gallery": _gallery,

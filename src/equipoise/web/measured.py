@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from equipoise.errors import EquipoiseError
-from equipoise.web.block import Block, Values
-from equipoise.web.edits import Solved
+from equipoise.web.block import FloatBlock, Values
+from equipoise.web.edits import Computed
 from equipoise.web.figures import told_signals
 from equipoise.web.recorded import Record, compared_with
 from equipoise.web.shaken import SAMPLES
@@ -14,7 +14,7 @@ from equipoise.web.shaken import SAMPLES
 GAUGES = "gauges."
 
 
-def gauges_of(found: Solved) -> tuple[str, ...]:
+def gauges_of(found: Computed) -> tuple[str, ...]:
     """Names of the gauges of a machine's support."""
     support = found.design.machine.support
     return () if support is None else tuple(support.gauges)
@@ -27,7 +27,7 @@ def charted(output: str) -> bool:
     return output in told_signals()
 
 
-def measured_told(record: Record | None, found: Solved, block: Block) -> Values | None:
+def measured_told(record: Record | None, found: Computed, block: FloatBlock) -> Values | None:
     """A record beside a design: its name and what is to be said; signals go to the block.
 
     ``measured.`` and the name of an output : (N,) SI units, NaN in gaps; what gauges read has as

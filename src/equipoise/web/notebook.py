@@ -11,7 +11,7 @@ from equipoise.web.assets import assets
 from equipoise.web.session import Session
 
 
-class View(anywidget.AnyWidget):
+class NotebookView(anywidget.AnyWidget):
     """A machine in a notebook."""
 
     _esm = traitlets.Unicode().tag(sync=True)

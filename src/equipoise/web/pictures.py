@@ -9,7 +9,7 @@ from threading import Lock
 from equipoise.errors import UsageError
 from equipoise.mechanism.checks import unknown
 from equipoise.results.charts import Chart
-from equipoise.web.edits import Solved
+from equipoise.web.edits import Computed
 from equipoise.web.shaken import responded
 
 SAME = {
@@ -30,7 +30,7 @@ SECONDS = 2.0
 """That a turn of the crank takes in a film."""
 
 
-def chart_of(found: Solved, name: str, choice: str) -> Chart:
+def chart_of(found: Computed, name: str, choice: str) -> Chart:
     """The picture of a chart of the page.
 
     choice : what is chosen in it.
@@ -65,7 +65,7 @@ def _named(pictures: Mapping[str, Chart], name: str) -> Chart:
     return pictures[name]
 
 
-def _over_crank(found: Solved, output: str) -> Chart:
+def _over_crank(found: Computed, output: str) -> Chart:
     """An output over the crank angle; of all rows together where it is only there."""
     from equipoise.figures.analysis import ALL
     from equipoise.figures.forces import over_crank
@@ -79,7 +79,7 @@ def _over_crank(found: Solved, output: str) -> Chart:
     return replace(over_crank(found.analysis, "output", capital(label), what), keys=())
 
 
-def linkage_at(found: Solved, sample: int) -> Chart:
+def linkage_at(found: Computed, sample: int) -> Chart:
     """The drawing at a sample of the crank angle.
 
     Raises
@@ -94,7 +94,7 @@ def linkage_at(found: Solved, sample: int) -> Chart:
     return linkage(found.analysis, [float(angles[sample])])
 
 
-def film_of(found: Solved) -> bytes:
+def film_of(found: Computed) -> bytes:
     """The whole cycle as a GIF, the support too where it moves."""
     from equipoise.figures.film import gif
     from equipoise.figures.points import followed

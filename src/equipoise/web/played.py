@@ -9,12 +9,12 @@ from typing import Any
 from equipoise.i18n import said, speaking
 from equipoise.web.assets import assets
 from equipoise.web.documents import ALONE, data, document, script, style
-from equipoise.web.edits import Solved
+from equipoise.web.edits import Computed
 from equipoise.web.replies import Reply
 from equipoise.web.state import first_of
 
 
-def played(found: Solved, replies: Iterable[Reply], language: str) -> str:
+def played(found: Computed, replies: Iterable[Reply], language: str) -> str:
     """The HTML file.
 
     replies : all that a page could be told of the machine.

@@ -37,7 +37,7 @@ LEAST, MOST_ROWS, FAR = 8, 500_000, 36
 
 
 @dataclass(frozen=True, eq=False)
-class Column:
+class RecordColumn:
     """A column of a record: what it is called, what it is of, and its values (N,), SI units."""
 
     name: str
@@ -55,7 +55,7 @@ class Record:
     name: str
     over: Literal["crank_angle", "time"]
     at: Array
-    columns: tuple[Column, ...]
+    columns: tuple[RecordColumn, ...]
 
 
 def record_of_text(name: str, text: str) -> Record:
@@ -89,7 +89,7 @@ def _record(name: str, text: str) -> Record:
         raise wrong(line, f"there are {len(table)} rows below the header; give at least {LEAST}")
     values = np.array(table).T * np.array([[factor] for *_, factor in heads])
     columns = tuple(
-        Column(head[0], head[1], row) for head, row in zip(heads[1:], values[1:], strict=True)
+        RecordColumn(head[0], head[1], row) for head, row in zip(heads[1:], values[1:], strict=True)
     )
     over: Literal["crank_angle", "time"] = "time" if heads[0][0] in TIMES else "crank_angle"
     return Record(name, over, values[0], columns)

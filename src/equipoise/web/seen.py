@@ -11,9 +11,9 @@ from equipoise.errors import UsageError
 from equipoise.i18n import Note, say
 from equipoise.mechanism.checks import unknown
 from equipoise.web.arrows import points_of
-from equipoise.web.block import Block
+from equipoise.web.block import FloatBlock
 from equipoise.web.drawing import ground_of, moves_of, stage_of
-from equipoise.web.edits import Solved
+from equipoise.web.edits import Computed
 from equipoise.web.measured import charted, gauges_of
 from equipoise.web.messages import MOST_OUTPUTS, Message
 from equipoise.web.recorded import Record, compared_with, record_of_text
@@ -33,13 +33,13 @@ class Seen:
 
     arrows_at: str | None = None
     variants: Variants = field(default_factory=Variants)
-    last: Solved | None = None
-    opened: Solved | None = None
+    last: Computed | None = None
+    opened: Computed | None = None
     record: Record | None = None
-    ghost: Solved | None = None
+    ghost: Computed | None = None
     table: dict[str, Any] | None = None
 
-    def against(self, held: Solved | None) -> Solved | None:
+    def against(self, held: Computed | None) -> Computed | None:
         """The design that figures are told against; None where they are told alone.
 
         held : the one that a drag, which is under way, began with.
@@ -52,15 +52,15 @@ class Seen:
         return self.opened if what == OPENED else self.variants.of(what.removeprefix(VARIANT))
 
     @property
-    def pale(self) -> Solved | None:
+    def pale(self) -> Computed | None:
         """The design that is drawn pale, with pale curves."""
         return None if self.variants.against == STEP else self.against(None)
 
-    def opening(self, found: Solved | None) -> Seen:
+    def opening(self, found: Computed | None) -> Seen:
         """The same for a machine that is opened: nothing is kept but what the page knows."""
         return Seen(opened=found, ghost=self.ghost, table=self.table)
 
-    def compared(self, found: Solved | None) -> Iterator[Reply]:
+    def compared(self, found: Computed | None) -> Iterator[Reply]:
         """The pale drawing and the table of variants, where the page has others.
 
         found : the design that is; None while something is dragged.
@@ -77,8 +77,8 @@ class Seen:
             yield Reply({"type": "variants", "seq": None, **(table or bare.table(found))})
 
 
-def _ghost(pale: Solved | None) -> Reply:
-    block = Block()
+def _ghost(pale: Computed | None) -> Reply:
+    block = FloatBlock()
     if pale is None:
         return Reply({"type": "ghost", "seq": None, "scene": None, "arrays": {}})
     moves_of(pale.scene, block)
@@ -90,7 +90,7 @@ def _ghost(pale: Solved | None) -> Reply:
 # -- what a page may ask ---------------------------------------------------------------------------
 
 
-class Session(Protocol):
+class ViewSession(Protocol):
     """What answers need of a session."""
 
     seen: Seen
@@ -98,20 +98,20 @@ class Session(Protocol):
     wanted: tuple[str, ...]
 
     @property
-    def shown(self) -> Solved:
+    def shown(self) -> Computed:
         """What the page sees."""
 
-    def current(self) -> Solved:
+    def current(self) -> Computed:
         """The design that is."""
 
-    def go_to(self, found: Solved, label: str) -> None:
+    def go_to(self, found: Computed, label: str) -> None:
         """Make another design the one that is."""
 
     def told(self, seq: int | None, *notes: str) -> Iterator[Reply]:
         """Tell of what is shown."""
 
 
-def _arrows(session: Session, message: Message) -> Iterator[Reply]:
+def _arrows(session: ViewSession, message: Message) -> Iterator[Reply]:
     """Show arrows at a point, or at none."""
     point = message.text("point", "") or None
     points = points_of(session.shown.analysis)
@@ -121,7 +121,7 @@ def _arrows(session: Session, message: Message) -> Iterator[Reply]:
     yield from session.told(message.seq)
 
 
-def _variant(session: Session, message: Message) -> Iterator[Reply]:
+def _variant(session: ViewSession, message: Message) -> Iterator[Reply]:
     """Keep the design, or do something with one that is kept."""
     doing = message.text("do")
     if doing not in DOING:
@@ -131,30 +131,30 @@ def _variant(session: Session, message: Message) -> Iterator[Reply]:
     yield from session.told(message.seq)
 
 
-def _pin(session: Session, _: Message) -> None:
+def _pin(session: ViewSession, _: Message) -> None:
     session.seen.variants = session.seen.variants.pinned(session.current())
 
 
-def _rename(session: Session, message: Message) -> None:
+def _rename(session: ViewSession, message: Message) -> None:
     seen = session.seen
     seen.variants = seen.variants.renamed(message.text("name"), message.text("to"))
 
 
-def _drop(session: Session, message: Message) -> None:
+def _drop(session: ViewSession, message: Message) -> None:
     session.seen.variants = session.seen.variants.without(message.text("name"))
 
 
-def _go(session: Session, message: Message) -> None:
+def _go(session: ViewSession, message: Message) -> None:
     name = message.text("name")
     found = session.seen.variants.of(name)
     session.go_to(found, say("go to {name}", name=name))
 
 
-def _against(session: Session, message: Message) -> None:
+def _against(session: ViewSession, message: Message) -> None:
     session.seen.variants = session.seen.variants.told_against(message.text("to"))
 
 
-def _record(session: Session, message: Message) -> Iterator[Reply]:
+def _record(session: ViewSession, message: Message) -> Iterator[Reply]:
     """Draw a record beside the machine's own signals, or none where it has no text."""
     text, record = message.text("text", ""), None
     if text:
@@ -170,24 +170,24 @@ def _record(session: Session, message: Message) -> Iterator[Reply]:
 NO_STORE = Note("no store of a study is open; give one to `equipoise serve`")
 
 
-def _stores(session: Session, message: Message) -> Iterator[Reply]:
+def _stores(session: ViewSession, message: Message) -> Iterator[Reply]:
     """Without a server there are none."""
     yield Reply({"type": "stores", "seq": message.seq, "folder": None, "names": []})
 
 
-def _stored(session: Session, message: Message) -> Iterator[Reply]:
+def _stored(session: ViewSession, message: Message) -> Iterator[Reply]:
     """Nothing that is asked of a store is here."""
     raise UsageError(NO_STORE)
 
 
-DOING: dict[str, Callable[[Session, Message], None]] = {
+DOING: dict[str, Callable[[ViewSession, Message], None]] = {
     "pin": _pin,
     "rename": _rename,
     "drop": _drop,
     "go": _go,
     "against": _against,
 }
-ASKED: dict[str, Callable[[Session, Message], Iterator[Reply]]] = {
+ASKED: dict[str, Callable[[ViewSession, Message], Iterator[Reply]]] = {
     "arrows": _arrows,
     "variant": _variant,
     "record": _record,

@@ -25,7 +25,7 @@ from equipoise.web.block import Values
 from equipoise.web.design import Design
 from equipoise.web.disk import Disk
 from equipoise.web.drawn import (
-    Drawn,
+    Incomplete,
     changed,
     computed,
     drawn,
@@ -33,9 +33,9 @@ from equipoise.web.drawn import (
     sketch_of,
     state_of_sketch,
 )
-from equipoise.web.edits import Solved, settled, solved
+from equipoise.web.edits import Computed, settled, solved
 from equipoise.web.fields import Scale, fields_of
-from equipoise.web.history import History, Step
+from equipoise.web.history import History, HistoryStep
 from equipoise.web.making import lost, made
 from equipoise.web.messages import MOST_LANGUAGES, Message
 from equipoise.web.openings import opened_example, opened_text, titles, tool_titles
@@ -65,12 +65,12 @@ class Session:
     """
 
     history: History | None = None
-    found: Solved | Drawn | None = None
-    preview: Solved | Drawn | None = None
-    before: Solved | None = None
+    found: Computed | Incomplete | None = None
+    preview: Computed | Incomplete | None = None
+    before: Computed | None = None
     scale: Scale | None = None
-    more_told: tuple[Solved | Drawn | None, Solved | None] = (None, None)
-    response_told: tuple[Solved | Drawn | None, Record | None] = (None, None)
+    more_told: tuple[Computed | Incomplete | None, Computed | None] = (None, None)
+    response_told: tuple[Computed | Incomplete | None, Record | None] = (None, None)
     wanted: tuple[str, ...] = ()
     language: str = "en"
     disk: Disk | None = None
@@ -134,7 +134,7 @@ class Session:
             if found is None and commit:  # the last place of a drag at which it could be
                 found = self.preview
             if found is not None and commit:
-                found = settled(found) if isinstance(found, Solved) else found
+                found = settled(found) if isinstance(found, Computed) else found
                 self._go(self._past.then(found.design, message.label), found)
             elif found is not None:
                 self.preview = found
@@ -198,22 +198,22 @@ class Session:
         with speaking(self.language):
             return [{"name": name, "title": said(title)} for name, title in found.items()]
 
-    def open(self, design: Design | Sketch, found: Solved | None = None) -> None:
+    def open(self, design: Design | Sketch, found: Computed | None = None) -> None:
         """Begin with a design, or with a sketch; what was done before is forgotten.
 
         found : the design, if it has been computed.
         """
         seen = found or computed(design)
         with self.lock:
-            self._go(History(Step(design, "")), seen)
+            self._go(History(HistoryStep(design, "")), seen)
             self._measure(seen, True)
 
-    def _measure(self, found: Solved | Drawn, new: bool) -> None:
+    def _measure(self, found: Computed | Incomplete, new: bool) -> None:
         """What goes by the build of a machine: ranges of sliders, and outputs that are drawn.
 
         new : whether it has nothing to do with the one before.
         """
-        machine = found if isinstance(found, Solved) else None
+        machine = found if isinstance(found, Computed) else None
         self.before = None
         self.scale = Scale({}, USUAL_SIZE, 1.0) if machine is None else Scale.of(machine.design)
         if new:
@@ -221,7 +221,7 @@ class Session:
         if machine is not None and (new or not self.wanted):
             self.wanted = first_of(machine.design.machine)[1]
 
-    def go_to(self, found: Solved | Drawn, label: str) -> None:
+    def go_to(self, found: Computed | Incomplete, label: str) -> None:
         """Make a design that has been computed the one that is, as one step of undo."""
         self._go(self._past.then(found.design, label), found)
 
@@ -229,7 +229,7 @@ class Session:
     def has_more(self) -> bool:
         """Whether there is more to tell of the design, which takes longer."""
         told, against = self.more_told
-        if not isinstance(self.found, Solved):
+        if not isinstance(self.found, Computed):
             return False
         return self.view is not told or self._against is not against
 
@@ -248,7 +248,7 @@ class Session:
             content, data = one
             yield Reply({"seq": None, **content}, data)
 
-    def more_wanted(self) -> tuple[Solved, Solved | None, bool] | None:
+    def more_wanted(self) -> tuple[Computed, Computed | None, bool] | None:
         """What `tell_more` is about to compute, from then on known as computed.
 
         Returns
@@ -257,7 +257,7 @@ class Session:
         wanted; None where the design is unfinished by now.
         """
         found = self.view
-        if not isinstance(found, Solved):
+        if not isinstance(found, Computed):
             return None
         sweep, against = self.more_told[0] is not found, self._against
         self.more_told = found, against
@@ -275,15 +275,15 @@ class Session:
     @property
     def _machine(self) -> Machine | None:
         """The machine that is seen, where it is finished."""
-        return self.view.design.machine if isinstance(self.view, Solved) else None
+        return self.view.design.machine if isinstance(self.view, Computed) else None
 
     @property
-    def view(self) -> Solved | Drawn:
+    def view(self) -> Computed | Incomplete:
         """What the page sees: what is dragged, or the design that is."""
         return self.preview or self.base()
 
     @property
-    def shown(self) -> Solved:
+    def shown(self) -> Computed:
         """The same of a machine that is finished, or a `UsageError`."""
         return finished(self.view)
 
@@ -293,20 +293,20 @@ class Session:
         assert self.history is not None
         return self.history
 
-    def base(self) -> Solved | Drawn:
+    def base(self) -> Computed | Incomplete:
         """What is, finished or not; a `UsageError` where there is nothing."""
         if self.found is None:
             raise UsageError(Note("no machine is open; pick an example, or drop a model file"))
         return self.found
 
-    def current(self) -> Solved:
+    def current(self) -> Computed:
         """The design that is, or a `UsageError` where it is not finished."""
         return finished(self.base())
 
-    def _go(self, history: History, found: Solved | Drawn | None = None) -> None:
+    def _go(self, history: History, found: Computed | Incomplete | None = None) -> None:
         """Show where a history has come to; nothing has changed where that cannot be computed."""
         found = found or computed(history.now.design)
-        self.seen.last = last = self.found if isinstance(self.found, Solved) else None
+        self.seen.last = last = self.found if isinstance(self.found, Computed) else None
         if last is not None and last.design is not found.design:
             last.design.forget()
         self.found = found
@@ -320,7 +320,7 @@ class Session:
             state = self._state(seq)
         state.content["notes"] = [*notes, *state.content["notes"]]
         yield state
-        if isinstance(self.view, Drawn):
+        if isinstance(self.view, Incomplete):
             return
         with self.telling():
             compared = [*self.seen.compared(None if self.preview else self.current())]
@@ -346,20 +346,22 @@ class Session:
     def _state(self, seq: int | None) -> Reply:
         assert self.scale is not None
         found, history = self.view, self._past
-        if isinstance(found, Drawn):
+        if isinstance(found, Incomplete):
             content, data = state_of_sketch(found, self.scale)
         else:
             content, data = self._state_of(found)
             fields = fields_of(found.design).values()
             content["fields"] = [self.scale.told(one) for one in fields]
         now = self.found if self.preview is None else None
-        file = self.disk and self.disk.kept(now.design.machine if isinstance(now, Solved) else None)
+        file = self.disk and self.disk.kept(
+            now.design.machine if isinstance(now, Computed) else None
+        )
         steps = [len(history.past), len(history.future)]
         content["wording"] = wording_of(words_of(self._machine))
         told = {"undo": history.undo, "redo": history.redo, "steps": steps, "file": file}
         return Reply({"type": "state", "seq": seq, **told, **content}, data)
 
-    def _state_of(self, found: Solved) -> tuple[Values, bytes]:
+    def _state_of(self, found: Computed) -> tuple[Values, bytes]:
         seen = self.seen
         return state_of(
             found,
@@ -371,10 +373,10 @@ class Session:
         )
 
     @property
-    def _against(self) -> Solved | None:
+    def _against(self) -> Computed | None:
         """The design that figures are told against, if any."""
         held = self.found if self.preview is not None else None
-        return self.seen.against(held if isinstance(held, Solved) else None) or self.before
+        return self.seen.against(held if isinstance(held, Computed) else None) or self.before
 
 
 def _in_file(error: EquipoiseError, name: str) -> EquipoiseError:

@@ -32,8 +32,8 @@ from equipoise.vibration.resonance import around
 from equipoise.vibration.response import Response
 from equipoise.vibration.sampling import COARSE
 from equipoise.vibration.sweep import Sweep, sweep_speed
-from equipoise.web.block import Block
-from equipoise.web.edits import Solved
+from equipoise.web.block import FloatBlock
+from equipoise.web.edits import Computed
 from equipoise.web.figures import chart, gauge_choice, text_of, was_of
 
 Values = dict[str, Any]
@@ -49,10 +49,10 @@ def can_be_shaken(machine: Machine) -> bool:
 
 def kept_with_design(make: Callable[..., R]) -> Callable[..., R]:
     """A function of a design whose result is kept as long as the design is."""
-    results: WeakKeyDictionary[Solved, R] = WeakKeyDictionary()
+    results: WeakKeyDictionary[Computed, R] = WeakKeyDictionary()
 
     @wraps(make)
-    def result_of(shown: Solved, *more: Any) -> R:
+    def result_of(shown: Computed, *more: Any) -> R:
         if shown not in results:
             results[shown] = make(shown, *more)
         return results[shown]
@@ -61,24 +61,24 @@ def kept_with_design(make: Callable[..., R]) -> Callable[..., R]:
 
 
 @kept_with_design
-def responded(shown: Solved) -> Response:
+def responded(shown: Computed) -> Response:
     """The response of a design at its own speed, with the errors of `respond`."""
     return respond(shown.analysis.machine)
 
 
 @kept_with_design
-def _curves(shown: Solved, speed: float, progress: Callable[[int, int], None]) -> Sweep:
+def _curves(shown: Computed, speed: float, progress: Callable[[int, int], None]) -> Sweep:
     """The response of a design over speeds around one, rad/s."""
     ends = around(shown.analysis.machine.drive, speed)
     return sweep_speed(shown.analysis.machine, *ends, speeds=COARSE, progress=progress)
 
 
-def response_of(shown: Solved) -> tuple[Values, bytes] | None:
+def response_of(shown: Computed) -> tuple[Values, bytes] | None:
     """What the gauges read over a turn at the machine's speed; None where nothing can be shaken.
 
     Where there is no steady state, no gauges and a note that says so.
     """
-    machine, block = shown.analysis.machine, Block()
+    machine, block = shown.analysis.machine, FloatBlock()
     if not can_be_shaken(machine):
         return None
     try:
@@ -94,7 +94,7 @@ def response_of(shown: Solved) -> tuple[Values, bytes] | None:
     return _told(shown, found, block), block.data
 
 
-def swept(shown: Solved, progress: Callable[[int, int], None]) -> tuple[Values, bytes] | None:
+def swept(shown: Computed, progress: Callable[[int, int], None]) -> tuple[Values, bytes] | None:
     """The same with the response over speeds around the machine's own, which is kept with it.
 
     progress : as of `sweep_speed`; what it raises ends the work.
@@ -104,7 +104,7 @@ def swept(shown: Solved, progress: Callable[[int, int], None]) -> tuple[Values, 
         curves = _curves(shown, found.speed, progress)
     except EquipoiseError:  # of which `response_of` has told
         return None
-    block = Block()
+    block = FloatBlock()
     content = _told(shown, found, block)
     block.add("sweep.speed", curves.speed)
     choices: list[Values] = []
@@ -120,7 +120,7 @@ def swept(shown: Solved, progress: Callable[[int, int], None]) -> tuple[Values, 
     return content, block.data
 
 
-def _told(shown: Solved, found: Response, block: Block) -> Values:
+def _told(shown: Computed, found: Response, block: FloatBlock) -> Values:
     """Displacements against the crank angle, which runs as the crank does, and how to draw them."""
     count = SAMPLES * found.turns
     choices: list[Values] = []
@@ -136,7 +136,7 @@ def _told(shown: Solved, found: Response, block: Block) -> Values:
     return {"charts": charts, "notes": notes, "swing": swing, "modes": modes, "arrays": block.told}
 
 
-def _swing(scene: Scene, block: Block) -> list[str] | None:
+def _swing(scene: Scene, block: FloatBlock) -> list[str] | None:
     """What is to be said of the support's movement over the crank angle, which goes to the block.
 
     ``support.place`` : (2 N,) m, ``support.angle`` : (N,) rad; larger than true.
@@ -171,7 +171,7 @@ class OutdatedError(Exception):
 
 
 def more(
-    found: Solved, against: Solved | None, sweep: bool, outdated: Callable[[], bool]
+    found: Computed, against: Computed | None, sweep: bool, outdated: Callable[[], bool]
 ) -> Iterator[tuple[Values, bytes]]:
     """Planes from the side, strokes, gauges, planting figures, the response over speed; each as
     values and a block of floats.
@@ -221,7 +221,7 @@ _Figures = Mapping[str, _Told]
 
 
 def _told_against(
-    kind: str, of: Callable[[Solved], _Figures], found: Solved, against: Solved | None
+    kind: str, of: Callable[[Computed], _Figures], found: Computed, against: Computed | None
 ) -> Values:
     """Figures of a design, each with what it is in the other one where that has it too."""
     try:
@@ -254,7 +254,7 @@ READ = {"peak_to_peak": to_say("peak to peak"), "vibration_rms": to_say("RMS")}
 """What is told of a gauge's reading; RMS is about the mean."""
 
 
-def _gauges(found: Solved) -> _Figures:
+def _gauges(found: Computed) -> _Figures:
     """Figures of what gauges read; none without a steady state, of which `response_of` tells."""
     try:
         gauges = responded(found).gauges
@@ -272,7 +272,7 @@ def _gauges(found: Solved) -> _Figures:
     }
 
 
-def _strokes(found: Solved) -> _Figures:
+def _strokes(found: Computed) -> _Figures:
     """Figures of strokes and of parts by name, but for the crank angles at which they are."""
     return dict(_strokes_of(found.analysis))
 
@@ -322,19 +322,19 @@ def _declared_of(
             yield f"{path}.{kind.name}", _Told(label, value, of, unit)
 
 
-def _plants(found: Solved) -> bool:
+def _plants(found: Computed) -> bool:
     """Whether there is a planting finger that moves."""
     machine = found.analysis.machine
     return machine.planting is not None and machine.drive.speed != 0
 
 
 @kept_with_design
-def planted(shown: Solved) -> PlantingFigures:
+def planted(shown: Computed) -> PlantingFigures:
     """What a design plants, with the errors of `plant`."""
     return plant(shown.analysis.machine)
 
 
-def _planted(found: Solved) -> _Figures:
+def _planted(found: Computed) -> _Figures:
     """Figures of the tip's path; none of a machine that has no planting finger."""
     if not _plants(found):
         return {}

@@ -6,19 +6,19 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
-from equipoise.mechanism.kinematics.outline import STILL, Outline, Pose
+from equipoise.mechanism.kinematics.outline import STILL, MachineDraft, Pose
 from equipoise.mechanism.parts.element_kinds import part_kinds
 from equipoise.mechanism.parts.machine import FRAME, Link, Machine, Vector
 from equipoise.mechanism.parts.shown_units import ShownUnits
 from equipoise.quantities import clean_place
 from equipoise.web.assuming import rebuilt
 from equipoise.web.design import Counterweight, Design
-from equipoise.web.edits import Solved, solved
+from equipoise.web.edits import Computed, solved
 
 UNTITLED = "untitled"
 REST = tuple(
     {one.name for one in fields(Machine)}.difference(
-        (one.name for one in fields(Outline)), ("assembly", "position")
+        (one.name for one in fields(MachineDraft)), ("assembly", "position")
     )
 )
 """Fields of a machine that a sketch hands on as they are; sides and places follow from it."""
@@ -27,7 +27,7 @@ LISTS = (*part_kinds(Machine), "loads", "joints")
 
 
 @dataclass(frozen=True, eq=False)
-class Sketch(Outline):
+class Sketch(MachineDraft):
     """A machine that may be unfinished, as a page has it.
 
     name : of the file.  counterweights : as of a `Design`.
@@ -37,7 +37,7 @@ class Sketch(Outline):
     counterweights: Mapping[str, Counterweight] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, found: Solved, at: int = 0) -> Sketch:
+    def of(cls, found: Computed, at: int = 0) -> Sketch:
         """A finished machine as it stands at a sample of its crank angle."""
         own, motion = found.design.own, found.motion
         poses = {}
@@ -103,7 +103,7 @@ class Sketch(Outline):
 
     # -- as a machine ------------------------------------------------------------------------------
 
-    def finished(self) -> Solved:
+    def finished(self) -> Computed:
         """The machine that is drawn, computed.
 
         Raises

@@ -17,9 +17,9 @@ from equipoise.results.analysis import Analysis
 from equipoise.results.drive_blocks import driven
 from equipoise.signals import Periodic
 from equipoise.web.arrows import arrows_of, points_of
-from equipoise.web.block import Array, Block, Values
+from equipoise.web.block import Array, FloatBlock, Values
 from equipoise.web.drawing import cams_told, ground_of, moves_of, stage_of
-from equipoise.web.edits import Solved, movable
+from equipoise.web.edits import Computed, movable
 from equipoise.web.figures import charts_of, figures_of, least_of, signals_of
 from equipoise.web.following import extent_of
 from equipoise.web.lacking import forces_lack
@@ -31,10 +31,10 @@ MOST_ORDER = 20
 
 
 def state_of(
-    found: Solved,
-    before: Solved | None,
+    found: Computed,
+    before: Computed | None,
     wanted: Sequence[str] = (),
-    against: Solved | None = None,
+    against: Computed | None = None,
     arrows_at: str | None = None,
     record: Record | None = None,
 ) -> tuple[Values, bytes]:
@@ -46,7 +46,7 @@ def state_of(
     arrows_at : a point of which velocity, acceleration and forces are drawn.
     record : that is drawn beside its own signals.
     """
-    analysis, block = found.analysis, Block()
+    analysis, block = found.analysis, FloatBlock()
     machine, motion = analysis.machine, analysis.motion
     scene = found.scene
     moves_of(scene, block)
@@ -119,7 +119,7 @@ def outputs_of(analysis: Analysis) -> list[Values]:
     ]
 
 
-def status_of(found: Solved) -> Values:
+def status_of(found: Computed) -> Values:
     """What is told of the making of a machine.
 
     mobility : number of free motions.  text : a sentence: what moves, or what is missing.
@@ -143,7 +143,9 @@ def turning(machine: Machine) -> str:
     return say("1 free motion; {link} turns fully", link=machine.drive.link)
 
 
-def _add_outputs(block: Block, analysis: Analysis, names: Sequence[str], prefix: str = "") -> None:
+def _add_outputs(
+    block: FloatBlock, analysis: Analysis, names: Sequence[str], prefix: str = ""
+) -> None:
     """Outputs that the page has asked for, in the unit in which it reads them."""
     for name in names:
         if name in analysis.outputs:
@@ -151,7 +153,7 @@ def _add_outputs(block: Block, analysis: Analysis, names: Sequence[str], prefix:
 
 
 def _add_signals(
-    block: Block, signals: dict[str, Array], analysis: Analysis, prefix: str = ""
+    block: FloatBlock, signals: dict[str, Array], analysis: Analysis, prefix: str = ""
 ) -> None:
     if prefix and signals:
         block.add(f"{prefix}crank_angle", analysis.crank_angle)

@@ -24,7 +24,7 @@ from equipoise.studies.outcomes import kept
 from equipoise.studies.sampling import random_numbers
 from equipoise.studies.selection import best
 from equipoise.studies.store import ABOUT, MARK, UNKNOWN, Store, open_store
-from equipoise.web.block import Array, Block, Values
+from equipoise.web.block import Array, FloatBlock, Values
 from equipoise.web.replies import Reply
 
 MOST, BEST = 5_000, 50
@@ -134,7 +134,7 @@ class StoreDesk:
         Arrays are a column each, of the designs that are drawn: ``number``, ``reason`` (0 where a
         design has figures), ``kept`` (1 where it keeps every limit), then those of `columns`.
         """
-        block = Block()
+        block = FloatBlock()
         numbers, rows, reasons = self._drawn
         figures = rows[:, len(self.store.numbers) :]
         inside = (reasons == COMPUTED) & np.all(kept(self.store.wishes, figures), axis=1)

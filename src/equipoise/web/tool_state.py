@@ -22,7 +22,7 @@ from equipoise.i18n import said, say
 from equipoise.quantities import Dimension, display, told
 from equipoise.symbols.looks import LOOKS
 from equipoise.symbols.tool import ToolScene
-from equipoise.web.block import Array, Block, Values
+from equipoise.web.block import Array, FloatBlock, Values
 from equipoise.web.drawing import UNIT, shapes_of
 from equipoise.web.figures import chart, compared
 
@@ -82,7 +82,7 @@ def tool_state(now: ToolFigures, first: ToolFigures) -> tuple[Values, bytes]:
 
     first : as it was opened, with which it is compared.
     """
-    tool, block = now.tool, Block()
+    tool, block = now.tool, FloatBlock()
     scene = side_of(tool)
     changed, length = now is not first, display("length", [tool.shaft.length])
     content: Values = {
@@ -193,7 +193,7 @@ def _compared(now: ToolFigures, first: ToolFigures) -> Iterator[Values]:
         yield {"name": name, "label": label, "unit": unit.name, **changed}
 
 
-def _charts(now: ToolFigures, first: ToolFigures | None, block: Block) -> Iterator[Values]:
+def _charts(now: ToolFigures, first: ToolFigures | None, block: FloatBlock) -> Iterator[Values]:
     """Weighted acceleration of each hand against the speed of the engine."""
     if now.exposure is None or now.tool.operation is None:
         return

@@ -14,7 +14,7 @@ from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.outputs.declared import DECLARED
 from equipoise.quantities import Dimension, display
 from equipoise.quantities.numbers import SAME
-from equipoise.web.edits import Solved
+from equipoise.web.edits import Computed
 from equipoise.web.figures import figures_of, text_of
 from equipoise.web.shaken import can_be_shaken, responded
 
@@ -31,10 +31,10 @@ VARIANT = "variant:"
 class Variants:
     """Designs that are kept, by name, and what the one that is shown is told against."""
 
-    kept: Mapping[str, Solved] = field(default_factory=dict)
+    kept: Mapping[str, Computed] = field(default_factory=dict)
     against: str = STEP
 
-    def pinned(self, found: Solved) -> Variants:
+    def pinned(self, found: Computed) -> Variants:
         """One more, which is what the design is told against from now on.
 
         Raises
@@ -49,7 +49,7 @@ class Variants:
         name = next(one for one in letters if one not in self.kept)
         return Variants(MappingProxyType({**self.kept, name: found}), VARIANT + name)
 
-    def of(self, name: str) -> Solved:
+    def of(self, name: str) -> Computed:
         """One of them, by its name; a `UsageError` where there is none of it."""
         if name not in self.kept:
             raise UsageError(unknown(name, self.kept, "variant"))
@@ -96,7 +96,7 @@ class Variants:
             return say("as it was opened")
         return self.against.removeprefix(VARIANT)
 
-    def table(self, now: Solved) -> Values:
+    def table(self, now: Computed) -> Values:
         """Figures of every variant and of the design that is, and which is best of each.
 
         Of every figure the smallest is best; none is where all are the same.
@@ -119,7 +119,7 @@ def _named(figures: list[Values]) -> dict[str, Values]:
     return {one["name"]: one for one in figures}
 
 
-def _gauges(every: Sequence[Solved]) -> Iterator[Values]:
+def _gauges(every: Sequence[Computed]) -> Iterator[Values]:
     """What gauges read peak to peak, where every design has the same and a steady state."""
     try:
         found = [responded(one).gauges for one in every if can_be_shaken(one.design.machine)]

@@ -12,12 +12,12 @@ from equipoise.web.openings import opened_file
 from equipoise.web.session import Session
 
 if TYPE_CHECKING:
-    from equipoise.web.notebook import View
+    from equipoise.web.notebook import NotebookView
 
 MISSING = 'a widget needs anywidget; install it by: pip install "equipoise[notebook]"'
 
 
-def view(machine: Machine | str | os.PathLike[str]) -> View:
+def view(machine: Machine | str | os.PathLike[str]) -> NotebookView:
     """Show a machine in a notebook, where it moves and can be dragged and changed.
 
     Parameters
@@ -35,7 +35,7 @@ def view(machine: Machine | str | os.PathLike[str]) -> View:
     EquipoiseError : the machine cannot be computed.
     """
     try:
-        from equipoise.web.notebook import View
+        from equipoise.web.notebook import NotebookView
     except ModuleNotFoundError as error:
         if error.name not in {"anywidget", "ipywidgets", "traitlets"}:
             raise
@@ -45,4 +45,4 @@ def view(machine: Machine | str | os.PathLike[str]) -> View:
     )
     session = Session()
     session.open(design)
-    return View(session)
+    return NotebookView(session)

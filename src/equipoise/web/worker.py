@@ -23,7 +23,7 @@ from equipoise.web import balanced
 from equipoise.web.balanced import Balancing
 from equipoise.web.design import Design
 from equipoise.web.desk import Desk
-from equipoise.web.edits import Solved, solved
+from equipoise.web.edits import Computed, solved
 from equipoise.web.messages import SLOW, Message, makes_way, read
 from equipoise.web.replies import Reply, packed, refused, told, unexpected
 from equipoise.web.session import Session
@@ -75,7 +75,7 @@ class Foreground:
         self.tasks: deque[bytes] = deque()
         self.missing: str | None = None
         """A package that has to be loaded before the next step."""
-        self._running: deque[tuple[Task, Solved | None]] = deque()
+        self._running: deque[tuple[Task, Computed | None]] = deque()
         self._message: Message | None = None
         self._replies: Iterator[Reply] | None = None
         self._refused_packages: set[str] = set()
@@ -188,11 +188,11 @@ class Foreground:
     def _is_for_background(self, message: Message) -> bool:
         """Whether a question is about a finished machine, or about nothing that is open."""
         desk = self.desk
-        of_machine = desk.tool is None and isinstance(desk.session.found, Solved)
+        of_machine = desk.tool is None and isinstance(desk.session.found, Computed)
         return of_machine or message.kind not in OF_MACHINE
 
     def _begin(
-        self, message: Message | None, found: Solved | None, against: Solved | None, sweep: bool
+        self, message: Message | None, found: Computed | None, against: Computed | None, sweep: bool
     ) -> None:
         session = self.desk.session
         design, other = (None if one is None else one.design for one in (found, against))

@@ -5,19 +5,19 @@ from __future__ import annotations
 import numpy as np
 
 import equipoise as eq
-from equipoise.figures.stage import Arrow
+from equipoise.figures.stage import ForceArrow
 from equipoise.results.analysis import Analysis
 from equipoise.symbols.clear import clear_angle
 from equipoise.symbols.scene import Scene
 from unit.figures.samples import three_turns
 
 
-def analyzed(name: str, angles: int = 720) -> tuple[Analysis, Scene, Arrow]:
+def analyzed(name: str, angles: int = 720) -> tuple[Analysis, Scene, ForceArrow]:
     return prepared(eq.analyze(eq.load(name), angles))
 
 
-def prepared(found: Analysis) -> tuple[Analysis, Scene, Arrow]:
-    arrow = Arrow(found.forces.about, found.forces.shaking_force.value)
+def prepared(found: Analysis) -> tuple[Analysis, Scene, ForceArrow]:
+    arrow = ForceArrow(found.forces.about, found.forces.shaking_force.value)
     return found, Scene.of(found.motion), arrow
 
 

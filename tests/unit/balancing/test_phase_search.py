@@ -22,7 +22,7 @@ from equipoise.balancing.patterns import (
     patterns_for,
 )
 from equipoise.balancing.phase_bound import CLOSE
-from equipoise.balancing.phase_grid import Grid, alike, coarsened, distinct, sorted_choices
+from equipoise.balancing.phase_grid import PhaseGrid, alike, coarsened, distinct, sorted_choices
 from equipoise.balancing.phase_polish import most_steps
 from equipoise.balancing.phase_search import MOST_KINKED, PhaseSearch
 from equipoise.balancing.phasing import choose_phases
@@ -222,9 +222,9 @@ def test_rows_that_are_alike() -> None:
 
 def test_arrangements_are_counted_by_groups() -> None:
     paired = rows(4).with_rows(Row(lateral=z) for z in (-0.3, 0.3, -0.3, 0.3))
-    assert Grid(search(rows(4), FORCE).cost, 12).count == 14 * 13 * 12 // 6
-    assert Grid(search(rows(4), ROLL).cost, 12).count == 12**3
-    assert Grid(search(paired, ROLL).cost, 12).count == 12 * (12 * 13 // 2)
+    assert PhaseGrid(search(rows(4), FORCE).cost, 12).count == 14 * 13 * 12 // 6
+    assert PhaseGrid(search(rows(4), ROLL).cost, 12).count == 12**3
+    assert PhaseGrid(search(paired, ROLL).cost, 12).count == 12 * (12 * 13 // 2)
 
 
 def test_first_grid_is_as_fine_as_can_be_afforded() -> None:

@@ -11,7 +11,7 @@ import pytest
 from scipy import sparse
 
 from equipoise.balancing.branch_and_bound import Best, Square, minimise
-from equipoise.balancing.program import Affine, Block, NoSolutionError, Program
+from equipoise.balancing.program import Affine, ConeRows, NoSolutionError, Program
 
 CLOSE = 1e-8
 
@@ -177,7 +177,7 @@ def round_about(gradual: bool) -> Program:
     x, y = map(int, program.numbers(2))
     angle = np.arange(4000) * (2 * np.pi / 4000)
     rows = Affine(-np.array([np.cos(angle), np.sin(angle)]).T, np.array([x, y]), np.full(4000, 2.0))
-    block = Block("nonnegative", rows, name="radius", slope=fixed(*np.ones(4000)))
+    block = ConeRows("nonnegative", rows, name="radius", slope=fixed(*np.ones(4000)))
     if gradual:
         program.gradually(block)
     else:

@@ -23,7 +23,7 @@ from equipoise.codegen.batch import Batch, all_angles, designs_of, grid_of
 from equipoise.codegen.emit import emit
 from equipoise.codegen.figures import Gathered
 from equipoise.codegen.polynomials import without_calls
-from equipoise.codegen.source import Source, on_arrays, pick_from
+from equipoise.codegen.source import TermSource, on_arrays, pick_from
 from equipoise.codegen.terms import BOTH, Graph, Pair, angle_of, reached, rotation
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.parts.machine import Machine
@@ -36,11 +36,11 @@ CRANK = machine({"A": (0.0, 0.0)}, {"crank": eq.Link({"A": (0.0, 0.0), "B": (1.0
 WANTED = wanted_of(["points.B.x"], "rms")
 
 
-def source_of(base: Machine, *signals: str) -> Source:
+def source_of(base: Machine, *signals: str) -> TermSource:
     return emit(assemble(base), Gathered.of(wanted_of(signals)))
 
 
-def tables_of(base: Machine, source: Source, count: int, share: float = 0.02) -> Array:
+def tables_of(base: Machine, source: TermSource, count: int, share: float = 0.02) -> Array:
     numbers = numbers_of(base, share)
     values = drawn(numbers, count, 1)
     designs = designs_of(source, assemble(base), paths_of(numbers), values)

@@ -16,7 +16,7 @@ import equipoise as eq
 from equipoise.codegen.batch import Batch
 from equipoise.codegen.emit import can_emit, emit
 from equipoise.codegen.figures import Figure, Gathered
-from equipoise.codegen.source import NUMPY, Source
+from equipoise.codegen.source import NUMPY, TermSource
 from equipoise.errors import MassError, UsageError
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.parts.joint_properties import JointProperties
@@ -28,7 +28,7 @@ from support.machines import make
 from unit.mechanism.build import four_bar
 
 
-def source_of(machine: Machine, *signals: str) -> Source:
+def source_of(machine: Machine, *signals: str) -> TermSource:
     wanted = [Figure(signal, "rms") for signal in signals or signals_of(machine)]
     return emit(assemble(machine), Gathered.of(wanted))
 

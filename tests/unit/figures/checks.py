@@ -13,7 +13,7 @@ import pytest
 from equipoise.figures import layout
 from equipoise.figures.layout import lay_out
 from equipoise.figures.sheet import Item, Sheet, Words, box_of
-from equipoise.figures.style import PAPER, Look, look_of
+from equipoise.figures.style import PAPER, DrawingStyle, look_of
 from equipoise.figures.vector import svg_of
 from equipoise.figures.view import View
 from equipoise.results.charts import Chart
@@ -188,7 +188,7 @@ def alike_in_grey(laid: Laid) -> Iterator[Fault]:
                 yield "alike in grey", f"{one} and {other}"
 
 
-def _shade(look: Look) -> float:
+def _shade(look: DrawingStyle) -> float:
     """Lightness of an area on paper."""
     return look.opacity * lightness(look.inside) + (1 - look.opacity) * lightness(PAPER)
 

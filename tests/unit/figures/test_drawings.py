@@ -16,7 +16,7 @@ from equipoise.figures.linkage import linkage
 from equipoise.figures.modes import SHOWN_SIZE, ModeShape, described
 from equipoise.figures.path import Paths, path
 from equipoise.figures.pictures import pictures_of
-from equipoise.figures.stage import Arrow
+from equipoise.figures.stage import ForceArrow
 from equipoise.planting.summary import plant
 from equipoise.results.analysis import Analysis
 from equipoise.results.charts import Chart
@@ -94,7 +94,7 @@ def test_soil_and_tray_are_in_the_picture_and_its_legend() -> None:
 @pytest.mark.parametrize("of_one", [False, True])
 def test_a_moving_picture_says_whose_force_it_is(of_one: bool) -> None:
     found = eq.analyze(eq.load("four-row-transplanter"), 60)
-    arrow = Arrow(found.forces.about, found.forces.shaking_force.value, of_one)
+    arrow = ForceArrow(found.forces.about, found.forces.shaking_force.value, of_one)
     told = [label.text for label in laid_out(Scene.of(found.motion), arrow=arrow).labels]
     (force,) = (text for text in told if text.startswith("shaking force"))
     assert ("of one row" in force) == of_one

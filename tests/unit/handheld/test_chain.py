@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from equipoise.handheld.chain import (
-    Carried,
     Chain,
+    CondensedStiffness,
     Pair,
     carry,
     count,
@@ -249,7 +249,7 @@ def _with(items: Any, new: Any) -> list[Any]:
 
 
 def _count(chain: Chain) -> int:
-    carried: Carried = carry(_real(chain))
+    carried: CondensedStiffness = carry(_real(chain))
     return int(count(carried))
 
 

@@ -19,7 +19,7 @@ from equipoise.handheld.chain import carry, solve
 from equipoise.handheld.design_plan import KEYS
 from equipoise.handheld.duals import Dual
 from equipoise.handheld.exposed import (
-    Band,
+    SpeedBand,
     expose_tool,
     grips,
     mean_over_band,
@@ -186,7 +186,7 @@ def test_refusals() -> None:
     cause = Excitation("e", "a", force=1.0)
     table = Impedance((50.0, 100.0), (10.0, 10.0), (0.0, 0.0))
     measured = Station("a", 0.1, hand=Hand(impedance=(table,)))
-    for call in (expose_tool, Band):
+    for call in (expose_tool, SpeedBand):
         with pytest.raises(ModelError, match="no hand holds the tool"):
             call(shaken(bare(Station("a", 0.1)), cause), SPEEDS)
         with pytest.raises(ModelError, match="nothing shakes the tool"):
@@ -261,7 +261,7 @@ def test_values(theory: str) -> None:
     tool = random_tool(1, theory)
     numbers, same = numbers_of(tool), alike(tool)
     for one, values in ((tool, None), (same, values_of(tool, numbers))):
-        felt = Band(one, SPEEDS).felt(numbers, values, HELD)
+        felt = SpeedBand(one, SPEEDS).felt(numbers, values, HELD)
         found = np.array([one.value for one in (*felt.hands.values(), *felt.forces.values())])
         np.testing.assert_allclose(found, squares(one), rtol=1e-10)
         assert (list(felt.hands), list(felt.forces)) == (["front", "rear"], list(HELD))
@@ -279,7 +279,7 @@ def test_slopes(theory: str, station: str) -> None:
     """
     tool = alike(random_tool(1, theory))
     numbers = [number for number in numbers_of(tool) if number[0] == station]
-    felt = Band(tool, SPEEDS).felt(numbers, values_of(tool, numbers), HELD)
+    felt = SpeedBand(tool, SPEEDS).felt(numbers, values_of(tool, numbers), HELD)
     found = np.array([one.slopes for one in (*felt.hands.values(), *felt.forces.values())])
     assert found.shape == (5, len(numbers), 3)
     for k, (_, key) in enumerate(numbers):
@@ -293,7 +293,7 @@ def test_slopes_of_many_numbers_are_those_of_each() -> None:
     """Places that vary together, too: what is between them is as long as both say."""
     tool = alike(random_tool(2, "timoshenko"))
     numbers = numbers_of(tool)
-    band = Band(tool, SPEEDS)
+    band = SpeedBand(tool, SPEEDS)
     whole = band.felt(numbers, values_of(tool, numbers), HELD)
     for k in range(len(numbers)):
         one = band.felt([numbers[k]], values_of(tool, [numbers[k]]), HELD)
@@ -315,7 +315,7 @@ def test_slopes_cost_one_more_run_along_the_shaft(monkeypatch: pytest.MonkeyPatc
         monkeypatch.setattr(module, run.__name__, counted)
     tool = alike(random_tool(2))
     numbers = numbers_of(tool)
-    Band(tool, SPEEDS).felt(numbers, values_of(tool, numbers), HELD)
+    SpeedBand(tool, SPEEDS).felt(numbers, values_of(tool, numbers), HELD)
     assert len(numbers) > 20 and len(runs) == 3
 
 
@@ -323,7 +323,7 @@ def test_without_slopes() -> None:
     tool = random_tool(1)
     numbers = numbers_of(tool)
     values = values_of(tool, numbers)
-    band = Band(tool, SPEEDS)
+    band = SpeedBand(tool, SPEEDS)
     plain, whole = (band.felt(numbers, values, HELD, slopes) for slopes in (False, True))
     for name, one in plain.hands.items():
         np.testing.assert_allclose(one.value, whole.hands[name].value, rtol=1e-13)
@@ -342,7 +342,7 @@ def test_a_quiet_order_can_be_left_out() -> None:
         Excitation("quiet", "a", force=1e-4, ratio=2.0),
     )
     tool = shaken(tool, *causes)
-    all_of, loud = (Band(tool, SPEEDS, least) for least in (0.0, 1e-3))
+    all_of, loud = (SpeedBand(tool, SPEEDS, least) for least in (0.0, 1e-3))
     assert all_of.orders.tolist() == [1, 2] and loud.orders.tolist() == [1]
     one = shaken(tool, causes[0])
     wanted = grips(respond_tool(one, SPEEDS))["grip"].a_hv ** 2
@@ -420,7 +420,7 @@ def test_a_measured_hand() -> None:
     tool = shaken(tool, Excitation("e", "a", unbalance=1e-3))
     for key in ("mass", "position"):
         numbers = [("grip", key)]
-        felt = Band(tool, SPEEDS).felt(numbers, values_of(tool, numbers), ["grip"])
+        felt = SpeedBand(tool, SPEEDS).felt(numbers, values_of(tool, numbers), ["grip"])
 
         def of(value: float, key: str = key) -> Array:
             response = respond_tool(changed(tool, "grip", key, value), SPEEDS)

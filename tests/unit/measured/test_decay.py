@@ -13,7 +13,7 @@ from scipy.integrate import solve_ivp
 
 import equipoise as eq
 from equipoise.measured.decay import _on_methods
-from equipoise.measured.fits import Quantity
+from equipoise.measured.fits import FittedValue
 from unit.measured.samples import OMEGA, held, noisy, simulated
 
 NAMES = [
@@ -188,13 +188,13 @@ def test_methods_that_contradict_each_other() -> None:
     found = eq.measured.identify_decay(simulated(noise=0.005))
     frequency = found.by_record["natural_frequency"]
     assert not list(_on_methods(found.by_line, found.by_record))
-    moved = Quantity(*(1.1 * value for value in astuple(frequency)))
+    moved = FittedValue(*(1.1 * value for value in astuple(frequency)))
     told = list(_on_methods(found.by_line, {**found.by_record, "natural_frequency": moved}))
     assert told == [
         "line and whole record contradict each other on natural frequency: their intervals have "
         "nothing in common"
     ]
-    assert not Quantity(1.0).apart_from(moved)
+    assert not FittedValue(1.0).apart_from(moved)
 
 
 # -- refused ---------------------------------------------------------------------------------------

@@ -26,7 +26,7 @@ from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.checks import Bodies
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.outputs.declared import CONTACT, FORCES, GROUPS, of_coupling
-from equipoise.mechanism.parts.couplings import Line, Pushed, Relation, Seat, Turning
+from equipoise.mechanism.parts.couplings import LineOfAction, Pushed, Relation, Seat, Turning
 from equipoise.results.machine_blocks import model_blocks
 from equipoise.symbols.pieces import pieces
 from equipoise.web.kinds import sections
@@ -79,8 +79,8 @@ class Rollers(Turning):
     def relation(self) -> Relation:
         return kernels.in_ratio, (self.speed_ratio,)
 
-    def line(self, seat: Seat) -> Line:
-        return Line(seat.centres / (1 - self.speed_ratio), np.tan(self.lean))
+    def line(self, seat: Seat) -> LineOfAction:
+        return LineOfAction(seat.centres / (1 - self.speed_ratio), np.tan(self.lean))
 
     def parts(self, at: Pushed) -> Mapping[str, Any]:
         return {"friction": at.push}

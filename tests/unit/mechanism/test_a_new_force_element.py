@@ -20,7 +20,7 @@ from equipoise.mechanism.parts.element_kinds import Placed
 from equipoise.mechanism.parts.force_kinds import Action, ForceElement
 from equipoise.present.checks import machine_blocks
 from equipoise.quantities import Dimension
-from equipoise.symbols.shapes import Mark, circle
+from equipoise.symbols.shapes import BodyMark, circle
 from support.own_kinds import (
     designs_by_numbers,
     drawn,
@@ -95,9 +95,9 @@ class Magnet(ForceElement):
         return f"magnet: {self.point} of {self.link} to {self.to}"
 
 
-def magnet_sign(one: Magnet, *_: Any) -> Iterator[Mark]:
+def magnet_sign(one: Magnet, *_: Any) -> Iterator[BodyMark]:
     """What its drawing consists of."""
-    yield Mark(one.link, one.point, circle("spiral", 0j, 0.01))
+    yield BodyMark(one.link, one.point, circle("spiral", 0j, 0.01))
 
 
 @declared

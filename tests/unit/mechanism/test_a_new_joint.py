@@ -25,7 +25,7 @@ from equipoise.mechanism.parts.machine import Link
 from equipoise.mechanism.parts.sliders import Slider
 from equipoise.present.checks import machine_blocks
 from equipoise.quantities import Dimension
-from equipoise.symbols.shapes import Mark, circle
+from equipoise.symbols.shapes import BodyMark, circle
 from support.own_kinds import (
     designs_by_numbers,
     drawn,
@@ -78,9 +78,9 @@ class StraightSlot(JointKind):
         return f"straight slot: {self.point} of {self.link} in {self.on}"
 
 
-def slot_sign(one: StraightSlot, *_: Any) -> Iterator[Mark]:
+def slot_sign(one: StraightSlot, *_: Any) -> Iterator[BodyMark]:
     """What its drawing consists of."""
-    yield Mark(one.on, one.through, circle("path-edge", 0j, 0.01))
+    yield BodyMark(one.on, one.through, circle("path-edge", 0j, 0.01))
 
 
 @declared

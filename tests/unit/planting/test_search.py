@@ -15,7 +15,7 @@ from equipoise.mechanism.parts.gear_shapes import GearShape
 from equipoise.mechanism.parts.gears import closed
 from equipoise.mechanism.parts.machine import FRAME
 from equipoise.planting.designs import Designs
-from equipoise.planting.goals import Problem
+from equipoise.planting.goals import PlantingProblem
 from equipoise.planting.search import Fit, fit_planting
 from support.chosen import EXHAUSTIVE
 from support.machines import make
@@ -262,7 +262,9 @@ def test_coordinates_of_any_point_can_vary() -> None:
 
 def test_designs_are_judged_without_following_their_cycle(monkeypatch: pytest.MonkeyPatch) -> None:
     """Also a single one: what cannot turn by a hair is a poor design, not an error."""
-    problem = Problem(Designs(eq.load("kim-chung-a")), [Requirement("curve.height", target=0.25)])
+    problem = PlantingProblem(
+        Designs(eq.load("kim-chung-a")), [Requirement("curve.height", target=0.25)]
+    )
 
     def followed(linkage: Linkage) -> None:
         raise AssertionError
@@ -360,7 +362,7 @@ def test_gears_of_any_shape_can_be_judged(kind: str) -> None:
     places = [eq.move(designs.build(row), 3600).points["P"].place for row in values]
     heights = [np.ptp(place.imag) for place in places]
     goals = [Requirement("curve.height", target=heights[0], tolerance=1.0)]
-    outcome = Problem(designs, goals).judge(values)
+    outcome = PlantingProblem(designs, goals).judge(values)
     np.testing.assert_allclose(outcome.off[:, 0], np.array(heights) - heights[0], atol=1e-6)
     assert np.all(outcome.kept) and len({round(height, 4) for height in heights}) == 3
 

@@ -21,25 +21,25 @@ from equipoise.present.checks import machine_blocks
 from equipoise.present.composition import SHORT, build
 from equipoise.present.findings import Findings, find
 from equipoise.present.headlines import caused, longest, ordered, pushed
-from equipoise.present.pages import Document, page, paired, pdf
+from equipoise.present.pages import ReportDocument, page, paired, pdf
 from equipoise.present.shaking import Shaking
 from equipoise.present.summary import answers, tiles
 from equipoise.quantities import brief
 from equipoise.results.analysis_blocks import orders_table
-from equipoise.results.blocks import Drawn, Table, Value
+from equipoise.results.blocks import SvgPicture, Table, Value
 from equipoise.results.machine_blocks import angles_told
 from support.chosen import EXHAUSTIVE
 from support.found import found as found_of
 
 
 @cache
-def document(name: str, language: str = "en", speed: float | None = None) -> Document:
+def document(name: str, language: str = "en", speed: float | None = None) -> ReportDocument:
     return build(found_of(name) if speed is None else find(name, speed=speed), language)
 
 
-def drawn_of(told: Document) -> dict[str, Drawn]:
+def drawn_of(told: ReportDocument) -> dict[str, SvgPicture]:
     blocks = [block for section in told.sections for block in section.blocks]
-    return {block.name: block for block in blocks if isinstance(block, Drawn)}
+    return {block.name: block for block in blocks if isinstance(block, SvgPicture)}
 
 
 def test_the_share_of_an_order_is_that_of_the_force() -> None:
@@ -105,8 +105,8 @@ def test_the_name_of_the_machine_stands_above_the_report_and_on_no_picture() -> 
     assert html.count(told.title) == 2  # of the page, and above it
 
 
-def shape(name: str, wide: bool) -> Drawn:
-    return Drawn(name, "", "", wide=wide)
+def shape(name: str, wide: bool) -> SvgPicture:
+    return SvgPicture(name, "", "", wide=wide)
 
 
 def test_pictures_stand_in_pairs() -> None:

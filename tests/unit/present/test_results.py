@@ -29,7 +29,7 @@ from equipoise.planting.summary import plant
 from equipoise.present import html_of, terminal
 from equipoise.present.cells import grid, printed
 from equipoise.present.layout import plain
-from equipoise.present.pages import Document, page, pdf, printed_grid
+from equipoise.present.pages import ReportDocument, page, pdf, printed_grid
 from equipoise.present.tool_summary import tool_tiles
 from equipoise.quantities import showing
 from equipoise.results.analysis import Analysis
@@ -132,7 +132,7 @@ def test_every_result_can_be_set_by_typst(language: str) -> None:
             for k, name in enumerate(RESULTS)
             for found in [lambda name=name: result(name)]
         )
-    document = Document("en", "title", "", "", (), (), "", sections)
+    document = ReportDocument("en", "title", "", "", (), (), "", sections)
     assert pdf(document).startswith(b"%PDF")
 
 
@@ -261,7 +261,9 @@ def test_what_breaks_a_limit_stands_out(monkeypatch: pytest.MonkeyPatch) -> None
         "! Nobody may be exposed to this.",
     ]
     assert [row[1].emphasis for row in grid(table).rows] == ["broken", None, "worse"]
-    html = page(Document("en", "", "", "", (), (), "", (Section("s", "", (table, sentence)),)))
+    html = page(
+        ReportDocument("en", "", "", "", (), (), "", (Section("s", "", (table, sentence)),))
+    )
     assert '<td class="strong">+100.0' in html and '<p class="strong">Nobody' in html
     assert re.search(r"\n\.strong\{color:[^}]*font-weight", html)
     monkeypatch.setenv("FORCE_COLOR", "1")
@@ -280,7 +282,7 @@ def test_a_daily_exposure_beyond_the_limit_value_stands_out() -> None:
     assert "over the limit" not in words(allowed.blocks())
     tile = next(one for one in tool_tiles(found("brush-cutter")) if "A(8)" in one.label)
     assert tile.emphasis == "broken"
-    document = Document("en", "", "", "", (tile, replace(tile, emphasis=None)), (), "", ())
+    document = ReportDocument("en", "", "", "", (tile, replace(tile, emphasis=None)), (), "", ())
     html = page(document)
     assert html.count(f'class="value strong">{tile.value} ') == 1
     assert html.count("m/s², over the limit</span>") == 1

@@ -27,7 +27,7 @@ from equipoise.quantities.numbers import in_unit
 from equipoise.quantities.units import FACTORS
 from equipoise.results.analysis import ANGLES, order_values
 from equipoise.results.analysis_blocks import display_of_totals
-from equipoise.results.blocks import Block, Drawn, Many, Section, Table, Value
+from equipoise.results.blocks import Block, Many, Section, SvgPicture, Table, Value
 from equipoise.signals import highest_at
 from equipoise.vibration.resonance import nearest_loud
 from equipoise.web.edits import solved
@@ -151,7 +151,7 @@ def test_every_number_of_cards_and_titles_is_in_the_json(name: str) -> None:
     texts = [f"{one.value} {one.unit}, {one.note}" for one in made.tiles]
     texts += [f"{one.after} {one.unit}" for one in made.tiles if one.after]
     blocks = [*shown_blocks(made.sections)]
-    texts += [one.seen for one in blocks if isinstance(one, Section | Drawn)]
+    texts += [one.seen for one in blocks if isinstance(one, Section | SvgPicture)]
     missing = {
         text
         for text in texts
@@ -312,7 +312,9 @@ def test_cards_and_titles_speak_of_all_rows() -> None:
         label = f"all rows: {what.replace('_', ' ')}, peak"
         assert values[label] == pytest.approx(figure, rel=5e-3)
         assert abs(figure) > 1.1 * summary[what].peak
-    seen = {one.name: one.seen for one in shown_blocks(made.sections) if isinstance(one, Drawn)}
+    seen = {
+        one.name: one.seen for one in shown_blocks(made.sections) if isinstance(one, SvgPicture)
+    }
     assert f"{summary['rows.shaking_force'].peak:.1f} N" in seen["force"]
     assert f"{summary['rows.shaking_moment'].peak:.2f} N m" in seen["moment"]
 

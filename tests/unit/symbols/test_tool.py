@@ -6,17 +6,17 @@ import numpy as np
 import pytest
 
 from equipoise.symbols.looks import LOOKS
-from equipoise.symbols.tool import Seat, ToolScene, Tube
+from equipoise.symbols.tool import SeatSign, ToolScene, TubeSign
 
 SEATS = (
-    Seat("engine", 0.0, mass=8.0, shaken="turns", part="engine"),
-    Seat("belt", 0.4, harness=True),
-    Seat("grip", 0.6, absorber=1.0, hands=2),
-    Seat("bench", 1.0, grounded=True, clamped=True, shaken="force"),
-    Seat("head", 2.0, mass=1.0, part="blade"),
+    SeatSign("engine", 0.0, mass=8.0, shaken="turns", part="engine"),
+    SeatSign("belt", 0.4, harness=True),
+    SeatSign("grip", 0.6, absorber=1.0, hands=2),
+    SeatSign("bench", 1.0, grounded=True, clamped=True, shaken="force"),
+    SeatSign("head", 2.0, mass=1.0, part="blade"),
 )
 ALONG = np.linspace(0.0, 2.0, 201)
-TUBES = (Tube(0.0, 1.2, 0.03), Tube(1.2, 2.0, 0.0))
+TUBES = (TubeSign(0.0, 1.2, 0.03), TubeSign(1.2, 2.0, 0.0))
 SCENE = ToolScene(TUBES, SEATS, ALONG, np.array([0 * ALONG, 0.1 * ALONG]))
 
 
@@ -32,7 +32,7 @@ def test_every_sign_has_a_look_and_lies_in_the_box() -> None:
 
 def test_each_kind_of_seat_has_its_signs() -> None:
     def count(role: str, **seat: object) -> int:
-        alone = Seat("one", 0.5, **seat)  # type: ignore[arg-type]
+        alone = SeatSign("one", 0.5, **seat)  # type: ignore[arg-type]
         found = ToolScene(TUBES, (alone,), ALONG, 0 * ALONG[None]).at(0)
         return sum(shape.role == role for shape in found)
 

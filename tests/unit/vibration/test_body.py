@@ -14,7 +14,7 @@ from equipoise.errors import ModelError
 from equipoise.mechanism.parts.support import unit_vector
 from equipoise.vibration.body import (
     Body,
-    Contact,
+    MountContact,
     Reading,
     at_rest,
     contacts_of,
@@ -456,7 +456,7 @@ def test_mount_pushes_against_displacement_and_velocity() -> None:
     wanted = 40 - 500 * at.displacement(path(T)) - 30 * at.velocity(path(T), rates(T))
     assert np.min(wanted) < 0 < np.max(wanted)
     both, pushing = (
-        Contact("a", at, 40.0, 500.0, 30.0, one_sided).force(path(T), rates(T))
+        MountContact("a", at, 40.0, 500.0, 30.0, one_sided).force(path(T), rates(T))
         for one_sided in (False, True)
     )
     np.testing.assert_allclose(both, wanted)
@@ -466,7 +466,7 @@ def test_mount_pushes_against_displacement_and_velocity() -> None:
 def test_derivatives_of_a_one_sided_force_by_complex_steps() -> None:
     """Where it is off its force is 0 with all its derivatives."""
     at = Reading.of(BODY, GAUGES["up"])
-    contact = Contact("a", at, 40.0, 500.0, 30.0, True)
+    contact = MountContact("a", at, 40.0, 500.0, 30.0, True)
     for heave, slope in ((0.0, -500.0), (0.2, 0.0)):
         place = np.array([0, heave + 1e-30j, 0])
         assert contact.force(place, np.zeros(3)).imag / 1e-30 == pytest.approx(slope)

@@ -13,7 +13,7 @@ from scipy.integrate import solve_ivp
 from scipy.special import mathieu_a, mathieu_b
 
 from equipoise.errors import ResponseError
-from equipoise.vibration.collocation import RULE, STAGES, Conditions, Orbit, Rates, solve
+from equipoise.vibration.collocation import RULE, STAGES, BoundaryConditions, Orbit, Rates, solve
 from equipoise.vibration.steady import FINE, steady
 from unit.vibration.build import Array
 
@@ -33,7 +33,7 @@ def solved(
     period: float,
     count: int = 2,
     intervals: int = 24,
-    conditions: Conditions | None = None,
+    conditions: BoundaryConditions | None = None,
     start: float = 0.0,
 ) -> Orbit:
     mesh = np.linspace(0.0, period, intervals + 1)
@@ -41,7 +41,7 @@ def solved(
         Equations(f),
         mesh,
         lambda s: np.full((count, len(s)), start),
-        conditions or Conditions.periodic(count),
+        conditions or BoundaryConditions.periodic(count),
     )
 
 
@@ -135,7 +135,7 @@ def test_duffing_multipliers_against_integration() -> None:
 
 def test_other_conditions_than_a_period() -> None:
     """x' = -x from 1 on: a problem of initial values."""
-    conditions = Conditions(np.eye(1), np.zeros((1, 1)), np.ones(1))
+    conditions = BoundaryConditions(np.eye(1), np.zeros((1, 1)), np.ones(1))
     orbit = solved(lambda _, x: [-x[0]], 3.0, 1, 12, conditions)
     s = np.linspace(0, 3, 31)
     np.testing.assert_allclose(orbit.at(s)[0], np.exp(-s), rtol=1e-12)
@@ -144,7 +144,7 @@ def test_other_conditions_than_a_period() -> None:
 def test_a_period_that_is_sought() -> None:
     """The time x_1 of a turn follows from a speed x_0 that is the same all over and ends at 2."""
     begin, end = np.array([[0.0, 0.0], [0.0, 1.0]]), np.array([[0.0, 1.0], [0.0, 0.0]])
-    conditions = Conditions(begin, end, np.array([2.0, 0.0]))
+    conditions = BoundaryConditions(begin, end, np.array([2.0, 0.0]))
     orbit = solved(lambda _, x: [0 * x[0], 1 / x[0]], 2 * pi, 2, 3, conditions, start=1.0)
     np.testing.assert_allclose(orbit.starts[0], pi, rtol=1e-12)
     np.testing.assert_allclose(orbit.starts[1], np.linspace(0, 2, 4), atol=1e-12)
@@ -195,7 +195,9 @@ def stop(s: Array, x: Array) -> list[Any]:
 
 def test_mesh_is_refined_where_a_stop_sets_in() -> None:
     """Followed in time for 50 periods it comes to the same; at 1e-10 that keeps some 1e-8."""
-    found = steady(Equations(stop), [lambda s: np.zeros((2, len(s)))], 1, Conditions.periodic(2))
+    found = steady(
+        Equations(stop), [lambda s: np.zeros((2, len(s)))], 1, BoundaryConditions.periodic(2)
+    )
     assert found.residual < FINE
     steps = np.diff(found.orbit.points)
     assert np.max(steps) / np.min(steps) > 100
@@ -211,7 +213,9 @@ def test_largest_multiplier_comes_first() -> None:
     def f(s: Array, x: Array) -> list[Any]:
         return [np.cos(s) - x[0], np.sin(s) + 0.1 * x[1], -0.5 * x[2]]
 
-    found = steady(Equations(f), [lambda s: np.zeros((3, len(s)))], 1, Conditions.periodic(3))
+    found = steady(
+        Equations(f), [lambda s: np.zeros((3, len(s)))], 1, BoundaryConditions.periodic(3)
+    )
     wanted = np.exp(2 * pi * np.array([0.1, -0.5, -1]))
     np.testing.assert_allclose(found.multipliers(3), wanted, rtol=1e-10)
     np.testing.assert_allclose(found.multipliers(1), wanted[2:], rtol=1e-10)
@@ -224,7 +228,9 @@ def growing(_: Array, x: Array) -> list[Any]:
 def test_no_steady_state() -> None:
     """x' = 1 + x^2 never comes back."""
     with pytest.raises(ResponseError, match="no steady state was found; the machine may not"):
-        steady(Equations(growing), [lambda s: np.zeros((1, len(s)))], 1, Conditions.periodic(1))
+        steady(
+            Equations(growing), [lambda s: np.zeros((1, len(s)))], 1, BoundaryConditions.periodic(1)
+        )
 
 
 def test_second_guess_where_the_first_leads_nowhere() -> None:
@@ -239,8 +245,8 @@ def test_second_guess_where_the_first_leads_nowhere() -> None:
         return np.full((1, len(s)), 1.2)
 
     f = Equations(lambda _, x: [(x[0] - 1) * (1 + x[0] ** 2)])
-    found = steady(f, [far, near], 1, Conditions.periodic(1))
+    found = steady(f, [far, near], 1, BoundaryConditions.periodic(1))
     np.testing.assert_allclose(found.orbit.starts, 1, rtol=1e-12)
     assert asked
     with pytest.raises(ResponseError):
-        steady(f, [far], 1, Conditions.periodic(1))
+        steady(f, [far], 1, BoundaryConditions.periodic(1))

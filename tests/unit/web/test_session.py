@@ -13,7 +13,7 @@ import pytest
 import equipoise as eq
 from equipoise.web.design import Design
 from equipoise.web.desk import begun
-from equipoise.web.edits import Solved
+from equipoise.web.edits import Computed
 from equipoise.web.messages import message_of
 from equipoise.web.session import Session
 from equipoise.web.tables import tables_of
@@ -354,7 +354,7 @@ def test_steps_of_undo_keep_no_motion() -> None:
     """Hundreds of designs would keep hundreds of motions, and the answers of large machines."""
     session, _ = opened("yamashita-rig")
     before = edit(session, MASS)
-    assert isinstance(session.found, Solved)
+    assert isinstance(session.found, Computed)
     kept = [weakref.ref(one) for one in (session.found, session.found.motion.linkage)]
     for mass in ("31 g", "32 g"):
         edit(session, {"set": "links.crank.mass", "text": mass})

@@ -9,7 +9,7 @@ from math import pi, remainder
 from equipoise.errors import EquipoiseError, ModelError, UsageError, unknown
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.kinematics.motion import move
-from equipoise.mechanism.kinematics.outline import Outline
+from equipoise.mechanism.kinematics.outline import MachineDraft
 from equipoise.mechanism.parts.machine import FRAME, Drive, Link, Machine
 from equipoise.mechanism.parts.shown_units import ShownUnits
 from equipoise.quantities import Dimension
@@ -33,7 +33,7 @@ class Read:
     hints : what may help where the mobility is not 1, a sentence each.
     """
 
-    outline: Outline
+    outline: MachineDraft
     crank: str = ""
     speed: float | None = None
     notes: tuple[str, ...] = ()
@@ -51,7 +51,7 @@ class Imported:
     """
 
     machine: Machine | None
-    outline: Outline
+    outline: MachineDraft
     missing: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
 
@@ -163,7 +163,7 @@ def finished(read: Read, crank: str = "", speed: float | None = None) -> Importe
     return Imported(machine, outline, tuple(missing), tuple(notes))
 
 
-def _meshed(outline: Outline) -> Machine:
+def _meshed(outline: MachineDraft) -> Machine:
     """The machine, whose gears start so that they come to where they are drawn."""
     machine = outline.settled()
     for number, gear in enumerate(machine.gears):
@@ -175,7 +175,7 @@ def _meshed(outline: Outline) -> Machine:
     return machine
 
 
-def _check(outline: Outline) -> None:
+def _check(outline: MachineDraft) -> None:
     if not outline.links:
         raise ModelError("", "there is no link in it; give a file with at least one")
     if not outline.frame:
@@ -183,7 +183,7 @@ def _check(outline: Outline) -> None:
     outline.machine()
 
 
-def _crank(outline: Outline, wanted: str, told: str) -> tuple[str, str]:
+def _crank(outline: MachineDraft, wanted: str, told: str) -> tuple[str, str]:
     """The driven link, and how it was found where nobody told."""
     turning = [name for name, link in outline.links.items()
                if sum(point in outline.frame for point in link.points) == 1]  # fmt: skip
@@ -205,7 +205,7 @@ def _crank(outline: Outline, wanted: str, told: str) -> tuple[str, str]:
     return able[0], f"{able[0]} is taken as the crank, which turns fully{others}"
 
 
-def _turns(outline: Outline, name: str) -> bool:
+def _turns(outline: MachineDraft, name: str) -> bool:
     """Whether the machine turns fully with a link as its crank."""
     try:
         _ = assemble(replace(outline, drive=Drive(name, USUAL_SPEED)).settled()).cycle
@@ -214,7 +214,7 @@ def _turns(outline: Outline, name: str) -> bool:
     return True
 
 
-def _undriven(outline: Outline) -> str:
+def _undriven(outline: MachineDraft) -> str:
     if outline.mobility != 1:
         return f"joints: the mobility is {outline.mobility}, and one drive commands one motion"
     return "the driven link: none that is pinned to the frame once turns fully; name it by --crank"

@@ -10,7 +10,7 @@ import numpy as np
 from equipoise.decompositions import lstsq
 from equipoise.errors import ModelError
 from equipoise.exchange.reading.spatial import Array, Space
-from equipoise.mechanism.kinematics.outline import Outline
+from equipoise.mechanism.kinematics.outline import MachineDraft
 from equipoise.mechanism.parts.machine import FRAME, Gear
 
 EXACT = 1e-9
@@ -19,7 +19,7 @@ Chains = Mapping[str, frozenset[str]]
 
 
 def gears(
-    space: Space, link_of: Mapping[str, str], normal: Array, outline: Outline, crank: str
+    space: Space, link_of: Mapping[str, str], normal: Array, outline: MachineDraft, crank: str
 ) -> Iterator[Gear]:
     """Pairs of gears that hold the sums of a system.
 
@@ -44,7 +44,7 @@ def gears(
         yield gear
 
 
-def _joints(outline: Outline, link: str) -> int:
+def _joints(outline: MachineDraft, link: str) -> int:
     """At how many points a link is pinned; what is driven by gears alone has one."""
     return sum(link in bodies for bodies in outline.joints.pins.values())
 
@@ -58,7 +58,7 @@ def _chain(space: Space, link_of: Mapping[str, str], body: str) -> Iterator[str]
         body = link_of[joint.parent]
 
 
-def _around(outline: Outline) -> dict[str, list[str]]:
+def _around(outline: MachineDraft) -> dict[str, list[str]]:
     """Of every body those that share one pin with it, about which they can turn on it."""
     bodies = outline.bodies
     return {body: [other for other in bodies if other != body

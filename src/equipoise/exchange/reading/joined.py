@@ -6,13 +6,13 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import count
 
-from equipoise.mechanism.kinematics.outline import STILL, Outline, Pose, pose_between
+from equipoise.mechanism.kinematics.outline import STILL, MachineDraft, Pose, pose_between
 from equipoise.mechanism.parts.machine import FRAME, Link, Slider
 from equipoise.quantities import clean, clean_place
 
 
 @dataclass(frozen=True)
-class Slot:
+class SlotLine:
     """A line of a body through one of its points, on which a point of links slides.
 
     way : direction of the line in the frame, rad.
@@ -29,8 +29,8 @@ def outline_of(
     places: Mapping[str, complex],
     links: Mapping[str, Sequence[str]],
     frame: Iterable[str],
-    slots: Iterable[Slot] = (),
-) -> Outline:
+    slots: Iterable[SlotLine] = (),
+) -> MachineDraft:
     """The machine of links by the names of their points.
 
     places : of every point, in the frame, m.  links : names of points; a pin where several links
@@ -52,7 +52,7 @@ def outline_of(
             Slider(block, slot.point, slot.on, slot.through, clean(slot.way - on, "angle"))
         )
     still = {point: clean_place(places[point], size) for point in frame}
-    return Outline(still, made, poses, None, tuple(sliders), {"title": title})
+    return MachineDraft(still, made, poses, None, tuple(sliders), {"title": title})
 
 
 def _pose(places: Sequence[complex]) -> Pose:

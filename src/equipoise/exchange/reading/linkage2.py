@@ -13,7 +13,7 @@ from xml.etree.ElementTree import Element
 
 from equipoise.errors import ModelError
 from equipoise.exchange.reading.found import Read
-from equipoise.exchange.reading.joined import Slot, free, outline_of
+from equipoise.exchange.reading.joined import SlotLine, free, outline_of
 from equipoise.exchange.reading.markup import called, number
 from equipoise.mechanism.parts.machine import FRAME
 
@@ -100,7 +100,7 @@ class _File:
                 names[_id(one)] = fastened
         return found
 
-    def _slot(self, one: Element, links: Mapping[str, list[str]]) -> Slot | None:
+    def _slot(self, one: Element, links: Mapping[str, list[str]]) -> SlotLine | None:
         """The line between two connectors on which one slides."""
         me, limits = self.connectors.get(_id(one)), [_id(end) for end in one.findall("slidelimit")]
         if me is None or len(limits) < 2:
@@ -117,7 +117,7 @@ class _File:
             raise ModelError(
                 called(one), "it slides between connectors of two links; put both on one"
             )
-        return Slot(me.name, on, start.name, phase(end.place - start.place))
+        return SlotLine(me.name, on, start.name, phase(end.place - start.place))
 
     def _driven(self, links: Mapping[str, list[str]]) -> tuple[str, float | None]:
         inputs = [(key, one) for key, one in self.connectors.items() if one.rpm is not None]

@@ -23,7 +23,7 @@ from equipoise.exchange.reading.spatial import (
     Told,
     together,
 )
-from equipoise.mechanism.kinematics.outline import Outline, Pose
+from equipoise.mechanism.kinematics.outline import MachineDraft, Pose
 from equipoise.mechanism.parts.machine import FRAME, Link, Slider, Spring
 
 SKEW = 1e-6
@@ -55,7 +55,7 @@ def planar(space: Space, told: Told) -> Read:
     rest = {"title": space.title, "gravity": (float(x), float(y)),
             "springs": tuple(flat.springs(names))}  # fmt: skip
     links = {link: Link(points=points[link], **flat.mass(link)) for link in flat.pins.poses}
-    outline = Outline(points[FRAME], links, flat.pins.poses, None, slides, rest)
+    outline = MachineDraft(points[FRAME], links, flat.pins.poses, None, slides, rest)
     crank, speed = flat.drive()
     meshing = gears(space, flat.link_of, flat.normal, outline, crank)
     outline = replace(outline, rest={**rest, "gears": tuple(meshing)})

@@ -15,7 +15,7 @@ from urllib.parse import unquote
 
 from equipoise.errors import ModelError
 from equipoise.exchange.reading.found import Read
-from equipoise.exchange.reading.joined import Slot, free, outline_of
+from equipoise.exchange.reading.joined import SlotLine, free, outline_of
 from equipoise.mechanism.parts.machine import FRAME
 
 PLAIN = digits + ascii_uppercase + ascii_lowercase
@@ -75,7 +75,7 @@ def _machine(
         name = one.name or one.key
         points[one.key] = name if name not in points.values() else free(name, points.values())
     made: dict[str, list[str]] = {}
-    slots: list[Slot] = []
+    slots: list[SlotLine] = []
     extra: dict[str, complex] = {}
     crank = ""
     for text in links:
@@ -102,7 +102,7 @@ def _machine(
 
 def _slots(
     own: Sequence[_Joint], slide: _Joint, points: dict[str, str], extra: dict[str, complex]
-) -> Iterator[Slot]:
+) -> Iterator[SlotLine]:
     """A block that slides on the frame, with the pin that it carries."""
     if not slide.flags & STILL:
         raise ModelError(
@@ -112,7 +112,7 @@ def _slots(
         if one is not slide:
             through = free("G", [*points.values(), *extra])
             extra[through] = slide.place
-            yield Slot(points[one.key], FRAME, through, slide.angle)
+            yield SlotLine(points[one.key], FRAME, through, slide.angle)
 
 
 def _joint(text: str, scale: float) -> _Joint:

@@ -11,7 +11,7 @@ from string import ascii_uppercase
 
 from equipoise.errors import ModelError, unknown
 from equipoise.exchange.reading.found import Read
-from equipoise.exchange.reading.joined import Slot, free, outline_of
+from equipoise.exchange.reading.joined import SlotLine, free, outline_of
 from equipoise.mechanism.parts.machine import FRAME
 
 MOST = 1000
@@ -190,7 +190,7 @@ class _Skeleton:
                 through = free("G", places)
                 places[through] = start
                 own.append(through)
-                slots += [Slot(point, on, through, phase(end - start)) for point in sliding]
+                slots += [SlotLine(point, on, through, phase(end - start)) for point in sliding]
         outline = outline_of(self.drawing.title, places, links, frame, slots)
         return Read(
             outline, notes=tuple(self.drawing.notes), hints=tuple(self._hints(links, frame))

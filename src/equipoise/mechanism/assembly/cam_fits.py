@@ -44,7 +44,7 @@ LARGEST, RADII, DIGITS = 100.0, 65, 4
 
 
 @dataclass(frozen=True)
-class Fit:
+class CamFit:
     """A cam between its carrier and its follower.
 
     cam_pin : point of the carrier about which the cam turns.
@@ -80,7 +80,7 @@ class Fit:
         return Shape(angle, self.path, self.cam.law.value, self.cam.roller_radius)
 
 
-def fitted(machine: Machine, joints: Structure, cam: Cam) -> Fit:
+def fitted(machine: Machine, joints: Structure, cam: Cam) -> CamFit:
     """Place a cam.
 
     Raises
@@ -131,7 +131,7 @@ def _place(machine: Machine, body: str, point: str) -> complex:
     return planar(machine.points_of(body)[point])
 
 
-def _on_guide(machine: Machine, cam: Cam, cam_pin: str, guide: Guide, where: str) -> Fit:
+def _on_guide(machine: Machine, cam: Cam, cam_pin: str, guide: Guide, where: str) -> CamFit:
     """A sliding follower; all in axes along the guide first, from the cam's axis."""
     n = guide.along
     arm = _place(machine, cam.driven, cam.point) - _place(machine, cam.driven, guide.point)
@@ -162,10 +162,10 @@ def _on_guide(machine: Machine, cam: Cam, cam_pin: str, guide: Guide, where: str
             )
         rest = height2**0.5 - shift.real
     path = Sliding(n, n * (shift + rest), normal)
-    return Fit(cam, cam_pin, "", guide, rest, 1.0, face, path)
+    return CamFit(cam, cam_pin, "", guide, rest, 1.0, face, path)
 
 
-def _on_pin(machine: Machine, cam: Cam, cam_pin: str, pin: str, where: str) -> Fit:
+def _on_pin(machine: Machine, cam: Cam, cam_pin: str, pin: str, where: str) -> CamFit:
     """A pinned follower; `apart` is the angle from the line of centres to roller or normal."""
     pivot = _place(machine, cam.carrier, pin) - _place(machine, cam.carrier, cam_pin)
     arm = _place(machine, cam.driven, cam.point) - _place(machine, cam.driven, pin)
@@ -192,10 +192,10 @@ def _on_pin(machine: Machine, cam: Cam, cam_pin: str, pin: str, where: str) -> F
     turn = turn / abs(turn)
     normal = None if face is None else towards
     path = Swinging(pivot, arm * turn, sense, normal)
-    return Fit(cam, cam_pin, pin, None, np.angle(turn), sense, face, path)
+    return CamFit(cam, cam_pin, pin, None, np.angle(turn), sense, face, path)
 
 
-def fits_of(machine: Machine, joints: Structure) -> tuple[Fit, ...]:
+def fits_of(machine: Machine, joints: Structure) -> tuple[CamFit, ...]:
     """All cams of a machine."""
     return tuple(fitted(machine, joints, cam) for cam in machine.cams)
 
@@ -207,7 +207,7 @@ def pressure_angle(cam: Cam, state: State) -> Array:
     return slant
 
 
-def sharpest(fit: Fit) -> tuple[float, float]:
+def sharpest(fit: CamFit) -> tuple[float, float]:
     """Least radius of curvature of a cam's surface, m, and the cam angle, rad, of it."""
     return lowest(fit.shape(fit.knots), lambda one: abs(one.radius_of_curvature), fit.knots)
 
@@ -226,7 +226,7 @@ class Demand:
     mended: bool = True
 
 
-def check_shape(machine: Machine, joints: Structure, fit: Fit) -> None:
+def check_shape(machine: Machine, joints: Structure, fit: CamFit) -> None:
     """Raise an error where the follower jams or the cam is undercut."""
     for demand in _demands(fit.cam):
         least, angle = lowest(fit.shape(fit.knots), demand.value, fit.knots)
@@ -282,7 +282,7 @@ def _made(machine: Machine, joints: Structure, cam: Cam, radii: Array) -> Array:
         return can_be_made(fitted(machine, alone, several))[:, 0]
 
 
-def can_be_made(fit: Fit) -> Array:
+def can_be_made(fit: CamFit) -> Array:
     """Of which designs (P, 1), whose numbers are columns, the cam can be made."""
     cam = fit.cam
     made: Array = np.isfinite(fit.rest) & (np.asarray(cam.base_radius) > 0)

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from equipoise.mechanism.assembly.builder import Builder, Group, guide_reaction
-from equipoise.mechanism.assembly.cam_fits import Fit, check_shape, fitted
+from equipoise.mechanism.assembly.cam_fits import CamFit, check_shape, fitted
 from equipoise.mechanism.assembly.joints import Structure
 from equipoise.mechanism.assembly.loops import CouplingLoop, End, Poses
 from equipoise.mechanism.assembly.steps import (
@@ -43,7 +43,7 @@ class Displacement:
         state.update(zip(self.outputs, self.law.value(angle), strict=True))
 
 
-def contact(builder: Builder, joints: Structure, cam: Cam) -> Push:
+def contact(builder: Builder, joints: Structure, cam: Cam) -> CamPush:
     """How a cam and its follower go together.
 
     Raises
@@ -53,14 +53,14 @@ def contact(builder: Builder, joints: Structure, cam: Cam) -> Push:
     fit = fitted(builder.machine, joints, cam)
     if isinstance(fit.rest, float | complex):  # else `refusing` tells which designs can be made
         check_shape(builder.machine, joints, fit)
-    return Push(fit)
+    return CamPush(fit)
 
 
 @dataclass(frozen=True)
-class Push:
+class CamPush:
     """How a cam pushes its follower."""
 
-    fit: Fit
+    fit: CamFit
 
     couples: ClassVar[bool] = False
 
@@ -95,8 +95,8 @@ class CamLoop(CouplingLoop):
     switches: ClassVar[bool] = False
 
     @property
-    def fit(self) -> Fit:
-        fit: Fit = self.contact.fit
+    def fit(self) -> CamFit:
+        fit: CamFit = self.contact.fit
         return fit
 
     @property
@@ -152,7 +152,7 @@ class CamLoop(CouplingLoop):
         return [(self.touching(poses)[1], 0.0)]
 
 
-def _displaced(builder: Builder, fit: Fit) -> list[Step]:
+def _displaced(builder: Builder, fit: CamFit) -> list[Step]:
     """Steps that find what the law says."""
     cam = fit.cam
     steps: list[Step] = []
@@ -167,7 +167,7 @@ def _lift(cam: Cam) -> tuple[str, str, str]:
     return f"y({cam.name})", f"y1({cam.name})", f"y2({cam.name})"
 
 
-def _follower(builder: Builder, joints: Structure, fit: Fit) -> Group:
+def _follower(builder: Builder, joints: Structure, fit: CamFit) -> Group:
     """A follower whose cam and carrier are known; the steps of its motion and forces."""
     cam, lift = fit.cam, _lift(fit.cam)
     motion = _displaced(builder, fit)
@@ -183,7 +183,7 @@ def _turning(body: str) -> tuple[str, str]:
     return f"w({body})", f"a({body})"
 
 
-def _lifted(builder: Builder, _: Structure, fit: Fit, lift: tuple[str, ...]) -> list[Step]:
+def _lifted(builder: Builder, _: Structure, fit: CamFit, lift: tuple[str, ...]) -> list[Step]:
     """A follower on a guide of the carrier."""
     cam, guide = fit.cam, fit.guide
     assert guide is not None
@@ -195,7 +195,7 @@ def _lifted(builder: Builder, _: Structure, fit: Fit, lift: tuple[str, ...]) -> 
     return [*steps, Call(kernels.lifted, inputs, numbers, outputs)]
 
 
-def _swung(builder: Builder, joints: Structure, fit: Fit, lift: tuple[str, ...]) -> list[Step]:
+def _swung(builder: Builder, joints: Structure, fit: CamFit, lift: tuple[str, ...]) -> list[Step]:
     """A follower on a pin of the carrier."""
     cam = fit.cam
     link, carrier = cam.driven, cam.carrier
@@ -207,7 +207,7 @@ def _swung(builder: Builder, joints: Structure, fit: Fit, lift: tuple[str, ...])
     return [*steps, Call(kernels.swung, inputs, (fit.rest, fit.sense), angles), Rotation(link)]
 
 
-def _touch(fit: Fit) -> list[Step]:
+def _touch(fit: CamFit) -> list[Step]:
     """Where cam and follower touch, the common normal, and how the follower moves there."""
     cam, name = fit.cam, fit.cam.name
     place, contact, rate = f"p({cam.point})", f"p({_at(cam)})", f"rate({name})"
@@ -234,7 +234,7 @@ def _at(cam: Cam) -> str:
     return f"contact({cam.name})"
 
 
-def _forces(builder: Builder, joints: Structure, fit: Fit) -> tuple[Any, ...]:
+def _forces(builder: Builder, joints: Structure, fit: CamFit) -> tuple[Any, ...]:
     """Reactions of joint and cam on the follower, and the step that finds them."""
     cam, link = fit.cam, fit.cam.driven
     push = Reaction(cam.name, cam.table, link, cam.driver, _at(cam), f"R({cam.name}/{link})")

@@ -29,7 +29,14 @@ from equipoise.mechanism.assembly.steps import (
     u,
 )
 from equipoise.mechanism.formulas import joint_kernels, kernels
-from equipoise.mechanism.parts.couplings import Coupling, Law, Line, RollingLine, Seat, StrandLine
+from equipoise.mechanism.parts.couplings import (
+    Coupling,
+    Law,
+    LineOfAction,
+    RollingLine,
+    Seat,
+    StrandLine,
+)
 
 
 @dataclass(frozen=True)
@@ -89,7 +96,7 @@ class Flank:
     coupling: Coupling
     driver: CarrierJoint
     driven: CarrierJoint
-    line: Line | StrandLine | RollingLine
+    line: LineOfAction | StrandLine | RollingLine
     arm: Any = 0j
 
     @property
@@ -210,7 +217,7 @@ class Flank:
         if isinstance(line, RollingLine):
             driver, carrier = poses[self.driver.body], poses[self.coupling.carrier]
             return rolled(driver.angle, carrier.angle, line.law, line.centres)
-        return (line.lever if isinstance(line, Line) else 0.0), 0.0
+        return (line.lever if isinstance(line, LineOfAction) else 0.0), 0.0
 
 
 def rolled(angle_r: Any, angle_c: Any, law: Law, centres: Any) -> tuple[Any, Any]:

@@ -168,7 +168,7 @@ def agreeing(pushes: Callable[[Array, Array], Array], senses: Array) -> tuple[Ar
 
 
 @dataclass(frozen=True)
-class Fit:
+class FitCondition:
     """What has to fit.
 
     loops : all joints.  groups : how the motion is solved.  size : of the machine, m.
@@ -264,7 +264,7 @@ class Shared(LoopForces):
     count: Note | str
     names: Mapping[str, str]
     compliance: Mapping[str, float]
-    fit: Fit
+    fit: FitCondition
     decided: tuple[Group, ...]
 
     def run(self, state: State) -> None:
@@ -523,7 +523,7 @@ def shared(
         joint.force: 1 / one.stiffness for _, joint, one in given if one.stiffness is not None
     }
     starts = {one.name: one.start for one in joints.couplings}
-    fit = Fit(whole.equations, groups, size, starts)
+    fit = FitCondition(whole.equations, groups, size, starts)
     drives = tuple(drive.link for drive in builder.machine.driven if drive.link in links)
     return Shared(
         whole, whole.equations, reactions, pivot, drives, count, named, compliance, fit, decided

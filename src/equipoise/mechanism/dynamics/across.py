@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.mechanism.assembly.steps import p, u
-from equipoise.mechanism.checks import Named
+from equipoise.mechanism.checks import NamedItems
 from equipoise.mechanism.dynamics.acting import acting_elements, acting_preloads
 from equipoise.mechanism.dynamics.reactions import (
     PUSH,
@@ -90,7 +90,7 @@ class Across:
         for name, couple in self._couples.items():
             on, by = self.exerted[name].on, self.exerted[name].by
             found.append((name, JointForce(full(self.motion, 1j * couple, complex), on, by)))
-        return Named("joint", found)
+        return NamedItems("joint", found)
 
     @cached_property
     def bearings(self) -> Mapping[str, JointForce]:
@@ -106,7 +106,7 @@ class Across:
             force = self.exerted[pin.name]
             lever = (other - pin.plane) * force.value - self._couples[pin.name]
             found[name] = replace(force, value=lever / (other - bearing.plane))
-        return Named("bearing", found.items())
+        return NamedItems("bearing", found.items())
 
 
 def exerted_in(solved: Pass) -> dict[str, JointForce]:

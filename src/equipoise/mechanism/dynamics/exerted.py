@@ -13,7 +13,7 @@ from equipoise.mechanism.parts.machine import Machine
 from equipoise.signals import Array
 
 
-class Coupled:
+class HasCouplings:
     """What has `couplings`: forces by list of the file, each of which is an attribute too."""
 
     couplings: Any
@@ -24,7 +24,7 @@ class Coupled:
         raise AttributeError(f"{type(self).__name__} has no {name!r}")
 
 
-class Exerted(Coupled, ABC):
+class Exerted(HasCouplings, ABC):
     """What is read of a run over the joints, `solved`.
 
     preloads : whether it has the preloads of couplings.

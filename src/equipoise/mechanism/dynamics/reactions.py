@@ -17,7 +17,7 @@ import numpy as np
 from equipoise.displays import Brief
 from equipoise.mechanism.assembly.joints import Structure
 from equipoise.mechanism.assembly.steps import Array, Reaction, State, demand_names, run
-from equipoise.mechanism.checks import Named
+from equipoise.mechanism.checks import NamedItems
 from equipoise.mechanism.dynamics.undecided import hidden
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.kinematics.motion import Motion
@@ -222,7 +222,7 @@ class Pass:
         """Pins and sliders, by name, but those whose force has no bound."""
         left_out = hidden(self.motion)
         named = ((n, r) for n, r in self.motion.linkage.named_reactions if n not in left_out)
-        return Named("joint", ((n, self._joint(r)) for n, r in named if r.kind in JOINTS))
+        return NamedItems("joint", ((n, self._joint(r)) for n, r in named if r.kind in JOINTS))
 
     def couplings(self, preload: Callable[[Coupling], Any]) -> CouplingForces:
         """Forces of couplings by list and name.
@@ -231,7 +231,7 @@ class Pass:
         """
         kinds = coupling_kinds(type(self.motion.machine))
         found: dict[str, dict[str, CouplingForce]] = {
-            table: Named(kind.noun, ()) for table, kind in kinds.items()
+            table: NamedItems(kind.noun, ()) for table, kind in kinds.items()
         }
         reactions = {one.name: one for one in self.motion.linkage.reactions if one.kind in kinds}
         for one in self.motion.machine.couplings:

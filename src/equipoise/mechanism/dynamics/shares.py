@@ -12,7 +12,7 @@ from equipoise.errors import UsageError
 from equipoise.mechanism.assembly.steps import Array
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.dynamics.across import OF_FRAME, Across
-from equipoise.mechanism.dynamics.exerted import Coupled
+from equipoise.mechanism.dynamics.exerted import HasCouplings
 from equipoise.mechanism.dynamics.reactions import (
     CouplingForces,
     JointForce,
@@ -25,7 +25,7 @@ springs and preloads of couplings; friction, where joints have it."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Shares(Coupled, Brief):
+class Shares(HasCouplings, Brief):
     """Outputs told apart: arrays (..., N), whose first axes are what they are shares of.
 
     drives : link -> torque of its drive, N m, of which `drive_torque` is the first.

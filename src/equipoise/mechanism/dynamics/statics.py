@@ -32,7 +32,7 @@ Array = np.ndarray[Any, Any]
 
 
 @dataclass(frozen=True)
-class Contact:
+class BodyContact:
     """Where the body `by` exerts a force on the body `on`: in which plane (m), and whether it can
     exert a couple across it, as pins and sliders can.
     """
@@ -49,7 +49,7 @@ class Contact:
         return self.on, self.by
 
 
-def contacts(linkage: Any) -> tuple[Contact, ...]:
+def contacts(linkage: Any) -> tuple[BodyContact, ...]:
     """Every joint and push of a linkage, as `exerted_in` has them.
 
     A joint lies in the plane of the link that no joint holds in the frame; one with the frame in
@@ -63,7 +63,7 @@ def contacts(linkage: Any) -> tuple[Contact, ...]:
     for name, one in linkage.named_reactions:
         if one.kind not in JOINTS:
             plane = machine.links[one.on].plane
-            found.append(Contact(name, one.on, one.by, plane, False))
+            found.append(BodyContact(name, one.on, one.by, plane, False))
             continue
         by, on = sorted(ends[name], key=order)
         points = {one.on: one.at, one.by: one.at}
@@ -73,11 +73,11 @@ def contacts(linkage: Any) -> tuple[Contact, ...]:
         elif one.kind == "slider":
             slider = next(s for s in machine.sliders if s.name == one.name)
             points = {slider.link: slider.point, slider.on: slider.through}
-        found.append(Contact(name, on, by, _plane_between(machine, points, held), True))
+        found.append(BodyContact(name, on, by, _plane_between(machine, points, held), True))
     return tuple(found)
 
 
-def pushing(linkage: Any) -> Iterator[Contact]:
+def pushing(linkage: Any) -> Iterator[BodyContact]:
     """Every drive that pushes: along a sliding joint in the plane of that, and between two points
     in the plane of a link's, midway between those of two links.
     """
@@ -90,7 +90,7 @@ def pushing(linkage: Any) -> Iterator[Contact]:
             points = zip((by, on), drive.between, strict=True)
             held = [machine.links[body].plane_of(one) for body, one in points if body != FRAME]
             plane = sum(held) / len(held)
-        yield Contact(PUSH.format(drive.link), on, by, plane, False)
+        yield BodyContact(PUSH.format(drive.link), on, by, plane, False)
 
 
 def _ends(linkage: Any, reaction: Any) -> tuple[str, str]:
@@ -117,7 +117,7 @@ class Statics:
     """
 
     machine: Any
-    contacts: tuple[Contact, ...]
+    contacts: tuple[BodyContact, ...]
     by_needed: Array
     by_plane: Array
 
@@ -126,7 +126,7 @@ class Statics:
         return tuple(self.machine.links)
 
     @cached_property
-    def bearing(self) -> tuple[Contact, ...]:
+    def bearing(self) -> tuple[BodyContact, ...]:
         """Those that bear couples."""
         return tuple(one for one in self.contacts if one.bears)
 
@@ -144,7 +144,7 @@ class Statics:
         needed = _used(self.by_needed[number], self.links)
         return needed, _used(self.by_plane[number], [one.name for one in self.contacts])
 
-    def pin_of(self, link: str) -> tuple[int, Contact]:
+    def pin_of(self, link: str) -> tuple[int, BodyContact]:
         """The joint by which a link turns in its bearings, and its number among `bearing`."""
         return next(
             (k, one) for k, one in enumerate(self.bearing) if (one.on, one.by) == (link, FRAME)
@@ -182,7 +182,7 @@ def _used(row: Array, names: Sequence[str]) -> dict[str, float]:
     return {name: float(f) for f, name in zip(row, names, strict=True) if abs(f) > least}
 
 
-def _signs(links: Sequence[str], joints: Sequence[Contact]) -> Array:
+def _signs(links: Sequence[str], joints: Sequence[BodyContact]) -> Array:
     """(L, K): 1 where a joint acts on a link, -1 where the link is what acts."""
     return np.array([[(one.on == k) - (one.by == k) for one in joints] for k in links], dtype=float)
 
@@ -202,7 +202,7 @@ def statics(linkage: Any) -> Statics:
     return Statics(machine, all_of, found, -found @ _signs(links, all_of))
 
 
-def _open(machine: Any, joints: Sequence[Contact], free: Sequence[str]) -> Iterator[str]:
+def _open(machine: Any, joints: Sequence[BodyContact], free: Sequence[str]) -> Iterator[str]:
     """Joints by which links hand couples on that could go another way as well."""
     bearing = [one for one in joints if one.bears]
     for group in _chains(free, bearing):
@@ -211,7 +211,7 @@ def _open(machine: Any, joints: Sequence[Contact], free: Sequence[str]) -> Itera
             yield from (one.name for one in own)
 
 
-def _chains(links: Iterable[str], joints: Sequence[Contact]) -> list[set[str]]:
+def _chains(links: Iterable[str], joints: Sequence[BodyContact]) -> list[set[str]]:
     """Links in sets that hang together by joints among themselves."""
     groups = [{link} for link in links]
     for one in joints:
@@ -222,7 +222,7 @@ def _chains(links: Iterable[str], joints: Sequence[Contact]) -> list[set[str]]:
     return groups
 
 
-def _flat(machine: Any, link: str, joints: Sequence[Contact]) -> bool:
+def _flat(machine: Any, link: str, joints: Sequence[BodyContact]) -> bool:
     """Whether all that acts on a link lies in one plane."""
     body = machine.links[link]
     planes = {one.plane for one in joints if link in (one.on, one.by)}

@@ -18,10 +18,10 @@ from equipoise.displays import Displayed
 from equipoise.errors import ChangePointError, ModelError, RangeError, UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism.assembly.builder import Group
-from equipoise.mechanism.assembly.cam_fits import Fit, fits_of, pressure_angle
+from equipoise.mechanism.assembly.cam_fits import CamFit, fits_of, pressure_angle
 from equipoise.mechanism.assembly.linkage import Linkage, assemble
 from equipoise.mechanism.assembly.steps import Array, State, along, p, plain_angle, running_angle, u
-from equipoise.mechanism.checks import Named, Vector, bodies_at
+from equipoise.mechanism.checks import NamedItems, Vector, bodies_at
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.formulas.plane_curves import PlaneCurve
 from equipoise.mechanism.kinematics.rates import LinkMotion, PointMotion, SliderMotion
@@ -145,20 +145,20 @@ class Motion(Displayed):
     @cached_property
     def links(self) -> Mapping[str, LinkMotion]:
         """Motion of each link, by name."""
-        return Named("link", ((link, self._link(link)) for link in self.machine.links))
+        return NamedItems("link", ((link, self._link(link)) for link in self.machine.links))
 
     @cached_property
     def points(self) -> Mapping[str, PointMotion]:
         """Motion of each point, by name; the frame's points stand still."""
         names = bodies_at(self.machine.bodies)
-        return Named("point", ((point, self.point(point)) for point in names))
+        return NamedItems("point", ((point, self.point(point)) for point in names))
 
     @cached_property
     def mass_centers(self) -> Mapping[str, PointMotion]:
         """Motion of each link's centre of mass, for links whose mass is known."""
         found = self.machine.links.items()
         centers = ((name, link.center_of_mass) for name, link in found if link.center_of_mass)
-        return Named(
+        return NamedItems(
             "link with mass",
             ((name, self._moving(*self._attached(name, at))) for name, at in centers),
         )
@@ -167,7 +167,7 @@ class Motion(Displayed):
     def sliders(self) -> Mapping[str, SliderMotion]:
         """Motion along the guide of each sliding joint, by name."""
         sliders = self.machine.sliders
-        return Named("slider", ((slider.name, self.slider(slider)) for slider in sliders))
+        return NamedItems("slider", ((slider.name, self.slider(slider)) for slider in sliders))
 
     @cached_property
     def transmission(self) -> Mapping[str, Array]:
@@ -178,13 +178,13 @@ class Motion(Displayed):
         counted from where the dyad jams.
         """
         dyads = (group for group in self.linkage.groups if group.margin is not None)
-        return Named("dyad", ((group.joint, self._transmission(group)) for group in dyads))
+        return NamedItems("dyad", ((group.joint, self._transmission(group)) for group in dyads))
 
     @cached_property
     def pressure_angles(self) -> Mapping[str, Array]:
         """Angle (N,) of each cam, rad, from the way in which its follower rises to the normal."""
         cams = self.machine.cams
-        return Named(
+        return NamedItems(
             "cam", ((cam.name, self._full(pressure_angle(cam, self.state))) for cam in cams)
         )
 
@@ -192,9 +192,9 @@ class Motion(Displayed):
     def curvatures(self) -> Mapping[str, Array]:
         """Curvature (N,) of each cam's surface where its follower touches, 1/m."""
         fits = fits_of(self.machine, self.linkage.joints)
-        return Named("cam", ((fit.cam.name, self._full(self._curvature(fit))) for fit in fits))
+        return NamedItems("cam", ((fit.cam.name, self._full(self._curvature(fit))) for fit in fits))
 
-    def _curvature(self, fit: Fit) -> Array:
+    def _curvature(self, fit: CamFit) -> Array:
         links, cam = self.links, fit.cam
         ends = [links[body].angle if body in links else 0.0 for body in (cam.driver, cam.carrier)]
         return fit.shape(np.asarray(ends[0] - ends[1])).surface_curvature

@@ -79,7 +79,7 @@ class Standing:
 
 
 @dataclass(frozen=True, eq=False)
-class Outline:
+class MachineDraft:
     """A machine that may be unfinished.
 
     poses : of every link.  drive : None where none has been chosen.

@@ -16,7 +16,7 @@ from equipoise.errors import ChangePointError, RangeError, UsageError
 from equipoise.mechanism.assembly.cycle import FEWER_POINTS, MANY_TURNS, POINTS_PER_TURN
 from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.assembly.steps import Array
-from equipoise.mechanism.checks import Named, unknown
+from equipoise.mechanism.checks import NamedItems, unknown
 from equipoise.mechanism.kinematics.dwell import Dwell, Path, longest_dwell, rests
 from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.kinematics.stroke_figures import DeadPosition, Kind, Stroke
@@ -104,7 +104,7 @@ def strokes(linkage: Linkage) -> Mapping[str, Stroke]:
     try:
         theta = _grid(linkage)
     except (RangeError, ChangePointError):
-        return Named("slider or rocker", ())
+        return NamedItems("slider or rocker", ())
     machine = linkage.machine
     ones = [_Output(slider.name, "slider") for slider in machine.sliders]
     ones += [_Output(link, "rocker") for link in rockers(linkage)]
@@ -117,7 +117,7 @@ def strokes(linkage: Linkage) -> Mapping[str, Stroke]:
     }
     kept = tuple(one for one in ones if rates[one] > least and ways[one])
     if not kept:
-        return Named("slider or rocker", ())
+        return NamedItems("slider or rocker", ())
     outputs = _Outputs(linkage, kept)
     table = np.array([samples[one] for one in kept])
     fastest = largest(outputs.size, outputs.gain, theta, np.abs(table[:, 1]))
@@ -131,7 +131,7 @@ def strokes(linkage: Linkage) -> Mapping[str, Stroke]:
         for k, one in enumerate(kept)
         if len(dead[k]) > 1
     }
-    return Named("slider or rocker", found.items())
+    return NamedItems("slider or rocker", found.items())
 
 
 def _dead_positions(

@@ -74,7 +74,7 @@ class Seat:
 
 
 @dataclass(frozen=True)
-class Line:
+class LineOfAction:
     """Along which line a flank pushes the driven body, in the carrier's axes.
 
     lever : from the pin (the driven body's; the driver's where that slides) to where it acts, m.
@@ -229,7 +229,7 @@ class Coupling(PartKind):
         """
         return ""
 
-    def line(self, seat: Seat) -> Line | StrandLine | RollingLine:
+    def line(self, seat: Seat) -> LineOfAction | StrandLine | RollingLine:
         """Along which line it pushes; of those whose `contact` asks for it.
 
         Raises

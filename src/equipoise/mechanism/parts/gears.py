@@ -27,7 +27,7 @@ from equipoise.mechanism.checks import Bodies
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.parts.couplings import (
     Law,
-    Line,
+    LineOfAction,
     Pushed,
     Relation,
     RollingLine,
@@ -166,7 +166,7 @@ class Gear(Turning):
             return ratio if self.mesh == "internal" else -ratio
         return as_fraction(self.speed_ratio)
 
-    def line(self, seat: Seat) -> Line | RollingLine:
+    def line(self, seat: Seat) -> LineOfAction | RollingLine:
         """At the pitch point, which divides the line of centres so that both gears move alike
         there.
         """
@@ -180,7 +180,7 @@ class Gear(Turning):
         radial = np.tan(self.pressure_angle) * (1 if ring_driven else -1)
         if self.law is not None:
             return RollingLine(self.law, seat.centres, radial)
-        return Line(seat.centres / (1 - ratio), -radial)
+        return LineOfAction(seat.centres / (1 - ratio), -radial)
 
     def parts(self, at: Pushed) -> Mapping[str, Any]:
         """Along the pitch curves, positive where it turns the driven gear counterclockwise, and

@@ -14,7 +14,7 @@ from equipoise.mechanism.checks import FRAME, Bodies
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.parts.couplings import (
     Coupling,
-    Line,
+    LineOfAction,
     Pushed,
     Relation,
     Seat,
@@ -146,13 +146,13 @@ class Rack(Coupling):
             carrier=self.carrier,
         )
 
-    def line(self, seat: Seat) -> Line:
+    def line(self, seat: Seat) -> LineOfAction:
         """At the foot of the pinion's radius on the pitch line."""
         import numpy as np
 
         slope = np.tan(self.pressure_angle)
         lever = -1j * self.left * self.radius * seat.way
-        return Line(lever, slope if self.drives == "rack" else -self.left * slope)
+        return LineOfAction(lever, slope if self.drives == "rack" else -self.left * slope)
 
     def parts(self, at: Pushed) -> Mapping[str, Any]:
         """Along the rack, positive where it moves the driven body ahead, and what pushes both
