@@ -20,7 +20,7 @@ import numpy as np
 import equipoise as eq
 from asked import Limit, Table
 from equipoise.planting.designs import Designs
-from equipoise.planting.goals import Problem
+from equipoise.planting.goals import PlantingProblem
 from equipoise.schema.template import Template
 from equipoise.studies.evaluate import evaluator, pooled
 from equipoise.studies.objective_map import landscape
@@ -92,14 +92,14 @@ def fitted() -> Task:
     shares = np.random.default_rng(1).random((120, len(low))) - 0.5
     values = np.clip(designs.start + 0.1 * shares * (high - low), low, high)
 
-    alone = Problem(designs, [goal])
+    alone = PlantingProblem(designs, [goal])
     alone.judge(values)
     begin = time.process_time()
     alone.judge(values)
     count = round(SECONDS / (time.process_time() - begin))
 
     def task(workers: int) -> object:
-        with Problem(designs, [goal], workers) as problem:
+        with PlantingProblem(designs, [goal], workers) as problem:
             return [problem.judge(values).off for _ in range(count)]
 
     return task
