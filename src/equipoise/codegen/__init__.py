@@ -2,6 +2,6 @@
 
 `batch.Batch` computes figures of designs that differ in any numbers, `gram.MassBatch` those of
 designs that differ in masses alone.  `figures` says what they can gather and why a design has no
-figures, `emit.emit` writes a linkage out as `source.Source`, and `backends.run_loop` runs it,
+figures, `emit.emit` writes a linkage out as `source.TermSource`, and `backends.run_loop` runs it,
 compiled by Numba or on NumPy's arrays.
 """
