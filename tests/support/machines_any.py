@@ -678,4 +678,20 @@ def files(seed: int, wanted: str = "") -> tuple[Document, Files]:
     grown = chance.random() < 0.6
     document, tables = (Growing(chance).grown(), Files()) if grown else of_kind(chance)
     tables |= dress(chance, document, wanted)
-    return {"schema": 1, "title": f"Machine {seed}"} | document, tables
+    named = parameters_of(random.Random(f"parameters of {seed}"), document)
+    return {"schema": 1, "title": f"Machine {seed}"} | named | document, tables
+
+
+def parameters_of(chance: random.Random, document: Document) -> Document:
+    """Now and then a table of parameters, from which the speed and a mass are worked out.
+
+    Drawn by itself, so that the machine is what it would be without.
+    """
+    masses = [one for one in document["links"].values() if isinstance(one.get("mass"), str)]
+    speed = document["drive"].get("speed")
+    if not masses or not isinstance(speed, str) or chance.random() > 0.15:
+        return {}
+    link = chance.choice(masses)
+    found = {"speed": speed, "weight": link["mass"], "half": "=weight/2"}
+    document["drive"]["speed"], link["mass"] = "=speed", "=2*half"
+    return {"parameters": found}

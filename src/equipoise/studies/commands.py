@@ -36,7 +36,7 @@ MOST_ORDERS = 100
 SPLIT = {"by_cause", "by_link"}
 BY_NAME = {"summary", "by_order", "outputs"}
 """Tables of outputs by their whole names."""
-LARGE, MANY = 2**12, 2**16
+LARGE, MANY = 2**12, 2**13
 """Crank angles in a turn, and in a cycle, beyond which an analysis is freed before the next."""
 
 
