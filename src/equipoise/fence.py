@@ -192,8 +192,8 @@ def hold_folder(path: Path) -> None:
     UsageError, LinkError, OSError, ValueError : as of `place_of`.
     """
     held = _held.get()
-    if held is None or str(path) in held:
-        return
+    if held is None or _fence.get() is not None or str(path) in held:
+        return  # a fence opens what is below its own folder, which is held already
     if path.name in {"", ".."}:
         held[str(path)] = Folder.at(path)
     else:

@@ -165,7 +165,7 @@ REFUSED = {
         "'<= 5 N'": "--limit: got '<= 5 N'; give such as",
         "'joints.A <= 5 mm'": "--limit: got '5 mm'; mm is the unit of a lengt",
         "'area shaking_force.x <= 1 N'": "--limit: there is no unit for the area unde",
-        "'joints.A <= -5 N'": "--limit: got -5 in SI units; give more than 0",
+        "'joints.A <= -5 N'": "--limit: got -5 N; give more than 0",
         "'joints.A <= 0 %'": "--limit: got 0 %; give more than 0",
         "'joints.A <= 9 % %'": "--limit: got '9 % %'; give a number, a space and %",
         "'joint.A <= 9 %'": "--limit: no output is called 'joint.A'; did yo",
@@ -191,7 +191,7 @@ REFUSED = {
             "--material: no material is called 'stel'; did you mean 'steel'?"
         ),
         "--thickness '5 mm' --material steel --radius '50 mm' --mass '10 kg'": (
-            "--mass: a disc of 10000 g and 5 mm steel has a radius of 284.78 mm and does not "
+            "--mass: a disc of 10000 g and 5 mm steel has a radius of 284.777 mm and does not "
             "fit into its room of 50 mm; make it thicker, or"
         ),
     },

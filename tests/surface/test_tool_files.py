@@ -96,7 +96,7 @@ BAD = {
     "misspelt key": ("position", "positon", "shaft.stations[1].positon: no key is called"),
     "no unit": ('"1.5 m"', '"1.5"', "shaft.length: got '1.5'; the unit is missing; give a length"),
     "comma": ('"1.5 m"', '"1,5 m"', 'shaft.length: got \'1,5 m\'; the decimal sign is a point'),
-    "off the shaft": ('"550 mm"', '"550 cm"', "shaft.stations[2].position: got 5.5 m, which is"),
+    "off the shaft": ('"550 mm"', '"550 cm"', "shaft.stations[2].position: got 550 cm, which is"),
     "same name": ('"handle"', '"engine"', "shaft.stations[2].name: 'engine' is given twice"),
     "control": ('"handle"', '"\\u001b[31m"', "shaft.stations[2].name: got '\\x1b[31m'; give pri"),
     "no cause": ('force = "100 N"', "", "excitations[1]: give exactly one of force, unbalance"),

@@ -144,11 +144,13 @@ class Beside:
 
         found = self._opened(file)
         try:
-            machine = loads_linkage(found.text, folder=found.folder)
+            machine = loads_linkage(found.text, printable(file), found.folder)
+        except ModelError as error:  # which names its file
+            raise ModelError("", error.note) from error  # lines would be for the other file
+        try:
             _ = assemble(machine).cycle
         except EquipoiseError as error:
-            refusal = at_place(printable(file), error.note)
-            raise ModelError("", refusal) from error  # lines would be for the other file
+            raise ModelError("", at_place(printable(file), error.note)) from error
         if lacking := massless(machine):
             raise ModelError("", f"{printable(file)}: {lacking}")
         return machine

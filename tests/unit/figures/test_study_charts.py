@@ -76,7 +76,7 @@ def of_three() -> dict[str, Chart]:
     return designs.best_charts(best, "A store", units_of(found.study), store)  # type: ignore[arg-type]
 
 
-def given(size: int) -> tuple[designs.Designs, Block]:
+def given(size: int) -> tuple[designs.CloudDesigns, Block]:
     """Designs of which some break a limit and some fail, the first three of them chosen."""
     random = np.random.default_rng(5)
     study = load_study("study-of-balance")
@@ -92,7 +92,7 @@ def given(size: int) -> tuple[designs.Designs, Block]:
     by = {"forward": "smallest", "upward": "smallest"}
     told = (study.title, by, study.paths, study.outputs, units_of(study), table, ["7", "8", "9"])
     front = table[:, [5, 6]]
-    return designs.Designs(*told, lambda: [(0, block)], size, OWN, front), block  # type: ignore[arg-type]
+    return designs.CloudDesigns(*told, lambda: [(0, block)], size, OWN, front), block  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("size", [600, 6000])
