@@ -202,7 +202,7 @@ class _Adviser:
             return
         large = [one for one in self.before.headline if _is_aim(one)]
         gauges = [one for one in large if one.output.startswith(GAUGES)]
-        if gauges and (aims := self.gauge_aims):
+        if gauges and (aims := self.loud_gauges):
             yield aims
         for one in large:
             if one not in gauges:
@@ -376,8 +376,8 @@ class _Adviser:
         return beyond_masses(self.before.analysis, self.before.headline, self.mounts)
 
     @cached_property
-    def gauge_aims(self) -> tuple[Objective, ...]:
-        """What gauges read that are loud beside the loudest, each against its limit."""
+    def loud_gauges(self) -> tuple[Objective, ...]:
+        """What those gauges read that are loud beside the loudest, each against its limit."""
         read = {one.output: one.excess for one in self.before.headline
                 if one.output.startswith(GAUGES)}  # fmt: skip
         least = QUIET_GAUGE * max(read.values(), default=0.0)
@@ -387,7 +387,7 @@ class _Adviser:
     @cached_property
     def mounts(self) -> ResonantMounts | None:
         """The resonance beside a speed at which the machine runs, and other mounts."""
-        aims = self.gauge_aims
+        aims = self.loud_gauges
         if not aims:
             return None
         speeds = {speed for one in aims for speed in one.speeds} or {self.machine.drive.speed}
