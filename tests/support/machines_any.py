@@ -642,15 +642,7 @@ def of_kind(chance: random.Random) -> tuple[Document, Files]:
     """A machine of a kind, as its file, and the tables that it names."""
     seed = chance.randrange(2**31)
     if chance.randrange(STROKED) == 0:
-        from support import machines_strokes as strokes
-
-        kind = chance.choice([*strokes.TOGETHER, *strokes.TURNING, *strokes.SLIDING])
-        if kind in strokes.TOGETHER:
-            machine: Machine = strokes.together(kind, seed).machine
-        else:
-            machine = strokes.stroked(
-                kind, seed, chance.random() < 0.5 and kind in strokes.SLIDING
-            ).machine
+        machine = _pushed(chance, seed)
     else:
         plain_kinds = [kind for kind in machines.KINDS if not kind.startswith("torsion_")]
         kinds = (plain_kinds, machines_cams.ALL, machines_redundant.REDUNDANT)
@@ -660,6 +652,21 @@ def of_kind(chance: random.Random) -> tuple[Document, Files]:
     if chance.random() < 0.2:
         machine = machines_planes.set_apart(machine, np.random.default_rng(seed))
     return with_tables(machine)
+
+
+def _pushed(chance: random.Random, seed: int) -> Machine:
+    """A machine that is pushed; the next one where nothing pushes the one of this seed."""
+    from support import machines_strokes as strokes
+
+    while True:
+        kind = chance.choice([*strokes.TOGETHER, *strokes.TURNING, *strokes.SLIDING])
+        try:
+            if kind in strokes.TOGETHER:
+                return strokes.together(kind, seed).machine
+            by_slider = chance.random() < 0.5 and kind in strokes.SLIDING
+            return strokes.stroked(kind, seed, by_slider).machine
+        except strokes.CannotBePushed:
+            seed += 1
 
 
 def with_tables(machine: Machine) -> tuple[Document, Files]:

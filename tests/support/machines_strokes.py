@@ -20,6 +20,11 @@ from equipoise.mechanism.parts.machine import FRAME, FurtherDrive, Link, Load, M
 from support.machines import CYCLE, KINDS, Case, make
 from support.poses import Array, from_motion
 
+
+class CannotBePushed(AssertionError):
+    """A random machine has no two points, or no sliding joint, by which it could be pushed."""
+
+
 SHARES = 0.8, 0.3
 """Of the part of the turn over which the length rises or falls, what the stroke takes at most."""
 
@@ -118,7 +123,7 @@ def stroked(kind: str, seed: int, by_slider: bool = False) -> Case:
         except EquipoiseError:  # the points hang on gears, whose start is another one then
             continue
         return replace(case, machine=pushing)
-    raise AssertionError(f"{kind}:{seed} cannot be pushed")
+    raise CannotBePushed(f"{kind}:{seed}")
 
 
 # -- several drives of which one or more push ------------------------------------------------------
@@ -228,7 +233,7 @@ def together(kind: str, seed: int) -> Case:
         except EquipoiseError:
             continue
         return Case(machine)
-    raise AssertionError(f"{kind}:{seed} cannot be pushed")
+    raise CannotBePushed(f"{kind}:{seed}")
 
 
 FIRST = {kind: make(kind, 0).machine for kind in KINDS}

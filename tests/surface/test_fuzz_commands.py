@@ -36,10 +36,10 @@ from equipoise.exchange.formats import FORMATS
 from equipoise.web.messages import read
 from equipoise.web.replies import packed
 from equipoise.web.session import Session
-from support import machines_any
+from support import machines_any, machines_strokes
 from support.chosen import few
 from support.machines import KINDS as KINDS_MADE
-from support.machines import make
+from support.machines import Case, make
 from surface.running import (
     EXAMPLES,
     STUDIES,
@@ -445,6 +445,26 @@ def test_machines_from_nothing_have_every_table_of_a_model_file() -> None:
     }
     for table, entries in made.items():
         assert {*schema["$defs"][table]["properties"]} == {*chain(*entries)}, table
+
+
+def test_a_machine_that_cannot_be_pushed_is_followed_by_one_that_can(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """As with the first of seed 515272, a rolling planet, which hangs on gears."""
+    asked, real = [], machines_strokes.stroked
+
+    def stroked(kind: str, seed: int, by_slider: bool = False) -> Case:
+        asked.append(seed)
+        if len(asked) < 3:
+            raise machines_strokes.CannotBePushed(f"{kind}:{seed}")
+        return real("slider_crank", seed, by_slider)
+
+    monkeypatch.setattr(machines_strokes, "stroked", stroked)
+    monkeypatch.setattr(machines_strokes, "TOGETHER", {})
+    monkeypatch.setattr(machines_any, "STROKED", 1)
+    document, _ = machines_any.of_kind(random.Random(3))
+    assert "stroke" in document["drive"]
+    assert asked == [asked[0], asked[0] + 1, asked[0] + 2]
 
 
 def test_every_command_is_tried() -> None:
