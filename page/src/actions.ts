@@ -64,6 +64,7 @@ function atLink(hit: Hit, link: string, state: State, page: Doing): Action[] {
     { name: say("Point of the link"), act: () => page.make({ do: "point", spot, on: link }) },
     { name: say("Spring …"), act: () => page.add("springs", { link }) },
     { name: say("Load …"), act: () => page.add("loads", { link }) },
+    points.length > 1 && { name: say("Constraint …"), act: () => page.add("constraints", { line: points.slice(0, 2) }) },
     pinned && link !== state.status.drive && { name: say("Drive"), act: () => page.make({ do: "drive", link }) },
     {
       name: say("Delete"),

@@ -21,6 +21,8 @@ from equipoise.i18n import Note
 from equipoise.keys import Key
 from equipoise.keys.paths import KeyPath, with_values
 from equipoise.mechanism.assembly.linkage import assemble
+from equipoise.mechanism.checks import numbered
+from equipoise.mechanism.parts.constraints import HOLDS
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.schema.finding import (
     NumberLocation,
@@ -37,6 +39,9 @@ from equipoise.schema.opening import Kind, Opened, in_file, kind_of, model_conte
 from equipoise.schema.tables import TABLES
 from equipoise.schema.words import words_of
 
+APART = 1e-3
+"""By how much of itself a number is changed to see which constraints it breaks: far more than
+`HOLDS`, and little enough that there is such a machine."""
 Known = dict[tuple[str, str], Any]
 """What lies beside a model file, by sort and name: tables, and linkages as templates."""
 
@@ -109,8 +114,14 @@ class Template:
 
         Raises
         ------
-        ModelError : there is no such number; says which is near.
+        ModelError : there is no such number; says which is near.  Or a geometric constraint holds
+            it, which other values of it alone would break.
         """
+        value, dimension = self._number(path)
+        self._check_constraints(path, value)
+        return value, dimension
+
+    def _number(self, path: str) -> tuple[float, str | None]:
         if (lift := self._lift(path)) is not None:
             return lift.start, lift.dimension
         found = self._find(path)
@@ -227,6 +238,25 @@ class Template:
     def __setstate__(self, state: tuple[str, str, Known]) -> None:
         text, source, known = state
         self.__init__(text, source, known=known)  # type: ignore[misc]
+
+    def _check_constraints(self, path: str, value: float) -> None:
+        """Refuse a number that a constraint holds: one that another value of it breaks."""
+        base = self._base
+        if not isinstance(base, Machine) or not base.constraints or isinstance(value, int):
+            return
+        try:
+            other = self.machine({path: value * (1 + APART) if value else APART})
+        except ModelError:
+            return  # whoever sets it says what is wrong
+        assert isinstance(other, Machine)
+        for where, constraint in numbered("constraints", base.constraints):
+            if constraint.misses(base.bodies) <= HOLDS < constraint.misses(other.bodies):
+                what = Note(
+                    "{where} holds it; vary a parameter by which both lines are given, or take the "
+                    "constraint away",
+                    where=where,
+                )
+                raise ModelError(path, what)
 
     # -- inside ------------------------------------------------------------------------------------
 

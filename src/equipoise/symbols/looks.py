@@ -103,6 +103,7 @@ LOOKS = {
     "block": Look("paper", "lines", 1.2),
     "spring": Look(None, "lines", 1.4),
     "spiral": Look(None, "lines", 1.4),
+    "constraint": Look(None, "main", 1.4),
     "room": Look(None, "main", 1.2, (3.0, 2.4)),
     "planned": Look(None, "main", 1.2, (3.0, 2.4)),
     "added": Look(None, "stress", 2.2),
@@ -133,6 +134,7 @@ LOOKS = {
 LAYERS = {
     "strand": {"springs": "strand"},
     "spiral": {"springs": "spiral"},
+    "constraint": {"springs": "constraint"},
     "groove": {"wheels": "groove", "springs": "cam-edge"},
     "cam": {"wheels": "cam", "springs": "cam-edge"},
     "path": {"wheels": "path", "springs": "path-edge"},

@@ -16,6 +16,7 @@ from equipoise.mechanism.parts.bodies import place_of
 from equipoise.mechanism.parts.body_checks import Outline, outlines
 from equipoise.mechanism.parts.machine import FRAME, Link
 from equipoise.symbols.carrier import MOUNT, Carrier, SupportSwing
+from equipoise.symbols.constraints import constraint_marks
 from equipoise.symbols.drives import DriveSign
 from equipoise.symbols.part_signs import Surroundings, in_order, signs_of
 from equipoise.symbols.rows import ONE, Rows, rows_of
@@ -153,7 +154,14 @@ class Scene:
             _field(motion),
             Carrier.of(machine),
             marks=in_order(
-                mark for table, _, part in machine.parts for mark in signs_of(table, part, around)
+                (
+                    *(
+                        mark
+                        for table, _, part in machine.parts
+                        for mark in signs_of(table, part, around)
+                    ),
+                    *constraint_marks(machine.constraints, machine.bodies),
+                )
             ),
         )
 

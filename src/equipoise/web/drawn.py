@@ -16,6 +16,7 @@ from equipoise.mechanism.assembly.named_joints import pin_radii
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.parts.machine import FRAME, Machine
 from equipoise.quantities import DIGITS, display
+from equipoise.symbols.constraints import constraint_marks
 from equipoise.symbols.drives import DriveSign
 from equipoise.symbols.part_signs import Surroundings, in_order, signs_of
 from equipoise.symbols.scene import GuideSign, Scene, bodies_of
@@ -29,7 +30,7 @@ from equipoise.web.fields import Field, Scale
 from equipoise.web.lacking import lacking
 from equipoise.web.measures import Measure, held, measures_of
 from equipoise.web.messages import Change, Entry, Setting
-from equipoise.web.moving import moved
+from equipoise.web.moving import moved, with_constraints_met
 from equipoise.web.sketch import Sketch
 from equipoise.web.state import turning
 from equipoise.web.tables import entered
@@ -174,6 +175,7 @@ def redrawn(sketch: Sketch, changes: list[Change]) -> Sketch:
     ------
     UsageError : one of them cannot be.
     """
+    before = sketch
     for change in changes:
         if isinstance(change, Setting):
             fields = fields_of_sketch(sketch)
@@ -184,7 +186,7 @@ def redrawn(sketch: Sketch, changes: list[Change]) -> Sketch:
             raise UsageError(Note("a centre of mass can be dragged once the machine is finished"))
         else:
             sketch = moved(sketch, change.name, held(sketch.places, change))
-    return sketch
+    return with_constraints_met(before, sketch)
 
 
 def fields_of_sketch(sketch: Sketch) -> dict[str, Field]:
@@ -267,7 +269,12 @@ def scene_of(sketch: Sketch) -> Scene:
         springs,
         {name: pose.angle * one for name, pose in sketch.poses.items()},
         (drive,),
-        marks=in_order(_marks(sketch)),
+        marks=in_order(
+            (
+                *_marks(sketch),
+                *constraint_marks(sketch.rest.get("constraints", ()), sketch.bodies),
+            )
+        ),
         room=() if sketch.links else EMPTY,
     )
 

@@ -122,6 +122,8 @@ def edited(base: Computed, changes: Iterable[Change], near: Computed | None = No
         else:
             design, place = _moved(base, design, change)
             goals[change.name] = (change.at, place)
+    if design.own.constraints:
+        design = design.with_machine(design.own.with_constraints_met(base.design.own))
     if near is not None and near.along is not None:  # so this one needs something along too
         with suppress(EquipoiseError):
             if (found := _agreeing(base, design, goals, near)) is not None:

@@ -11,6 +11,8 @@ from typing import Any
 from equipoise.errors import UsageError
 from equipoise.i18n import Note, all_of
 from equipoise.mechanism.kinematics.outline import Pose, length_between, pose_between
+from equipoise.mechanism.parts.constraint_solver import constrained
+from equipoise.mechanism.parts.constraints import changed_points
 from equipoise.mechanism.parts.element_kinds import PartKind
 from equipoise.mechanism.parts.machine import FRAME, Slider
 from equipoise.quantities import DIGITS, clean, clean_place
@@ -39,6 +41,27 @@ def moved(sketch: Sketch, point: str, to: complex, digits: int = DRAGGED) -> Ske
     for number, slider in enumerate(sketch.sliders):
         if slider.through == point:
             sketch = _aimed(sketch, number, slider)
+    return sketch
+
+
+def with_constraints_met(before: Sketch, sketch: Sketch) -> Sketch:
+    """A sketch that was changed, with points moved so that its constraints hold.
+
+    before : points that lie elsewhere in it stay.
+
+    Raises
+    ------
+    ModelError : no places were found at which all of them hold.
+    """
+    constraints = sketch.rest.get("constraints", ())
+    changed = changed_points(before.bodies, sketch.bodies)
+    for _ in constraints:  # a pin that goes elsewhere changes its other link too
+        places = constrained(constraints, sketch.bodies, changed)
+        if not places:
+            break
+        for (body, point), place in places.items():
+            sketch = moved(sketch, point, sketch.pose(body).out(place), DIGITS)
+        changed |= places.keys()
     return sketch
 
 

@@ -52,6 +52,7 @@ def entered(design: Design, entry: Entry) -> Design:
         }
         document = document.put(entry.place, values, entry.name)
     own = completed(document, entry, design.own).machine(entry.files)
+    own = own.with_constraints_met(design.own)
     return replace(design, own=own, counterweights=_that_fit(design, own))
 
 

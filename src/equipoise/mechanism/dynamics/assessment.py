@@ -16,6 +16,7 @@ from equipoise.mechanism.dynamics.statics import statics
 from equipoise.mechanism.dynamics.undecided import undecided
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.kinematics.crossing import crossings
+from equipoise.mechanism.parts.constraints import HOLDS
 from equipoise.mechanism.parts.machine import FRAME, Machine, size_of
 from equipoise.quantities import told
 
@@ -197,10 +198,18 @@ def remarks(linkage: Linkage) -> Iterator[Note | str]:
         yield missing
     if assumed := assumed_masses(machine):
         yield assumed
+    yield from _missed_constraints(machine)
     yield from undecided(linkage).told()
     if machine.has_planes:
         yield from statics(linkage).told()
     yield from questions(linkage)
+
+
+def _missed_constraints(machine: Machine) -> Iterator[Note]:
+    bodies = machine.bodies
+    for where, constraint in numbered("constraints", machine.constraints):
+        if constraint.misses(bodies) > HOLDS:
+            yield Note("{where}: {remark}", where=where, remark=constraint.remark(bodies))
 
 
 def questions(linkage: Linkage) -> Iterator[Note | str]:

@@ -44,6 +44,7 @@ from equipoise.mechanism.checks import (
 from equipoise.mechanism.parts.belts import Belt
 from equipoise.mechanism.parts.cams import Cam
 from equipoise.mechanism.parts.circular_slots import CircularSlot
+from equipoise.mechanism.parts.constraints import Constraint, changed_points
 from equipoise.mechanism.parts.couplings import Coupling, coupling_kinds
 from equipoise.mechanism.parts.curved_slots import CurvedSlot
 from equipoise.mechanism.parts.drives import (
@@ -120,9 +121,9 @@ class Machine(Driven, Displayed, Frozen):
 
     beside: ClassVar[Keys] = {"schema": VERSION}
     file_order = ("schema", "title", "description", "units", "parameters", "gravity", "drive",
-                  "drives", "frame", "links", "bearings", "assembly", "sliders", "circular_slots",
-                  "curved_slots", "gears", "belts", "racks", "cams", "loads", "springs",
-                  "torsion_springs", "joints", "position", "planting", "support", "rows",
+                  "drives", "frame", "links", "constraints", "bearings", "assembly", "sliders",
+                  "circular_slots", "curved_slots", "gears", "belts", "racks", "cams", "loads",
+                  "springs", "torsion_springs", "joints", "position", "planting", "support", "rows",
                   "balance")  # fmt: skip
 
     title: str = key(Wording(), "shown in reports", example="Slider-crank")
@@ -200,6 +201,11 @@ class Machine(Driven, Displayed, Frozen):
         Named(ParameterValue()),
         'quantities and numbers by name, for expressions such as `"=2*crank + 3 mm"`',
         factory=dict,
+    )
+    constraints: tuple[Constraint, ...] = key(
+        Tables(Table(Constraint)),
+        "what lines of bodies have to be to each other while lengths are edited",
+        default=(),
     )
     expressions: Mapping[str, str] = inside(Named(Text()), factory=dict)
 
@@ -335,6 +341,52 @@ class Machine(Driven, Displayed, Frozen):
             )
         moved = {**points, point: place}
         return replace(self, frame=moved) if body == FRAME else self.with_link(body, points=moved)
+
+    def with_places(self, places: Mapping[tuple[str, str], Vector]) -> Machine:
+        """Return the machine with points elsewhere, each by its body and its name, in the body's
+        axes, m; a link that is given by its length keeps to that.
+        """
+        changed = self
+        for (body, point), place in places.items():
+            link = self.links.get(body)
+            if link is not None and link.length is not None:
+                _, second = link.points
+                if point == second and place[0] > 0 and place[1] == 0:
+                    changed = changed.with_link(body, length=place[0])
+                    continue
+            changed = changed.with_point(body, point, place)
+        return changed
+
+    def with_constraints_met(self, before: Machine | None = None) -> Machine:
+        """Return the machine with points moved so that its constraints hold, if any is missed.
+
+        before : the machine that was changed to this one; points that differ from it stay.
+
+        Raises
+        ------
+        ModelError : no places were found at which all of them hold.
+        """
+        if not self.constraints:
+            return self
+        from equipoise.mechanism.parts.constraint_solver import constrained
+
+        places = constrained(
+            self.constraints,
+            self.bodies,
+            changed_points(before.bodies if before else {}, self.bodies),
+            frozenset(self._points_by_expression()),
+        )
+        return self.with_places(places) if places else self
+
+    def _points_by_expression(self) -> Iterator[tuple[str, str]]:
+        """Bodies and their points of which a coordinate, or the length, follows parameters."""
+        for path in self.expressions:
+            top, *rest = KeyPath.parse(path)
+            body = FRAME if top == FRAME else str(rest.pop(0)) if top == "links" and rest else ""
+            if rest[:1] == ["points"] and len(rest) > 1:
+                yield body, str(rest[1])
+            elif rest == ["length"]:
+                yield body, [*self.links[body].points][-1]
 
     def with_drive(self, **changes: Any) -> Machine:
         """Return the machine with fields of its drive changed."""

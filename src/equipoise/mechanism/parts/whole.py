@@ -22,7 +22,7 @@ from equipoise.mechanism.parts.sliders import wrong_slider
 from equipoise.mechanism.parts.support import wrong_support
 
 MOST = {"links": 100, "points": 2000, "sliders": 200, "loads": 500, "joints": 500,
-        "drives": 20}  # fmt: skip
+        "drives": 20, "constraints": 200}  # fmt: skip
 """Far beyond any machine; they keep a file of nonsense from running for hours."""
 LISTS: Mapping[str, Callable[[str, Any, Bodies], Iterator[ModelError]]] = {
     "sliders": wrong_slider,
@@ -53,6 +53,8 @@ def problems_of(machine: Any) -> Iterator[ModelError]:
     ]
     for where, item in placed:
         yield from item.problems(where, bodies)
+    for where, item in numbered("constraints", machine.constraints):
+        yield from item.problems(where, bodies)
     for where, item in numbered("joints", machine.joints):
         yield from wrong_joint(where, item, ("joints", *coupling_kinds(type(machine))))
     sliders = [one.name for one in machine.sliders]
@@ -73,7 +75,7 @@ def _too_much(machine: Any) -> Iterator[ModelError]:
     points = [(body, point) for body, points in machine.bodies.items() for point in points]
     yield from too_many("links", machine.links, MOST["links"])
     yield from too_many("points", points, MOST["points"])
-    for what in ("sliders", "loads", "joints", "drives"):
+    for what in ("sliders", "loads", "joints", "drives", "constraints"):
         yield from too_many(what, getattr(machine, what), MOST[what])
     for table, kind in part_kinds(type(machine)).items():
         yield from too_many(table, getattr(machine, table), kind.most)
