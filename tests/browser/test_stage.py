@@ -141,6 +141,27 @@ def test_a_link_has_a_menu_that_leads_to_its_counterweight_and_mass(live: Live) 
     expect(form.get_by_label("mass", exact=True)).to_have_value("199 g")
 
 
+def test_a_constraint_of_a_links_menu_holds_while_one_drags(live: Live) -> None:
+    """The coupler is as long as the rocker from then on."""
+    (cx, cy), (dx, dy) = live.spot(live.joint("C")), live.spot(live.joint("D"))
+    live.page.mouse.click((cx + dx) / 2, (cy + dy) / 2, button="right")
+    menu(live, "rocker").get_by_role("menuitem", name="Constraint …").click()
+    form = live.page.get_by_role("form", name="New: constraints")
+    live.page.screenshot(path=SCREENSHOTS / "constraint-form-1280.png")
+    signs = live.page.locator("g.piece").count()
+    form.get_by_label("kind", exact=True).select_option("equal")
+    form.get_by_label("other line 1", exact=True).select_option("B")
+    form.get_by_label("other line 2", exact=True).select_option("C")
+    form.get_by_role("button", name="Save").click()
+    expect(live.page.get_by_text("kind equal, line D C, other line B C")).to_be_visible()
+    expect(live.page.locator("g.piece")).to_have_count(signs + 4)  # two strokes on two lines
+    coupler, rocker = live.field("coupler B to C"), live.field("rocker D to C")
+    assert coupler.input_value() == rocker.input_value() == "80 mm"
+    live.drag(live.joint("B"), (6, 6))  # which makes the coupler longer
+    assert coupler.input_value() == rocker.input_value() != "80 mm"
+    live.page.screenshot(path=SCREENSHOTS / "constraint-1280.png")
+
+
 def test_a_place_has_a_menu_and_a_mount_asks_for_the_support_first(live: Live) -> None:
     x, y, width, height = box(board(live))
     live.page.mouse.click(x + 0.6 * width, y + 0.15 * height, button="right")

@@ -13,7 +13,15 @@ from equipoise.decompositions import lstsq
 from equipoise.errors import ModelError
 from equipoise.i18n import Note
 from equipoise.mechanism.checks import Bodies, Vector
-from equipoise.mechanism.parts.constraints import HOLDS, IN_LINE, MISSES, Constraint, Line, Point
+from equipoise.mechanism.parts.constraints import (
+    ACROSS,
+    HOLDS,
+    IN_LINE,
+    MISSES,
+    Constraint,
+    Line,
+    Point,
+)
 from equipoise.quantities import clean_place
 
 Array = NDArray[Any]
@@ -96,9 +104,9 @@ def constrained(
 ) -> dict[Point, Vector]:
     """Points that have to go elsewhere so that constraints hold.
 
-    The end of the second line moves of each constraint that is missed, or that of its first line
-    where the other stays.  Where that does not do, such ends of all constraints move, or else all
-    points of lines that may, as little as possible.
+    An end moves of the second line of each constraint that is missed, or of the first where that
+    cannot.  Where it does not do, such ends of all constraints move, or else all points of lines
+    that may, as little as possible.
 
     Parameters
     ----------
@@ -137,12 +145,17 @@ def constrained(
 def _ends(
     kind: str, lines: tuple[Line, Line], staying: frozenset[Point], given: frozenset[Point]
 ) -> list[Point]:
-    """The points that move for a constraint: ends of its second line, or of its first."""
+    """The points that move for a constraint: ends of its second line, or of its first where those
+    stay.  Of two lengths that which was changed keeps its value.
+    """
     (a, b), (c, d) = lines
     if kind == IN_LINE and staying.isdisjoint({c, d} - {a, b}):
         return [point for point in (c, d) if point not in (a, b)]
-    ends = sorted((d, b), key=lambda point: point in given)
-    free = [point for point in (*ends, c, a) if point not in staying]
+    order = *sorted((d, b), key=lambda point: point in given), c, a
+    first, second = (not staying.isdisjoint(line) for line in lines)
+    if kind in ACROSS and first != second:
+        order = (d, c, b, a) if first else (b, a, d, c)
+    free = [point for point in order if point not in staying]
     return free if kind == IN_LINE else free[:1]
 
 
