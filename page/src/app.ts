@@ -18,7 +18,7 @@ import { Keeping } from "./keeping";
 import { Locks } from "./locks";
 import { Player } from "./player";
 import type { Asked, FileKind, Hello, Planted, State, Wire } from "./protocol";
-import { BalancePanel, FigureTable, Readings } from "./readings";
+import { BalancePanel, FigureTable, headline, Readings } from "./readings";
 import { Board } from "./board";
 import { Border } from "./border";
 import { Seeing } from "./seeing";
@@ -124,7 +124,10 @@ export class App {
       },
       variants: (message) => this.seeing.variants.show(message),
       refused: (message, edit) => this.refuse(message, edit),
-      balanced: (message) => this.balance.show(message),
+      balanced: (message) => {
+        this.balance.show(message);
+        this.tour.did("balanced", headline(message));
+      },
       busy: (what) => this.busy(what),
       tables: (message) => this.bench.show(message),
       file: save,
@@ -220,7 +223,10 @@ export class App {
       undo: () => this.step("undo"),
       redo: () => this.step("redo"),
       save: () => void this.keeping.save(),
-      link: () => this.keeping.link(),
+      link: () => {
+        this.keeping.link();
+        this.tour.did("linked");
+      },
       balance: () => this.command({ type: "balance" }),
       download: (kind, language, format) => this.download(kind, language, format),
       help: () => this.help.showModal(),
@@ -385,6 +391,7 @@ export class App {
     if (state.held) this.board.say(state.held, true);
     this.hands.accepted();
     this.show(state, other);
+    if (!this.held && !other && state.undo) this.tour.did("dragged");
   }
 
   private name(opened = this.named): void {
@@ -563,11 +570,13 @@ export class App {
 
   private keep(): void {
     this.balance.hide();
+    this.tour.did("decided");
     this.command({ type: "compare", on: false });
   }
 
   private takeBack(): void {
     this.balance.hide();
+    this.tour.did("decided");
     this.command({ type: "undo" });
     this.command({ type: "compare", on: false });
   }
@@ -614,11 +623,13 @@ export class App {
   private toggle(): void {
     this.talk.release();
     this.player.playing = !this.player.playing;
+    this.tour.did("turned");
     this.stir();
   }
 
   private crank(): void {
     this.player.playing = false;
+    this.tour.did("turned");
     this.stir();
   }
 

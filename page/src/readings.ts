@@ -206,6 +206,14 @@ export class BalancePanel {
   }
 }
 
+/** The figure that a balance was for, before and after. */
+export function headline({ aims, figures }: Balanced): string {
+  const first = aims[0] ?? figures.find(({ main }) => main);
+  if (!first) return "";
+  const [before, after] = first.texts;
+  return say("{what}: {before} → {after} {unit}", { what: capital(first.label), before, after, unit: first.unit });
+}
+
 /** Figures before and after, and by how much they have changed. */
 export function comparison(
   figures: Change[],

@@ -55,9 +55,11 @@ export class Toolbar {
     this.undo = button("", "undo", () => commands.undo(), say("Undo"));
     this.redo = button("", "redo", () => commands.redo(), say("Redo"));
     this.balance = button(say("Balance"), "balance", () => commands.balance());
+    set(this.balance, { "data-do": "balance" });
     this.save = button("", "disk", () => commands.save(), say("Save"));
     this.save.hidden = true;
     this.menu = downloads(commands);
+    set(this.menu, { "data-do": "download" });
     const closed = say("nothing is open yet");
     able(this.undo, say("Undo"), null, closed);
     able(this.redo, say("Redo"), null, closed);

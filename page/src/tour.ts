@@ -1,50 +1,60 @@
-/** A tour of five steps: offered once, taken by mouse or keys, remembered. */
+/** A tour of five steps, each of which lets one do something: offered once, by mouse or keys. */
 
 import { h } from "./dom";
 import { say, toSay } from "./words";
 
 const SEEN = "equipoise tour";
 
+/** What somebody does on the page that ends a step. */
+export type Done = "dragged" | "turned" | "balanced" | "decided" | "linked";
+
 interface Step {
   /** What of the page it is about. */
   where: string;
   what: string;
   text: string;
+  /** What is to be done, after which the next step comes by itself. */
+  until: Done;
 }
 
 const STEPS: Step[] = [
   {
     where: ".board",
-    what: toSay("The linkage"),
+    what: toSay("Drag a joint"),
     text: toSay(
       "Drag a joint or a centre of mass, with the mouse, a finger or the arrow keys: forces and charts follow at once. Two fingers or the wheel zoom.",
     ),
+    until: "dragged",
   },
   {
     where: ".transport",
-    what: toSay("The motion"),
-    text: toSay("Play it slower than it is, stop it, or turn the crank by the slider."),
+    what: toSay("Turn the crank"),
+    text: toSay(
+      "Play it slower than it is, stop it, or turn the crank by the slider; a click in a chart turns it there. Each ? says what its chart shows and what to look for.",
+    ),
+    until: "turned",
   },
   {
-    where: ".side",
-    what: toSay("The charts"),
+    where: ".bar [data-do=balance]",
+    what: toSay("Press Balance"),
     text: toSay(
-      "What shakes the frame and what the drive needs. Each ? says what its chart shows and what to look for; a click in a chart turns the crank there.",
+      "It finds the masses that make this machine shake the least, with a proof that no others do better.",
     ),
+    until: "balanced",
   },
   {
-    where: ".inspector",
-    what: toSay("The numbers"),
-    text: toSay(
-      "Type any number with its unit, such as 71.5 mm or 2.8 in, or move its slider. Undo takes back whole steps, also after the page was loaded again.",
-    ),
+    where: ".balance",
+    what: toSay("See what it takes away"),
+    text: toSay("{figure}. Keep it, or take it back; undo takes back whole steps, also after the page was loaded again."),
+    until: "decided",
   },
   {
-    where: ".bar",
-    what: toSay("Open, balance, keep"),
+    where: ".bar [data-do=download]",
+    what: toSay("Share it"),
     text: toSay(
-      "Open other machines, let the page find what balances this one, and take along the model, pictures, a report or a link.",
+      "Copy link, under Download, copies an address that holds this machine; whoever opens it sees what you see. Model, pictures and a report are there too.",
     ),
+    until: "linked",
   },
 ];
 
@@ -53,6 +63,8 @@ export class Tour {
   readonly offer = h("div", { class: "lost offer", role: "status", hidden: true });
   private box: HTMLElement | null = null;
   private before: Element | null = null;
+  private at = -1;
+  private figure = "";
 
   constructor(private readonly root: HTMLElement) {}
 
@@ -73,7 +85,7 @@ export class Tour {
         text,
       );
     this.offer.replaceChildren(
-      say("New here? A tour of five steps shows the page."),
+      say("New here? A tour of five steps lets you drag, balance and share this machine."),
       " ",
       button(say("Take the tour"), () => this.begin()),
       button(say("No, thanks"), () => undefined),
@@ -89,10 +101,20 @@ export class Tour {
     this.show(0);
   }
 
-  private show(number: number): void {
+  /** Somebody did something: if the step asks for that, the next one comes.
+   *  figure : what became of it, for the text of the step after it. */
+  did(what: Done, figure = ""): void {
+    if (STEPS[this.at]?.until !== what) return;
+    this.figure = figure;
+    this.show(this.at + 1, false);
+  }
+
+  /** focus : whether it goes to the tour; where something was just done it stays there. */
+  private show(number: number, focus = true): void {
     const step = STEPS[number];
     if (!step) return this.end();
     this.clear();
+    this.at = number;
     const targets = [...this.root.querySelectorAll(step.where)];
     const target = targets.find((one) => one.checkVisibility());
     target?.classList.add("toured");
@@ -101,12 +123,13 @@ export class Tour {
     const next = h(
       "button",
       { type: "button", class: "strong", onclick: () => this.show(number + 1) },
-      last ? say("Done") : say("Next"),
+      last ? say("Done") : say("Next step"),
     );
     const back = h("button", { type: "button", onclick: () => this.show(number - 1) }, say("Back"));
     const end = h("button", { type: "button", onclick: () => this.end() }, say("End tour"));
     const values = { number: number + 1, count: STEPS.length };
-    const text = h("p", { id: "equipoise-tour" }, say(step.text));
+    const figure = this.figure || say("Figures before and after stand beside the drawing");
+    const text = h("p", { id: "equipoise-tour", role: "status" }, say(step.text, { figure }));
     this.box = h(
       "div",
       { class: "tour", role: "dialog", "aria-label": say("Tour"), "aria-describedby": text.id },
@@ -116,7 +139,7 @@ export class Tour {
     );
     this.box.addEventListener("keydown", (event) => this.key(event, number));
     this.root.append(this.box);
-    next.focus({ preventScroll: true });
+    if (focus) next.focus({ preventScroll: true });
   }
 
   private key(event: KeyboardEvent, number: number): void {
@@ -129,12 +152,15 @@ export class Tour {
   private clear(): void {
     this.box?.remove();
     this.box = null;
+    this.at = -1;
     for (const one of this.root.querySelectorAll(".toured")) one.classList.remove("toured");
   }
 
   private end(): void {
     if (!this.box) return;
+    const inside = this.box.contains(document.activeElement);
     this.clear();
+    if (!inside) return;
     const back = this.before instanceof HTMLElement && this.before.isConnected ? this.before : null;
     (back ?? this.root.querySelector<HTMLElement>(".grip"))?.focus({ preventScroll: true });
   }
