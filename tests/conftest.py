@@ -12,11 +12,14 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from _pytest.assertion import rewrite
 
 from support import gallery
 
 SEEDED = {Path(__file__).parent / room for room in ("laws", "secondroute", "crosscheck")}
 PARAM = type(pytest.param())
+FRESH = 20_000
+"""Objects after which garbage is looked for; 700, as usual, take a twentieth of a long run."""
 NAMED = re.compile(r"(.+):(\d+)")
 """A random machine by its kind and seed, such as ``slider_crank:3``."""
 
@@ -38,6 +41,7 @@ def pytest_configure(config: pytest.Config) -> None:
     if not config.getoption("--exhaustive") and not _by_name(config):
         settings.register_profile("change", settings(), max_examples=30)
         settings.load_profile("change")
+    _rewrite_share(config)
 
 
 @pytest.hookimpl(tryfirst=True)
@@ -71,10 +75,18 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     items[:] = [item for item in items if not item.get_closest_marker("exhaustive")]
 
 
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection() -> None:
+    """Look for no garbage while tests are collected: almost all that is made then is kept."""
+    gc.disable()
+
+
 def pytest_collection_finish() -> None:
     """Keep the collector of garbage from going through all tests again and again."""
     gc.collect()
     gc.freeze()
+    gc.set_threshold(FRESH, 10, 10)
+    gc.enable()
 
 
 def pytest_sessionfinish(session: pytest.Session) -> None:
@@ -94,6 +106,25 @@ def site() -> Path:
         made = subprocess.run(make, capture_output=True, text=True, check=False)
     assert (made.returncode, made.stderr) == (0, "")
     return top / "build" / "docs"
+
+
+def _rewrite_share(config: pytest.Config) -> None:
+    """Rewrite the assertions of some files, where workers would each rewrite all of a fresh clone.
+
+    Each then finds what the others have written, and rewrites by itself what is not there yet.
+    """
+    worker = getattr(config, "workerinput", None)
+    if worker is None or sys.dont_write_bytecode:
+        return
+    number, count = int(worker["workerid"].removeprefix("gw")), worker["workercount"]
+    asked = [config.invocation_params.dir / argument for argument in config.args]
+    files = sorted(Path(__file__).parent.rglob("test_*.py"))
+    files = [file for file in files if any(one == file or one in file.parents for one in asked)]
+    for file in files[number::count]:
+        cached = rewrite.get_cache_dir(file) / f"{file.stem}{rewrite.PYC_TAIL}"
+        if rewrite._read_pyc(file, cached) is None and rewrite.try_makedirs(cached.parent):
+            written, code = rewrite._rewrite_test(file, config)
+            rewrite._write_pyc(config.stash[rewrite.assertstate_key], code, written, cached)
 
 
 def _by_name(config: pytest.Config) -> bool:
