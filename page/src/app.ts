@@ -6,7 +6,7 @@ import { Charts } from "./charts";
 import { type Asking, ContextMenu, type Menu } from "./context_menu";
 import { Conversation, type Events } from "./conversation";
 import { h, set, write } from "./dom";
-import { dropZone, picker, save, tooLarge } from "./files";
+import { dropZone, handOut, picker, save, tooLarge } from "./files";
 import { follow, measure } from "./format";
 import { Frames } from "./frames";
 import { Gallery } from "./gallery";
@@ -30,6 +30,7 @@ import { type Opened, Toolbar } from "./toolbar";
 import { Tools } from "./tools";
 import { Tour } from "./tour";
 import { TransportBar } from "./transport";
+import { record, records } from "./video";
 import { Views } from "./views";
 import { language, say, word } from "./words";
 
@@ -227,6 +228,7 @@ export class App {
         this.keeping.link();
         this.tour.did("linked");
       },
+      film: records() ? () => void this.film() : null,
       balance: () => this.command({ type: "balance" }),
       download: (kind, language, format) => this.download(kind, language, format),
       help: () => this.help.showModal(),
@@ -584,6 +586,31 @@ export class App {
   private download(kind: FileKind, language = "en", format?: "svg" | "png"): void {
     const at = this.player.sample;
     this.command({ type: "download", kind, language, at, ...(format && { format }) });
+  }
+
+  /** Record one cycle as it is played, and hand it out. */
+  private async film(): Promise<void> {
+    const { state, player } = this;
+    if (!state) return;
+    const [angle, playing] = [player.angle, player.playing];
+    player.playing = false;
+    this.tell(say("Recording one cycle …"), false);
+    const degrees = 360 * state.turns;
+    const turn = (share: number) => {
+      player.angle = share * degrees;
+      this.point();
+    };
+    try {
+      const areas = [this.board.root, this.side].filter((area) => area.checkVisibility());
+      const { blob, suffix } = await record({ root: this.el, areas, seconds: player.cycle, turn });
+      handOut(`${state.name.replace(/\.toml$/, "")}.${suffix}`, blob.type, blob);
+      this.tell("", false);
+    } catch {
+      this.tell(say("This browser does not record pages; take the motion as a GIF."), true);
+    } finally {
+      [player.angle, player.playing] = [angle, playing];
+      this.stir();
+    }
   }
 
   private choose(grip: Grip): void {

@@ -59,7 +59,8 @@ export function save({ name, mime, files = {} }: HandedOut, bytes: DataView | un
   for (const [table, text] of Object.entries(files)) handOut(table, "text/csv", text);
 }
 
-function handOut(name: string, mime: string, part: BlobPart): void {
+/** Hand out a file that was made here. */
+export function handOut(name: string, mime: string, part: BlobPart): void {
   const address = URL.createObjectURL(new Blob([part], { type: mime }));
   h("a", { href: address, download: name }).click();
   setTimeout(() => URL.revokeObjectURL(address), 10_000);

@@ -46,15 +46,23 @@ export class Player {
     this.sample = Math.round((degrees / (360 * this.turns)) * this.count);
   }
 
+  /** How long a cycle takes as it is played, s. */
+  get cycle(): number {
+    return this.turns / Math.abs(this.turning);
+  }
+
+  /** Turns in a second as it is played; a machine that stands still can be turned by hand, and so it is here. */
+  private get turning(): number {
+    return this.speed ? (this.rate * this.speed) / (2 * Math.PI) : 1 / SLOW;
+  }
+
   /** Let time pass; tells whether another sample is to be shown. */
   tick(now: number): boolean {
     const before = this.sample;
     const passed = this.last === null ? 0 : Math.min((now - this.last) / 1000, 0.1);
     this.last = this.playing ? now : null;
     if (!this.playing) return false;
-    // A machine that stands still can be turned by hand, and so it is here.
-    const turns = this.speed ? (this.rate * this.speed) / (2 * Math.PI) : 1 / SLOW;
-    const part = this.part + (passed * turns) / this.turns;
+    const part = this.part + (passed * this.turning) / this.turns;
     this.part = part - Math.floor(part);
     return this.sample !== before;
   }

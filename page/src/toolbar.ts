@@ -26,6 +26,8 @@ export interface Commands {
   undo(): void;
   save(): void;
   link(): void;
+  /** Record the drawing and its charts; null where the browser cannot. */
+  film: (() => void) | null;
   redo(): void;
   balance(): void;
   download(kind: FileKind, language?: string, format?: "svg" | "png"): void;
@@ -145,6 +147,7 @@ function named(label: string): HTMLSelectElement {
 function downloads(commands: Commands): HTMLDetailsElement {
   const language = named(say("Language of the report"));
   const menu: HTMLDetailsElement = h("details", { class: "menu" });
+  const { film } = commands;
   const close = (then: () => void) => {
     menu.open = false;
     then();
@@ -175,6 +178,7 @@ function downloads(commands: Commands): HTMLDetailsElement {
       item(say("Drawing as SVG"), "drawing", "svg"),
       item(say("Drawing as PNG"), "drawing", "png"),
       item(say("Motion as GIF"), "film"),
+      film && h("button", { type: "button", "data-kind": "film", onclick: () => close(film) }, say("Drawing and charts as video")),
       item(say("Page that plays without a server"), "played"),
       item(say("Page that computes without a server"), "interactive"),
       h("button", { type: "button", onclick: () => close(commands.link) }, say("Copy link")),

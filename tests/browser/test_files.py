@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 from importlib.resources import files
+from pathlib import Path
 
 import numpy as np
 from playwright.sync_api import expect
@@ -74,3 +75,21 @@ def test_signals_and_report_are_given_as_files(live: Live) -> None:
     name, text = live.download("Download report")
     assert name.endswith(".html")
     assert eq.load("yamashita-1").title in text
+
+
+def test_drawing_and_charts_are_recorded_as_a_video(live: Live, tmp_path: Path) -> None:
+    """One cycle; the machine stands where it stood before."""
+    page = live.page
+    crank = page.get_by_role("slider", name="Crank angle")
+    crank.fill("30")
+    page.get_by_label("Download", exact=True).click()
+    with page.expect_download() as download:
+        page.get_by_role("button", name="Drawing and charts as video").click()
+    assert download.value.suggested_filename == "yamashita-1.webm"
+    path = tmp_path / "video.webm"
+    download.value.save_as(path)
+    video = path.read_bytes()
+    assert video.startswith(b"\x1a\x45\xdf\xa3") and b"V_VP" in video[:4096]  # Matroska, VP8 or 9
+    clusters = video.count(b"\x1f\x43\xb6\x75")
+    assert clusters >= 1 and len(video) > 20_000
+    expect(crank).to_have_value("30")
