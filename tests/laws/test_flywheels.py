@@ -15,6 +15,7 @@ from equipoise.running.blocks import run_headline
 from equipoise.running.equation import CrankEquation
 from equipoise.running.flywheel import Flywheel, SteadyCycle, share_of_mean, size_flywheel
 from support.analyses import subject_of
+from support.chosen import few
 
 WITHOUT_A_MOTOR = ("transplanter", "four-stroke-engine", "rotary-transplanter", "watt:1")
 
@@ -55,10 +56,11 @@ def test_scipy_goes_through_a_cycle_alike(name: str) -> None:
     assert np.ptp(rate) / abs(machine.drive.speed) == pytest.approx(0.05, rel=1e-3)
 
 
+RIGS = ("yamashita-rig", "balance-rig")
 NODES = np.polynomial.chebyshev.chebpts1(12)
 
 
-@pytest.mark.parametrize("name", ["walking-transplanter", "yamashita-rig", "balance-rig"])
+@pytest.mark.parametrize("name", few(["walking-transplanter", *RIGS], RIGS))
 def test_with_a_motor_the_run_itself_is_as_even(name: str) -> None:
     machine = subject_of(name).machine
     wanted = 0.4 * size_flywheel(machine, 0.9).present

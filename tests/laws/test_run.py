@@ -23,6 +23,7 @@ from equipoise.running.equation import CrankEquation
 from equipoise.running.integration import Instant, Integration
 from equipoise.running.run import Run
 from support.analyses import subject_of
+from support.chosen import EXHAUSTIVE
 
 MASS, ARM, OWN, GRAVITY = 2.0, 0.3, 0.05, 9.81
 INERTIA = OWN + MASS * ARM**2
@@ -237,7 +238,10 @@ def test_values_that_cannot_be_used() -> None:
 
 @pytest.mark.parametrize(
     ("asked", "sentence"),
-    [({"duration": "30000 s"}, "got 30000 s"), ({"turns": 10_000}, "got 10000 turns")],
+    [
+        ({"duration": "30000 s"}, "got 30000 s"),
+        pytest.param({"turns": 10_000}, "got 10000 turns", marks=EXHAUSTIVE),
+    ],
 )
 def test_what_takes_too_long_is_refused_when_it_goes_on_evenly(
     asked: dict[str, Any], sentence: str, monkeypatch: pytest.MonkeyPatch

@@ -16,7 +16,7 @@ import threading
 import tomllib
 from functools import cache
 from importlib.resources import files
-from itertools import pairwise
+from itertools import pairwise, product
 from pathlib import Path
 from typing import Any
 from unittest import mock
@@ -29,6 +29,7 @@ import equipoise as package
 from equipoise.cli import ONE_THREAD, RAREST, _signs_of_life, main, run
 from equipoise.errors import UsageError
 from equipoise.schema.files import json_text
+from support.chosen import DISTINCT, few, few_together
 from surface.running import (
     EXAMPLES,
     READY,
@@ -257,7 +258,7 @@ def test_no_page_shows_a_command_that_does_not_exist(page: str) -> None:
     assert shown and shown <= {*COMMANDS}
 
 
-@pytest.mark.parametrize("shell", ["bash", "zsh", "fish", "powershell"])
+@pytest.mark.parametrize("shell", few(["bash", "zsh", "fish", "powershell"], {"bash", "fish"}))
 def test_a_shell_completes_commands_options_and_values(shell: str) -> None:
     text = succeeded(equipoise("completion", shell))
     assert {*COMMANDS, "trade-off"} <= {*re.findall(r"[a-z][a-z-]+", text)}
@@ -321,7 +322,7 @@ def driving(name: str) -> str:
     return "drive_force" if "stroke" in example(name)["drive"] else "drive_torque"
 
 
-@pytest.mark.parametrize("name", EXAMPLES)
+@pytest.mark.parametrize("name", few(EXAMPLES, DISTINCT))
 def test_tables_of_an_example(name: str) -> None:
     result = equipoise("analyze", name, "--full")
     text = succeeded(result)
@@ -403,7 +404,7 @@ def test_control_characters_do_not_reach_the_terminal(name: str, pair: tuple[str
 # -- analyze: JSON and CSV -------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("name", EXAMPLES)
+@pytest.mark.parametrize("name", few(EXAMPLES, DISTINCT))
 def test_json_has_the_documented_shape(name: str) -> None:
     count = 8
     content = analyzed(name, "--angles", str(count))
@@ -731,8 +732,16 @@ def test_help_in_a_narrow_terminal(columns: int, monkeypatch: pytest.MonkeyPatch
     assert max(map(len, lines)) <= 40
 
 
-@pytest.mark.parametrize("size", ["0", "\u00b2", "9" * 5000])
-@pytest.mark.parametrize("variable", ["COLUMNS", "LINES"])
+SIZES = ["0", "\u00b2", "9" * 5000]
+
+
+@pytest.mark.parametrize(
+    ("variable", "size"),
+    few_together(
+        product(["COLUMNS", "LINES"], SIZES),
+        [*zip(("LINES", "COLUMNS", "COLUMNS"), SIZES, strict=True)],
+    ),
+)
 def test_help_where_the_size_of_the_terminal_is_no_size(variable: str, size: str) -> None:
     """The last has more digits than Python takes as a number."""
     without = {name: value for name, value in os.environ.items() if name != variable}

@@ -9,6 +9,8 @@ import subprocess
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from functools import cache
+from itertools import product
 from math import exp, sin
 from pathlib import Path
 from typing import Any
@@ -25,7 +27,7 @@ from equipoise.schema.files import write_all
 from equipoise.web import server as served_files
 from equipoise.web.disk import on_disk
 from equipoise.web.stores import StoreDesk, stores_in
-from support.chosen import few
+from support.chosen import few, few_together
 from surface.running import command, equipoise, example_text, refused, succeeded
 from surface.studies import LENGTHS, TOLERANCES
 from surface.test_commands import OPTIONS
@@ -91,10 +93,14 @@ def outside(folder: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[
     found.unchanged()
 
 
+named = cache(tools)
+"""As a server has them, which collects what commands take once."""
+
+
 def in_agents_server(name: str, **given: object) -> str:
     """What a tool of `equipoise mcp` answers in this folder."""
     try:
-        return tools()[name].answer(given, Path.cwd().resolve()).text
+        return named()[name].answer(given, Path.cwd().resolve()).text
     except EquipoiseError as error:
         return str(error)
 
@@ -401,8 +407,10 @@ def test_every_option_that_writes_is_tried() -> None:
     assert left == {("site", "--out")}  # which has tests of its own
 
 
-@pytest.mark.parametrize("kind", ["svg", "png"])
-@pytest.mark.parametrize("name", few(DRAWING, OFTEN))
+@pytest.mark.parametrize(
+    ("name", "kind"),
+    few_together(product(DRAWING, ("svg", "png")), {*product(OFTEN, ["svg"]), ("plot", "png")}),
+)
 @pytest.mark.usefixtures("store")
 def test_pictures_go_through_no_link_in_their_folder(
     name: str, kind: str, outside: Outside
@@ -592,7 +600,7 @@ def test_no_tool_opens_or_writes_what_leads_out_of_the_fence(outside: Outside) -
     usual = {"study": "study.toml", "targets": "fit.toml", "store": "none.zarr", "csv": "swing.csv"}
     usual |= {"rows": 3, "points": 3, "input": ["tasks.csv"], "duration": "0.1 s"}
     tried = set()
-    for name, tool in tools().items():
+    for name, tool in named().items():
         schema = tool.schema()
         needed = {key: usual.get(key, "mine.toml") for key in schema["required"]}
         for key in paths & schema["properties"].keys():
@@ -691,14 +699,20 @@ def put_above(elsewhere: Path) -> None:
     planted(Path("sub"), elsewhere)
 
 
+PLANTS = (put_elsewhere, put_beside, put_above)
 SAVED = {
     "linkage": ("yamashita-1", "links.crank.mass", "300 g"),
     "tool": ("nagamine-irie", "shaft.stations[3].mass", "1.5 kg"),
 }
 
 
-@pytest.mark.parametrize("plant", [put_elsewhere, put_beside, put_above])
-@pytest.mark.parametrize("kind", SAVED)
+@pytest.mark.parametrize(
+    ("kind", "plant"),
+    few_together(
+        product(SAVED, PLANTS),
+        {*product(["linkage"], PLANTS), ("tool", put_beside)} - {("linkage", put_beside)},
+    ),
+)
 def test_a_page_saves_through_no_link_that_was_put_in_the_place_of_its_file(
     kind: str,
     plant: Callable[[Path], None],

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
+from support.chosen import EXHAUSTIVE
 from surface.running import cells, changed, equipoise, example_text, read, succeeded, written
 
 PLANAR = ("yamashita-rig", "yamashita-rig-counterweight", "walking-transplanter")
@@ -460,7 +461,7 @@ def test_orders_beside_json_and_csv() -> None:
 WALKING = "walking-transplanter"
 
 
-@pytest.mark.parametrize("drive", [[], ["--drive"]])
+@pytest.mark.parametrize("drive", [[], pytest.param(["--drive"], marks=EXHAUSTIVE)])
 def test_the_louder_of_two_steady_states(drive: list[str]) -> None:
     """A float that lets go softens its machine, which then jumps below its resonance."""
     two = read("respond", WALKING, "--model", "exact", "--speed", "168 rpm", *drive)

@@ -152,7 +152,7 @@ def test_a_flywheel_on_a_faster_shaft_names_what_is_assumed() -> None:
     assert flywheels is not None and all(one.is_shaft_assumed for one in flywheels.choices)
     (first, *_) = flywheel_sentences(flywheels, "crank", machine.mass)
     assert "Flywheel on a shaft 4 times as fast as crank, which the file does not give" in first
-    motor = Motor(stall_torque=20.0, no_load_speed=400.0, ratio=3.5)
+    motor = Motor(stall_torque=60.0, no_load_speed=400.0, ratio=3.5)
     driven = eq.analyze(machine.with_drive(motor=motor), acceleration=0.0)
     flywheels = flywheels_for(driven, assess(driven))
     assert flywheels is not None

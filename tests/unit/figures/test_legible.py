@@ -18,6 +18,7 @@ from equipoise.figures.points import main_kinematics
 from equipoise.figures.sheet import Words, box_of
 from equipoise.figures.view import View
 from equipoise.results.charts import Axis, Chart, Curve, Panel
+from support.chosen import DISTINCT, few
 from unit.figures.checks import Laid, views
 
 LINKAGES = tuple(eq.examples("linkage"))
@@ -57,7 +58,7 @@ def scale_of(view: View) -> float:
     return view.y.length / (view.y.high - view.y.low) / larger
 
 
-@pytest.mark.parametrize("name", LINKAGES)
+@pytest.mark.parametrize("name", few(LINKAGES, DISTINCT))
 def test_one_scale_for_one_quantity(name: str) -> None:
     for chart, found in drawn(name):
         for one, other in comparable(found):

@@ -80,7 +80,12 @@ BUNDLED = {f"vibration: {name}" for name in EXAMPLES}
 """Of which the gallery has the pictures too."""
 
 
-@pytest.mark.parametrize("name", few(ODD, {*ODD} - BUNDLED))
+ALIKE = {"vibration: clockwise", "vibration: space", "tools: paper", "tools: loose"}
+ALIKE |= {f"planting: {kind}" for kind in ("slow", "fast", "deep", "still", "backward")}
+"""Laid out like others."""
+
+
+@pytest.mark.parametrize("name", few(ODD, {*ODD} - BUNDLED - ALIKE))
 def test_charts_of_odd_machines(name: str) -> None:
     """With long and foreign names, many of everything, and nothing of what is usual."""
     for chart in of_odd(name).values():

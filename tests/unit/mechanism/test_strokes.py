@@ -15,6 +15,7 @@ from equipoise.mechanism.kinematics.stroke_figures import DeadPosition
 from equipoise.mechanism.kinematics.strokes import _turning
 from equipoise.mechanism.parts.laws import AngleLaw, AngleSegment
 from equipoise.results.analysis_blocks import force_blocks
+from support.chosen import DISTINCT, few
 from support.conformance import compared
 from support.sources import CLOSED_FORMS
 from unit.mechanism.build import ORIGIN, crank_rocker, four_bar, heavy, machine, slider_crank
@@ -101,7 +102,7 @@ def test_rockers_of_four_bars_against_their_triangles(name: str) -> None:
     assert len(rocker.dead_positions) == 2
 
 
-@pytest.mark.parametrize("name", MACHINES)
+@pytest.mark.parametrize("name", few(MACHINES, DISTINCT))
 def test_figures_of_every_example_against_dense_sampling(name: str) -> None:
     found = eq.analyze(eq.load(name), 36_000 if name != "class-three" else 3600)
     motion = found.motion

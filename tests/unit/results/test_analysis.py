@@ -15,6 +15,7 @@ from equipoise.mechanism.parts.support import Row
 from equipoise.results.analysis import Analysis
 from equipoise.results.blocks import Table
 from equipoise.results.outputs import unit_of
+from support.chosen import DISTINCT, few
 
 NAMES = sorted(eq.examples("linkage"))
 
@@ -29,7 +30,7 @@ def bare() -> Analysis:
     return eq.analyze(given, 8)
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", few(NAMES, DISTINCT))
 def test_keys(name: str) -> None:
     found = analysis(name).to_dict()
     machine = eq.load(name)

@@ -123,9 +123,9 @@ def test_notes_that_are_left_out_are_counted(
     "command",
     [
         ("analyze", "twin-engine"),
-        ("respond", "sieve", "--speed", "100 rpm : 400 rpm"),
+        ("respond", "sieve", "--speed", "100 rpm : 400 rpm", "--speeds", "9"),
         ("balance", "balance-rig"),
-        ("tool", "brush-cutter"),
+        ("tool", "nagamine-irie"),
     ],
 )
 def test_a_command_prints_a_few_lines_and_the_rest_with_full(

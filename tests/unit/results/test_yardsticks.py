@@ -14,6 +14,7 @@ from equipoise.mechanism.outputs.declared import DECLARED, declaring, output
 from equipoise.mechanism.parts.balance import Balance, Limit, Objective
 from equipoise.results.yardsticks import OF_OUTPUT, FigureAssessment, assess, sentence, verdict
 from equipoise.schema.files import json_text
+from support.chosen import DISTINCT, few
 
 WITH_GAUGES = ("riding-transplanter", "sieve")
 
@@ -45,7 +46,7 @@ def test_each_machine_has_the_verdict_of_its_kind(name: str, figure: str) -> Non
     assert found is not None and found.figure == figure
 
 
-@pytest.mark.parametrize("name", sorted(eq.examples("linkage")))
+@pytest.mark.parametrize("name", few(sorted(eq.examples("linkage")), DISTINCT))
 def test_figures_are_those_of_the_machine_readable_output(name: str) -> None:
     machine = eq.load(name)
     analysis = eq.analyze(machine)
