@@ -21,8 +21,9 @@ from equipoise.balancing.objectives import unit_of
 from equipoise.balancing.phasing import Phasing
 from equipoise.balancing.problem import ADDED
 from equipoise.balancing.solution import Solution
-from equipoise.balancing.workshop import Change
+from equipoise.balancing.workshop import Change, covers
 from equipoise.i18n import Note, all_of
+from equipoise.mechanism.checks import bodies_at
 from equipoise.mechanism.dynamics.forces import forces
 from equipoise.mechanism.kinematics.motion import move
 from equipoise.mechanism.outputs.declared import declared
@@ -30,7 +31,7 @@ from equipoise.mechanism.parts.balance import Balance, Objective
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.objectives import ROWS
 from equipoise.planting.names import dimension_of as of_planting
-from equipoise.quantities import Dimension
+from equipoise.quantities import Dimension, told
 from equipoise.results.analysis import Analysis
 from equipoise.results.declaring import (
     NOTES,
@@ -491,6 +492,29 @@ def _prices(found: Solution) -> dict[str, Price]:
     return prices
 
 
+def _over_pins(found: Solution) -> Iterator[Note]:
+    """That plates lie where pins of their own link are, which a plan's room does not know."""
+    bodies = bodies_at(found.machine.bodies)
+    for part, own in found.problem.with_numbers(found.numbers):
+        for change in part.changes(own):
+            pieces = change.values.get("pieces", ())
+            if not pieces or not (moment := change.values["moment"]):
+                continue
+            center = complex(*change.values["center"])
+            points = found.machine.links[change.link].points
+            pins = [name for name, at in points.items() if len(bodies.get(name, ())) > 1
+                    and any(covers(one, center, complex(*at)) for one in pieces)]  # fmt: skip
+            if pins:
+                yield Note(
+                    "the plate on {link} lies over pin {pins}: put it in a plane of its own, or "
+                    "take {moment} off {link} on the other side of {at}, if that much is there",
+                    link=change.link,
+                    pins=all_of(pins),
+                    moment=told(moment, "unbalance", digits=3),
+                    at=change.values["at"],
+                )
+
+
 def _notes(found: Solution) -> Iterator[Note]:
     """What a reader has to know."""
     problem, rows = found.problem, len(found.problem.machine.rows)
@@ -508,6 +532,7 @@ def _notes(found: Solution) -> Iterator[Note]:
             "otherwise: the bound is that of small changes about this result"
         )
     yield from filter(None, (part.stopped(x) for part, x in problem.with_numbers(found.numbers)))
+    yield from _over_pins(found)
     if rows > 1 and any(part.mass_place is not None for part in problem.parts):
         yield Note("masses are those of one row; the machine has {rows}", rows=rows)
     if found.ties > found.weighed:

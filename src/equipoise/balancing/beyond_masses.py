@@ -6,7 +6,6 @@ each has a module of its own, with what it computes and what it says.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -42,28 +41,34 @@ from equipoise.balancing.poor_transmission import (
 )
 from equipoise.balancing.resonant_mounts import ResonantMounts
 from equipoise.balancing.spaced_arms import SpacedArms, arms_sentences, spaced_arms_for
+from equipoise.balancing.workshop import weight_named
 from equipoise.i18n import say
+from equipoise.mechanism.dynamics import acting
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.quantities import angle, percent, told
+from equipoise.quantities import angle, percent
 from equipoise.results.analysis import Analysis
 from equipoise.results.declaring import Declarations, ResultOutput
-from equipoise.results.yardsticks import FigureAssessment
+from equipoise.results.yardsticks import FigureAssessment, throw_of
 
 
 @dataclass(frozen=True)
 class Counterbalance:
     """A weight on a slow crank that lifts where the machine is heavy, as on a beam pump.
 
-    moment : kg m.  direction : rad, in the axes of the crank.  gain : share of the RMS of the
-    torque about its mean that is gone.
+    moment : kg m.  radius : m, of the crank's end.  direction : rad, in the axes of the crank.
+    gain : share of the RMS of the torque about its mean that is gone.
     """
 
     moment: float
+    radius: float
     direction: float
     gain: float
 
     declared: ClassVar[Declarations] = {
         "moment": ResultOutput("of the weight about the crank's pivot", "unbalance"),
+        "radius": ResultOutput(
+            "of the crank's end, where a mass of moment / radius has it", "length"
+        ),
         "direction": ResultOutput("in the axes of the crank", "angle"),
         "gain": ResultOutput("share of the swing of the torque that is gone"),
     }
@@ -162,13 +167,13 @@ def counterbalance_for(
     no such torque, the crank is fast, or little of the torque is of order 1.
 
     A first moment u (complex, in the crank's axes) at the crank angle a adds g Re(u e^(ia)) to the
-    torque that lifts it.
+    torque that lifts it.  It may be as heavy at the crank's end as all that the crank lifts:
+    links and load.
     """
     machine, motion = analysis.machine, analysis.resolved.motion
     torque = next((one for one in entries if one.is_torque and one.is_large), None)
     gravity = -machine.gravity[1]
-    points = machine.links[machine.drive.link].points
-    throw = max(abs(complex(*point)) for point in points.values())
+    throw = throw_of(analysis)
     if torque is None or not machine.has_crank or motion.speed**2 * throw > SLOW_CRANK * gravity:
         return None
     values = analysis.outputs[torque.output].resolved
@@ -176,49 +181,91 @@ def counterbalance_for(
     first = FirstOrder(motion, values - motion.mean(values), angle)
     gain = first.gain(first.without())
     moment = -2 * first.ahead / gravity  # of a real signal both parts are conjugate
-    if gain < WORTH_NAMING or abs(moment) > machine.mass * throw:
+    lifted = machine.mass + _hanging(analysis) / gravity
+    if gain < WORTH_NAMING or abs(moment) > lifted * throw:
         return None
-    return Counterbalance(abs(moment), float(np.angle(moment)), gain)
+    return Counterbalance(abs(moment), throw, float(np.angle(moment)), gain)
+
+
+def _hanging(analysis: Analysis) -> float:
+    """Largest force of a load from outside against or along gravity, N."""
+    down = analysis.machine.gravity[1] * 1j / abs(analysis.machine.gravity[1])
+    forces = (force for _, _, force, _ in acting.outer_loads(analysis.motion))
+    return max((float(np.max(np.abs(np.real(force * np.conj(down))))) for force in forces),
+               default=0.0)  # fmt: skip
 
 
 # -- sentences -------------------------------------------------------------------------------------
 
 
-def sentences_beyond(beyond: Beyond, machine: Machine, changed: bool) -> Iterator[str]:
-    """What helps beyond masses and mounts, the most urgent first.
+FIRST = {
+    "bearings": ("ends",),
+    "weight": ("piston", "shafts"),
+    "vibration": ("piston", "shafts"),
+    "effort": ("counterbalance",),
+}
+"""By the yardstick of what is large: answers that are weights too, which no plate of the assumed
+room does, and which stand first where no such plate is offered."""
+
+
+def first_answers(
+    beyond: Beyond, entries: tuple[FigureAssessment, ...], gain: float | None
+) -> frozenset[str]:
+    """Answers of `Beyond` that stand before what is said of masses.
+
+    entries : ranked, of the machine as it is.
+    gain : share of the aim that a change which is offered takes away; None where none is.
+    """
+    if gain is not None:
+        more_arms = beyond.spaced is not None and beyond.spaced.gain >= gain
+        return frozenset({"spaced"} if more_arms else ())
+    if beyond.transmission is not None and any(one.is_nearly_dead for one in entries):
+        return frozenset({"transmission"})
+    aim = next((one for one in entries if one.is_large and (one.is_shaking or one.is_torque)), None)
+    names = FIRST.get(aim.yardstick_kind, ()) if aim is not None else ()
+    given = {name for name in names if getattr(beyond, name) is not None}
+    is_half = beyond.piston is not None and beyond.piston.is_half
+    return frozenset() if given == {"piston"} and is_half else frozenset(given)
+
+
+def sentences_beyond(beyond: Beyond, machine: Machine, changed: bool) -> dict[str, list[str]]:
+    """What helps beyond masses and mounts, the most urgent first: sentences by answer.
 
     machine : that the answers are for.
     changed : whether that is the machine with a change of masses that is offered.
     """
     crank = machine.drive.link
+    said: dict[str, list[str]] = {}
     if beyond.spaced is not None:
-        yield from arms_sentences(beyond.spaced, crank)
+        said["spaced"] = [*arms_sentences(beyond.spaced, crank)]
     if beyond.ends is not None:
-        yield from end_sentences(beyond.ends, crank)
+        said["ends"] = [*end_sentences(beyond.ends, crank)]
     if beyond.arms is not None:
-        yield centered_arms_sentence(beyond.arms)
+        said["arms"] = [centered_arms_sentence(beyond.arms)]
     if beyond.cylinder is not None:
-        yield from cylinder_sentences(beyond.cylinder)
+        said["cylinder"] = [*cylinder_sentences(beyond.cylinder)]
     if beyond.flywheels is not None:
-        yield from flywheel_sentences(beyond.flywheels, crank, machine.mass)
+        said["flywheels"] = [*flywheel_sentences(beyond.flywheels, crank, machine.mass)]
     piston = None if changed else beyond.piston
     if piston is not None:
-        yield from piston_sentences(piston, crank)
+        said["piston"] = [*piston_sentences(piston, crank)]
     if beyond.shafts is not None:
-        yield shafts_sentence(beyond.shafts, crank, changed, piston)
+        said["shafts"] = [shafts_sentence(beyond.shafts, crank, changed, piston)]
     if beyond.counterbalance is not None and not changed:
-        yield _weight_sentence(beyond.counterbalance, crank)
+        said["counterbalance"] = [_weight_sentence(beyond.counterbalance, crank)]
     if beyond.transmission is not None:
-        if not changed:  # else it stands with what is large after the change
-            yield transmission_sentence(beyond.transmission, machine.crank_turns)
-        yield from mending_sentences(beyond.transmission)
+        mending = [*mending_sentences(beyond.transmission)]
+        poor = transmission_sentence(beyond.transmission, machine.crank_turns)
+        # With a change the first of these stands with what is large after it.
+        said["transmission"] = mending if changed else [poor, *mending]
+    return said
 
 
 def _weight_sentence(weight: Counterbalance, crank: str) -> str:
     return say(
         "A weight of {moment} on {crank}, at {direction} in its axes, would take {gain} % off "
         "the swing of the drive torque.",
-        moment=told(weight.moment, "unbalance", "kg m", digits=2),
+        moment=weight_named(weight.moment, weight.radius),
         crank=crank,
         direction=angle(weight.direction, 0),
         gain=percent(weight.gain, 0),

@@ -12,10 +12,12 @@ from equipoise.balancing.outcome import (
     advice_blocks,
     beside_mounts,
     beside_the_aim,
+    first_sentences,
     large_besides,
     large_figures,
     mounts_beside_change,
-    nothing_told,
+    sentences_beyond_masses,
+    why_nothing,
 )
 from equipoise.balancing.told import (
     capital,
@@ -84,14 +86,18 @@ def balanced_headline(found: Balanced, alone: bool = False) -> Iterator[Block]:
     """
     if found.advice is not None and not found.helps:
         if alone:
-            yield from map(Text, nothing_told(found))
+            yield from map(Text, why_nothing(found))
+            yield from (Text(line, is_detail=True) for line in sentences_beyond_masses(found))
             yield Text(driven(found.original, found.original.drive.speed))
             yield _large(found)
             yield look_at_next("balance --objective OUTPUT", "balance --full")
         return
+    first = [*first_sentences(found)]
+    yield from map(Text, first)
     aims = tuple(_aims(found))
     if aims:
-        yield Text(say("{sentence}.", sentence=aims[0]))
+        without = to_say("Without that: {sentence}.")
+        yield Text(say(without if first else to_say("{sentence}."), sentence=aims[0]))
     if not alone:
         return
     lines = tuple(line for change in found.changes for line in in_short(change))
@@ -100,7 +106,8 @@ def balanced_headline(found: Balanced, alone: bool = False) -> Iterator[Block]:
     if aims[1:]:
         yield Facts(say("What else was made small"), aims[1:])
     if found.advice is not None:
-        yield from map(Text, beside_the_aim(found))
+        is_long = found.advice.beyond.mounts is not None
+        yield from (Text(line, is_detail=is_long) for line in beside_the_aim(found))
     yield from (Text(line, "worse") for line in worst_told(found))
     yield from map(Text, mounts_beside_change(found))
     details = [*beside_mounts(found)]  # of which the last are left out first

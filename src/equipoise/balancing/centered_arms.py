@@ -12,6 +12,7 @@ from typing import ClassVar
 from equipoise.balancing.policy import (
     WORTH_NAMING,
 )
+from equipoise.balancing.workshop import weight_named
 from equipoise.errors import EquipoiseError
 from equipoise.i18n import say
 from equipoise.mechanism.assembly.steps import size_of_links
@@ -33,12 +34,14 @@ class CenteredArms:
     """Arms whose centres of mass would take much off a force in joints, if they lay on their pins.
 
     links, pins : of each arm.  distance : m, the largest of a centre of mass from its pin.
+    moment : kg m, the largest first moment of an arm about its pin.
     label : of the force.  before, after : N.  gain : share of it that is gone.
     """
 
     links: tuple[str, ...]
     pins: tuple[str, ...]
     distance: float
+    moment: float
     label: str
     before: float
     after: float
@@ -48,6 +51,7 @@ class CenteredArms:
         "links": ResultOutput("arms that hang on one side of their pins"),
         "pins": ResultOutput("of each arm"),
         "distance": ResultOutput("largest, of a centre of mass from its pin", "length"),
+        "moment": ResultOutput("largest first moment of an arm about its pin", "unbalance"),
         "label": ResultOutput("the largest force in a joint"),
         "before": ResultOutput("that force", "force"),
         "after": ResultOutput("with the centres of mass on the pins", "force"),
@@ -81,7 +85,9 @@ def centered_arms_for(
     label = largest.label.said()
     links, pins, distance = tuple(arms), tuple(arms.values()), max(distances, default=0.0)
     before = abs(largest.value)
-    return CenteredArms(links, pins, distance, label, before, values[0], float(gain))
+    moment = max(machine.links[name].mass * away  # type: ignore[operator]  # weighed by now
+                 for name, away in zip(links, distances, strict=True))  # fmt: skip
+    return CenteredArms(links, pins, distance, moment, label, before, values[0], float(gain))
 
 
 def _arms_of(machine: Machine) -> dict[str, str]:
@@ -113,7 +119,8 @@ def centered_arms_sentence(found: CenteredArms) -> str:
     return say(
         "With the centre of mass of {links} on {pins}, from which it is {distance} now, {what}, "
         "would go from {before} to {after} ({gain} % less): take mass off beyond the pin, or lay "
-        "some behind it.",
+        "some behind it, up to {weight} on each.",
+        weight=weight_named(found.moment, found.distance),
         links=say(", ").join(found.links),
         pins=say(", ").join(found.pins),
         distance=told(found.distance, "length", digits=3),

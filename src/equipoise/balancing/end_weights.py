@@ -62,7 +62,7 @@ def end_sentences(ends: EndWeights, crank: str) -> Iterator[str]:
     yield say(
         "Two weights of {moment} on {crank} instead, opposite each other and {apart} apart, would "
         "take {gain} % off the couple of the rows.",
-        moment=told(ends.moment, "unbalance", "kg mm", digits=2),
+        moment=told(ends.moment, "unbalance", digits=2),
         crank=crank,
         apart=told(ends.apart, "length", digits=3),
         gain=percent(ends.gain, 0),

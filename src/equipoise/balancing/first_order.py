@@ -7,10 +7,11 @@ alone A and B are equal, half of what reciprocates each.
 
 from __future__ import annotations
 
+from cmath import phase, rect
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from math import degrees, radians
+from math import degrees, pi, radians
 from typing import ClassVar
 
 import numpy as np
@@ -21,14 +22,14 @@ from equipoise.balancing.policy import (
     WORTH_NAMING,
     WORTH_SHAFTS,
 )
-from equipoise.balancing.workshop import direction_named
+from equipoise.balancing.workshop import direction_named, weight_named
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.quantities import display, percent, told
 from equipoise.results.analysis import Analysis
 from equipoise.results.declaring import Declarations, ResultOutput
-from equipoise.results.yardsticks import FigureAssessment
+from equipoise.results.yardsticks import FigureAssessment, throw_of
 from equipoise.signals import Array
 
 CRANK_ROD_PISTON = 3
@@ -62,6 +63,7 @@ class PistonBalance:
     along, across : N, peaks of the shaking force along the stroke and across it, now.
     half_along, half_across : N, with half of what reciprocates balanced.
     moment : kg m, of the counterweight that this takes; direction : rad, in the axes of the crank.
+    radius : m, of the crank's end.
     """
 
     share: float
@@ -71,6 +73,7 @@ class PistonBalance:
     half_across: float
     moment: float
     direction: float
+    radius: float
 
     declared: ClassVar[Declarations] = {
         "share": ResultOutput("of what reciprocates that is balanced"),
@@ -80,6 +83,9 @@ class PistonBalance:
         "half_across": ResultOutput("and across it", "force"),
         "moment": ResultOutput("of the counterweight that this takes", "unbalance"),
         "direction": ResultOutput("of it in the axes of the crank", "angle"),
+        "radius": ResultOutput(
+            "of the crank's end, where a mass of moment / radius has it", "length"
+        ),
     }
 
     @property
@@ -182,8 +188,8 @@ def piston_balance_for(
     start = np.exp(1j * analysis.resolved.motion.crank_angle[0])
     # A counterweight u (complex, in the axes of the crank) shakes the frame with u w^2 e^(ia).
     weight = -first.ahead * start / np.exp(1j * crank) / analysis.resolved.motion.speed**2
-    moment, turned = float(abs(weight)), float(np.angle(weight))
-    return PistonBalance(float(share), along, across, half_along, half_across, moment, turned)
+    sizes = along, across, half_along, half_across, float(abs(weight)), float(np.angle(weight))
+    return PistonBalance(float(share), *sizes, throw_of(analysis))
 
 
 def _peaks(force: Array) -> tuple[float, float]:
@@ -217,7 +223,7 @@ def shafts_sentence(
             "With a shaft of {backward} as fast as {crank} against it besides, {gain} % of the "
             "shaking force would go.",
             crank=crank,
-            backward=told(shafts.backward, "unbalance", "kg mm", digits=2),
+            backward=told(shafts.backward, "unbalance", digits=2),
             gain=percent(shafts.gain, 0),
         )
     as_it_is = to_say(
@@ -231,8 +237,8 @@ def shafts_sentence(
     return say(
         as_changed if changed else as_it_is,
         crank=crank,
-        forward=told(shafts.forward, "unbalance", "kg mm", digits=2),
-        backward=told(shafts.backward, "unbalance", "kg mm", digits=2),
+        forward=told(shafts.forward, "unbalance", digits=2),
+        backward=told(shafts.backward, "unbalance", digits=2),
         gain=percent(shafts.gain, 0),
     )
 
@@ -265,13 +271,23 @@ def piston_sentences(found: PistonBalance, crank: str) -> Iterator[str]:
     )
     template = turning if found.share < 0 else now
     present = say(template, share=percent(found.share), crank=crank, **values)
-    choice = say(
+    added = to_say(
         "With half of it balanced, by {moment} added on {crank} at {direction} in its axes, or "
         "taken off opposite, it is {half_along} along and {half_across} across: choose by what the "
-        "mounts bear.",
-        moment=told(found.moment, "unbalance", "kg mm", digits=2),
+        "mounts bear."
+    )
+    taken = to_say(
+        "With half of it balanced, by {moment} taken off the counterweight of {crank}, at "
+        "{direction} in its axes, it is {half_along} along and {half_across} across: choose by "
+        "what the mounts bear."
+    )
+    too_much = found.share > 0.5  # a part of a counterweight that is there
+    way = found.direction + pi * too_much
+    choice = say(
+        taken if too_much else added,
+        moment=weight_named(found.moment, found.radius),
         crank=crank,
-        direction=direction_named(radians(round(degrees(found.direction)))),
+        direction=direction_named(phase(rect(1.0, radians(round(degrees(way)))))),
         **values,
     )
     yield f"{present} {choice}"

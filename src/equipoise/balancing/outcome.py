@@ -9,7 +9,7 @@ from dataclasses import replace
 from itertools import groupby
 from typing import TYPE_CHECKING
 
-from equipoise.balancing.beyond_masses import sentences_beyond
+from equipoise.balancing.beyond_masses import first_answers, sentences_beyond
 from equipoise.balancing.headlines import Advice
 from equipoise.balancing.objectives import unit_of
 from equipoise.balancing.policy import (
@@ -20,7 +20,7 @@ from equipoise.balancing.policy import (
     LEAST_NET_GAIN,
 )
 from equipoise.balancing.poor_transmission import transmission_sentence
-from equipoise.balancing.remedies import least_gain
+from equipoise.balancing.remedies import is_worth, least_gain
 from equipoise.balancing.resonant_mounts import mount_sentences, outweighs
 from equipoise.balancing.told import (
     aims_told,
@@ -49,9 +49,11 @@ def helps_told(balanced: Balanced) -> Iterator[str]:
     if not balanced.helps:
         yield from nothing_told(balanced)
         return
+    yield from first_sentences(balanced)
     for made in balanced.changes:
         first, *pieces = sentences(made)
-        yield say("{sentence}.", sentence="; ".join([first, *pieces]) if balanced.advice else first)
+        whole = balanced.advice is not None or len(pieces) > 1  # two points cannot be left out
+        yield say("{sentence}.", sentence="; ".join([first, *pieces]) if whole else first)
     yield from _heavy(balanced)
     for one, (before, after) in balanced.aims.items():
         unit = shown_in(unit_of(one, balanced.original), [before])
@@ -94,8 +96,7 @@ def _heavy(balanced: Balanced) -> Iterator[str]:
 def nothing_told(found: Balanced) -> Iterator[str]:
     """That balancing brings nothing; how small the aims are, and what is proved."""
     if found.advice is not None:
-        yield from _mounts_first(found.advice)
-        yield from reasons_to_leave(found)
+        yield from why_nothing(found)
         yield from sentences_beyond_masses(found)
         return
     for one, (before, _) in found.aims.items():
@@ -108,6 +109,15 @@ def nothing_told(found: Balanced) -> Iterator[str]:
             already=good_already(found),
         )
     yield from proof_told(found)
+
+
+def why_nothing(found: Balanced) -> Iterator[str]:
+    """What is done first where no change of masses is advised, and why none is."""
+    assert found.advice is not None
+    yield from _mounts_first(found.advice)
+    first = [*first_sentences(found)]
+    yield from first
+    yield from reasons_beside_weights(found) if first else reasons_to_leave(found)
 
 
 def good_already(found: Balanced) -> str:
@@ -169,6 +179,19 @@ def reasons_to_leave(found: Balanced) -> Iterator[str]:
         )
 
 
+def reasons_beside_weights(found: Balanced) -> Iterator[str]:
+    """Why no other mass is offered, where a weight is named first."""
+    if found.changes:
+        yield say(
+            "Nothing else that was tried is worth building: the best that fits the room that is "
+            "assumed, {remedy}, takes {gain} % off {aims}; {why}.",
+            aims=aims_told(found),
+            remedy=remedy_named(found),
+            gain=percent(max(found.gain, 0.0), 1),
+            why=why_not(found),
+        )
+
+
 def sentences_beyond_masses(found: Balanced) -> Iterator[str]:
     """What helps beyond masses, with the change that is offered, if one is; without one, other
     mounts stand before that masses are best left.
@@ -183,12 +206,28 @@ def mounts_beside_change(found: Balanced) -> Iterator[str]:
         yield from _mounts_first(found.advice)
 
 
+def first_sentences(found: Balanced) -> Iterator[str]:
+    """What helps more than the masses that were tried, and stands before them."""
+    yield from _beyond(found, first=True)
+
+
 def beside_mounts(found: Balanced) -> Iterator[str]:
-    """What helps beyond masses and mounts."""
+    """What helps beyond masses and mounts, but for what stands first."""
     if found.advice is not None:
-        machine = found.machine if found.helps else found.original
-        yield from sentences_beyond(found.advice.beyond, machine, found.helps)
+        yield from _beyond(found, first=False)
         yield from _with_more_room(found)
+
+
+def _beyond(found: Balanced, first: bool) -> Iterator[str]:
+    advice = found.advice
+    if advice is None:
+        return
+    machine = found.machine if found.helps else found.original
+    gain = found.gain if found.helps else None
+    leading = first_answers(advice.beyond, advice.before, gain)
+    for name, said in sentences_beyond(advice.beyond, machine, found.helps).items():
+        if (name in leading) == first:
+            yield from said
 
 
 def beside_the_aim(found: Balanced) -> Iterator[str]:
@@ -319,12 +358,33 @@ def why_not(found: Balanced) -> str:
         reason = say("{figures} would grow", figures=listed(figures))
     elif found.gain < least_gain(found.added_mass):
         reason = say("that is too little")
+    elif (fall := _fall_of_figure(found)) is not None:
+        reason = fall
     elif arms is not None and arms.gain >= found.gain:
         reason = say("more arms bring more")
     else:
         mass = told(found.added_mass, "mass", digits=3)
         reason = say("{mass} would be added, too much for that", mass=mass)
     return reason
+
+
+def _fall_of_figure(found: Balanced) -> str | None:
+    """That the figure that is large falls by too little in its own measure, where it does, though
+    the aim falls by enough.
+    """
+    assert found.advice is not None
+    share = max(found.added_mass, 0.0) / (found.original.mass or 1.0)
+    own = found.original.balance
+    if not is_worth(found.gain, share) or (own is not None and own.objectives):
+        return None
+    outputs = {f"{rows}{one.output}" for one in found.plan.objectives for rows in ("", ROWS)}
+    pairs = ((was, new) for was, new in _before_and_after(found.advice) if was.output in outputs)
+    for was, new in pairs:
+        gone = 1 - abs(new.value / was.value)
+        if not is_worth(found.gain, share, gone):
+            fallen = percent(max(gone, 0.0), 1)
+            return say("{figure}, falls by only {gain} %", figure=was.label.said(), gain=fallen)
+    return None
 
 
 # -- what was tried --------------------------------------------------------------------------------
@@ -338,6 +398,7 @@ def advice_blocks(found: Balanced) -> Iterator[Block]:
     if not found.helps:
         yield from map(Text, nothing_told(found))
     else:
+        yield from map(Text, first_sentences(found))
         yield from map(Text, sentences_beyond_masses(found))
     for aims, same in groupby(found.tried, key=aims_told):
         rows: tuple[tuple[Cell, ...], ...] = tuple(

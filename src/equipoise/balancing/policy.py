@@ -84,6 +84,8 @@ REACH_OF_LINK = 2.0
 REACH_OF_CRANK = 2.5
 """Over the throw of a crank that turns, as webs and discs of cranks do, within what the machine
 sweeps."""
+OVER_SOIL = 0.05
+"""m over the soil, below which no counterweight reaches: hills that are planted pass there."""
 LARGEST_PLATE = 0.6
 """m: beyond which nobody cuts a counterweight of plate."""
 THICKNESS_OF_REACH = 0.3

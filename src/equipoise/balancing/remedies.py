@@ -387,6 +387,7 @@ def with_sectors(
                     "angle": float(np.radians(shape.width)),
                     "direction": float(np.angle(moment)),
                     "thickness": shape.thickness,
+                    "density": STEEL,
                 }
             ],
         }

@@ -23,6 +23,7 @@ from equipoise.balancing.policy import (
     CLEARANCE,
     LARGEST_PLATE,
     LEAST_CLEARANCE,
+    OVER_SOIL,
     REACH_OF_CRANK,
     REACH_OF_LARGEST_LINK,
     REACH_OF_LINK,
@@ -141,7 +142,15 @@ def room_about(
     near = np.minimum(around.clearance, np.abs(own_pins) / 2)
     apart = _from_pins(around.motion)
     own_clear = np.array([apart.get(pin, near[k]) for k, pin in enumerate(names)])
-    return around.room(reach, plane=plane, own_pins=own_pins, own_clearances=own_clear)
+    known = machine.has_planes
+    passing = () if known else _nearer(around.slots(), around.pivot, float(np.max(reach)))
+    return around.room(
+        reach,
+        plane=plane,
+        own_pins=own_pins,
+        own_clearances=own_clear,
+        beside_links=dict(passing),
+    )
 
 
 def room_in_own_plane(machine: Machine, link: str, larger: float = 1.0) -> Room:
@@ -199,6 +208,11 @@ class _Surroundings:
     def bodies(self, plane: float | None) -> list[tuple[str, Array]]:
         """Links in the plane of a weight, and where places on them go."""
         return [*_bodies(self.motion, self.link, plane, self.thick)]
+
+    def slots(self) -> list[tuple[str, Array]]:
+        """Other links in whose slots something slides, and where these slots go."""
+        each = [(name, _slots(self.motion, name)) for name in self.motion.machine.links]
+        return [(name, track) for name, tracks in each if name != self.link for track in tracks]
 
     def reach(self, pins: Sequence[str], bodies: Sequence[Array]) -> Array:
         """How far out (360,) a weight may lie beside pins and places on links, m."""
@@ -365,8 +379,26 @@ def _bodies(
             across = 0.0 if body is None else body.thickness or body.outer_diameter or 0.0
             if not known or abs(there - z) < (thick + across) / 2:
                 tracks += [_track(motion, name, place) for place in outline_of(other, body)]
+        if not known or abs(other.plane - z) < thick / 2:
+            tracks += _slots(motion, name)
         if known or not _pass_over(motion, link, tracks):
             yield from ((name, track) for track in tracks)
+
+
+def _slots(motion: Motion, link: str) -> list[Array]:
+    """Where slots of a link go, as long as what slides in them needs."""
+    tracks = []
+    for one in motion.machine.sliders:
+        if one.on != link:
+            continue
+        turned = np.exp(1j * (motion.links[link].angle + one.direction))
+        seen = motion.points[one.point].place - motion.points[one.through].place
+        along = np.real(seen / turned)
+        way = np.exp(1j * one.direction)
+        start = complex(*motion.machine.links[link].points[one.through])
+        ends = (complex(start + way * end) for end in (np.min(along), np.max(along)))
+        tracks += [_track(motion, link, place) for place in _between(*ends)]
+    return tracks
 
 
 def _wheels(motion: Motion, link: str, at: str) -> tuple[list[float], list[Array]]:
@@ -428,10 +460,10 @@ def _between(one: complex, other: complex) -> Iterator[complex]:
 
 
 def _over_ground(machine: Machine, pivot: complex) -> float:
-    """Height of a pivot over the soil, m."""
+    """Height of a pivot over what stands on the soil, m."""
     if machine.planting is None:
         return np.inf
-    return max(0.0, pivot.imag - surface_of(machine))
+    return max(0.0, pivot.imag - surface_of(machine) - OVER_SOIL)
 
 
 def _reach(link: Link, at: str) -> float:

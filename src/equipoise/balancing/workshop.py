@@ -5,11 +5,11 @@ from __future__ import annotations
 from cmath import exp, phase, rect
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from math import acos, degrees, pi, sin, sqrt
+from math import acos, ceil, degrees, pi, sin, sqrt
 from typing import Any
 
 from equipoise.i18n import say
-from equipoise.mechanism.parts.balance import Weight
+from equipoise.mechanism.parts.balance import MATERIALS, Weight, material_of
 from equipoise.quantities import display, fixed, number, told
 from equipoise.results.machine_blocks import place_told
 
@@ -56,12 +56,12 @@ def pieces_of(
     if weight.shape == "ring":
         outer = sqrt(weight.inner_radius**2 + mass / (pi * plate))
         sizes = {"outer_radius": outer, "inner_radius": weight.inner_radius}
-        return [_piece("ring", mass, center, **sizes, thickness=weight.thickness)]
+        return [_piece("ring", mass, center, **sizes, **_plate(weight))]
     if weight.shape == "sector":
         return _sectors(weight, plate, mass, moment, center)
     if weight.shape == "disc":
         radius, there = sqrt(mass / (pi * plate)), center + moment / mass
-        return [_piece("disc", mass, there, radius=radius, thickness=weight.thickness)]
+        return [_piece("disc", mass, there, radius=radius, **_plate(weight))]
     return _points(mass, moment / mass, inertia, center)
 
 
@@ -106,13 +106,34 @@ def _sector(weight: Weight, mass: float, half: float, direction: float, center: 
         inner_radius=inner,
         angle=2 * half,
         direction=phase(rect(1.0, direction)),
-        thickness=weight.thickness,
+        **_plate(weight),
     )
+
+
+def _plate(weight: Weight) -> dict[str, float | None]:
+    """Thickness (m) and density (kg/m3) of what a piece is cut from."""
+    return {"thickness": weight.thickness, "density": weight.density}
 
 
 def _piece(shape: str, mass: float, there: complex, **sizes: float | None) -> Piece:
     """A piece whose centre of mass is at a place in the link's axes."""
     return {"shape": shape, "mass": mass, "place": (there.real, there.imag), **sizes}
+
+
+def covers(piece: Piece, center: complex, place: complex) -> bool:
+    """Whether a piece of plate lies where a pin is.
+
+    center : of the room, about which rings and sectors lie; as all places in the link's axes, m.
+    """
+    if piece["shape"] == "point":
+        return False
+    if piece["shape"] == "disc":
+        return bool(abs(place - complex(*piece["place"])) < piece["radius"])
+    away = place - center
+    if not piece["inner_radius"] < abs(away) < piece["outer_radius"]:
+        return False
+    aside = abs(phase(away * exp(-1j * piece.get("direction", 0.0))))
+    return bool(piece["shape"] == "ring" or aside < piece["angle"] / 2)
 
 
 # -- sentences -------------------------------------------------------------------------------------
@@ -150,13 +171,13 @@ def sentences(change: Change) -> Iterator[str]:
 
 def in_short(change: Change) -> Iterator[str]:
     """What to change: of an added mass that is cut from plate its pieces alone, which say all; of
-    another one mass and place alone.
+    one point mass its mass and place alone.
     """
     link, values = change.link, dict(change.values)
     first = next(sentences(change))
     pieces = values.get("pieces", ())
     if not pieces or any(one["shape"] == "point" for one in pieces):
-        yield first
+        yield from sentences(change) if len(pieces) > 1 else [first]
         return
     for piece in pieces:
         what = say("{link}: add a {piece}", link=link, piece=_made(piece, values["at"]))
@@ -209,12 +230,22 @@ def _taken_off(link: str, values: dict[str, Any]) -> str:
             number=values["body"],
             **words,
         )
+    diameter, depth = _hole_of(values["mass"])
     return say(
         "{link}: take {mass} off, {radius} from {point} at {direction} in the axes of the link "
-        "({moment})",
+        "({moment}), as much as a hole of {diameter} through {depth} of steel",
         moment=told(values["moment"], "unbalance", "g mm"),
+        diameter=told(diameter, "length", digits=2),
+        depth=told(depth, "length", digits=3),
         **words,
     )
+
+
+def _hole_of(mass: float) -> tuple[float, float]:
+    """Diameter, in whole millimetres, and depth of a hole in steel, about half as deep as wide."""
+    volume = mass / MATERIALS["steel"]
+    diameter = max(1e-3 * ceil(1e3 * (8 * volume / pi) ** (1 / 3)), 1e-3)
+    return diameter, 4 * volume / (pi * diameter**2)
 
 
 def _made(piece: Piece, center: str) -> str:
@@ -223,11 +254,14 @@ def _made(piece: Piece, center: str) -> str:
     sizes = ("radius", "outer_radius", "thickness")
     words = {name: told(piece[name], "length") for name in sizes if name in piece}
     words |= {"mass": told(piece["mass"], "mass"), "at": place_told(piece["place"])}
+    if shape != "point":
+        density = piece["density"]
+        words["stuff"] = say(material_of(density) or told(density, "density"))
     if shape == "point":
         return say("point mass of {mass} at {at}", **words)
     if shape == "disc":
         return say(
-            "disc of {mass}, radius {radius}, {thickness} thick, its centre at {at}",
+            "disc of {mass}, radius {radius}, {thickness} of {stuff}, its centre at {at}",
             **words,
         )
     unit = display("length", [piece["outer_radius"]])
@@ -235,12 +269,12 @@ def _made(piece: Piece, center: str) -> str:
     words["outer"] = words.pop("outer_radius")
     if shape == "ring":
         return say(
-            "ring of {mass} about {at}, radius {inner} to {outer}, {thickness} thick",
+            "ring of {mass} about {at}, radius {inner} to {outer}, {thickness} of {stuff}",
             **words,
         )
     return say(
-        "sector of {mass} about {at}, radius {inner} to {outer}, {thickness} thick, {wide} wide, "
-        "its middle at {direction}",
+        "sector of {mass} about {at}, radius {inner} to {outer}, {thickness} of {stuff}, "
+        "{wide} wide, its middle at {direction}",
         wide=direction_named(piece["angle"]),
         direction=direction_named(piece["direction"]),
         **words,
@@ -294,6 +328,16 @@ def phases_told(phases: Sequence[float]) -> str:
     *others, last = phases
     return ", ".join(
         [*(direction_named(one, named=False) for one in others), direction_named(last)]
+    )
+
+
+def weight_named(moment: float, radius: float) -> str:
+    """A first moment (kg m), and the mass that has it at a radius (m)."""
+    return say(
+        "{moment} ({mass} at {radius})",
+        moment=told(moment, "unbalance", digits=2),
+        mass=told(moment / radius, "mass", digits=2),
+        radius=told(radius, "length", digits=3),
     )
 
 

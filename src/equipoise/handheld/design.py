@@ -4,16 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from equipoise.errors import ModelError, ResponseError
+from equipoise.exposure.daily import Exposure
 from equipoise.handheld.design_plan import KEYS, DesignLimit, DesignPlan
 from equipoise.handheld.duals import Dual
 from equipoise.handheld.exposed import (
     BandFigures,
     SpeedBand,
+    days_of,
     grips,
     mean_over_band,
     values_of,
@@ -215,8 +218,16 @@ class ToolDesign(Result):
     blocks_in = "handheld.hand_blocks.design_blocks"
     pictures_in = "figures.tool_side.design_pictures"
 
+    @cached_property
+    def days(self) -> tuple[Exposure, Exposure] | None:
+        """The day of the hand that gets most, before and after; None where no work is given."""
+        each = [days_of(one, self.tool.work) for one in (self.tool, self.better)]
+        before, after = (max(day.values(), key=lambda one: one.a8, default=None) for day in each)
+        return None if before is None or after is None else (before, after)
+
     def to_dict(self) -> dict[str, Any]:
         """As plain values in SI units."""
+        a8 = (None, None) if self.days is None else tuple(one.a8 for one in self.days)
 
         def told(rows: Iterable[Before]) -> dict[str, Any]:
             return {row.name: {"before": row.before, "after": row.after} for row in rows}
@@ -231,6 +242,8 @@ class ToolDesign(Result):
             "speed": self.speed,
             "a_hv_before": self.a_hv[0],
             "a_hv_after": self.a_hv[1],
+            "a8_before": a8[0],
+            "a8_after": a8[1],
         }
 
 

@@ -192,10 +192,11 @@ def expose_tool(tool: Tool, speeds: Array, duration: float | None = None) -> Too
         told = {WORKING: operation.speed, IDLING: operation.idling, RACING: operation.racing}
     at = ((what, speed) for what, speed in told.items() if speed is not None)
     named = {what: grips(respond_tool(tool, speed)) for what, speed in at}
-    return ToolExposure(response, grips(response), named, _days(tool, work))
+    return ToolExposure(response, grips(response), named, days_of(tool, work))
 
 
-def _days(tool: Tool, work: tuple[Work, ...]) -> dict[str, Exposure]:
+def days_of(tool: Tool, work: tuple[Work, ...]) -> dict[str, Exposure]:
+    """What a day of work amounts to, by the hand that holds the tool; empty without work."""
     if not work:
         return {}
     at = grips(respond_tool(tool, np.array([part.speed for part in work])))

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from equipoise.exposure.blocks import exposure_blocks
+from equipoise.exposure.blocks import MEANING, VERDICTS, exposure_blocks, limit_broken
 from equipoise.handheld.blocks import (
     DIGITS,
     MOST_ROWS,
@@ -23,7 +23,7 @@ from equipoise.handheld.exposed import IDLING, RACING, WORKING
 from equipoise.handheld.model import PLANES
 from equipoise.handheld.studies import number_of
 from equipoise.i18n import say, to_say
-from equipoise.quantities import number
+from equipoise.quantities import brief, number
 from equipoise.results.blocks import (
     Block,
     Cell,
@@ -128,7 +128,8 @@ def _hands(found: ToolExposure) -> Table:
 
 
 def design_blocks(found: ToolDesign) -> Iterator[Block]:
-    """What to change, and what that brings: before and after."""
+    """What a day of work amounts to then; what to change, and what that brings."""
+    yield from _verdict(found)
     rows: list[tuple[Cell, ...]] = []
     for one, edge in zip(found.variables, found.edges, strict=True):
         told = say(EDGES[edge]) if edge in EDGES else ""
@@ -148,6 +149,20 @@ def design_blocks(found: ToolDesign) -> Iterator[Block]:
             searches=found.searches,
         )
     )
+
+
+def _verdict(found: ToolDesign) -> Iterator[Text]:
+    """Whether a day of work keeps below the limits with the design."""
+    if found.days is None:
+        return
+    before, after = found.days
+    values = {"before": brief(before.a8), "after": brief(after.a8)}
+    words = {"verdict": say(VERDICTS[after.verdict]), "meaning": say(MEANING[after.verdict])}
+    template = to_say(
+        "A day of work with this design: A(8) = {after} m/s² instead of {before} m/s², {verdict}; "
+        "{meaning}."
+    )
+    yield Text(say(template, **values, **words), limit_broken(after.a8))
 
 
 def _pair(one: Before, told: bool = False) -> tuple[Cell, ...]:

@@ -211,7 +211,7 @@ _SCALES: tuple[tuple[str, ...], ...] = (
     ("mrad/s^2", "rad/s^2"),
     ("ng", "ug", "mg", "g", "kg", "t"),
     ("g mm^2", "kg mm^2", "kg m^2"),
-    ("g mm", "kg m"),
+    ("g mm", "kg mm", "kg m"),
     ("nN", "uN", "mN", "N", "kN", "MN"),
     ("nN m", "uN m", "mN m", "N m", "kN m", "MN m"),
     ("mW", "W", "kW", "MW"),

@@ -53,6 +53,9 @@ LARGE_FROM: Mapping[str, float] = {"acting": 2.0, "effort": 1.5}
 """By yardstick, where it is another: a joint bears a load and what holds against it."""
 PRESSURE, SWINGING_PRESSURE, TRANSMISSION = radians(30), radians(45), radians(40)
 """Largest pressure angles of a cam, and smallest transmission angle of a dyad, rad."""
+NEARLY_DEAD = radians(20)
+"""Of a transmission angle: below it play and friction of pins decide what moves, and forces in
+joints are three times those across, so that lengths come before what shakes."""
 LOAD_SHARE = 0.25
 """Of the largest load: a force that shakes the frame is felt beside the loads from there on."""
 SHAKING = ("weight", "span", "bearings", "vibration")
@@ -144,6 +147,13 @@ class FigureAssessment:
         return self.yardstick_kind == "effort" and self.against == MEAN
 
     @property
+    def is_nearly_dead(self) -> bool:
+        """Whether it is a transmission angle of less than 20 deg."""
+        if self.yardstick_kind != "transmission":
+            return False
+        return min(self.value, pi - self.value) < NEARLY_DEAD
+
+    @property
     def large_from(self) -> float:
         """Ratio from which figures of its kind are large."""
         kind = self.yardstick_kind
@@ -228,12 +238,14 @@ def _yardstick_of_whole(output: Output) -> str:
 
 
 def verdict(entries: tuple[FigureAssessment, ...]) -> FigureAssessment | None:
-    """The figure by which a machine is judged first: a limit, else what is largest.
+    """The figure by which a machine is judged first: a limit, else a dyad that is nearly dead, else
+    what is largest.
 
     entries : from `assess`.
     """
     limits = (entry for entry in entries if entry.is_limit)
-    return next(limits, entries[0] if entries else None)
+    nearly_dead = (entry for entry in entries if entry.is_nearly_dead)
+    return next(limits, next(nearly_dead, entries[0] if entries else None))
 
 
 def sentence(entry: FigureAssessment, crank_turns: bool = True) -> str:
@@ -387,14 +399,19 @@ class _Scales:
 
     @cached_property
     def throw(self) -> float:
-        """From the driven link's pin to its farthest point; half the largest link without one."""
-        points = self.machine.links[self.machine.drive.link].points
-        pivot = complex(*points[self.analysis.motion.linkage.pivot])
-        reach = max(abs(complex(*point) - pivot) for point in points.values())
-        return reach or size_of_links(self.machine) / 2
+        return throw_of(self.analysis)
 
 
 LINKS = to_say("the weight of the moving links")
+
+
+def throw_of(analysis: Analysis) -> float:
+    """From the driven link's pin to its farthest point, m; half the largest link without one."""
+    machine = analysis.machine
+    points = machine.links[machine.drive.link].points
+    pivot = complex(*points[analysis.motion.linkage.pivot])
+    reach = max(abs(complex(*point) - pivot) for point in points.values())
+    return reach or size_of_links(machine) / 2
 
 
 def _is_of(name: str, group: str, what: str) -> bool:

@@ -252,9 +252,11 @@ def test_what_more_room_would_allow_is_said() -> None:
 
 @pytest.mark.parametrize(("name", "mass", "gain"), [("kim-chung-b", 0.298, 0.209)])
 def test_a_longer_arm_is_taken_rather_than_more_mass(name: str, mass: float, gain: float) -> None:
-    """298 g within 40 mm took 20.9 % off; as much mass does three times that farther out."""
+    """298 g within 40 mm took 20.9 % off; as much mass does twice that as far out as 50 mm over the
+    soil allow.
+    """
     found = advise(bare(name))
-    assert found.helps and found.added_mass / found.gain < 0.4 * mass / gain
+    assert found.helps and found.added_mass / found.gain < 0.55 * mass / gain
 
 
 def test_gears_and_belts_take_room_away() -> None:

@@ -15,10 +15,13 @@ from equipoise.handheld import design
 from equipoise.handheld.design import ToolDesign, design_tool
 from equipoise.handheld.design_plan import DesignLimit, DesignPlan, DesignVariable
 from equipoise.handheld.exposed import grips
-from equipoise.handheld.model import Absorber, Excitation, Hand, Harness, Station, Tool
+from equipoise.handheld.hand_blocks import design_blocks
+from equipoise.handheld.model import Absorber, Excitation, Hand, Harness, Station, Tool, Work
 from equipoise.handheld.response import respond_tool
 from equipoise.handheld.shaft import Section, Shaft
 from equipoise.handheld.studies import changed, number_of
+from equipoise.quantities import brief
+from equipoise.results.blocks import Text
 from unit.handheld.samples import both
 
 Array = np.ndarray[Any, Any]
@@ -163,6 +166,35 @@ def test_it_is_better_and_within_its_limits(name: str) -> None:
             assert told[part][row.name] == {"before": row.before, "after": row.after}
     np.testing.assert_array_equal([told["a_hv_before"], told["a_hv_after"]], found.a_hv)
     assert list(told["edges"].values()) == list(found.edges)
+
+
+@pytest.mark.parametrize(
+    ("hours", "verdict"),
+    [
+        (0.25, "below the action value"),
+        (8.0, "above the action value"),
+        (24.0, "above the limit value"),
+    ],
+)
+def test_a_design_is_judged_by_a_day_of_work(hours: float, verdict: str) -> None:
+    """By the equation of ISO 5349-1 of the hand that gets most at the speed of the work."""
+    plain = designed("absorber")
+    work = (Work("mowing", 760.0, 3600 * hours),)
+    found = replace(plain, tool=replace(plain.tool, work=work))
+    assert found.days is not None
+    told, speed = found.to_dict(), np.array([760.0])
+    for key, tool in (("a8_before", found.tool), ("a8_after", found.better)):
+        most = max(float(one[0]) for one in curves(tool, speed).values())
+        assert told[key] == pytest.approx(most * np.sqrt(hours / 8))
+    first = next(iter(design_blocks(found)))
+    assert isinstance(first, Text)
+    assert (
+        f"A(8) = {brief(told['a8_after'])} m/s² instead of {brief(told['a8_before'])}" in first.text
+    )
+    assert verdict in first.text
+    assert (first.emphasis == "broken") == (verdict == "above the limit value")
+    assert plain.days is None and plain.to_dict()["a8_after"] is None
+    assert not isinstance(next(iter(design_blocks(plain))), Text)
 
 
 @problems

@@ -200,6 +200,25 @@ def test_a_machine_without_masses_is_judged_by_its_motion() -> None:
     assert texts[0].startswith("Transmission angle")
 
 
+def test_a_nearly_dead_dyad_is_judged_before_what_shakes(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The machine of `new` with its pins in the frame 9 mm apart turns as a drag link, 17 deg from
+    where it jams; at 90 mm it is a good crank-rocker.
+    """
+    file = tmp_path / "machine.toml"
+    assert run(["new", str(file)]) == 0
+    text = file.read_text("utf-8")
+    assert text.count('distance = "90 mm"') == 1
+    for distance, first in (("9 mm", "Transmission angle at C, smallest: 17.1"),
+                            ("90 mm", "Shaking")):  # fmt: skip
+        file.write_text(text.replace('"90 mm"', f'"{distance}"'), "utf-8")
+        capsys.readouterr()
+        assert printed(capsys, "analyze", str(file))[1].startswith(first)
+    (wiper,) = (file for file in ADVISED if file.endswith("wiper.toml"))
+    assert printed(capsys, "analyze", wiper)[1].startswith("Transmission angle at C, largest: 162")
+
+
 def test_what_stands_first_has_every_language() -> None:
     for name in ("hydraulic-loader", "cam-pusher", "yamashita-rig"):
         analysis = eq.analyze(eq.load(name), 90)
