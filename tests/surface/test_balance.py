@@ -17,6 +17,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.balancing.objectives import measured
+from equipoise.cli.plan import read_objective
 from surface.running import (
     cells,
     changed,
@@ -469,3 +470,18 @@ def test_nothing_is_printed_beside_a_broken_pipe() -> None:
     words = " ".join(f"'{word}'" for word in command("balance", "balance-crank"))
     done = subprocess.run(f"{words} | head -1", shell=True, capture_output=True, check=True)
     assert done.stderr == b""
+
+
+@pytest.mark.parametrize("row", ["drive_torque", "rows.drive_torque"])
+def test_outputs_of_several_rows_are_taken_by_the_names_that_results_have(row: str) -> None:
+    """What `analyze` calls rows.drive_torque is the drive_torque that balancing makes small."""
+    words = ("--phases", "--objective", f"peak {row}", "--limit", f"peak {row} <= 100 %")
+    text = succeeded(equipoise("balance", "four-row-transplanter", *words, "--json"))
+    before = json.loads(text)["objectives"]["peak of drive_torque"]["before"]
+    summary = eq.analyze(eq.load("four-row-transplanter"), acceleration=0.0).summary
+    assert before == pytest.approx(summary["rows.drive_torque"].peak, rel=1e-9)
+
+
+def test_an_output_of_a_link_of_two_words_is_an_objective() -> None:
+    aim = read_objective("--objective", "peak drives.left crank.torque orders 1")
+    assert (aim.output, aim.measure, aim.orders) == ("drives.left crank.torque", "peak", (1.0,))

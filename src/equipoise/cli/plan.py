@@ -230,7 +230,7 @@ def read_objective(option: str, text: str) -> Objective:
     head, *rest = re.split(rf"\s+({WORDS})\s+", text.strip())
     words = head.split()
     measure = words.pop(0) if words and words[0] in MEASURES else "rms"
-    if words and words[0].startswith("joints."):  # of sliders, such as joints.piston on frame
+    if words and "." in words[0]:  # such as joints.piston on frame, drives.left crank.torque
         words = [" ".join(words)]
     if len(words) != 1:
         raise UsageError(f"{option}: got {text!r}; give such as {EXAMPLE}")

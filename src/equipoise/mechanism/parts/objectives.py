@@ -97,6 +97,11 @@ class Objective(Frozen):
         example=["150 rpm", "240 rpm"],
     )
 
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        # Of several rows an output is that of all of them, which results name ``rows.OUTPUT``.
+        object.__setattr__(self, "output", str(self.output).removeprefix(ROWS))
+
     @property
     def name(self) -> str:
         """How it is called in results, such as ``rms of shaking_force.y``."""
