@@ -136,8 +136,10 @@ async function foreground(): Promise<void> {
   const early: string[] = [];
   self.onmessage = ({ data }: MessageEvent<string>) => early.push(data);
   const [python, page] = (await start("Foreground")) as [Pyodide, Foreground];
-  let other = begin();
-  let [busy, timer] = [false, 0];
+  /** It starts once the first machine is shown, so that this one has the processor to itself until then. */
+  let other: Worker | null = null;
+  const hand = (task: Uint8Array): void => (other ??= begin()).postMessage({ task });
+  let [busy, timer, shown] = [false, 0, false];
 
   function begin(): Worker {
     const worker = new Worker(self.location.href, { type: "module", name: "background" });
@@ -154,6 +156,7 @@ async function foreground(): Promise<void> {
   function answer(reply: Bytes): void {
     const bytes = own(reply);
     post(bytes, bytes);
+    shown = true;
   }
 
   async function work(): Promise<void> {
@@ -162,7 +165,7 @@ async function foreground(): Promise<void> {
     clearTimeout(timer);
     for (;;) {
       const reply = page.step();
-      while (page.tasks.length) other.postMessage({ task: own(page.tasks.popleft()) });
+      while (page.tasks.length) hand(own(page.tasks.popleft()));
       if (reply) answer(reply);
       else if (page.missing) {
         const module = page.missing;
@@ -171,15 +174,16 @@ async function foreground(): Promise<void> {
       await others();
     }
     busy = false;
+    if (shown) other ??= begin();
     timer = self.setTimeout(() => {
       page.rest();
-      while (page.tasks.length) other.postMessage({ task: own(page.tasks.popleft()) });
+      while (page.tasks.length) hand(own(page.tasks.popleft()));
     }, PAUSE);
   }
 
   self.onmessage = ({ data }: MessageEvent<string>) => {
     if (data === "cancel") {
-      other.terminate();
+      other?.terminate();
       other = begin();
       post({ type: "loading", what: null });
       const refusal = page.cancel();
