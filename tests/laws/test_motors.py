@@ -334,6 +334,26 @@ def test_a_servo_motor_that_holds_its_angle_does_not_fall_behind() -> None:
     assert slower.last_cycle.mean_speed == pytest.approx(20.0 - 4.0 / (RATIO**2 * 0.5), rel=1e-2)
 
 
+def test_the_carton_pusher_starts_and_is_stopped() -> None:
+    """As its file says: by the ramp to 60 rpm, whatever the load; then the brake takes what moves.
+
+    The crank lags behind the ramp by half of its time, as far as the angle does not swing.
+    """
+    found = eq.run(eq.load("carton-pusher"))
+    assert [event.kind for event in found.events] == ["off", "standstill"]
+    off = found.events[0]
+    assert off.crank_angle == pytest.approx(20 * pi)
+    assert off.time == pytest.approx(10.0 + 0.5 * 1800 * pi / 30 / 600, abs=0.05)
+    assert found.stopping is not None
+    assert found.work["brake"][-1] == pytest.approx(-10.0 * found.stopping[1] * 2 * pi, rel=1e-9)
+    assert found.last_cycle is not None
+    assert found.last_cycle.mean_speed == pytest.approx(2 * pi, rel=1e-3)
+    # 120 N over the way of the pusher from 262 to 352 deg, ten times
+    ends = eq.move(found.machine, np.radians([262.0, 352.0])).points["F"].x
+    assert found.work["loads"][-1] == pytest.approx(-1200 * (ends[1] - ends[0]), rel=1e-9)
+    assert found.energy_error < 1e-9
+
+
 def test_a_servo_motor_waits_for_its_ramp() -> None:
     """A weight on a level crank holds it until the torque is large enough, or for ever."""
     ramp = replace(SERVO, acceleration=60.0, speed_gain=0.1)

@@ -49,6 +49,17 @@ def test_the_state_at_the_end() -> None:
     assert found.energy_error < 1e-9
 
 
+def test_the_file_holds_its_own_run() -> None:
+    """Without options, and each option in the place of what the file says."""
+    machine = eq.load("squeezing-mechanism")
+    found = eq.run(machine)
+    assert found.end.kind == "time"
+    assert found.end.time == 0.03
+    assert found.crank_angle[-1] == pytest.approx(15.81077119629904, rel=1e-9)
+    assert eq.run(machine, turns=0.5).turned == pytest.approx(0.5)
+    assert eq.run(machine, 1e-3, angle=0.0).crank_angle[0] == 0.0
+
+
 def test_forces_in_the_pins_at_the_end() -> None:
     """The drive's torque of an analysis in this state is the motor's."""
     found = andrews()

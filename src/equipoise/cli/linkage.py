@@ -294,6 +294,8 @@ def run(
 ) -> None:
     """How a machine on a fixed frame runs when its motor, weight, springs and loads decide.
 
+    What no option says is as in the table [run] of the file.
+
     Parameters
     ----------
     duration
@@ -322,7 +324,7 @@ def run(
             duration,
             turns=turns,
             speed=speed,
-            angle=angle or 0.0,
+            angle=angle,
             off=off,
             off_turns=off_turns,
             fluctuation=fluctuation,

@@ -13,6 +13,7 @@ import numpy as np
 
 from equipoise.errors import UsageError
 from equipoise.mechanism.parts.machine import Machine
+from equipoise.mechanism.parts.run_plans import MOST_TURNS, RunPlan
 from equipoise.quantities import Dimension, in_si
 from equipoise.results.result import Result
 from equipoise.running.drivers import Driver
@@ -21,7 +22,6 @@ from equipoise.running.flywheel import Flywheel, share_of_mean, size_flywheel
 from equipoise.running.integration import ELECTRIC, Event, Instant, Integration, Limits
 from equipoise.signals import Array
 
-MOST_TURNS = 10_000
 TURNS = 300
 """Turns after which a run ends where nothing else ends it."""
 STARTED = 0.95
@@ -250,14 +250,16 @@ def run(
     *,
     turns: float | None = None,
     speed: float | str | None = None,
-    angle: float | str = 0.0,
+    angle: float | str | None = None,
     off: float | str | None = None,
     off_turns: float | None = None,
     fluctuation: float | str | None = None,
 ) -> Run:
     """Let a machine run on a fixed frame: its crank follows from motor, weight, springs and loads.
 
-    The motor's curve holds as it is, whatever its `mean_speed`.
+    The motor's curve holds as it is, whatever its `mean_speed`.  What is not given is that of the
+    machine's `run`, where it has one; `duration` and `turns` replace its end, `off` and `off_turns`
+    its switching off, each pair together.
 
     Parameters
     ----------
@@ -266,7 +268,7 @@ def run(
     turns : of the crank, after which the run ends.
     speed : of the crank at the start, rad/s, or a text such as ``"300 rpm"``; 0 with a motor, that
         of the drive without one, where not given.
-    angle : crank angle at the start, rad, or a text.
+    angle : crank angle at the start, rad, or a text; 0 where not given.
     off : time at which the motor is switched off, s, or a text.
     off_turns : turns of the crank from the start after which it is.
     fluctuation : highest less lowest speed over the mean for which a flywheel is sized; a share of
@@ -279,6 +281,15 @@ def run(
     UsageError : a value cannot be used, or the machine is not driven by one crank.
     ResponseError : the motion cannot be followed.
     """
+    plan = machine.run or RunPlan()
+    if duration is None and turns is None:
+        duration, turns = plan.duration, plan.turns
+    if off is None and off_turns is None:
+        off, off_turns = plan.off, plan.off_turns
+    speed, angle = (
+        set_value if given is None else given
+        for given, set_value in ((speed, plan.speed), (angle, plan.angle))
+    )
     positive = {"duration": duration, "turns": turns, "off": off, "off_turns": off_turns}
     dimensions: dict[str, Dimension] = {"duration": "time", "off": "time"}
     sizes = {}

@@ -43,6 +43,7 @@ from equipoise.mechanism.parts.induction_motors import InductionMotor
 from equipoise.mechanism.parts.machine import Frame, Machine, Position
 from equipoise.mechanism.parts.racks import Rack
 from equipoise.mechanism.parts.rolling_bearings import RollingBearing
+from equipoise.mechanism.parts.run_plans import RunPlan
 from equipoise.mechanism.parts.sections import LinkSection
 from equipoise.mechanism.parts.servo_motors import ServoMotor
 from equipoise.mechanism.parts.springs import Spring
@@ -76,7 +77,7 @@ DOCUMENTED: dict[str, type[Frozen]] = {
         force_elements.Load, Spring, TorsionSpring, Position, field.Planting,
         field.PlantingArm,
         field.Soil, support.Support,
-        mounts.Mount, support.Row, balance.Balance, weights.CenterMove,
+        mounts.Mount, support.Row, RunPlan, balance.Balance, weights.CenterMove,
         weights.AddedMass, weights.Weight, counterweights.GearedWeight,
         counterweights.BalanceShafts,
         balance.SpringChoice, balance.Phases, objectives.Objective, objectives.Limit, tool.Tool,

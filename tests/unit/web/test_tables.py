@@ -177,6 +177,28 @@ def test_a_spring_is_added_changed_and_deleted_each_as_one_step() -> None:
     assert back.field("springs[1].free_length")["value"] == 0.03
 
 
+def test_servo_motor_brake_and_run_are_changed_by_their_forms() -> None:
+    """Of the example that has all three; the run of the machine on the page follows the file's."""
+    session, _ = opened("carton-pusher")
+    told = tables(session)
+    (servo,) = group(told, "drive.motor.servo")["entries"]
+    assert servo["values"]["torque_limit"] == "1.9 N m"
+    changed = {**servo["values"], "torque_limit": "2.5 N m", "acceleration": "900 rad/s^2"}
+    enter(session, ["drive", "motor", "servo"], changed)
+    (drive,) = group(told, "drive")["entries"]
+    assert drive["values"]["brake"] == "10 N m"
+    enter(session, ["drive"], {**drive["values"], "brake": "12 N m"})
+    enter(session, ["run"], {"turns": 3})
+    machine = session.shown.design.own
+    assert machine.drive.motor is not None and machine.drive.motor.servo is not None
+    assert machine.drive.motor.servo.torque_limit == 2.5
+    assert machine.drive.motor.servo.acceleration == 900.0
+    assert machine.drive.brake == 12.0
+    assert eq.run(machine).turned == pytest.approx(3.0)
+    enter(session, ["run"], None)
+    assert session.shown.design.own.run is None
+
+
 def test_mounts_have_names_which_can_change() -> None:
     session, _ = opened("yamashita-rig")
     mounts = session.shown.design.own.support.mounts  # type: ignore[union-attr]

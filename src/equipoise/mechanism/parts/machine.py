@@ -76,6 +76,7 @@ from equipoise.mechanism.parts.links import (
 from equipoise.mechanism.parts.parameters import PARAMETERS
 from equipoise.mechanism.parts.places import Frame, Position
 from equipoise.mechanism.parts.racks import Rack
+from equipoise.mechanism.parts.run_plans import RunPlan
 from equipoise.mechanism.parts.shown_units import ShownUnits
 from equipoise.mechanism.parts.sliders import Bearing, Slider
 from equipoise.mechanism.parts.springs import Spring
@@ -110,7 +111,7 @@ MOVING = ("link", "motion", "between", "slider", "stroke", "start")
 """What of the drive sets how the links move."""
 BESIDE = ("bodies", "plane", "planes")
 """Keys of a link that change nothing about the motion, beside its mass."""
-STILL = {"planting", "support", "rows", "bearings"}
+STILL = {"planting", "support", "rows", "bearings", "run"}
 """Keys, beside those of force elements, under which no number changes the motion."""
 STANDARD_GRAVITY: Vector = (0.0, -9.80665)
 
@@ -124,7 +125,7 @@ class Machine(Driven, Displayed, Frozen):
                   "drives", "frame", "links", "constraints", "bearings", "assembly", "sliders",
                   "circular_slots", "curved_slots", "gears", "belts", "racks", "cams", "loads",
                   "springs", "torsion_springs", "joints", "position", "planting", "support", "rows",
-                  "balance")  # fmt: skip
+                  "run", "balance")  # fmt: skip
 
     title: str = key(Wording(), "shown in reports", example="Slider-crank")
     drive: Drive = key(Table(Drive), "the link that is driven")
@@ -207,6 +208,10 @@ class Machine(Driven, Displayed, Frozen):
         "what lines of bodies have to be to each other while lengths are edited",
         default=(),
     )
+    run: RunPlan | None = key(
+        Table(RunPlan), "start and end of `equipoise run`, where its options say nothing",
+        default=None,
+    )  # fmt: skip
     expressions: Mapping[str, str] = inside(Named(Text()), factory=dict)
 
     @classmethod
