@@ -19,8 +19,11 @@ HERE = Path(__file__).parent
 DOCS = HERE.parent
 ROOT = DOCS.parent
 SOURCE, BUILT = ROOT / "build" / "docs-source", ROOT / "build" / "docs"
-AROUND = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "SECURITY.md")
-"""Pages of the repository that the site has too."""
+AROUND = {
+    **{name: name for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "SECURITY.md")},
+    "src/equipoise/errors.md": "errors.md",
+}
+"""Pages of the repository that the site has too, and what they are called there."""
 MADE = {"examples": "scripts.md"}
 """Folders of the repository that have a page here."""
 GALLERY = {"en": "examples.md", "ja": "ja/examples.md", "ko": "ko/examples.md"}
@@ -49,7 +52,7 @@ def linked(page: Path) -> str:
         target = Path(os.path.normpath(page.parent / path))
         name = target.relative_to(ROOT).as_posix()
         if name.startswith("docs/") or name in AROUND:
-            inside = name.removeprefix("docs/")
+            inside = AROUND.get(name, name).removeprefix("docs/")
         elif not target.exists():
             raise FileNotFoundError(f"{page}: there is no {path}")
         elif name not in MADE:
@@ -73,7 +76,7 @@ def lay_out(source: Path) -> None:
 
     pages = {
         **{page.relative_to(DOCS).as_posix(): linked(page) for page in DOCS.rglob("*.md")},
-        **{name: linked(ROOT / name) for name in AROUND},
+        **{name: linked(ROOT / path) for path, name in AROUND.items()},
         **names(),
         "commands.md": commands(),
         "scripts.md": scripts(),

@@ -20,7 +20,7 @@ import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib import import_module
-from typing import Any, Self
+from typing import Any, ClassVar, Self
 from unicodedata import normalize
 
 from equipoise.i18n import Note, in_english, said, speaking, spoken
@@ -50,7 +50,11 @@ class EquipoiseError(Exception):
     `str(error)` has the lines that can be pasted into the file, where there are some.
     """
 
+    usual_topic: ClassVar[str] = ""
+    """What `equipoise explain` knows about such errors, where the sentence has no topic itself."""
+
     _paste: Paste | None = None
+    _topic: str = ""
 
     def __str__(self) -> str:
         return "\n\n".join(filter(None, [self.sentence, "\n".join(self.lines)]))
@@ -71,6 +75,13 @@ class EquipoiseError(Exception):
         return () if self.paste is None else self.paste.lines
 
     @property
+    def topic(self) -> str:
+        """By which name `equipoise explain` has more about it: a heading of the page of errors, or
+        a place in a file; empty if nothing.
+        """
+        return self._topic or topic_of(self.note) or self.usual_topic
+
+    @property
     def sentence(self) -> Note:
         """The sentence, to be said in any language, as it stands above `lines`."""
         return self.note if self.paste is None else self.paste.below(self.note)
@@ -89,6 +100,15 @@ class EquipoiseError(Exception):
         """The same error, with lines that can be pasted into the file."""
         self._paste = paste
         return self
+
+    def with_topic(self, topic: str) -> Self:
+        """The same error, about which `equipoise explain` has more by that name."""
+        self._topic = topic
+        return self
+
+    def like(self, error: EquipoiseError) -> Self:
+        """The same error, with the lines and the topic of the one that it came from."""
+        return self.with_paste(error.paste).with_topic(error.topic)
 
 
 class ModelError(EquipoiseError):
@@ -111,6 +131,10 @@ class ModelError(EquipoiseError):
         return at_place(place, self.what) if place else noted(self.what)
 
     @property
+    def topic(self) -> str:
+        return super().topic or ".".join(self.keys)
+
+    @property
     def keys(self) -> tuple[str, ...]:
         """The place without numbers in lists: ``("balance", "moves", "link")``."""
         return tuple(part.partition("[")[0] for part in self.where.split("."))
@@ -126,12 +150,20 @@ class ModelError(EquipoiseError):
 
     def at(self, where: str, source: str = "") -> ModelError:
         """The same error at another place."""
-        return type(self)(where, self.what, source).with_paste(self.paste)
+        same = type(self)(where, self.what, source).with_paste(self.paste)
+        return same.with_topic(self._topic)
 
 
 def at_place(place: Note | str, what: Note | str) -> Note:
     """A sentence behind the place, file or option that it is about."""
     return Note("{place}: {what}", place=place, what=noted(what))
+
+
+def topic_of(sentence: object) -> str:
+    """The topic of a sentence, or of the first one in it that has any."""
+    if not isinstance(sentence, Note):
+        return ""
+    return sentence.topic or next(filter(None, map(topic_of, sentence.values.values())), "")
 
 
 def noted(sentence: Note | str) -> Note:
@@ -142,6 +174,8 @@ def noted(sentence: Note | str) -> Note:
 class MobilityError(EquipoiseError):
     """The number of free motions is not one."""
 
+    usual_topic = "the-linkage-has-several-free-motions"
+
 
 class MotionError(EquipoiseError):
     """The linkage cannot be closed, or not at the crank angles asked for.
@@ -150,6 +184,7 @@ class MotionError(EquipoiseError):
         read, since most errors of a study are only counted.
     """
 
+    usual_topic = "the-crank-cannot-turn-fully"
     explain: Callable[[], MotionError] | None = None
 
     def __init__(self, message: Note | str, *, reason: Note | str = "") -> None:
@@ -201,6 +236,8 @@ class ChangePointError(MotionError):
     joint : inner joint of a dyad that closes a four-bar of equal opposite sides there, else "".
     """
 
+    usual_topic = "change-point"
+
     def __init__(
         self,
         message: Note | str,
@@ -217,13 +254,19 @@ class ChangePointError(MotionError):
 class MassError(EquipoiseError):
     """Forces need mass, centre of mass and inertia of every link."""
 
+    usual_topic = "masses-are-missing"
+
 
 class LockError(EquipoiseError):
     """Friction in its joints locks a machine, whatever turns its drive."""
 
+    usual_topic = "friction-locks-the-machine"
+
 
 class ResponseError(EquipoiseError):
     """The machine on its support, or with its motor, has no steady state that could be found."""
+
+    usual_topic = "there-is-no-steady-state"
 
 
 class UsageError(EquipoiseError):
@@ -234,7 +277,7 @@ MOST_SHOWN = 20
 """Names in an error."""
 
 
-def unknown(given: str, known: Iterable[str], kind: str) -> str:
+def unknown(given: str, known: Iterable[str], kind: str) -> Note:
     """Say that a name is unknown, and what would be right."""
     names = list(known)
     near = meant(given, names)

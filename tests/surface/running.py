@@ -110,6 +110,8 @@ def refused(result: Result) -> str:
     assert result.out == ""
     assert result.err.endswith("\n")
     line, *paste = result.err.splitlines()
+    if paste and paste[-1].startswith("more: equipoise explain "):
+        paste.pop()
     assert not paste or tomllib.loads("\n".join(paste))
     assert line.startswith("equipoise: ")
     assert line.isprintable()

@@ -338,7 +338,9 @@ def test_a_crank_that_cannot_turn(text: str) -> None:
     (line,) = said
     assert line.startswith(("the crank cannot turn fully: it stops at", "change point at crank"))
     assert set(os.listdir()) == before
-    (lines_to_paste,) = {one.err.partition("\n")[2].strip() for one in told}
+    below = {one.err.partition("\n")[2].strip() for one in told}
+    (lines_to_paste,) = {lines.partition("\n# more: equipoise explain ")[0] for lines in below}
+    assert len(below) == 1
     with pytest.raises(MotionError) as caught:
         eq.analyze(eq.load("bad.toml"))
     assert str(caught.value).split("\n\n") == [line, lines_to_paste]

@@ -54,7 +54,19 @@ from surface.running import (
 ROOT = Path(__file__).parents[2]
 COMMANDS = (
     *["analyze", "animate", "balance", "best", "check", "completion", "decay", "examples"],
-    *["export", "exposure", "import", "mcp", "modes", "new", "plant", "plot", "report", "respond"],
+    *[
+        "explain",
+        "export",
+        "exposure",
+        "import",
+        "mcp",
+        "modes",
+        "new",
+        "plant",
+        "plot",
+        "report",
+        "respond",
+    ],
     *["resume", "run", "schema", "search", "serve", "simulate", "site", "sweep", "tolerance"],
     "tool",
 )
@@ -158,6 +170,7 @@ OPTIONS = {
     "completion": ["SHELL"],
     "decay": ["CSV", "--stiffness", "--arm", "--spring-arm", "--confidence", *DRAWN],
     "examples": [],
+    "explain": ["TOPIC"],
     "export": ["FILE", "--out", "--format", "--at", "--balanced", "--kept"],
     "exposure": [
         *["INPUT", "--duration", "--idle", "--racing", "--bands", "--weighted", "--single-axis"],

@@ -3,14 +3,22 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from functools import partial
+from importlib.resources import files
 from pathlib import Path
 
 import pytest
 
-from equipoise import EquipoiseError, analyze, loads, respond
+import equipoise
+from equipoise import analyze, loads, respond
+from equipoise.errors import EquipoiseError, ModelError, UsageError
+from equipoise.keys import all_keys
+from equipoise.schema.topics import errors, known_topic, tables
+from surface.running import equipoise as equipoise_runs
+from surface.running import refused, succeeded, written
 
-PAGE = (Path(__file__).parents[2] / "docs" / "errors.md").read_text(encoding="utf-8")
+PAGE = files("equipoise").joinpath("errors.md").read_text(encoding="utf-8")
 MODEL, *SECTIONS = PAGE.split("\n## ")
 BASE = re.findall(r"```toml\n(.*?)```", MODEL, re.DOTALL)[0]
 Change = tuple[str, str]
@@ -35,6 +43,33 @@ joint = "joints.B"
 radius = "30 mm"
 friction = 1
 """
+ABOVE = 'points.R = ["100 mm", "60 mm"]'
+STRUT = """
+[links.strut]
+points = ["R", "B"]
+length = "40 mm"
+"""
+AXLE = 'points.W = ["0 mm", "60 mm"]'
+GEARED = """
+[links.wheel]
+points = ["W", "V"]
+length = "10 mm"
+[[gears]]
+between = ["crank", "wheel"]
+ratio = 0.123457
+"""
+UNDAMPED = SUPPORT.replace("150 N s/m", "0 N s/m").replace("20 kN/m", "1008 N/m")
+MOTOR = """
+[drive.motor]
+no_load_speed = "66 rpm"
+stall_torque = "20 N m"
+"""
+LOADED = """
+[[loads]]
+link = "rocker"
+point = "B"
+force = ["-9 kN", "0 N"]
+"""
 CASES: dict[str, tuple[Callable[..., object], list[Change], list[Change]]] = {
     "The crank cannot turn fully": (
         analyze,
@@ -50,6 +85,22 @@ CASES: dict[str, tuple[Callable[..., object], list[Change], list[Change]]] = {
         analyze,
         [('points = ["Q", "B"]', 'points = ["Q", "C"]')],
         [('points = ["Q", "C"]', 'points = ["Q", "B"]')],
+    ),
+    "The linkage has no free motion": (
+        analyze,
+        [
+            ('points.Q = ["100 mm", "0 mm"]', 'points.Q = ["100 mm", "0 mm"]\n' + ABOVE),
+            ("[assembly]", STRUT + "[assembly]"),
+        ],
+        [(ABOVE, ""), (STRUT, "")],
+    ),
+    "The motion does not repeat": (
+        analyze,
+        [
+            ('points.Q = ["100 mm", "0 mm"]', 'points.Q = ["100 mm", "0 mm"]\n' + AXLE),
+            ("[assembly]", GEARED + "[assembly]"),
+        ],
+        [("ratio = 0.123457", "teeth = [65, 8]")],
     ),
     "Friction locks the machine": (
         analyze,
@@ -86,6 +137,20 @@ CASES: dict[str, tuple[Callable[..., object], list[Change], list[Change]]] = {
         [],
         [*WEIGHED, ("[assembly]", SUPPORT + "[assembly]")],
     ),
+    "There is no steady state": (
+        respond,
+        [*WEIGHED, ('"60 rpm"', '"4 rad/s"'), ("[assembly]", UNDAMPED + "[assembly]")],
+        [('damping = "0 N s/m"', 'damping = "10 N s/m"')],
+    ),
+    "The motor stalls": (
+        partial(respond, drive=True),
+        [
+            *((old, new.replace("1 kg m^2", "0.001 kg m^2")) for old, new in WEIGHED),
+            ('speed = "60 rpm"', 'speed = "60 rpm"\n' + MOTOR),
+            ("[assembly]", LOADED + "[assembly]"),
+        ],
+        [('"20 N m"', '"500 N m"')],
+    ),
 }
 """Heading -> what is done with the machine, what leads to the error, what cures it."""
 
@@ -112,8 +177,84 @@ def test_the_message_is_printed_and_its_cure_accepted(section: str) -> None:
     with pytest.raises(EquipoiseError) as error:
         command(loads(given, "links.toml"))
     printed = re.findall(r"```text\n(.*?)\n```", section, re.DOTALL)[0]
+    assert errors()[error.value.topic].title == heading
     said, shown = (
         text.removeprefix("links.toml: ").split() for text in (str(error.value), printed)
     )
     assert said == shown
     command(loads(changed(given, cure), "links.toml"))
+
+
+# -- from a message to its page --------------------------------------------------------------------
+
+
+def below(of: type[EquipoiseError]) -> Iterator[type[EquipoiseError]]:
+    """A class of errors, and all that are made of it."""
+    yield of
+    for one in of.__subclasses__():
+        yield from below(one)
+
+
+def test_every_class_of_errors_has_a_page() -> None:
+    """But for those whose sentence is about an argument, or whose place in a file is the topic."""
+    general = {EquipoiseError, *below(ModelError), *below(UsageError)}
+    kinds = {of for of in below(EquipoiseError) if of.__module__ == "equipoise.errors"} - general
+    assert len(kinds) > 5
+    assert {of.__name__ for of in kinds if of.usual_topic not in errors()} == set()
+
+
+NAMED = re.compile(
+    r'(?:about|with_topic)\("([a-z-]+)"\)|(?m:^ *)(?:usual_topic|TOPIC|UNKNOWN|REPEAT) = "(.+)"'
+)
+"""A topic in the package."""
+
+
+def test_every_topic_of_a_sentence_is_on_the_page_and_every_page_is_reached() -> None:
+    """Wherever one is named in the package."""
+    package = Path(equipoise.__file__).parent
+    topics = {
+        "".join(found)
+        for file in package.rglob("*.py")
+        for found in NAMED.findall(file.read_text(encoding="utf-8"))
+    }
+    assert topics == {*errors()}
+
+
+@pytest.mark.parametrize("heading", [name for name, (does, *_) in CASES.items() if does is analyze])
+def test_the_command_line_leads_to_the_page(heading: str) -> None:
+    """Its last line is a command that prints the message and its cure."""
+    _, wrong, _ = CASES[heading]
+    result = equipoise_runs("analyze", written(changed(BASE, wrong), to="links.toml"))
+    refused(result)
+    more = result.err.splitlines()[-1].removeprefix("# ")
+    assert more.startswith("more: equipoise explain ")
+    page = succeeded(equipoise_runs(*more.split()[2:]))
+    assert page.startswith(f"{heading}\n\n")
+    section = next(one for one in SECTIONS if one.startswith(f"{heading}\n"))
+    message = re.findall(r"```text\n(.*?)\n```", section, re.DOTALL)[0]
+    assert " ".join(message.split()) in " ".join(page.split())
+    assert "](" not in page and "```" not in page
+
+
+def test_a_wrong_value_leads_to_the_keys_of_its_table() -> None:
+    """Which are those that are declared."""
+    wrong = BASE.replace('points = ["O", "A"]', 'points = ["O", "A", "A"]')
+    result = equipoise_runs("analyze", written(wrong, to="links.toml"))
+    refused(result)
+    assert result.err.splitlines()[-1] == "more: equipoise explain links.NAME"
+
+
+@pytest.mark.parametrize("topic", [*tables()])
+def test_every_table_is_explained(topic: str) -> None:
+    """With every key that it declares, or with the table below it that the key is."""
+    text = succeeded(equipoise_runs("explain", topic))
+    assert [name for name in all_keys(tables()[topic].of) if name not in text] == []
+
+
+def test_topics_are_listed_and_unknown_ones_refused() -> None:
+    """A key leads to its table, by its path."""
+    listed = succeeded(equipoise_runs("explain"))
+    assert [topic for topic in (*errors(), *tables()) if topic not in listed] == []
+    assert known_topic("links.crank.section.width") == "links.NAME.section"
+    said = refused(equipoise_runs("explain", "sprngs"))
+    assert said == "no topic is called 'sprngs'; did you mean 'springs'?"

@@ -164,7 +164,17 @@ OF_MACHINES = {
 """Commands for a machine from nothing, each with how often it gets one; those behind a semicolon
 go on with what was written.
 """
-WITHOUT_MACHINE = {"completion", "examples", "new", "schema", "site", "tool", "mcp", "serve"}
+WITHOUT_MACHINE = {
+    "completion",
+    "examples",
+    "explain",
+    "new",
+    "schema",
+    "site",
+    "tool",
+    "mcp",
+    "serve",
+}
 """Commands that have none, or wait for others; `tool` has files of its own."""
 BESIDE = {
     "study.toml": {

@@ -98,6 +98,7 @@ LINES = [
 SILENT = {
     "animate",
     "completion",
+    "explain",
     "export",
     "mcp",
     "new",

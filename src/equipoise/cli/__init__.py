@@ -44,6 +44,7 @@ MODULES = {
     "balance:app": ["balance"],
     "designs": ["best", "search"],
     "exchange": ["export"],
+    "explaining": ["explain"],
     "files": ["check", "completion", "examples", "new", "schema", "serve"],
     "handheld:app": ["tool"],
     "importing:import_file": ["import"],
@@ -159,8 +160,22 @@ def _refuse(error: Exception) -> int:
     sentence, lines = str(error), tuple[str, ...]()
     if isinstance(error, EquipoiseError):
         sentence, lines = error.sentence, error.lines
-    print(f"equipoise: {_one_line(sentence)}", *map(_one_line, lines), sep="\n", file=sys.stderr)
+    more = _more(error) if isinstance(error, EquipoiseError) else ()
+    if lines:  # which are pasted with all that stands below them
+        more = tuple(f"# {line}" for line in more)
+    said = f"equipoise: {_one_line(sentence)}"
+    print(said, *map(_one_line, lines), *more, sep="\n", file=sys.stderr)
     return 2
+
+
+def _more(error: EquipoiseError) -> tuple[str, ...]:
+    """The command that explains an error; nothing where there is no more to say."""
+    if not error.topic:
+        return ()
+    from equipoise.schema.topics import known_topic
+
+    topic = known_topic(error.topic)
+    return (f"more: equipoise explain {topic}",) if topic else ()
 
 
 SIGN, RAREST = 5.0, 50.0

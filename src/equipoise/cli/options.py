@@ -229,7 +229,7 @@ def naming(file: str) -> Iterator[None]:
         from equipoise.schema.files import printable
 
         named = EquipoiseError(at_place(printable(file), error.note))
-        raise named.with_paste(error.paste) from error
+        raise named.like(error) from error
 
 
 @contextmanager
@@ -238,7 +238,7 @@ def blaming(option: str) -> Iterator[None]:
     try:
         yield
     except (ModelError, UsageError) as error:
-        raise UsageError(at_place(option, error.note)).with_paste(error.paste) from error
+        raise UsageError(at_place(option, error.note)).like(error) from error
 
 
 @contextmanager

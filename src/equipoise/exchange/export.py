@@ -122,7 +122,7 @@ def check_turning(machine: Machine, title: str) -> None:
         _ = assemble(machine).cycle
     except (RangeError, ChangePointError) as error:
         refused = UsageError(Note(refusal, title=title, why=error.note))
-        raise refused.with_paste(error.paste) from error
+        raise refused.like(error) from error
 
 
 def format_of(path: str | os.PathLike[str], name: str | None = None) -> Format:

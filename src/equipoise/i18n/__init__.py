@@ -47,11 +47,12 @@ class Note(str):
     """A sentence with its values, said in the language of whoever reads it; as a `str` in English.
 
     template : as in the catalogues.  values : for its ``{placeholders}``; Notes among them are said
-    in the same language.
+    in the same language.  topic : what `equipoise explain` knows about it; empty if nothing.
     """
 
     template: str
     values: Mapping[str, Any]
+    topic: str = ""
 
     def __new__(cls, template: str, /, **values: Any) -> Self:
         with speaking("en"), wording({}), key_words(str):
@@ -79,7 +80,13 @@ class Note(str):
             name: one.with_values(change) if isinstance(one, Note) else change(one)
             for name, one in self.values.items()
         }
-        return Note(self.template, **changed)
+        return Note(self.template, **changed).about(self.topic)
+
+    def about(self, topic: str) -> Note:
+        """The same sentence, on which `equipoise explain` has more by that name."""
+        same = Note(self.template, **self.values)
+        same.topic = topic
+        return same
 
 
 def _said(template: str, values: Mapping[str, Any]) -> str:

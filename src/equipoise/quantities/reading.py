@@ -182,12 +182,16 @@ def usual_unit(unit: str, dimension: Dimension) -> str:
     return other if other in KINDS[dimension].units else unit
 
 
+TOPIC = "a-unit-is-missing-or-wrong"
+"""What `equipoise explain` knows about quantities that cannot be read."""
+
+
 def wrong_text(text: str, dimension: Dimension) -> str:
     """Complain of a text outside the grammar of its dimension."""
-    return got(_quoted(text), _right(text, dimension))
+    return got(_quoted(text), _right(text, dimension)).about(TOPIC)
 
 
-def got(given: object, right: str) -> str:
+def got(given: object, right: str) -> Note:
     """Say what was given, and what would be right."""
     return Note("got {given}; {right}", given=given, right=right)
 
@@ -331,7 +335,7 @@ def parse(text: object, dimension: Dimension) -> float:
     if not isinstance(text, str):
         example = KINDS[dimension].example
         right = Note('give number and unit in quotes, such as "{example}"', example=example)
-        raise UsageError(got(_bare_number(text), right))
+        raise UsageError(got(_bare_number(text), right).about(TOPIC))
     match = re.fullmatch(pattern(dimension), text)
     if match is None:
         raise UsageError(wrong_text(text, dimension))

@@ -64,7 +64,7 @@ class Context:
             where, source = error.where, error.source
             texts = sorted(self.written, key=lambda item: not _is_below(item[0].shown, where))
             what = as_written(error.what, [text for _, text in texts])
-            raise ModelError(where, what, source).with_paste(error.paste) from error
+            raise ModelError(where, what, source).like(error) from error
 
     def wrong(self, place: KeyPath, given: Any, right: str) -> Any:
         """Note that a value is none that can be read."""

@@ -63,6 +63,10 @@ def read_table(
         return made(found, context)
 
 
+UNKNOWN = "no-key-of-that-name"
+"""What `equipoise explain` knows about keys that there are not."""
+
+
 def _table(kind: keys.Table, given: Any, place: KeyPath, context: Context) -> Any:
     if not isinstance(given, dict):
         return context.wrong(place, given, Note("give a table"))
@@ -75,8 +79,8 @@ def _table(kind: keys.Table, given: Any, place: KeyPath, context: Context) -> An
                 hint = Note("did you mean {name!r}?", name=path)
                 what = Note("no {kind} is called {given!r}; {hint}", kind=Note("key"), given=name,
                             hint=hint)  # fmt: skip
-                return context.say(place / name, what)
-            return context.say(place / name, wrong)
+                return context.say(place / name, what.about(UNKNOWN))
+            return context.say(place / name, wrong.about(UNKNOWN))
     for name, one in known.items():
         if one.required and name not in given:
             return context.say(place / name, Note("missing; add {example}", example=_example(one)))

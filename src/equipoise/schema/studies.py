@@ -132,7 +132,7 @@ def _template(name: str, folder: Path) -> Template:
         file = opened_example(name) if is_example else opened(folder / name, within=folder)
         return Template.of_opened(file)
     except ModelError as error:
-        raise ModelError("model", error.note).with_paste(error.paste) from error
+        raise ModelError("model", error.note).like(error) from error
 
 
 # -- what varies -----------------------------------------------------------------------------------

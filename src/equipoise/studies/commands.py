@@ -203,7 +203,7 @@ def _of_command(study: Study, numbers: Sequence[int], command: str) -> list[Requ
     where = f"outputs[{min(asked)}].of"
     assert first is not None
     refusal = f"equipoise {command} cannot compute the model: {first.note}"
-    raise ModelError(where, refusal).with_paste(first.paste) from first
+    raise ModelError(where, refusal).like(first) from first
 
 
 EACH_ITS_OWN = {"planting.depth", "planting.forward_speed", "planting.hill_spacing"}

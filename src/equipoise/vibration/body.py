@@ -25,7 +25,7 @@ from equipoise.signals import Array, Periodic
 
 MISSING = Note(
     "the machine stands on solid ground; add a table [support] with its mass, mounts and gauges"
-)
+).about("the-machine-stands-on-solid-ground")
 LOOSE = 1e-9
 """Share of a load that may be left over by mounts that carry it."""
 

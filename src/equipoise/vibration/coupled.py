@@ -37,6 +37,8 @@ from equipoise.vibration.linkages import Sums, sums
 class StallError(ResponseError):
     """A motor is too weak to turn the crank on."""
 
+    usual_topic = "the-motor-stalls"
+
 
 Torque = Callable[[Array, Array], Array]
 """Torque on the crank, N m, at its speed, rad/s, and a shift of the motor's speed, rad/s."""

@@ -96,7 +96,7 @@ class Field:
 
             if isinstance(error, ModelError):
                 what = with_measured(error.what, as_typed)
-                raise ModelError(error.where, what).with_paste(error.paste) from error
+                raise ModelError(error.where, what).like(error) from error
             raise UsageError(with_measured(error.note, as_typed)) from error
 
     def _remembering(self, typed: str, of: Any) -> Any:

@@ -28,6 +28,7 @@ from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.outputs.declared import CONTACT, FORCES, GROUPS, of_coupling
 from equipoise.mechanism.parts.couplings import LineOfAction, Pushed, Relation, Seat, Turning
 from equipoise.results.machine_blocks import model_blocks
+from equipoise.schema.key_tables import key_table
 from equipoise.symbols.pieces import pieces
 from equipoise.web.kinds import sections
 from support.own_kinds import (
@@ -42,7 +43,6 @@ from support.own_kinds import (
     with_own,
 )
 from unit.mechanism.test_newton import only_loops, with_position
-from unit.schema.key_tables import key_table
 
 
 @declared

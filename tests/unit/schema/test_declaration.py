@@ -50,6 +50,7 @@ from equipoise.mechanism.parts.springs import Spring
 from equipoise.mechanism.parts.torsion_springs import TorsionSpring
 from equipoise.schema import finding, models, schemas
 from equipoise.schema.documents import dumps, loads
+from equipoise.schema.key_tables import key_table
 from equipoise.schema.places import Context
 from equipoise.schema.reading import read_table
 from equipoise.schema.schemas import json_schema
@@ -59,7 +60,6 @@ from equipoise.web.design import Design
 from equipoise.web.fields import fields_of
 from equipoise.web.messages import Entry
 from equipoise.web.tables import entered, tables_of
-from unit.schema.key_tables import key_table
 from unit.schema.samples import FOUR_BAR
 
 PAGE = Path(__file__).parents[3] / "docs" / "model-file.md"

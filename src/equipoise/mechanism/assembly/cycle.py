@@ -70,6 +70,10 @@ class Cycle:
         return value + rise[..., None] * cycles  # type: ignore[no-any-return]
 
 
+REPEAT = "the-motion-does-not-repeat"
+"""What `equipoise explain` knows about cycles that are too long."""
+
+
 def turns_given(machine: Machine) -> int:
     """Turns of the crank after which all drives and loads of a machine are back."""
     loads = (load.table.turns for load in machine.loads if load.table is not None)
@@ -101,7 +105,7 @@ def close(
                 "common factors",
                 turns=base,
                 most=MOST_TURNS,
-            )
+            ).about(REPEAT)
         )
     while turns <= min(MOST_TURNS, MOST_LOOP_TURNS * base):
         tried = turns
@@ -120,7 +124,7 @@ def close(
             "the motion does not repeat within {tried} turns of the crank; give gears "
             "numbers of teeth (or ratios) whose motion closes sooner",
             tried=tried,
-        )
+        ).about(REPEAT)
     )
 
 
@@ -208,7 +212,7 @@ class _Grid:
                     "numbers of teeth",
                     speed_ratio=coupling.speed_ratio,
                     name=name,
-                )
+                ).about(REPEAT)
             )
         winding = carrier + ratio * relative
         if winding.denominator == 1:
@@ -224,6 +228,6 @@ class _Grid:
                     name=name,
                     ratio=ratio,
                     most_turns=MOST_TURNS,
-                )
+                ).about(REPEAT)
             )
         raise _LongerCycle(longer)

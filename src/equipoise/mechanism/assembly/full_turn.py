@@ -105,7 +105,7 @@ class FullTurn:
                     "{names} cannot be joined at any crank angle; check their lengths and "
                     "where their pins are",
                     names=names,
-                )
+                ).about("links-cannot-be-joined-at-any-crank-angle")
             )
         period = 2 * pi * self.turns
         theta, where = np.unique([*self.theta[:-1], dip % period], return_index=True)

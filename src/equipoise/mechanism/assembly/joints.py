@@ -279,7 +279,7 @@ def no_motion(joints: Structure) -> Note:
         "the linkage has no free motion (count {mobility}: {count})",
         mobility=joints.mobility,
         count=_count(joints),
-    )
+    ).about("the-linkage-has-no-free-motion")
 
 
 def held_fast(joints: Structure, drives: Sequence[str]) -> MobilityError:

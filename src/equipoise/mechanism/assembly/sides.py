@@ -241,4 +241,5 @@ def missing(machine: Machine, choices: Sequence[Choice], idle: Iterable[str] = (
         table += one.lines(", ".join(taken))
         if not one.why:
             taken.append(one.entry(one.side))
-    return ModelError(where, what).with_paste(Paste(tuple(table), LEADING))
+    error = ModelError(where, what).with_paste(Paste(tuple(table), LEADING))
+    return error.with_topic("a-side-is-missing-in-assembly")

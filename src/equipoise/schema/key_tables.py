@@ -1,13 +1,15 @@
-"""Tables of keys of the documentation, written from what classes declare."""
+"""Tables of keys for readers, written from what classes declare."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 
 from equipoise import keys
 from equipoise.quantities import KINDS
 from equipoise.schema.writing import plain_default, value_text
 
+HEADINGS = ("key", "kind", "default", "meaning")
 _COUNTS = {2: "two", 3: "three"}
 WORDS: dict[type[keys.Kind], str] = {
     keys.Anything: "value",
@@ -22,13 +24,16 @@ WORDS: dict[type[keys.Kind], str] = {
 
 
 def key_table(of: type[keys.Frozen]) -> str:
-    """Rows of the documentation, one for each key of a class that holds no table."""
-    plain = (one for one in keys.keys_of(of).values() if not _holds_tables(one.kind))
-    rows = (
-        f"| `{one.name}` | {_words_of(one.kind)} | {_default(one)} | {one.text} |" for one in plain
-    )
-    table = "\n".join(["| key | kind | default | meaning |", "|---|---|---|---|", *rows])
-    return table.replace("|  |", "| |")
+    """A table in Markdown, with a row for each key of a class that holds no table."""
+    head = f"| {' | '.join(HEADINGS)} |"
+    lines = (f"| {' | '.join(row)} |" for row in rows(keys.keys_of(of)))
+    return "\n".join([head, "|---|---|---|---|", *lines]).replace("|  |", "| |")
+
+
+def rows(of: Mapping[str, keys.Key]) -> list[tuple[str, str, str, str]]:
+    """Key, kind, default and meaning of each key that holds no table, in Markdown."""
+    plain = (one for one in of.values() if not _holds_tables(one.kind))
+    return [(f"`{one.name}`", _words_of(one.kind), _default(one), one.text) for one in plain]
 
 
 def _holds_tables(kind: keys.Kind) -> bool:

@@ -1,0 +1,102 @@
+"""The command `explain`: errors with their cures, and the keys of a table, without a network."""
+
+from __future__ import annotations
+
+import re
+import shutil
+from collections.abc import Iterator
+from textwrap import fill, indent
+from typing import TYPE_CHECKING, Annotated
+
+from cyclopts import Parameter
+
+from equipoise.errors import UsageError, unknown
+
+if TYPE_CHECKING:
+    from equipoise.results.blocks import Block
+    from equipoise.schema.topics import FileTable
+
+CODE = re.compile(r"^```\w*\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+PARAGRAPH = re.compile(r"\n\n|\n(?=- )")
+LINK = re.compile(r"\[((?:[^\[\]]|\[+[^\[\]]*\]+)*)\]\([^)]*\)")
+WIDEST = 88
+"""Signs in a line of running text."""
+
+
+def explain(topic: Annotated[str | None, Parameter(name="TOPIC")] = None, /) -> None:
+    """Explain an error and its cure, or list the keys of a table of a file.
+
+    Parameters
+    ----------
+    topic
+        As below an error, such as change-point; or a table or key, such as springs or drive.speed.
+        All topics are listed if not given.
+    """
+    from equipoise.present import show_blocks
+    from equipoise.schema import topics
+
+    if topic is None:
+        show_blocks("", [*_lists()])
+        return
+    known = topics.known_topic(topic)
+    if not known:
+        raise UsageError(unknown(topic, [*topics.errors(), *topics.tables()], "topic"))
+    if known in topics.errors():
+        print(_page(*topics.errors()[known]))
+    else:
+        table = topics.tables()[known]
+        show_blocks(table.heading, [*_keys(table, known)])
+
+
+def _lists() -> Iterator[Block]:
+    """All that can be explained."""
+    from equipoise.results.blocks import Table
+    from equipoise.schema import topics
+
+    errors = ((topic, one.title) for topic, one in topics.errors().items())
+    yield Table.of("Errors and their cures", ("", ""), errors)
+    tables = ((topic, _about(one)) for topic, one in topics.tables().items())
+    yield Table.of("Tables of files", ("", ""), tables)
+
+
+def _about(table: FileTable) -> str:
+    """What a table describes, in a sentence."""
+    words = " ".join((table.of.__doc__ or "").split("\n\n")[0].split())
+    return words.partition(". ")[0].rstrip(".").replace("`", "")
+
+
+def _keys(table: FileTable, path: str) -> Iterator[Block]:
+    """What a table describes, its keys, and the tables below it."""
+    from equipoise.keys import all_keys
+    from equipoise.results.blocks import Table, Text
+    from equipoise.schema import key_tables, topics
+
+    yield Text(f"{_about(table)}. In the file of a {table.kind}.")
+    marked = key_tables.rows(all_keys(table.of))
+    rows = [tuple(cell.replace("`", "") for cell in row) for row in marked]
+    if rows:
+        yield Table.of("", key_tables.HEADINGS, rows)
+    below = [name for name in topics.tables() if name.startswith(f"{path}.")]
+    if below:
+        yield Text(f"Tables in it: {', '.join(below)}.")
+
+
+def _page(title: str, text: str) -> str:
+    """An error and its cure, for a terminal, and the machine that the example changes."""
+    from equipoise.schema import topics
+
+    width = min(shutil.get_terminal_size().columns, WIDEST)
+    machine = f"The examples of these pages change this machine:\n\n{topics.example_of_errors()}"
+    return "\n\n".join([title, *_paragraphs(text, width), *_paragraphs(machine, width)])
+
+
+def _paragraphs(text: str, width: int) -> Iterator[str]:
+    """Markdown as paragraphs that are wrapped, and lines of a file as they stand there."""
+    for at, part in enumerate(CODE.split(text)):
+        if at % 2:
+            yield indent(part.rstrip(), "    ")
+            continue
+        for paragraph in filter(None, map(str.strip, PARAGRAPH.split(part))):
+            words = LINK.sub(r"\1", " ".join(paragraph.split())).replace("`", "")
+            further = "  " * words.startswith("- ")
+            yield fill(words, width, subsequent_indent=further, break_long_words=False)

@@ -1,0 +1,101 @@
+"""What `equipoise explain` knows: errors with their cures, and the tables of files with their keys.
+
+An error names its topic itself.  A topic is a heading of `errors.md`, as links have it, or a table
+of a file by its path, such as ``links.NAME.section``.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cache
+from importlib import resources
+from typing import NamedTuple
+
+from equipoise import keys
+from equipoise.schema.opening import FileKind, document_of
+
+FILES: tuple[FileKind, ...] = ("linkage", "tool", "study")
+NAME = "NAME"
+"""Stands in a path for a name of the user's."""
+
+
+class Explained(NamedTuple):
+    """An error and its cure.  text : Markdown below the heading."""
+
+    title: str
+    text: str
+
+
+class FileTable(NamedTuple):
+    """A table of a file: how it is headed there, what it is read to, and in which files it is."""
+
+    heading: str
+    of: type[keys.Frozen]
+    kind: FileKind
+
+
+def slug_of(title: str) -> str:
+    """What a heading is called in links, as on GitHub."""
+    return re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", "-")
+
+
+@cache
+def errors() -> Mapping[str, Explained]:
+    """Every error that has a page, by its topic, in the order of the page."""
+    page = resources.files("equipoise").joinpath("errors.md").read_text(encoding="utf-8")
+    parts = (part.partition("\n") for part in page.split("\n## ")[1:])
+    return {slug_of(title): Explained(title, text.strip()) for title, _, text in parts}
+
+
+def example_of_errors() -> str:
+    """The file that the page of errors changes, as a block of Markdown."""
+    page = resources.files("equipoise").joinpath("errors.md").read_text(encoding="utf-8")
+    return page[page.index("```toml") : page.index("\n## ")].strip()
+
+
+@cache
+def tables() -> Mapping[str, FileTable]:
+    """Every table of every file, by its path; of one that several files have, the first."""
+    found: dict[str, FileTable] = {}
+    for kind in FILES:
+        for path, of, is_list in _below(document_of(kind), ()):
+            bare = ".".join(path)
+            heading = f"[[{bare}]]" if is_list else f"[{bare}]"
+            found.setdefault(bare, FileTable(heading, of, kind))
+    return found
+
+
+def _below(
+    of: type[keys.Frozen], path: tuple[str, ...], above: tuple[type[keys.Frozen], ...] = ()
+) -> Iterator[tuple[tuple[str, ...], type[keys.Frozen], bool]]:
+    """Path, class, and whether it is a list, of all tables below one; each class once on a way."""
+    for name, one in keys.all_keys(of).items():
+        inner = keys.innermost(one.kind)
+        if not isinstance(inner, keys.Table | keys.Tables):
+            continue
+        item = inner.item.type if isinstance(inner, keys.Tables) else inner.type
+        here = (*path, name, *([NAME] if isinstance(one.kind, keys.Named) else []))
+        if item not in (of, *above):
+            yield here, item, isinstance(inner, keys.Tables)
+            yield from _below(item, here, (of, *above))
+
+
+def table_at(place: Sequence[str]) -> str:
+    """The path of the table that a place of a file is in; empty where it is in none.
+
+    place : steps without numbers in lists, such as ``links``, ``crank``, ``mass``.
+    """
+    known = [tuple(path.split(".")) for path in tables()]
+    fitting = [
+        path
+        for path in known
+        if len(path) <= len(place)
+        and all(step in (NAME, given) for step, given in zip(path, place, strict=False))
+    ]
+    return ".".join(max(fitting, key=len)) if fitting else ""
+
+
+def known_topic(topic: str) -> str:
+    """The topic that a command can explain: the same, or the table that a place is in."""
+    return topic if topic in errors() else table_at(topic.split("."))
