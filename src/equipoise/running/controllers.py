@@ -46,14 +46,20 @@ class Controller:
         speed = self.first + gained if end else np.full_like(on_ramp, servo.speed)
         return np.asarray(speed), np.asarray(angle)
 
-    def torque(self, speed: Array | float, angle: Array | float, time: Array | float) -> Array:
-        """Torque (...), N m, at speeds (...), rad/s, angles (...), rad, and times (...), s."""
+    def demand(self, speed: Array | float, angle: Array | float, time: Array | float) -> Array:
+        """Torque (...), N m, without the limit, at speeds (...), rad/s, angles (...), rad, and
+        times (...), s.
+        """
         servo = self.servo
         wanted_speed, wanted_angle = self.reference(time)
-        asked = servo.speed_gain * (wanted_speed - speed) + servo.angle_gain * (
-            wanted_angle - angle
+        return np.asarray(
+            servo.speed_gain * (wanted_speed - speed) + servo.angle_gain * (wanted_angle - angle)
         )
-        return np.clip(asked, -servo.torque_limit, servo.torque_limit)
+
+    def torque(self, speed: Array | float, angle: Array | float, time: Array | float) -> Array:
+        """Torque (...), N m, at speeds (...), rad/s, angles (...), rad, and times (...), s."""
+        most = self.servo.torque_limit
+        return np.clip(self.demand(speed, angle, time), -most, most)
 
     def time_until(self, torque: float, angle: float, since: float) -> float:
         """Time, s, from `since` on, at which the torque on a motor held at rest at an angle, rad,

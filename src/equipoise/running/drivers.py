@@ -13,6 +13,9 @@ from equipoise.running.controllers import Controller
 from equipoise.signals import Array
 from equipoise.vibration.steady import torque_on_crank
 
+LIMIT_REACHED = 1e-9
+"""Share of a servo motor's limit of torque within which it is at the limit."""
+
 
 class Driver:
     """The drive of a machine: its torque on the crank by the crank's speed.
@@ -20,6 +23,8 @@ class Driver:
     sense : 1 where it turns the crank counterclockwise, -1 clockwise.  on : whether it is on.
     circuit : of a direct-current motor; None of any other.
     servo : of a servo motor; None of any other.
+    limited : of a servo motor, 1 or -1 while it gives its limit of torque in or against the sense
+        in which it drives, 0 between; the motion is smooth while that stays.
     brake : torque of the brake on the crank, N m, which acts while no motor is on; 0 without one.
     """
 
@@ -36,6 +41,7 @@ class Driver:
     def begins(self, angle: float, speed: float) -> None:
         """Start at a crank angle, rad, and speed, rad/s, at time 0."""
         self._start = angle
+        self.limited = 0
         if self.servo is not None:
             self._controller = Controller(self.servo, self._gear * speed)
 
@@ -65,6 +71,40 @@ class Driver:
         turned = self._gear * (angle - self._start)
         own = self._controller.torque(self._gear * speed, turned, time)
         return np.asarray(self._gear * own)
+
+    @property
+    def controlled(self) -> bool:
+        """Whether a controller with a limit of torque drives."""
+        return self.on and self.servo is not None
+
+    def smooth_torque_at(self, speed: Array, angle: Array, time: Array) -> Array:
+        """Torque (...), N m, as of `torque_at`, going on smoothly where `limited` would change."""
+        assert self.servo is not None
+        if self.limited:
+            return np.full(np.shape(speed), self._gear * self.limited * self.servo.torque_limit)
+        return self._gear * self._demand(speed, angle, time)
+
+    def beyond(self, speed: Array, angle: Array, time: Array) -> Array:
+        """By what share (...) of the limit of torque the state is beyond that in which `limited` is
+        as it is; negative inside.
+        """
+        assert self.servo is not None
+        share = self._demand(speed, angle, time) / self.servo.torque_limit
+        return np.asarray(1 - self.limited * share if self.limited else np.abs(share) - 1)
+
+    def observe(self, speed: float, angle: float, time: float, reached: bool = False) -> None:
+        """Set `limited` by a state; `reached`: whether it is where that changes."""
+        assert self.servo is not None
+        share = float(self._demand(*map(np.asarray, (speed, angle, time))))
+        share /= self.servo.torque_limit
+        if reached:
+            self.limited = 0 if self.limited else int(copysign(1, share))
+        elif abs(abs(share) - 1) > LIMIT_REACHED:
+            self.limited = int(copysign(1, share)) if abs(share) > 1 else 0
+
+    def _demand(self, speed: Array, angle: Array, time: Array) -> Array:
+        turned = self._gear * (angle - self._start)
+        return self._controller.demand(self._gear * speed, turned, time)
 
     @property
     def ramp_end(self) -> float:

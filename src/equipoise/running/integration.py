@@ -23,7 +23,7 @@ import numpy as np
 
 from equipoise.errors import ResponseError
 from equipoise.i18n import Note
-from equipoise.running.drivers import Driver
+from equipoise.running.drivers import LIMIT_REACHED, Driver
 from equipoise.running.equation import CrankEquation
 from equipoise.running.tabulated import NODES, POINTS, integral_to, polynomials, roughness
 from equipoise.signals import Array
@@ -118,6 +118,11 @@ class Instant:
     electric: Array = field(default_factory=lambda: np.zeros(ELECTRIC))
 
 
+CHECKED = 4 * NODES
+"""Places of a piece at which it is seen whether a servo motor is at its limit of torque."""
+
+Solution = tuple[Callable[[float], Instant], Callable[[Array], Array]]
+"""The motion in a piece by places from -1 to 1 in it: an instant, and rows of the track."""
 Gained = tuple[Array, Array | None]
 """Kinetic energies (N,), J, gained up to the nodes of a part, and the inverse (N, N) of Newton's
 method there."""
@@ -274,6 +279,8 @@ class Integration:
 
     def _piece(self, begin: Instant) -> Instant | None:
         """To the end of the piece of the table, or to what happens before; None at the end."""
+        if self.driver.controlled:
+            self.driver.observe(begin.speed, begin.angle, begin.time)
         k, ahead = self.table.piece(begin.angle, self.direction)
         ends = float(self.table.lows[k]) + ahead, float(self.table.highs[k]) + ahead
         solution = None
@@ -288,7 +295,7 @@ class Integration:
             return self._in_time(begin, begin.angle + far * (edge - begin.angle))
         ends = part.ends
         at, within = solution
-        x, kind = self._first_in(begin, ends, at)
+        x, kind = self._first_in(begin, ends, solution)
         nodes = POINTS[:: int(self.direction)]
         inside = within(nodes[(nodes - x) * self.direction < 0])
         end = at(x)
@@ -317,12 +324,8 @@ class Integration:
         state = np.array([now.angle, now.speed, *now.electric])
         return self._rates(now.time, state)[1] * self.direction < 0
 
-    def _by_angle(
-        self, begin: Instant, part: Part
-    ) -> tuple[Callable[[float], Instant], Callable[[Array], Array]] | None:
-        """The motion in a piece by places from -1 to 1 in it: an instant, and rows of the track;
-        None where the crank is so slow that the angle is no clock.
-        """
+    def _by_angle(self, begin: Instant, part: Part) -> Solution | None:
+        """The motion in a piece; None where the crank is so slow that the angle is no clock."""
         ends = part.ends
         half = (ends[1] - ends[0]) / 2
         start = min(max((begin.angle - ends[0]) / half - 1, -1.0), 1.0)
@@ -375,9 +378,7 @@ class Integration:
             energy = energy + inverse @ missed
         return None
 
-    def _dense(
-        self, begin: Instant, part: Part, found: tuple[float, float, Array]
-    ) -> tuple[Callable[[float], Instant], Callable[[Array], Array]]:
+    def _dense(self, begin: Instant, part: Part, found: tuple[float, float, Array]) -> Solution:
         """The motion in a piece anywhere in it, as of `_by_angle`.
 
         found : place of its begin, kinetic energy there, and rates by crank angle at the nodes of
@@ -421,10 +422,10 @@ class Integration:
         """
         if self.driver.lags:
             return self.driver.torque_of(current)
-        if not self.driver.remembers:
+        if not self.driver.controlled:
             return self.driver.torque(speed)
         angle = begin.angle + paths @ np.ones(len(speed))
-        return self.driver.torque_at(speed, angle, begin.time + paths @ (1 / speed))
+        return self.driver.smooth_torque_at(speed, angle, begin.time + paths @ (1 / speed))
 
     def _slopes(
         self, values: Array, speed: Array, torques: Array, piece: tuple[Array, Instant]
@@ -458,11 +459,12 @@ class Integration:
         return [-self.direction * self.driver.holding()] if self.driver.brake else []
 
     def _first_in(
-        self, begin: Instant, ends: tuple[float, float], at: Callable[[float], Instant]
+        self, begin: Instant, ends: tuple[float, float], solution: Solution
     ) -> tuple[float, str]:
         """Place in a piece at which something happens first, and what."""
         from scipy.optimize import brentq
 
+        at = solution[0]
         far, half = self.direction, (ends[1] - ends[0]) / 2
         found: list[tuple[float, str]] = []
         for kind, angle in self._angles():
@@ -476,8 +478,31 @@ class Integration:
                     return at(x).time - time
 
                 found.append((brentq(left, start, far, xtol=1e-15), kind))
+        start = (begin.angle - ends[0]) / half - 1
+        if self.driver.controlled and (limit := self._limit_in(start, solution[1])) is not None:
+            found.append((limit, "limit"))
         # of what happens at the edge itself the others come first
         return min([*found, (far, "edge")], key=lambda one: one[0] * far)
+
+    def _limit_in(self, start: float, within: Callable[[Array], Array]) -> float | None:
+        """Place in a piece, beyond its start, at which a servo motor comes to its limit of torque,
+        or from it; None where it does not.
+        """
+        from scipy.optimize import brentq
+
+        def beyond(places: Array) -> Array:
+            time, angle, speed = within(places).T[:3]
+            return self.driver.beyond(speed, angle, time)
+
+        places = np.linspace(start, self.direction, CHECKED + 1)
+        outside = beyond(places)
+        if not np.any(over := outside[1:] > LIMIT_REACHED):
+            return None
+        k = int(np.argmax(over))
+        if outside[k] >= 0:
+            return float(places[k])
+        ends = float(places[k]), float(places[k + 1])
+        return float(brentq(lambda x: float(beyond(np.array([x]))[0]), *ends, xtol=1e-15))
 
     def _angles(self) -> Iterator[tuple[str, float]]:
         """Crank angles at which something is to happen."""
@@ -508,6 +533,10 @@ class Integration:
         until, last = min(times)
         events: list[Any] = [lambda _, y: self.direction * y[1]]
         events += [lambda _, y, angle=angle: y[0] - angle for _, angle in marks]
+        if self.driver.controlled:
+            marks.append(("limit", inf))
+            events.append(lambda t, y: float(self.driver.beyond(y[1], y[0], np.asarray(t))))
+            events[-1].direction = 1.0
         for event in events:
             event.terminal = True
         events[0].direction = -1.0
@@ -542,8 +571,8 @@ class Integration:
     def _rates(self, time: float, state: Array) -> list[float]:
         angle, speed, driver = float(state[0]), float(state[1]), self.driver
         electric: list[float] = [0.0] * ELECTRIC
-        if driver.remembers:
-            driving = float(driver.torque_at(state[1], state[0], np.asarray(time)))
+        if driver.controlled:
+            driving = float(driver.smooth_torque_at(state[1], state[0], np.asarray(time)))
         elif driver.circuit is None:
             driving = float(driver.torque(np.asarray(speed)))
         else:
@@ -566,8 +595,13 @@ class Integration:
             return self._passes(now)
         if kind == "halt":
             return self._halts(now)
-        if kind == "corner":  # where a reference speed stops to change, and nothing happens
+        if kind == "limit":
+            self.driver.observe(now.speed, now.angle, now.time, reached=True)
+            kind = "smooth"
+        if kind == "corner":
             self.corner = inf
+            kind = "smooth"
+        if kind == "smooth":  # the torque's law changes, and nothing happens that is reported
             return now
         if kind == "rest":
             if abs(now.speed) > SLOW * self.usual:
