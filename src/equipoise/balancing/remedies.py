@@ -174,8 +174,7 @@ class Comparison:
         """Share (M,) of the aims that is gone."""
         goals = self.plan.objectives
         costs = [self._values(one, numbers) / self.problem.scale(one) for one in goals]
-        weights = np.array([[one.weight] for one in goals])
-        whole = weights * np.array(costs)
+        whole = np.array(self.plan.factors)[:, None] * np.array(costs)
         squares = self.plan.combine == "squares"
         together = np.hypot.reduce(whole) if squares else np.sum(whole, axis=0)
         return np.asarray(1 - together / self.problem.whole)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import pi
+from typing import Literal
 
 import numpy as np
 import pytest
@@ -12,6 +13,9 @@ from equipoise.balancing.advice import advise
 from equipoise.balancing.beyond_masses import Counterbalance
 from equipoise.balancing.outcome import helps_told, why_not
 from equipoise.balancing.policy import OVER_SOIL
+from equipoise.balancing.problem import Problem
+from equipoise.balancing.remedies import Comparison, Sector, sectors, with_sectors
+from equipoise.balancing.room import room_about
 from equipoise.balancing.workshop import covers, in_short, sentences
 from equipoise.mechanism.kinematics.tip import surface_of
 from equipoise.mechanism.parts.balance import AddedMass, Balance, Objective, Weight
@@ -172,6 +176,27 @@ def test_what_a_plate_covers(
 ) -> None:
     assert all(covers(piece, 0j, complex(one)) for one in inside)
     assert not any(covers(piece, 0j, complex(one)) for one in outside)
+
+
+@pytest.mark.parametrize("combine", ["sum", "squares"])
+def test_shapes_are_compared_by_the_weights_that_a_plan_has(
+    combine: Literal["sum", "squares"],
+) -> None:
+    """By the machine with the sector on its crank: a weight of 9 counts a square nine times."""
+    machine = eq.load("yamashita-1").with_balance(None)
+    aims = (Objective("shaking_force", weight=9.0), Objective("shaking_moment"))
+    plan = Balance(objectives=aims, combine=combine)
+    before = Problem.values_of(machine, aims)
+    room, shape = room_about(machine, "crank"), Sector(0.05, 0.01, 0.01, -150, 120)
+    known = {one.name: value for one, value in zip(aims, before, strict=True)}
+    comparison = Comparison(machine, plan, (room,), (), None, known)
+    changed, _ = with_sectors(machine, (room,), (shape,))
+    force, moment = np.array(Problem.values_of(changed, aims)) / before
+    left = (
+        (9 * force + moment) / 10 if combine == "sum" else np.sqrt((9 * force**2 + moment**2) / 10)
+    )
+    (gain,) = comparison.gains(comparison.numbers_of([sectors([shape])]))
+    assert gain == pytest.approx(1 - left, abs=1e-3)
 
 
 # -- what can be built from ------------------------------------------------------------------------
