@@ -83,6 +83,7 @@ def test_a_report(name: str, new_page: Callable[..., Page], tmp_path: Path) -> N
     succeeded(equipoise("report", name, "-o", path))
     page = new_page()
     page.set_content(path.read_text(encoding="utf-8"))
+    check_tables_and_machine(page)
     for width, scheme in zip(WIDTHS, SCHEMES, strict=True):
         page.set_viewport_size({"width": width, "height": 900})
         page.emulate_media(color_scheme=scheme)
@@ -100,6 +101,20 @@ def test_a_report(name: str, new_page: Callable[..., Page], tmp_path: Path) -> N
     page.emulate_media(media="screen")
     page.locator(f"a[href='{part}']").click()
     expect(appendix).to_be_visible()
+
+
+def check_tables_and_machine(page: Page) -> None:
+    """No table is to be moved from side to side, and the machine is on the first screens."""
+    for width in (1280, 400):
+        page.set_viewport_size({"width": width, "height": 900})
+        page.evaluate("document.querySelectorAll('details').forEach(one => one.open = true)")
+        wide = page.locator(".scroll:has(table)").evaluate_all(
+            "all => all.filter(one => one.scrollWidth > one.clientWidth + 1).length"
+        )
+        assert wide == 0
+        machine = page.locator(".animation").bounding_box()
+        assert machine is not None and machine["y"] < 900
+        page.evaluate("document.querySelectorAll('details').forEach(one => one.open = false)")
 
 
 def test_drawings_of_a_tool_are_seen_whole(new_page: Callable[..., Page], tmp_path: Path) -> None:

@@ -168,7 +168,7 @@ def outcome_blocks(found: Balanced) -> Iterator[Block]:
     speeds = tuple(_speeds(found))
     if speeds:
         columns = (Column(""), Column(say("speed"), "angular speed", "rpm"))
-        yield Table(say("Speed at which it shakes as before"), columns, speeds)
+        yield Table(say("Speed at which it shakes as before"), columns, speeds, detail=True)
     if found.planting_kept is not None:
         kept = say("The planting figures stay as they are.")
         changed = say("The planting figures have changed.")

@@ -17,7 +17,7 @@ from equipoise.figures.view import Scale, View, ticks_of
 from equipoise.i18n import said
 from equipoise.results.charts import Axis, Chart
 
-WIDE, HALF = 518.4, 340.0
+WIDE, HALF = 518.4, 290.0
 """Points: width of a picture, and of one of a pair, which is shown half as wide as a page."""
 
 EDGE, GAP, BELOW = 10.0, 14.0, 12.0
@@ -27,9 +27,9 @@ LINE, OVER, TOP = 12.0, 16.0, 4.0
 """Points: height of a line of words; by how much the name of an axis may be longer than that; free
 above a picture without a heading."""
 HIGH = {1: 190.0, 2: 132.0, 3: 106.0, 4: 92.0}
-HIGH_OF_HALF = {1: 128.0, 2: 78.0, 3: 54.0, 4: 40.0}
+HIGH_OF_HALF = {1: 110.0, 2: 70.0, 3: 50.0, 4: 38.0}
 """Height of one of so many panels above each other; the last of more."""
-LEAST, MOST, MOST_OF_HALF, ROOM, SMALL_ROOM = 110.0, 345.0, 160.0, 26.0, 0.13
+LEAST, MOST, MOST_OF_HALF, ROOM, SMALL_ROOM = 110.0, 345.0, 140.0, 26.0, 0.13
 """Height of panels of one scale at least and at most; free in them around what is drawn, points
 or, in small ones, a share."""
 

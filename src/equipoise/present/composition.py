@@ -35,6 +35,7 @@ from equipoise.results.blocks import (
     Listing,
     Notes,
     Section,
+    SvgPicture,
     Table,
     Text,
     beside,
@@ -68,6 +69,8 @@ Parts = dict[str, list[Block | Section]]
 
 SHORT = 6
 """Rows of a table that stands among the pictures; longer ones stand in the appendix."""
+BEHIND = ("sources", "settings")
+"""Sections that stand in the appendix as a whole."""
 
 
 def build(
@@ -98,13 +101,16 @@ def _of_linkage(found: Findings, language: str, command: str, together: bool) ->
     machine, analysis = found.machine, found.analysis
     drawn = drawings(found, together)
     blocks: Parts = {"model": [*drawn.get("model", []), *model_blocks(machine)]}
-    blocks["motion"] = [*drawn.get("motion", []), *motion_blocks(analysis)]
+    blocks["motion"] = [*drawn.get("motion", []), *_details(motion_blocks(analysis))]
     if found.planting is not None:
         blocks["planting"] = [*drawn.get("planting", []), *planting_blocks(found.planting)]
     later = found.after
     if analysis.solved is not None:
         again = None if later is None else later.analysis
-        blocks["forces"] = [*drawn.get("forces", []), *_with_after(force_blocks, analysis, again)]
+        blocks["forces"] = [
+            *drawn.get("forces", []),
+            *_details(_with_after(force_blocks, analysis, again)),
+        ]
         blocks["joints"] = [*drawn.get("joints", []), *_with_after(_joints, analysis, again)]
     if found.response is not None:
         shaken = None if later is None else later.response
@@ -126,6 +132,7 @@ def _of_linkage(found: Findings, language: str, command: str, together: bool) ->
         *_sections(found, blocks, seen, _settings_of_linkage(found), command),
         lead="" if later is None else say(AFTER),
         verdict=next(_verdict(found), None),
+        drawing=_first_picture(blocks["model"]),
     )
 
 
@@ -164,7 +171,7 @@ def _of_tool(found: ToolFindings, language: str, command: str) -> ReportDocument
     if found.exposure is not None:
         blocks.extend(exposure_of_tool(found.exposure))
     if found.modes is not None:
-        blocks.extend(of_tools.modes_blocks(found.modes))
+        blocks.extend(_details(of_tools.modes_blocks(found.modes)))
     subtitle = ""
     if found.tool.operation is not None:
         rpm = number(found.tool.operation.speed / PER_RPM)
@@ -180,7 +187,18 @@ def _of_tool(found: ToolFindings, language: str, command: str) -> ReportDocument
         "",
         *_sections(found, named, {"tool": judged(found)}, (), command),
         verdict=None if found.exposure is None else _first_text(found.exposure.headline()),
+        drawing=_first_picture(blocks),
     )
+
+
+def _details(blocks: Iterable[Block | Section]) -> Iterator[Block | Section]:
+    """Blocks whose tables stand in the appendix, however short they are."""
+    for block in blocks:
+        yield replace(block, detail=True) if isinstance(block, Table) else block
+
+
+def _first_picture(blocks: Iterable[Block | Section]) -> SvgPicture | None:
+    return next((block for block in blocks if isinstance(block, SvgPicture)), None)
 
 
 def _first_text(blocks: Iterable[Block | Section]) -> Text | None:
@@ -209,9 +227,9 @@ def _sections(
     }
     sections, appendix = [], []
     for name, parts in (blocks | last).items():
-        short, long = parted(parts)
+        short, long = ([], parts) if name in BEHIND else parted(parts)
         title = say(TITLES[name])
-        if parts:
+        if short:
             sections.append(Section(name, title, tuple(short), seen.get(name, "")))
         if long:
             appendix.append(Section(name, title, tuple(long)))
@@ -222,11 +240,12 @@ def _sections(
 
 
 def parted(blocks: Iterable[Block | Section]) -> tuple[list[Block | Section], list[Block]]:
-    """What stands in a section, and long tables."""
+    """What stands in a section; and long tables, pictures and tables of details."""
     short: list[Block | Section] = []
     long: list[Block] = []
     for block in blocks:
-        if isinstance(block, Table) and len(block.rows) > SHORT:
+        of_detail = isinstance(block, Table | SvgPicture) and block.detail
+        if of_detail or (isinstance(block, Table) and len(block.rows) > SHORT):
             long.append(block)
         else:
             short.append(block)

@@ -76,6 +76,7 @@ def _draw(found: Findings | ToolFindings, sections: Collection[str]) -> Drawings
         chart = picture.draw()
         told = say("; ").join((chart.what, *chart.words))
         svg, wide = svg_of(chart)
-        block = SvgPicture(picture.name, told, svg, picture.seen(), say(picture.caption), wide)
+        seen, caption = picture.seen(), say(picture.caption)
+        block = SvgPicture(picture.name, told, svg, seen, caption, wide, picture.detail)
         drawn.setdefault(picture.section, []).append(block)
     return drawn

@@ -12,23 +12,30 @@ if TYPE_CHECKING:
 
 
 class PictureEntry(NamedTuple):
-    """Name, caption, what draws it, and what is seen in it."""
+    """Name, caption, what draws it, what is seen in it, and whether a report has it in its
+    appendix.
+    """
 
     name: str
     caption: str
     draw: Callable[[], Drawing]
     seen: Callable[[], str] = str
+    detail: bool = False
 
 
 def pages(
-    name: str, caption: str, make: Callable[[], Iterable[Chart]], seen: Callable[[], str] = str
+    name: str,
+    caption: str,
+    make: Callable[[], Iterable[Chart]],
+    seen: Callable[[], str] = str,
+    detail: bool = False,
 ) -> Iterator[PictureEntry]:
     """What goes on over several pictures; how many, only their charts tell."""
     for number, chart in enumerate(make(), 1):
         if number == 1:
-            yield PictureEntry(name, caption, partial(made, chart), seen)
+            yield PictureEntry(name, caption, partial(made, chart), seen, detail)
         else:
-            yield PictureEntry(f"{name}-{number}", caption, partial(made, chart))
+            yield PictureEntry(f"{name}-{number}", caption, partial(made, chart), detail=detail)
 
 
 def made(chart: Chart) -> Chart:

@@ -215,6 +215,15 @@ class ToolFindings(_Found):
 
         return None if self.tool.design is None else design_tool(self.tool)
 
+    @part(to_say("exposure after the change"))
+    def exposure_after(self) -> ToolExposure | None:
+        """What the hands get of the changed tool; None where the file asks for no change."""
+        from equipoise.handheld.exposed import expose_tool
+
+        if self.design is None or self.exposure is None or self.speeds is None:
+            return None
+        return expose_tool(self.design.better, self.speeds)
+
 
 SHOWN_SWINGING = to_say(", swinging as its crank cannot turn fully")
 

@@ -64,10 +64,11 @@ class ReportDocument:
     """A whole report.
 
     language : its code.  subtitle : what runs, how fast.  animation : SVG, empty where none moves.
-    appendix : long tables of the sections, by their names, and the model file.
+    appendix : long tables and details of the sections, by their names, and the model file.
     lead : what stands above it.
     verdict : by what it is judged first; None where nothing is large or known.
     units : that are chosen, by dimension.
+    drawing : of the whole machine, which the summary shows where nothing moves.
     """
 
     language: str
@@ -82,12 +83,22 @@ class ReportDocument:
     lead: str = ""
     verdict: RunningText | None = None
     units: Units = field(default_factory=dict)
+    drawing: SvgPicture | None = None
 
     def more(self, section: str) -> str:
-        """How many tables of a section stand in the appendix, in words; empty where none does."""
-        own = (one.blocks for one in self.appendix if one.name == section)
-        count = sum(isinstance(block, Table) for blocks in own for block in blocks)
-        return say("Tables in the appendix: {count}", count=count) if count else ""
+        """How much of a section stands in the appendix, in words; empty where nothing does."""
+        own = [block for one in self.appendix if one.name == section for block in one.blocks]
+        tables, pictures = (sum(isinstance(b, kind) for b in own) for kind in (Table, SvgPicture))
+        told = []
+        if pictures:
+            told.append(say("Pictures in the appendix: {count}", count=pictures))
+        if tables:
+            told.append(say("Tables in the appendix: {count}", count=tables))
+        return say("; ").join(told)
+
+    def without_drawing(self, blocks: Iterable[Block | Section]) -> list[Block | Section]:
+        """Blocks but for the drawing that the summary has."""
+        return [block for block in blocks if block is not self.drawing]
 
     @property
     def together(self) -> tuple[Block | Section, ...]:
@@ -235,6 +246,8 @@ def flowed(blocks: Iterable[Block | Section]) -> Iterator[tuple[str, list[Any]]]
         yield "row", lone
 
 
+NARROW = 3
+"""Columns of a table that fits on a telephone; rows of wider ones are lists there."""
 FILTERS: dict[str, Callable[..., Any]] = {
     "grid": printed_grid,
     "noted": noted,
@@ -242,6 +255,7 @@ FILTERS: dict[str, Callable[..., Any]] = {
     "printed": printed,
     "runs": _runs,
     "word": Looks(coloured=False).word,
+    "narrow": lambda table: len(table.heads) <= NARROW,
 }
 """Of templates, by the names that these have for them."""
 
@@ -251,9 +265,9 @@ def text_of(name: str) -> str:
     return (resources.files("equipoise.present") / name).read_text(encoding="utf-8")
 
 
-SHRUNK, PAGE, HALF = 0.8, 504.0, 338.0
+SHRUNK, PAGE, HALF = 0.9, 504.0, 338.0
 """Width of a picture over how it is drawn; points between the margins; height that fits twice."""
-LEAST = 0.7
+LEAST = 0.85
 """Scale below which its letters would be too small to read."""
 
 

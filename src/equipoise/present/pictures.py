@@ -31,6 +31,7 @@ class Picture:
     name : which also does for a file.  section : one of `SECTIONS`.
     caption : an English sentence on what it is, to be said when it is shown.
     seen : says what is seen in it, in a line as of `headlines`; empty where nothing is told.
+    detail : whether a report has it in its appendix.
     """
 
     name: str
@@ -38,6 +39,7 @@ class Picture:
     caption: str
     draw: Callable[[], Drawing]
     seen: Callable[[], str] = str
+    detail: bool = False
 
 
 def pictures(found: Findings | ToolFindings, at: Sequence[float] | None = None) -> list[Picture]:
@@ -64,7 +66,7 @@ def each(
         for entry in parts[section](found):
             own = free_name(entry.name, taken)
             taken[own] = None
-            yield Picture(own, section, entry.caption, entry.draw, entry.seen)
+            yield Picture(own, section, *entry[1:])
 
 
 # -- of a linkage; nothing of what it does not have ------------------------------------------------
@@ -76,7 +78,8 @@ def _model(found: Findings, at: Sequence[float] | None) -> Iterator[PictureEntry
 
     caption = to_say("The linkage to scale, with its joints, links and centres of mass.")
     draw = partial(linkage, found.analysis, at)
-    yield PictureEntry("linkage", caption, draw, partial(seen.heaviest, found.analysis))
+    told = partial(seen.heaviest, found.analysis)
+    yield PictureEntry("linkage", caption, draw, told, True)
     if found.analysis.machine.has_planes:
         caption = to_say("The planes of links, masses and bearings, from the side and to scale.")
         yield PictureEntry("side", caption, partial(side, found.analysis, at))
@@ -94,18 +97,19 @@ def _motion(found: Findings) -> Iterator[PictureEntry]:
     )
     caption = to_say("Velocity and acceleration of these points: the ends of their arrows.")
     yield PictureEntry(
-        "hodograph", caption, partial(hodograph, analysis), partial(seen.fastest, analysis)
+        "hodograph", caption, partial(hodograph, analysis), partial(seen.fastest, analysis), True
     )
     if rolling(analysis):
         caption = to_say("Centrodes: paths of instant centres in the frame and in the link.")
-        yield PictureEntry("centrodes", caption, partial(centrodes, analysis))
+        yield PictureEntry("centrodes", caption, partial(centrodes, analysis), detail=True)
     caption = to_say("Motion over crank angle: position, velocity and acceleration.")
-    for chart in main_kinematics(analysis) if len(analysis.crank_angle) > 1 else ():
+    charts = main_kinematics(analysis) if len(analysis.crank_angle) > 1 else ()
+    for number, chart in enumerate(charts):
         told = partial(seen.kinematic, analysis, chart.name)
-        yield PictureEntry(chart.name, caption, partial(made, chart), told)
+        yield PictureEntry(chart.name, caption, partial(made, chart), told, number > 0)
     caption = to_say("Speed ratio of gears over crank angle.")
     for chart in ratios(analysis) if len(analysis.crank_angle) > 1 else ():
-        yield PictureEntry(chart.name, caption, partial(made, chart))
+        yield PictureEntry(chart.name, caption, partial(made, chart), detail=True)
 
 
 def _planting(found: Findings) -> Iterator[PictureEntry]:
@@ -125,17 +129,18 @@ def _planting(found: Findings) -> Iterator[PictureEntry]:
                 caption,
                 partial(ratio, figures, link),
                 partial(seen.geared, found.analysis, link),
+                detail=True,
             )
     caption = to_say("Velocity and acceleration of the finger's tip relative to the machine.")
     for chart in tips(figures):
-        yield PictureEntry(f"tip-{chart.name}", caption, partial(made, chart))
+        yield PictureEntry(f"tip-{chart.name}", caption, partial(made, chart), detail=True)
     if figures.forces is not None:
         caption = to_say("Drive torque with and without the forces of the soil.")
         yield PictureEntry(
             "soil-torque", caption, partial(torque, figures), partial(seen.resisted, figures)
         )
         caption = to_say("Forces in the joints with and without the forces of the soil.")
-        yield PictureEntry("soil-joints", caption, partial(joints, figures))
+        yield PictureEntry("soil-joints", caption, partial(joints, figures), detail=True)
 
 
 def _forces(found: Findings) -> Iterator[PictureEntry]:
@@ -146,7 +151,7 @@ def _forces(found: Findings) -> Iterator[PictureEntry]:
 
     caption = to_say("Shaking force as a polar diagram: the end of its arrow over the cycle.")
     yield PictureEntry(
-        "polar", caption, partial(forces.polar, analysis), partial(seen.pushed, found)
+        "polar", caption, partial(forces.polar, analysis), partial(seen.pushed, found), True
     )
     caption = to_say("Shaking force over crank angle.")
     yield PictureEntry(
@@ -181,7 +186,11 @@ def _forces(found: Findings) -> Iterator[PictureEntry]:
         )
         caption = of_force if pushes else of_torque
         yield PictureEntry(
-            "spectrum", caption, partial(forces.spectrum, analysis), partial(seen.ordered, found)
+            "spectrum",
+            caption,
+            partial(forces.spectrum, analysis),
+            partial(seen.ordered, found),
+            detail=True,
         )
 
 
@@ -193,7 +202,7 @@ def _joints(found: Findings) -> Iterator[PictureEntry]:
 
     caption = to_say("Tension of the strands of belts over crank angle.")
     for chart in strands(found.analysis):
-        yield PictureEntry(chart.name, caption, partial(made, chart))
+        yield PictureEntry(chart.name, caption, partial(made, chart), detail=True)
     caption = to_say("Forces in the joints over crank angle.")
     yield from pages(
         "joints",
@@ -207,6 +216,7 @@ def _joints(found: Findings) -> Iterator[PictureEntry]:
         caption,
         partial(joint_polars, found.analysis),
         partial(seen.joint_acting, found.analysis),
+        detail=True,
     )
 
 
@@ -215,12 +225,13 @@ def _vibration(found: Findings) -> Iterator[PictureEntry]:
 
     if (response := found.response) is not None:
         caption = to_say("Vibration at a gauge of the support over a cycle.")
-        for name in response.gauges:
+        for number, name in enumerate(response.gauges):
             yield PictureEntry(
                 f"gauge-{name}",
                 caption,
                 partial(vibration.gauge, response, name),
                 partial(gauged.moved, response, name),
+                number > 0,
             )
         caption = to_say("Vibration at the gauges by orders of the crank angle.")
         yield from pages(
@@ -228,6 +239,7 @@ def _vibration(found: Findings) -> Iterator[PictureEntry]:
             caption,
             partial(vibration.spectra, response),
             partial(gauged.loudest_gauge, response),
+            detail=True,
         )
         caption = to_say("Forces in the mounts over a cycle.")
         yield from pages(
@@ -235,6 +247,7 @@ def _vibration(found: Findings) -> Iterator[PictureEntry]:
             caption,
             partial(vibration.mounts, response),
             partial(gauged.mounted, response),
+            detail=True,
         )
         caption = to_say("Torque and speed of the drive on the moving support.")
         yield PictureEntry(
@@ -242,6 +255,7 @@ def _vibration(found: Findings) -> Iterator[PictureEntry]:
             caption,
             partial(vibration.drive, response),
             partial(gauged.driven, response),
+            detail=True,
         )
     if (over_speed := found.sweep) is not None:
         caption = to_say("Vibration at the gauges against speed.")
@@ -251,6 +265,7 @@ def _vibration(found: Findings) -> Iterator[PictureEntry]:
                 caption,
                 partial(sweep.gauges, over_speed, quantity),
                 partial(gauged.resonant, over_speed, quantity),
+                detail=quantity != "velocity",
             )
         caption = to_say("Where orders of the crank meet natural frequencies.")
         yield PictureEntry(
@@ -261,7 +276,8 @@ def _vibration(found: Findings) -> Iterator[PictureEntry]:
         )
         if over_speed.mounts:
             caption = to_say("Forces in the mounts against speed.")
-            yield PictureEntry("mounts-speed", caption, partial(sweep.mounts, over_speed))
+            draw = partial(sweep.mounts, over_speed)
+            yield PictureEntry("mounts-speed", caption, draw, detail=True)
 
 
 def _modes(found: Findings) -> Iterator[PictureEntry]:
@@ -275,6 +291,7 @@ def _modes(found: Findings) -> Iterator[PictureEntry]:
                 caption,
                 partial(mode_chart, found.modes, number),
                 partial(gauged.swung, found.modes, number),
+                detail=True,
             )
 
 
@@ -307,13 +324,14 @@ def _balance(found: Findings) -> Iterator[PictureEntry]:
                 captions[name],
                 partial(made, chart),
                 partial(seen.compared, found, name),
+                detail=True,
             )
     if balanced.phasing is not None:
         both = balanced.original, balanced.machine
         yield PictureEntry("phases", to_say("Phases of the rows."), partial(phases, *both))
         caption = to_say("Shaking force of all rows together, before and after.")
         yield PictureEntry(
-            "rows", caption, partial(together, *both), partial(seen.compared, found, "rows")
+            "rows", caption, partial(together, *both), partial(seen.compared, found, "rows"), True
         )
 
 

@@ -21,23 +21,23 @@ def of_tool(found: ToolFindings) -> Iterator[PictureEntry]:
     yield PictureEntry("side", caption, partial(tool_side.side, found.tool))
     if modes is not None:
         caption = to_say("The tool from the side in its lowest natural vibrations.")
-        yield PictureEntry("side-modes", caption, partial(tool_side.side_modes, modes))
+        draw = partial(tool_side.side_modes, modes)
+        yield PictureEntry("side-modes", caption, draw, detail=True)
         caption = to_say("Shapes of the natural vibrations of the shaft.")
         for plane, name in enumerate(planes):
             drawn = partial(tool_shaft.shapes, modes, plane)
-            yield from pages(f"modes{name}", caption, drawn, partial(seen.lowest, modes, plane))
+            told = partial(seen.lowest, modes, plane)
+            yield from pages(f"modes{name}", caption, drawn, told, detail=True)
     if transmission is not None:
         caption = to_say("Share of a shaking force that comes to what holds the tool.")
         for plane, name in enumerate(planes):
             draw = partial(tool_speeds.transmission, transmission, plane, modes)
-            yield PictureEntry(
-                f"transmission{name}", caption, draw, partial(seen.passed, transmission, plane)
-            )
+            told = partial(seen.passed, transmission, plane)
+            yield PictureEntry(f"transmission{name}", caption, draw, told, plane > 0)
     if found.sweep is not None and found.sweep.response is not None:
         caption = to_say("Bending moment and displacement along the shaft.")
-        yield PictureEntry(
-            "moment", caption, partial(tool_shaft.moment, found.sweep.response, None)
-        )
+        draw = partial(tool_shaft.moment, found.sweep.response, None)
+        yield PictureEntry("moment", caption, draw, detail=True)
     if found.exposure is not None:
         caption = to_say("Acceleration of the hands against speed of the engine.")
         yield PictureEntry(
@@ -45,6 +45,7 @@ def of_tool(found: ToolFindings) -> Iterator[PictureEntry]:
             caption,
             partial(tool_speeds.acceleration, found.exposure),
             partial(seen.worst, found),
+            detail=True,
         )
         caption = to_say("Daily exposure of the hands, with what is allowed.")
         yield PictureEntry(

@@ -11,7 +11,7 @@ import numpy as np
 
 from equipoise.balancing.compared import WORSE
 from equipoise.balancing.told import capital, larger
-from equipoise.exposure.blocks import VERDICTS, limit_broken
+from equipoise.exposure.blocks import VERDICTS, clock, limit_broken
 from equipoise.exposure.daily import verdict_of
 from equipoise.handheld.blocks import UNITS
 from equipoise.handheld.exposed import WORKING, grips
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from equipoise.handheld.model import Tool
     from equipoise.handheld.modes import ToolModes
 
-HOUR, DAY = 3600.0, 86400.0
+DAY = 86400.0
 """s."""
 NEAR = 0.1
 """Distance of a natural frequency from what shakes, over the latter, below which it is told."""
@@ -50,7 +50,9 @@ def tool_tiles(found: ToolFindings) -> Iterator[Tile]:
     if exposure is not None and exposure.a8 is not None:
         label, verdict = say("daily exposure A(8)"), VERDICTS[verdict_of(exposure.a8)]
         stands_out = limit_broken(exposure.a8)
-        yield Tile(label, brief(exposure.a8), "m/s²", say(verdict), emphasis=stands_out)
+        later = found.exposure_after
+        after = "" if later is None or later.a8 is None else brief(later.a8)
+        yield Tile(label, brief(exposure.a8), "m/s²", say(verdict), after, stands_out)
     if found.design is not None:
         best = found.design.figures[0]
         told = change(best.before, best.after).removesuffix(" %")
@@ -68,7 +70,7 @@ def tool_answers(found: ToolFindings) -> Iterator[SummaryAnswer]:
     if found.modes is not None:
         yield SummaryAnswer(say("Natural frequencies"), tuple(_near(found, found.modes)))
     if found.design is not None:
-        yield SummaryAnswer(say("What helps most"), tuple(_helps(found.design)))
+        yield SummaryAnswer(say("What helps most"), tuple(_helps(found.design, found)))
 
 
 def _felt(exposure: ToolExposure) -> Iterator[str]:
@@ -102,14 +104,7 @@ def _felt(exposure: ToolExposure) -> Iterator[str]:
         )
     else:
         template = to_say("A whole day of such work does not reach the action value.")
-    yield say(template, action=_time(action), limit=_time(limit))
-
-
-def _time(seconds: float) -> str:
-    """A part of a day, in minutes where it is less than an hour."""
-    if seconds < HOUR:
-        return say("{minutes} min", minutes=brief(seconds / 60))
-    return say("{hours} h", hours=brief(seconds / HOUR))
+    yield say(template, action=clock(action), limit=clock(limit))
 
 
 def _why(tool: Tool) -> Iterator[str]:
@@ -168,7 +163,7 @@ def _near(found: ToolFindings, modes: ToolModes) -> Iterator[str]:
         )
 
 
-def _helps(design: ToolDesign) -> Iterator[str]:
+def _helps(design: ToolDesign, found: ToolFindings) -> Iterator[str]:
     for one in design.variables:
         kind: Dimension = one.dimension  # type: ignore[assignment]
         unit = display(kind, [one.before, one.after], UNITS.get(kind))
@@ -189,6 +184,14 @@ def _helps(design: ToolDesign) -> Iterator[str]:
         after=brief(best.after),
         change=change(best.before, best.after),
     )
+    if (later := found.exposure_after) is not None and later.worst is not None:
+        day = later.days[later.worst]
+        yield say(
+            "A(8) then amounts to {a8} m/s² at {hand}, {verdict}.",
+            a8=brief(day.a8),
+            hand=later.worst,
+            verdict=say(VERDICTS[day.verdict]),
+        )
     worse = [
         larger(figure_named(one), one.after / one.before - 1)
         for one in design.figures[1:]

@@ -141,12 +141,16 @@ class Facts:
 
 @dataclass(frozen=True)
 class Table:
-    """A table; columns whose cells are words are set to the left, numbers to the right."""
+    """A table; columns whose cells are words are set to the left, numbers to the right.
+
+    detail : whether it stands in the appendix of a report, however short it is.
+    """
 
     kind: ClassVar[str] = "table"
     title: str
     columns: tuple[Column, ...]
     rows: tuple[tuple[Cell, ...], ...]
+    detail: bool = False
 
     @classmethod
     def of(cls, title: str, columns: Iterable[Any], rows: Iterable[Iterable[Any]]) -> Table:
@@ -187,6 +191,7 @@ class SvgPicture:
 
     caption : what is drawn.  seen : what is seen in it.  instead : for those who cannot see it.
     wide : whether it takes the width of a page, not half of it.
+    detail : whether it stands in the appendix of a report.
     """
 
     kind: ClassVar[str] = "drawn"
@@ -196,6 +201,7 @@ class SvgPicture:
     seen: str = ""
     instead: str = ""
     wide: bool = True
+    detail: bool = False
 
 
 @dataclass(frozen=True)
