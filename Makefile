@@ -76,7 +76,7 @@ test: bundle
 browser: bundle
 	PYTEST_XDIST_AUTO_NUM_WORKERS=$$(( ($$(getconf _NPROCESSORS_ONLN) * 3 + 1) / 2 )) $(TEST) tests/browser
 
-# The snippets of the pages, the site that is made of them, and the gallery of all pictures.
+# The snippets of the pages, the site that is made of them, and the gallery of pictures.
 documentation: $(VENV)/.installed-test
 	$(TEST) -m documentation README.md docs tests/surface/test_site.py \
 		tests/unit/figures/test_pictures.py
