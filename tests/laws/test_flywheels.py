@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from math import inf
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,9 +12,14 @@ from scipy.integrate import solve_ivp
 
 import equipoise as eq
 from equipoise.errors import UsageError
+from equipoise.mechanism.parts.dc_motors import DcMotor
+from equipoise.mechanism.parts.force_elements import Motor
 from equipoise.running.blocks import run_headline
+from equipoise.running.drivers import Driver
 from equipoise.running.equation import CrankEquation
 from equipoise.running.flywheel import Flywheel, SteadyCycle, share_of_mean, size_flywheel
+from equipoise.running.integration import Instant, Integration, Limits
+from equipoise.running.shooting import Shooting
 from support.analyses import subject_of
 from support.chosen import few
 
@@ -69,6 +75,54 @@ def test_with_a_motor_the_run_itself_is_as_even(name: str) -> None:
     assert found.inertia > 0
     assert cycle is not None
     assert cycle.fluctuation == pytest.approx(wanted, rel=2e-3)  # at the nodes of a run
+
+
+@pytest.mark.parametrize("name", ["yamashita-rig", "walking-transplanter"])
+def test_a_heavy_flywheel_is_sized_in_few_pieces(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The crank would come to its steady speed with it only over many hundreds of turns."""
+    pieces, real = [], Integration._piece
+
+    def piece(self: Integration, begin: Instant) -> Instant | None:
+        pieces.append(begin)
+        return real(self, begin)
+
+    machine = subject_of(name).machine
+    monkeypatch.setattr(Integration, "_piece", piece)
+    found = size_flywheel(machine, 1e-4)
+    turns = len(pieces) / len(CrankEquation(machine).table.lows)
+    assert turns < 100
+    assert found.inertia > 10 * found.present * 1e-4 * found.work / found.speed**2
+    shooting = Shooting(CrankEquation(with_flywheel(machine, found.inertia)), found.speed)
+    steady = shooting.steady()
+    assert steady is not None
+    state, _ = steady
+    limits = Limits(turns=shooting.equation.period / np.pi, steady=False)  # two cycles
+    run = Integration(shooting.equation, Driver(shooting.equation.machine), limits)
+    run.follow(0.0, float(state[0]) * found.speed)
+    assert run.events[-1].speed == pytest.approx(float(state[0]) * found.speed, rel=1e-9)
+
+
+def test_a_current_that_is_far_quicker_than_the_crank_takes_few_steps(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """And the crank moves as without inductance."""
+    calls, real = [], Integration._rates
+
+    def rates(self: Integration, time: float, state: Any) -> list[float]:
+        calls.append(time)
+        return real(self, time, state)
+
+    monkeypatch.setattr(Integration, "_rates", rates)
+    machine = subject_of("yamashita-rig").machine
+    ends = []
+    for inductance in (1e-9, 0.0):
+        circuit = DcMotor(voltage=12.0, resistance=2.0, torque_constant=0.05, inductance=inductance)
+        drive = replace(machine.drive, motor=Motor(dc=circuit, ratio=20.0, inertia=4e-5))
+        ends.append(eq.run(replace(machine, drive=drive), turns=0.5).crank_speed[-1])
+    assert len(calls) < 10_000
+    assert ends[0] == pytest.approx(ends[1], rel=1e-6)
 
 
 def test_the_mean_speed_is_that_of_the_drive() -> None:

@@ -19,10 +19,12 @@ class Controller:
     """Of a servo motor.
 
     first : speed, rad/s, at time 0, where its angle is 0.
+    lag : rad, by which the angle is behind its reference then.
     """
 
     servo: ServoMotor
     first: float
+    lag: float = 0.0
 
     @property
     def ramp_end(self) -> float:
@@ -44,7 +46,7 @@ class Controller:
         gained = self.rate * on_ramp
         angle = (self.first + gained / 2) * on_ramp + servo.speed * (time - on_ramp)
         speed = self.first + gained if end else np.full_like(on_ramp, servo.speed)
-        return np.asarray(speed), np.asarray(angle)
+        return np.asarray(speed), np.asarray(angle + self.lag)
 
     def demand(self, speed: Array | float, angle: Array | float, time: Array | float) -> Array:
         """Torque (...), N m, without the limit, at speeds (...), rad/s, angles (...), rad, and
@@ -78,6 +80,6 @@ class Controller:
             return end - (left / (by_angle * self.servo.speed) if by_angle else 0.0)
         square = by_angle * self.rate / 2
         linear = by_speed * self.rate + by_angle * self.first
-        constant = by_speed * self.first - by_angle * angle - torque
+        constant = by_speed * self.first + by_angle * (self.lag - angle) - torque
         # of both roots that at which the torque rises
         return -2 * constant / (linear + sqrt(linear**2 - 4 * square * constant))

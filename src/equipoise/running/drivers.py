@@ -4,7 +4,7 @@ what stops it: a brake, while no motor is on.
 
 from __future__ import annotations
 
-from math import copysign, log
+from math import copysign, inf, log
 
 import numpy as np
 
@@ -38,12 +38,17 @@ class Driver:
         self.servo = None if drive.motor is None else drive.motor.servo
         self._gear = 1.0 if drive.motor is None else self.sense * drive.motor.ratio
 
-    def begins(self, angle: float, speed: float) -> None:
-        """Start at a crank angle, rad, and speed, rad/s, at time 0."""
+    def begins(self, angle: float, speed: float, lag: float | None = None) -> None:
+        """Start at a crank angle, rad, and speed, rad/s, at time 0.
+
+        lag : of a servo motor behind its reference, rad, whose speed is constant then; it begins at
+            the motor's own speed, without a lag, if None.
+        """
         self._start = angle
         self.limited = 0
         if self.servo is not None:
-            self._controller = Controller(self.servo, self._gear * speed)
+            first = self._gear * speed if lag is None else self.servo.speed
+            self._controller = Controller(self.servo, first, lag or 0.0)
 
     def torque(self, speed: Array) -> Array:
         """On the crank (...), N m, at its speed (...), rad/s, that lasts."""
@@ -71,6 +76,10 @@ class Driver:
         turned = self._gear * (angle - self._start)
         own = self._controller.torque(self._gear * speed, turned, time)
         return np.asarray(self._gear * own)
+
+    def lag_at(self, angle: float, time: float) -> float:
+        """Of a servo motor behind its reference, rad, at a crank angle, rad, and time, s."""
+        return float(self._controller.reference(time)[1]) - self._gear * (angle - self._start)
 
     @property
     def controlled(self) -> bool:
@@ -117,6 +126,13 @@ class Driver:
     def lags(self) -> bool:
         """Whether its current follows its speed with a delay, and its torque the current."""
         return self.on and self.circuit is not None and self.circuit.inductance > 0
+
+    @property
+    def current_lag(self) -> float:
+        """Time constant of a current that lags, s; infinite without one."""
+        return (
+            self.circuit.inductance / self.circuit.resistance if self.circuit and self.lags else inf
+        )
 
     def torque_of(self, current: Array) -> Array:
         """On the crank (...), N m, of currents (...), A."""

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cache, cached_property
 from math import inf, nan
 from typing import Any
 
@@ -24,6 +24,7 @@ from equipoise.mechanism.parts.machine import Machine
 from equipoise.running.drivers import Driver
 from equipoise.running.equation import CrankEquation
 from equipoise.running.integration import Integration, Limits
+from equipoise.running.shooting import Shooting
 from equipoise.running.tabulated import NODES, POINTS, TO_CHEBYSHEV, integral_to, polynomials
 from equipoise.signals import Array
 
@@ -205,15 +206,19 @@ def size_flywheel(machine: Machine, wanted: float) -> Flywheel:
     work, own = work_at_constant_speed(equation), equation.shaft_inertia
     needed = work / (wanted * machine.drive.speed**2)
 
+    motor = MotorCycles(machine)
+
+    @cache
     def fluctuation(added: float) -> float:
         steady = SteadyCycle(equation, added)
         if machine.drive.motor is None or steady.fluctuation == inf:
             return steady.fluctuation
-        return _with_motor(machine, steady)
+        return motor.fluctuation(steady)
 
     present = fluctuation(0.0)
     speed = machine.drive.speed
-    found = 0.0 if present <= wanted else _least(fluctuation, wanted, max(needed, own))
+    about = max(needed * motor.slower**2, own)
+    found = 0.0 if present <= wanted else _least(fluctuation, wanted, about)
     return Flywheel(wanted, present, found, max(needed - own, 0.0), work, speed)
 
 
@@ -224,28 +229,76 @@ def _least(fluctuation: Callable[[float], float], wanted: float, about: float) -
     def missed(added: float) -> float:
         return min(fluctuation(added), 10.0) - wanted
 
-    high = about
+    low, high = 0.0, about
     while missed(high) > 0:
-        high *= MANY_TIMES
+        low, high = high, high * MANY_TIMES
         if high > LARGEST * about:
             raise ResponseError(Note("no flywheel, however large, brings about so even a speed"))
-    return float(brentq(missed, 0.0, high, rtol=CLOSE))
+    return float(brentq(missed, low, high, rtol=CLOSE))
 
 
-def _with_motor(machine: Machine, steady: SteadyCycle) -> float:
-    """Fluctuation in the steady state with the motor's own curve, followed into it."""
-    drive = replace(machine.drive, flywheel=machine.drive.flywheel + steady.added)
-    equation = CrankEquation(replace(machine, drive=drive))
-    limits = Limits(inf, MOST_TURNS, inf, inf, steady=True)
-    found = Integration(equation, Driver(equation.machine), limits)
-    assert steady.speed is not None
-    found.follow(0.0, float(np.sign(drive.speed) * steady.speed[0, 0]))
-    if found.events[-1].kind not in ("steady", "turns") or len(found.begins) < 2:
-        return inf
-    time, _, speed, *_ = np.vstack(found.track).T
-    first, last = found.begins[-2:]
-    inside = np.abs(speed[(time >= first.time) & (time <= last.time)])
-    return float(np.ptp(inside)) * (last.time - first.time) / abs(last.angle - first.angle)
+@dataclass(eq=False)
+class MotorCycles:
+    """Steady states of a machine with its motor's own curve, by the inertia that is added.
+
+    first : state from which the next one is looked for.  cycles : how many were followed.
+    slower : the speed of the drive over the mean speed with the motor, of the last one.
+    """
+
+    machine: Machine
+    first: Array | None = None
+    cycles: int = 0
+    slower: float = 1.0
+
+    def fluctuation(self, steady: SteadyCycle) -> float:
+        """Highest less lowest speed over the mean; infinite where the motor stalls.
+
+        steady : under a constant torque with the same inertia, near which the motor's is looked
+            for first.
+
+        Raises
+        ------
+        ResponseError : no steady state is met.
+        """
+        drive = replace(self.machine.drive, flywheel=self.machine.drive.flywheel + steady.added)
+        equation = CrankEquation(replace(self.machine, drive=drive))
+        assert steady.speed is not None
+        speed = float(np.sign(drive.speed) * steady.speed[0, 0])
+        shooting = Shooting(equation, float(drive.speed))
+        found = shooting.steady(self.first)
+        self.cycles += shooting.cycles
+        if found is None:
+            return self._followed(equation, speed)
+        self.first, track = found
+        mean = (track[-1, 1] - track[0, 1]) / (track[-1, 0] - track[0, 0])
+        self.slower = float(drive.speed / mean)
+        return _fluctuation_of(track)
+
+    def _followed(self, equation: CrankEquation, speed: float) -> float:
+        """From a speed on, rad/s, cycle after cycle, where none was met that ends as it begins."""
+        limits = Limits(inf, MOST_TURNS, inf, inf, steady=True)
+        found = Integration(equation, Driver(equation.machine), limits)
+        found.follow(0.0, speed)
+        self.cycles += len(found.begins)
+        if found.events[-1].kind == "turns":
+            raise ResponseError(
+                Note(
+                    "no steady state with the motor is met within {count} turns of the crank, for "
+                    "which a flywheel could be sized",
+                    count=MOST_TURNS,
+                )
+            )
+        if found.events[-1].kind != "steady" or len(found.begins) < 2:
+            return inf
+        track = np.vstack(found.track)
+        first, last = found.begins[-2:]
+        return _fluctuation_of(track[(track[:, 0] >= first.time) & (track[:, 0] <= last.time)])
+
+
+def _fluctuation_of(track: Array) -> float:
+    """Highest less lowest speed over the mean, of rows of a track over a cycle."""
+    time, angle, speed = track[:, 0], track[:, 1], np.abs(track[:, 2])
+    return float(np.ptp(speed) * (time[-1] - time[0]) / abs(angle[-1] - angle[0]))
 
 
 def work_at_constant_speed(equation: CrankEquation) -> float:

@@ -7,8 +7,9 @@ integral of the torques, and collocation at the table's own nodes needs no linka
 
 About standstill, where the angle is no clock, SciPy's DOP853 integrates in time to the piece's end:
 explicit and of order 8, because the equation is smooth and not stiff there, and tolerances are
-tight.  The work of each source is integrated on the way, so that their sum can be held against the
-kinetic energy of the linkage itself.
+tight; or Radau, where a motor's current is far quicker than the crank.  The work of each source is
+integrated on the way, so that their sum can be held against the kinetic energy of the linkage
+itself.
 """
 
 from __future__ import annotations
@@ -67,6 +68,9 @@ AT_EDGE = 1e-11
 SAME = 1e-9
 """Of a cycle, within which a crank angle is its begin."""
 TINY = 1e-300
+STIFF = 1e-4
+"""rad at the usual speed within which a motor's current follows the speed, below which an explicit
+method takes thousands of steps to a piece."""
 ELECTRIC = 3
 """Values of a motor's circuit in a row of the track: its current, and two works."""
 BETWEEN = 6
@@ -166,8 +170,13 @@ class Integration:
         self.halvings = 0
         self.cycle_before: dict[tuple[float, ...], Gained] = {}
 
-    def follow(self, angle: float, speed: float) -> None:
-        """Run from a crank angle, rad, and speed, rad/s, until something ends it."""
+    def follow(
+        self, angle: float, speed: float, current: float = 0.0, lag: float | None = None
+    ) -> None:
+        """Run from a crank angle, rad, and speed, rad/s, until something ends it.
+
+        current : of a motor whose current lags, A.  lag : of a servo motor, as of `Driver.begins`.
+        """
         equation = self.equation
         self.start = angle
         inertia = float(np.max(equation.inertia(np.linspace(0.0, equation.period, SAMPLES))[0]))
@@ -180,9 +189,10 @@ class Integration:
         self.absolute = ABSOLUTE * np.array(sizes)
         now: Instant | None = Instant(0.0, angle, speed, np.zeros(works))
         assert now is not None
-        if self.driver.on and self.driver.circuit is not None and not self.driver.lags:
-            now.electric[0] = self.driver.current(np.asarray(speed))
-        self.driver.begins(angle, speed)
+        if self.driver.on and self.driver.circuit is not None:
+            lasting = self.driver.current(np.asarray(speed))
+            now.electric[0] = current if self.driver.lags else lasting
+        self.driver.begins(angle, speed, lag)
         self.corner = self.driver.ramp_end or inf
         self._record(now)
         self.direction = copysign(1.0, speed)
@@ -546,7 +556,7 @@ class Integration:
             self._rates,
             span,
             state,
-            "DOP853",
+            "Radau" if self.driver.current_lag * self.usual < STIFF else "DOP853",
             dense_output=True,
             events=events,
             rtol=RELATIVE,
