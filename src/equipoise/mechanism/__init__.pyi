@@ -15,6 +15,7 @@ from .parts.bodies import Body as Body
 from .parts.bodies import Hole as Hole
 from .parts.circular_slots import CircularSlot as CircularSlot
 from .parts.curved_slots import CurvedSlot as CurvedSlot
+from .parts.duty_states import DutyState as DutyState
 from .parts.field import Planting as Planting
 from .parts.field import PlantingArm as PlantingArm
 from .parts.field import Soil as Soil
@@ -33,6 +34,8 @@ from .parts.machine import Position as Position
 from .parts.machine import Slider as Slider
 from .parts.racks import Rack as Rack
 from .parts.rolling_bearings import RollingBearing as RollingBearing
+from .parts.run_plans import RunPlan as RunPlan
+from .parts.servo_motors import ServoMotor as ServoMotor
 from .parts.springs import Spring as Spring
 from .parts.support import Gauge as Gauge
 from .parts.support import Mount as Mount

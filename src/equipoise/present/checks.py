@@ -192,6 +192,8 @@ def _drive_train(machine: Machine) -> Iterator[str]:
         rotor = f", rotor {told(motor.inertia, 'inertia', 'kg m^2')}" if motor.inertia else ""
         speed = "is the drive's" if motor.mean_speed == "held" else "follows from it"
         yield f"motor: {_curve(motor)}, ratio {number(motor.ratio)}{rotor}; mean speed {speed}"
+    if machine.duty:
+        yield f"duty states: {len(machine.duty)}, over which bearings live"
     if machine.rows:
         unit = display("angle")
         shown = [unit.text(row.phase) for row in machine.rows[:MOST_SHOWN]]

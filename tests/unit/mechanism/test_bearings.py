@@ -12,6 +12,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import ModelError
+from equipoise.mechanism.parts.duty_states import DutyState
 from equipoise.mechanism.parts.joint_properties import JointProperties
 from equipoise.mechanism.parts.rolling_bearings import RollingBearing
 from equipoise.results.blocks import Table
@@ -52,6 +53,73 @@ def test_life_uses_up_step_by_step(kind: str) -> None:
             found[name].basic_life / period * np.sum(turned), rel=1e-9
         )
         assert found[name].static_safety == pytest.approx(15e3 / np.max(force), rel=1e-9)
+
+
+DUTY = (
+    DutyState(0.5),
+    DutyState(1.5, "1200 rpm", 0.4),
+    DutyState(2.0, "600 rpm", 0.0),
+)
+
+
+def test_life_over_duty_states_by_hand() -> None:
+    """Second route: life of each state alone, from a machine that always works so, and Miner's rule
+    over the shares of the time; the table of the analysis says over how many states it is.
+    """
+    machine = engine()
+    assert machine.loads
+    shares = np.array([one.share for one in DUTY]) / 4.0
+    alone = []
+    for state in DUTY:
+        loads = tuple(
+            replace(load, table=replace(load.table, values=tuple(
+                tuple(state.load_factor * value for value in column)
+                for column in load.table.values
+            ))) if load.table else replace(load, force=tuple(
+                state.load_factor * value for value in load.force or ()
+            ))
+            for load in machine.loads
+        )  # fmt: skip
+        speed = machine.drive.speed if state.speed is None else state.speed
+        slower = replace(machine, loads=loads).with_drive(speed=speed)
+        alone.append(eq.analyze(slower).rolling_bearings)
+    together = eq.analyze(replace(machine, duty=DUTY))
+    for name, found in together.rolling_bearings.items():
+        lives = np.array([one[name].basic_life for one in alone])
+        speeds = np.array([one[name].speed for one in alone])
+        loads_3 = np.array([one[name].equivalent_load for one in alone]) ** 3
+        assert found.basic_life == pytest.approx(1 / np.sum(shares / lives), rel=1e-9)
+        assert found.speed == pytest.approx(np.sum(shares * speeds), rel=1e-12)
+        equivalent = (np.sum(shares * speeds * loads_3) / np.sum(shares * speeds)) ** (1 / 3)
+        assert found.equivalent_load == pytest.approx(equivalent, rel=1e-9)
+        assert found.static_safety == pytest.approx(min(one[name].static_safety for one in alone))
+    assert set(together.rolling_bearings) == {"B", "C"}
+    assert "over 3 duty states" in " ".join(map(str, together.blocks()))
+    survives(replace(machine, duty=DUTY))
+
+
+def test_check_counts_duty_states(tmp_path: Any) -> None:
+    eq.save(replace(engine(), duty=DUTY, loads=()), tmp_path / "duty.toml")
+    out = equipoise("check", str(tmp_path / "duty.toml")).out
+    assert "duty states: 3, over which bearings live" in out
+
+
+def test_one_duty_state_as_the_machine_runs_changes_nothing() -> None:
+    machine = engine()
+    found = eq.analyze(replace(machine, duty=(DutyState(7.0),))).rolling_bearings
+    assert found == eq.analyze(machine).rolling_bearings
+
+
+@pytest.mark.parametrize(
+    ("given", "where"),
+    [({"share": 0.0}, "share"), ({"share": 1.0, "speed": -2.0}, "speed"),
+     ({"share": 1.0, "load_factor": -1.0}, "load_factor")],
+)  # fmt: skip
+def test_what_is_wrong_with_a_duty_state_is_refused_at_its_key(
+    given: dict[str, float], where: str
+) -> None:
+    with pytest.raises(ModelError, match=rf"^duty\[1\]\.{where}: "):
+        replace(engine(), duty=(DutyState(**given),))
 
 
 def test_a_bearing_of_the_rating_that_is_needed_reaches_the_life_that_is_wanted() -> None:

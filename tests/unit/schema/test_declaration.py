@@ -39,6 +39,7 @@ from equipoise.mechanism.parts.belts import Belt
 from equipoise.mechanism.parts.circular_slots import CircularSlot
 from equipoise.mechanism.parts.curved_slots import CurvedSlot
 from equipoise.mechanism.parts.dc_motors import DcMotor
+from equipoise.mechanism.parts.duty_states import DutyState
 from equipoise.mechanism.parts.induction_motors import InductionMotor
 from equipoise.mechanism.parts.machine import Frame, Machine, Position
 from equipoise.mechanism.parts.racks import Rack
@@ -77,7 +78,7 @@ DOCUMENTED: dict[str, type[Frozen]] = {
         force_elements.Load, Spring, TorsionSpring, Position, field.Planting,
         field.PlantingArm,
         field.Soil, support.Support,
-        mounts.Mount, support.Row, RunPlan, balance.Balance, weights.CenterMove,
+        mounts.Mount, support.Row, DutyState, RunPlan, balance.Balance, weights.CenterMove,
         weights.AddedMass, weights.Weight, counterweights.GearedWeight,
         counterweights.BalanceShafts,
         balance.SpringChoice, balance.Phases, objectives.Objective, objectives.Limit, tool.Tool,

@@ -6,6 +6,8 @@ and speed change, each part of a turn uses up its share of the life, so that
     P^p = int F^p |w| dt / int |w| dt,
 
 with w the speed of one ring against the other: a joint that swings counts by the way that it turns.
+Several duty states are parts of one long cycle: both integrals are sums over the states, each by
+its share of the time.
 Lives scatter as a Weibull distribution with three parameters, in units of L10 (Shigley's Mechanical
 Engineering Design, chapter 11):
 
@@ -14,15 +16,18 @@ Engineering Design, chapter 11):
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
-from math import exp, log, pi
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from math import copysign, exp, log, pi
 from typing import Any
 
 import numpy as np
 
 from equipoise.i18n import to_say
+from equipoise.mechanism.assembly.linkage import assemble
+from equipoise.mechanism.assembly.steps import Array, Reaction
 from equipoise.mechanism.dynamics.forces import Forces
+from equipoise.mechanism.dynamics.forces import forces as forces_of
 from equipoise.mechanism.dynamics.pin_bearings import joint_properties, ring_speed
 from equipoise.mechanism.kinematics.stroke_figures import figure
 from equipoise.mechanism.parts.rolling_bearings import RollingBearing
@@ -34,7 +39,7 @@ LEAST, SCALE, SHAPE = 0.02, 4.439, 1.483
 
 @dataclass(frozen=True)
 class BearingLife:
-    """Figures of a rolling bearing over a whole cycle of even speed.
+    """Figures of a rolling bearing over a whole cycle of even speed, or those of all duty states.
 
     equivalent_load : the even load of the same life, with the load factor, N.
     speed : mean of the size of the speed of one ring against the other, rad/s.
@@ -98,22 +103,64 @@ def bearing_life(
     )
 
 
+@dataclass(frozen=True, eq=False)
+class WorkingState:
+    """A machine in one state of its duty.
+
+    share : of the operating time; the shares of all states sum up to 1.
+    """
+
+    share: float
+    forces: Forces
+
+
+def working_states(forces: Forces) -> Iterator[WorkingState]:
+    """The states of a machine's duty, at the crank angles of an analysis; that analysis itself of a
+    machine that tells none.
+    """
+    motion, machine = forces.motion, forces.motion.machine
+    if not machine.duty:
+        yield WorkingState(1.0, forces)
+        return
+    total = sum(state.share for state in machine.duty)
+    for state in machine.duty:
+        speed = motion.speed if state.speed is None else copysign(state.speed, machine.drive.speed)
+        loaded = replace(machine, loads=state.scaled(machine.loads), duty=())
+        # loads do not move links, so that the positions are those of the analysis
+        moving = replace(motion.at(speed), linkage=assemble(loaded))
+        yield WorkingState(state.share / total, forces_of(moving, forces.about))
+
+
 def bearing_lives(forces: Forces) -> Mapping[str, BearingLife]:
-    """Figures of rolling bearings by joint; none where the crank is not turned evenly, or the
-    crank angles are not those of a whole cycle.
+    """Figures of rolling bearings by joint, over all duty states of the machine; none where the
+    crank is not turned evenly, or the crank angles are not those of a whole cycle.
     """
     motion = forces.motion
     if not motion.whole_cycle or motion.acceleration or not motion.speed:
         return {}
-    found = {}
-    for name, (reaction, one) in joint_properties(motion).items():
-        if one.bearing is not None and name in forces.joints:
-            size, p = forces.joints[name].size, one.bearing.exponent
-            turning = np.abs(ring_speed(motion, reaction))
-            speed, top = float(motion.mean(turning)), float(np.max(size))
-            load = 0.0
-            if speed > 0 and top > 0:  # scaled, as a small force to a high power is 0
-                mean = float(motion.mean((size / top) ** p * turning)) / speed
-                load = top * mean ** (1 / p)
-            found[name] = bearing_life(one.bearing, load, speed, top)
-    return found
+    rolling = {
+        name: (reaction, one.bearing)
+        for name, (reaction, one) in joint_properties(motion).items()
+        if one.bearing is not None and name in forces.joints
+    }
+    states = tuple(working_states(forces)) if rolling else ()
+    return {name: _life_over(states, name, *both) for name, both in rolling.items()}
+
+
+def _life_over(
+    states: Sequence[WorkingState], name: str, reaction: Reaction, bearing: RollingBearing
+) -> BearingLife:
+    """Figures of one bearing over duty states."""
+    sizes = [state.forces.joints[name].size for state in states]
+    turns = [np.abs(ring_speed(state.forces.motion, reaction)) for state in states]
+
+    def mean(signals: Iterable[Array]) -> float:
+        each = zip(states, signals, strict=True)
+        return sum(state.share * float(state.forces.motion.mean(one)) for state, one in each)
+
+    speed, top = mean(turns), max(float(np.max(size)) for size in sizes)
+    load, p = 0.0, bearing.exponent
+    if speed > 0 and top > 0:  # scaled, as a small force to a high power is 0
+        both = zip(sizes, turns, strict=True)
+        load = top * (mean((size / top) ** p * turn for size, turn in both) / speed) ** (1 / p)
+    return bearing_life(bearing, load, speed, top)

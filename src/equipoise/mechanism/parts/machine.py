@@ -52,6 +52,7 @@ from equipoise.mechanism.parts.drives import (
     Driven,
     FurtherDrive,
 )
+from equipoise.mechanism.parts.duty_states import DutyState
 from equipoise.mechanism.parts.element_kinds import (
     Element,
     PartKind,
@@ -111,7 +112,7 @@ MOVING = ("link", "motion", "between", "slider", "stroke", "start")
 """What of the drive sets how the links move."""
 BESIDE = ("bodies", "plane", "planes")
 """Keys of a link that change nothing about the motion, beside its mass."""
-STILL = {"planting", "support", "rows", "bearings", "run"}
+STILL = {"planting", "support", "rows", "bearings", "run", "duty"}
 """Keys, beside those of force elements, under which no number changes the motion."""
 STANDARD_GRAVITY: Vector = (0.0, -9.80665)
 
@@ -125,7 +126,7 @@ class Machine(Driven, Displayed, Frozen):
                   "drives", "frame", "links", "constraints", "bearings", "assembly", "sliders",
                   "circular_slots", "curved_slots", "gears", "belts", "racks", "cams", "loads",
                   "springs", "torsion_springs", "joints", "position", "planting", "support", "rows",
-                  "run", "balance")  # fmt: skip
+                  "duty", "run", "balance")  # fmt: skip
 
     title: str = key(Wording(), "shown in reports", example="Slider-crank")
     drive: Drive = key(Table(Drive), "the link that is driven")
@@ -212,6 +213,12 @@ class Machine(Driven, Displayed, Frozen):
         Table(RunPlan), "start and end of `equipoise run`, where its options say nothing",
         default=None,
     )  # fmt: skip
+    duty: tuple[DutyState, ...] = key(
+        Tables(Table(DutyState)),
+        "states in which it works over its life, for the lives of bearings; that of the file alone "
+        "where left out",
+        default=(),
+    )
     expressions: Mapping[str, str] = inside(Named(Text()), factory=dict)
 
     @classmethod
