@@ -188,7 +188,7 @@ OPTIONS = {
     "plot": ["FILE", "--only", "--output", "--at", "--speed", "--units", "--out", "--format"],
     "plot map": [
         *["FILE", "FIRST", "SECOND", "OUTPUT", "--set", "--points", "--speed"],
-        *["--workers", "--units", "--out", "--format"],
+        *["--workers", "--cluster", "--units", "--out", "--format"],
     ],
     "report": ["FILE", "--out", "--language", "--pdf", "--speed", "--units"],
     "respond": ["FILE", "--model", "--speed", "--speeds", "--drive", "--full", *OUTPUTS],
@@ -215,6 +215,7 @@ OPTIONS = {
             "--generations",
             "--seed",
             "--workers",
+            "--cluster",
             "--out",
             "--design",
             *OUTPUTS,
@@ -224,7 +225,7 @@ OPTIONS = {
     "simulate": ["FILE", "DURATION", "--speed", "--drive", *OUTPUTS],
     "site": ["--out", "--runtime", "--wheels", "--docs"],
     "sweep": ["STUDY", "--out", "--workers", "--cluster", *DRAWN],
-    "tolerance": ["STUDY", "--designs", "--workers", *DRAWN],
+    "tolerance": ["STUDY", "--designs", "--workers", "--cluster", *DRAWN],
     "tool": [
         *["FILE", "--modes", "--number", "--respond", "--speeds", "--at", "--exposure"],
         *["--duration", "--full", *OUTPUTS],

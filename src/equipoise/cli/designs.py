@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Annotated, Any
 
-from equipoise.cli.options import Names, StorePath, StudyFile, WorkerCount, count, naming
+from equipoise.cli.options import Computers, Names, StorePath, StudyFile, count, naming
 from equipoise.cli.outputs import (
     Chosen,
     Columns,
@@ -87,7 +87,7 @@ def search(
     population: Annotated[int | None, count(8, 100_000)] = None,
     generations: Annotated[int | None, count(1, 100_000)] = None,
     seed: Annotated[int | None, count(0, MOST_SEED)] = None,
-    workers: WorkerCount = None,
+    computers: Computers = Computers(),
     chosen: Chosen = Chosen(),
     outputs: Outputs = Outputs(),
 ) -> None:
@@ -102,8 +102,6 @@ def search(
         search ends where nothing gets better any more.
     seed
         Of the random numbers, that of the study if not given; the same gives the same designs.
-    workers
-        Processes for what no loop computes; as many as there are processors if not given.
     """
     from equipoise.figures.designs import searched_charts
     from equipoise.schema.studies import load_study
@@ -118,7 +116,7 @@ def search(
     with naming(study), outputs.showing(asked):
         size, turns = search_size(asked, population, generations)
         units = units_of(asked)
-        with swept(units) as told, Watched(asked, told, workers) as watched:
+        with swept(units) as told, Watched(asked, told, computers) as watched:
             found = search(
                 asked,
                 population=size,

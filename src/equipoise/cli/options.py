@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import Parameter
@@ -264,3 +265,21 @@ def check_belonging(owner: str, given: object, **options: object) -> None:
     for name, value in options.items():
         if value is not None and not given:
             raise UsageError(f"--{name.replace('_', '-')} belongs to {owner}; give both")
+
+
+@Parameter(name="*")
+@dataclass(frozen=True)
+class Computers:
+    """Who computes."""
+
+    workers: WorkerCount = None
+    """Threads or processes of this machine, one a processor if not given."""
+    cluster: Annotated[str | None, wants("ADDRESS")] = None
+    """Address of a Dask scheduler whose workers compute instead, such as tcp://192.168.0.7:8786."""
+
+    def __post_init__(self) -> None:
+        if self.cluster is not None and self.workers is not None:
+            raise UsageError(
+                "--workers belongs to this machine, and --cluster computes elsewhere; give one of "
+                "them"
+            )

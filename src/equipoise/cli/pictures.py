@@ -12,11 +12,11 @@ from cyclopts import App, Parameter
 
 from equipoise.cli.options import (
     AnySpeed,
+    Computers,
     File,
     Many,
     Names,
     Speed,
-    WorkerCount,
     blaming,
     count,
     ends_of_range,
@@ -141,7 +141,7 @@ def landscape(
     set: Annotated[Many, wants("NUMBER=VALUE")] = None,
     points: Annotated[int, count(5, MOST_POINTS)] = POINTS,
     speed: Speed = None,
-    workers: WorkerCount = None,
+    computers: Computers = Computers(),
     pictures: PictureFolder = PictureFolder(),
 ) -> None:
     """An output over two numbers of a machine.
@@ -159,9 +159,6 @@ def landscape(
         A number that is set first, "counterweights.crank.mass = 1 kg".  May be repeated.
     points
         Values of each number.
-    workers
-        Processes for machines that differ in more than masses; as many as there are processors if
-        not given.
     """
     from equipoise.figures.studies import landscape as drawn_map
     from equipoise.figures.studies import told_best
@@ -180,7 +177,9 @@ def landscape(
     if speed is not None:
         numbers["drive.speed"] = speed
     with naming(file), counted("machine") as progress:
-        found = studies.landscape(model, dict(both), objective, numbers, progress, workers)
+        found = studies.landscape(
+            model, dict(both), objective, numbers, progress, **vars(computers)
+        )
     with pictures.showing(model.base()):
         write_pictures({"landscape": drawn_map(found)}, folder, pictures.format)
         best = told_best(found)

@@ -20,6 +20,7 @@ from equipoise.quantities.numbers import rate_told, time_told
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
+    from equipoise.cli.options import Computers
     from equipoise.design.evaluator import PooledEvaluator
     from equipoise.studies.blocks import Unit
     from equipoise.studies.outcomes import Outcome, Progress
@@ -210,15 +211,15 @@ def swept(units: Mapping[str, Unit]) -> Iterator[Callable[[Progress], None]]:
 class Watched:
     """Computes designs of a study, and tells how far it is each time; a context manager.
 
-    workers : processes, as many as this machine has processors if not given.
+    computers : who computes.
     """
 
     def __init__(
-        self, study: Study, told: Callable[[Progress], None], workers: int | None = None
+        self, study: Study, told: Callable[[Progress], None], computers: Computers
     ) -> None:
         from equipoise.studies.outcomes import Tally
 
-        self.study, self.told, self.workers = study, told, workers
+        self.study, self.told, self.computers = study, told, computers
         self.tally = Tally(study.outputs, 0)
         self.compute: PooledEvaluator[Outcome] | None = None
 
@@ -235,7 +236,7 @@ class Watched:
         from equipoise.studies.outcomes import Block
 
         if self.compute is None:
-            self.compute = pooled(self.study, self.workers)
+            self.compute = pooled(self.study, **vars(self.computers))
         outcome = self.compute(values)
         self.tally.add(Block(values, outcome), computed=True)
         return outcome

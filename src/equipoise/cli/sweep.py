@@ -5,24 +5,21 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from shlex import quote
 from typing import TYPE_CHECKING, Annotated, Any
 
-from cyclopts import Parameter
-
 from equipoise.cli.designs import own_of
 from equipoise.cli.options import (
+    Computers,
     Out,
     StorePath,
     StudyFile,
-    WorkerCount,
     blaming_by_place,
     count,
     file_named,
     naming,
-    wants,
 )
 from equipoise.cli.outputs import Drawn
 from equipoise.cli.progress import Watched, swept
@@ -38,24 +35,6 @@ if TYPE_CHECKING:
 MOST_DESIGNS = 10_000_000
 TOLD = 3
 """Designs that are told in the end."""
-
-
-@Parameter(name="*")
-@dataclass(frozen=True)
-class Computers:
-    """Who computes."""
-
-    workers: WorkerCount = None
-    """Threads or processes of this machine, one a processor if not given."""
-    cluster: Annotated[str | None, wants("ADDRESS")] = None
-    """Address of a Dask scheduler whose workers compute instead, such as tcp://192.168.0.7:8786."""
-
-    def __post_init__(self) -> None:
-        if self.cluster is not None and self.workers is not None:
-            raise UsageError(
-                "--workers belongs to this machine, and --cluster computes elsewhere; give one of "
-                "them"
-            )
 
 
 def sweep(
@@ -195,7 +174,7 @@ def tolerance(
     /,
     *,
     designs: Annotated[int | None, count(1, MOST_DESIGNS)] = None,
-    workers: WorkerCount = None,
+    computers: Computers = Computers(),
     outputs: Drawn = Drawn(),
 ) -> None:
     """What manufacturing tolerances do to the figures of a machine, and which to tighten first.
@@ -204,8 +183,6 @@ def tolerance(
     ----------
     designs
         Machines that are drawn, instead of as many as the study has.
-    workers
-        Processes for what no loop computes; as many as there are processors if not given.
     """
     from equipoise.figures.studies import tolerance_charts
     from equipoise.schema.studies import load_study
@@ -221,7 +198,7 @@ def tolerance(
         with (
             blaming_by_place({} if designs is None else given),
             swept(units) as told,
-            Watched(asked, told, workers) as watched,
+            Watched(asked, told, computers) as watched,
         ):
             found = of_study(asked, progress=lambda _, total: watched.tell(total), compute=watched)
     outputs.draw(asked, lambda: tolerance_charts(found, units))

@@ -7,17 +7,14 @@ shared out.
 
 from __future__ import annotations
 
-import pickle
 from collections.abc import Callable, Sequence
-from functools import lru_cache
+from functools import partial
 from time import monotonic
 from typing import Any, Generic, NamedTuple, Self, TypeVar
 
 import numpy as np
 
-from equipoise.codegen.backends import processors
-from equipoise.design.processes import Processes, Task, computed
-from equipoise.errors import UsageError
+from equipoise.design.processes import Pool, Runner, Task
 
 Array = np.ndarray[Any, Any]
 Figures = TypeVar("Figures")
@@ -64,10 +61,12 @@ class PooledEvaluator(Generic[Figures]):
     shared : whether processes help at all; not where loops use all processors.
     together : designs that are sent together where there are as many for each process: those that
         one run of arrays computes take longer in small parts.
+    elsewhere : begins a pool of others that compute instead, such as a cluster, once it is known
+        how long a design takes.
 
     Raises
     ------
-    UsageError : fewer than one worker.
+    UsageError : fewer than one worker; or as `elsewhere`.
     """
 
     def __init__(
@@ -79,14 +78,15 @@ class PooledEvaluator(Generic[Figures]):
         *,
         shared: bool = True,
         together: int = 1,
+        elsewhere: Callable[[Task], Pool] | None = None,
     ) -> None:
-        count = processors() if workers is None else workers
-        if count < 1:
-            raise UsageError(f"got {count} workers; give 1 or more")
-        self.alone, self.make, self.join, self.workers = alone, make, join, count
-        self.shared, self.together = count > 1 and shared, together
+        self.alone, self.join, self.together = alone, join, together
+        self.runner: Runner[DesignSlice, Figures] = Runner(
+            lambda part: alone(part.values), partial(_of_parts, make), workers, elsewhere=elsewhere
+        )
+        self.shared = elsewhere is not None or (self.runner.workers > 1 and shared)
+        self.patience = PATIENCE if elsewhere is None else QUICK
         self.spent, self.count, self.step = 0.0, 0, 1
-        self.pool: Processes | None = None
 
     def __enter__(self) -> Self:
         return self
@@ -96,8 +96,12 @@ class PooledEvaluator(Generic[Figures]):
 
     def close(self) -> None:
         """End its processes."""
-        if self.pool is not None:
-            self.pool.close()
+        self.runner.close()
+
+    @property
+    def is_shared_out(self) -> bool:
+        """Whether others compute, since computing alone has taken long."""
+        return self.shared and self.spent > self.patience
 
     def __call__(self, values: Array, progress: OnDesigns | None = None) -> Figures:
         """What is computed of designs (P, d), SI units, in their order.
@@ -109,10 +113,10 @@ class PooledEvaluator(Generic[Figures]):
         if not self.shared and progress is None:
             return self.alone(values)
         tell = progress or (lambda _: None)
-        if self.pool is not None and self.spent * len(values) < HANDY * self.count:
+        if self.is_shared_out and self.spent * len(values) < HANDY * self.count:
             return self.alone(values)
         outcomes, begin = [], 0
-        while begin < len(values) and self.pool is None:
+        while begin < len(values) and not (self.count and self.is_shared_out):
             start = monotonic()
             part = values[begin : begin + self.step]
             outcomes.append(self.alone(part))
@@ -122,33 +126,26 @@ class PooledEvaluator(Generic[Figures]):
             if took < QUICK:
                 self.step *= 2
             tell(begin)
-            if self.spent > PATIENCE and self.shared:
-                self.pool = Processes(Task(_compute, pickle.dumps(self.make)), self.workers)
-        if begin < len(values) and self.pool is not None:
-            outcomes += self._shared_out(self.pool, values[begin:], lambda k: tell(begin + k))
+        if begin < len(values):
+            outcomes += self._shared_out(values[begin:], lambda k: tell(begin + k))
         return self.join(outcomes)
 
-    def _shared_out(self, pool: Processes, values: Array, tell: OnDesigns) -> list[Figures]:
-        share = -(-len(values) // (SHARES * self.workers))
+    def _shared_out(self, values: Array, tell: OnDesigns) -> list[Figures]:
+        workers = self.runner.workers
+        share = -(-len(values) // (SHARES * workers))
         size = max(1, min(share, int(PART * self.count / max(self.spent, 1e-9))))
-        size = max(size, min(self.together, -(-len(values) // self.workers)))
+        size = max(size, min(self.together, -(-len(values) // workers)))
         starts = range(0, len(values), size)
         parts = (DesignSlice(start, values[start : start + size]) for start in starts)
         found, done = {}, 0
-        for part, outcome in computed(pool, parts):
+        for part, outcome in self.runner.each(parts):
             found[part.begin] = outcome
             done += len(part.values)
             tell(done)
         return [found[start] for start in starts]
 
 
-def _compute(packed: bytes, part: DesignSlice) -> Any:
-    """In another process: some designs."""
-    return _made(packed)(part.values)
-
-
-@lru_cache(maxsize=2)
-def _made(packed: bytes) -> Evaluate[Any]:
-    """What computes, made once in a process."""
-    made: Evaluate[Any] = pickle.loads(packed)()
-    return made
+def _of_parts(make: Callable[[], Evaluate[Any]]) -> Callable[[DesignSlice], Any]:
+    """In another process: what computes parts."""
+    evaluate = make()
+    return lambda part: evaluate(part.values)

@@ -1,7 +1,7 @@
 """Who computes the chunks of a problem: threads of this process, or processes of this machine.
 
-Both are a `concurrent.futures.Executor` behind a `Pool`, as is a cluster, and `computed` is all
-that a run sees of them.  What a chunk is does not depend on who computes it.
+Both are a `concurrent.futures.Executor` behind a `Pool`, as is a cluster.  A `Runner` chooses among
+them, and is all that a run sees of them.  What a chunk is does not depend on who computes it.
 
 The processes are those of the standard library.  joblib's loky was measured beside them
 (`benchmarks/pools.py`): it starts later and shares out small tasks faster, but its processes stay
@@ -12,6 +12,7 @@ started them they were still there.
 from __future__ import annotations
 
 import os
+import pickle
 import signal
 import sys
 import threading
@@ -28,12 +29,14 @@ from concurrent.futures import (
 )
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
+from functools import lru_cache
 from multiprocessing import get_context
 from multiprocessing.connection import Connection
 from time import monotonic
 from types import ModuleType
-from typing import Any, TypeVar
+from typing import Any, Generic, Self, TypeVar
 
+from equipoise.codegen.backends import processors
 from equipoise.errors import UsageError
 
 TRIES = 3
@@ -45,6 +48,7 @@ DEAD = (
     "workers"
 )
 Chunk = TypeVar("Chunk")
+Result = TypeVar("Result")
 MOST_PROCESSES = 61 if sys.platform == "win32" else 10_000
 
 
@@ -130,6 +134,78 @@ def computed(pool: Pool, chunks: Iterable[Chunk]) -> Iterator[tuple[Chunk, Any]]
             else:
                 deaths = 0
                 yield chunk, block
+
+
+class Runner(Generic[Chunk, Result]):
+    """Computes chunks; a context manager, which ends whoever computes them.
+
+    Parameters
+    ----------
+    alone : computes a chunk in this process.
+    make : makes the same in another process, to which it goes as bytes.
+    workers : threads or processes; as many as this machine has processors if not given.
+    threads : whether threads of this process are enough, since what computes holds no lock.
+    elsewhere : begins a pool of others, such as a cluster, which is begun at once and takes the
+        place of those of this machine.
+
+    Raises
+    ------
+    UsageError : fewer than one worker; or as `elsewhere`.
+    """
+
+    def __init__(
+        self,
+        alone: Callable[[Chunk], Result],
+        make: Callable[[], Callable[[Chunk], Result]],
+        workers: int | None = None,
+        *,
+        threads: bool = False,
+        elsewhere: Callable[[Task], Pool] | None = None,
+    ) -> None:
+        self.alone, self.make, self.threads = alone, make, threads and elsewhere is None
+        self.workers = processors() if workers is None else workers
+        if self.workers < 1:
+            raise UsageError(f"got {self.workers} workers; give 1 or more")
+        self.pool = None if elsewhere is None else elsewhere(self._task())
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """End whoever computes."""
+        if self.pool is not None:
+            self.pool.close()
+
+    def begin(self) -> Pool:
+        """The pool, begun where it is not yet."""
+        if self.pool is None:
+            kind = Threads if self.threads else Processes
+            self.pool = kind(self._task(), self.workers)
+        return self.pool
+
+    def each(self, chunks: Iterable[Chunk]) -> Iterator[tuple[Chunk, Result]]:
+        """Chunks, each with its result; see `computed`."""
+        return computed(self.begin(), chunks)
+
+    def _task(self) -> Task:
+        if self.threads:
+            return Task(lambda _, chunk: self.alone(chunk), b"")
+        return Task(_compute, pickle.dumps(self.make))
+
+
+def _compute(packed: bytes, chunk: Any) -> Any:
+    """In another process: a chunk."""
+    return _made(packed)(chunk)
+
+
+@lru_cache(maxsize=2)
+def _made(packed: bytes) -> Callable[[Any], Any]:
+    """What computes, made once in a process."""
+    made: Callable[[Any], Any] = pickle.loads(packed)()
+    return made
 
 
 # -- on this machine -------------------------------------------------------------------------------

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import partial
 from typing import TYPE_CHECKING
 
 from equipoise.codegen.backends import engine, processors
@@ -55,9 +54,8 @@ def study_blocks(study: Study, units: Units, file: str) -> Iterator[Block]:
 
 def _times(study: Study, compute: Evaluator) -> Iterator[str]:
     """How long each command that takes the study needs at most, and what that was taken from."""
-    route = Route.of(study)
-    chunk = partial(route.task.function, route.task.study)
-    found = estimated(chunk, study.size, route.chunk, processors())
+    route = Route(study)
+    found = estimated(route, study.size, route.chunk, processors())
     here = "one processor" if found.workers == 1 else f"{found.workers} processors"
     one = "1 design" if found.designs == 1 else f"{found.designs} designs"
     rate = rate_told(found.rate)

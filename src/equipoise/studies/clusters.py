@@ -15,7 +15,7 @@ from time import monotonic, sleep
 from typing import Any
 
 from equipoise.design.processes import DEAD, Pool, StoppedError, Task
-from equipoise.errors import needed
+from equipoise.errors import UsageError, needed
 from equipoise.studies.store import brief, versions
 
 ANSWER = 5.0
@@ -103,6 +103,20 @@ class Cluster(Pool):
             return StoppedError(f"the Dask scheduler at {self.address} has gone")
         killed = needed("distributed", "a cluster").KilledWorker
         return StoppedError(DEAD) if isinstance(error, killed) else None
+
+
+def elsewhere(address: str | None, workers: int | None) -> Callable[[Task], Pool] | None:
+    """What begins a cluster at an address; None where this machine computes.
+
+    Raises
+    ------
+    UsageError : workers of this machine are given, too.
+    """
+    if address is None:
+        return None
+    if workers is not None:
+        raise UsageError("workers are those of this machine; leave them out with a cluster")
+    return lambda task: Cluster(task, address)
 
 
 @dataclass(frozen=True)

@@ -32,6 +32,7 @@ from equipoise.errors import ChangePointError, EquipoiseError, ModelError, Motio
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.results.declaring import PLACES
+from equipoise.studies.clusters import elsewhere
 from equipoise.studies.commands import ANGLES, COMMANDS, Request, analyzed, find_outputs
 from equipoise.studies.figures import Step, figure_name, read, scale
 from equipoise.studies.outcomes import Evaluator, Outcome
@@ -73,21 +74,32 @@ def evaluator(study: Study, threads: int | None = None) -> Evaluator:
     return OneByOne(study) if quick is None else Routes(study, *quick)
 
 
-def pooled(study: Study, workers: int | None = None) -> PooledEvaluator[Outcome]:
-    """The same, shared out among processes where no loop computes everything.
+def pooled(
+    study: Study, workers: int | None = None, cluster: str | None = None
+) -> PooledEvaluator[Outcome]:
+    """The same, shared out among processes where no loop computes everything, or on a cluster.
 
     workers : processes; as many as this machine has processors if not given.
+    cluster : address of a Dask scheduler whose workers compute instead.
 
     Raises
     ------
     ModelError : an output cannot be computed of any design.
-    UsageError : fewer than one worker.
+    UsageError : fewer than one worker, workers beside a cluster, or no scheduler answers.
     """
     alone = evaluator(study)
     shared = not getattr(alone, "compiled", False)
     make = partial(evaluator, study, threads=1)
     together = AT_ONCE if any(output.of == "plant" for output in study.outputs) else 1
-    return PooledEvaluator(alone, make, Outcome.joined, workers, shared=shared, together=together)
+    return PooledEvaluator(
+        alone,
+        make,
+        Outcome.joined,
+        workers,
+        shared=shared,
+        together=together,
+        elsewhere=elsewhere(cluster, workers),
+    )
 
 
 class Routes:

@@ -28,6 +28,7 @@ from equipoise.balancing.objectives import (
 from equipoise.balancing.problem import Problem
 from equipoise.balancing.room import pin_of
 from equipoise.design.evaluator import PooledEvaluator
+from equipoise.design.processes import Pool, Task
 from equipoise.errors import EquipoiseError, MassError, ModelError, UsageError
 from equipoise.i18n import Note, to_say
 from equipoise.mechanism.assembly.family import with_columns
@@ -41,6 +42,7 @@ from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.objectives import GAUGES, output_of
 from equipoise.results.result import Result
 from equipoise.signals import highest_at
+from equipoise.studies.clusters import elsewhere
 from equipoise.studies.design_space import Model
 
 Array = np.ndarray[Any, Any]
@@ -341,6 +343,7 @@ def landscape(
     given: Mapping[str, float] | None = None,
     progress: Progress | None = None,
     workers: int | None = None,
+    cluster: str | None = None,
 ) -> Landscape:
     """An objective of balancing at every pair of values of two numbers.
 
@@ -356,6 +359,7 @@ def landscape(
     progress : called with how many machines are analysed, and how many there are.
     workers : processes that analyse machines one by one, where that takes more than some seconds;
         as many as this machine has processors if not given.
+    cluster : address of a Dask scheduler whose workers analyse them instead.
 
     Raises
     ------
@@ -385,7 +389,7 @@ def landscape(
     points = np.stack([one.ravel() for one in np.meshgrid(x, y)], axis=1)
     linear = LinearValues.of(maker, of, paths, points)
     value = linear or SingleValues(maker, of, paths)
-    found = _computed(value, points, progress, workers)
+    found = _computed(value, points, progress, workers, elsewhere(cluster, workers))
     if np.all(np.isnan(found)):
         raise UsageError(f"no linkage turns with {paths[0]} and {paths[1]} in these ranges")
     lowest = int(highest_at(np.where(np.isnan(found), -np.inf, -found), smooth=False))
@@ -404,12 +408,17 @@ def _computed(
     points: Array,
     progress: Progress | None,
     workers: int | None,
+    others: Callable[[Task], Pool] | None,
 ) -> Array:
     """The objective (P,) at points (P, 2); what is analysed one by one is shared out."""
     tell = None if progress is None else lambda done: progress(done, len(points))
     linear = isinstance(value, LinearValues)
     make = partial(_itself, value)
-    with PooledEvaluator(value, make, np.concatenate, workers, shared=not linear) as evaluate:
+    if linear:
+        others = None  # to send them takes longer than to compute them
+    with PooledEvaluator(
+        value, make, np.concatenate, workers, shared=not linear, elsewhere=others
+    ) as evaluate:
         if not linear:
             return evaluate(points, tell)
         found = []

@@ -3,29 +3,26 @@
 from __future__ import annotations
 
 import os
-import pickle
 import warnings
 from collections.abc import Callable, Mapping
-from contextlib import closing, suppress
-from dataclasses import dataclass
-from functools import lru_cache
+from contextlib import suppress
+from functools import partial
 from json import dumps, loads
 from math import nan
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
-from equipoise.codegen.backends import processors
 from equipoise.codegen.figures import REASONS
-from equipoise.design.processes import Pool, Processes, StoppedError, Task, Threads, computed
+from equipoise.design.processes import Runner, StoppedError
 from equipoise.design.spreads import Choices
 from equipoise.errors import UsageError, needed
 from equipoise.fence import place_of
 from equipoise.folders import Folder
 from equipoise.partial import beside, made
 from equipoise.quantities import SI
-from equipoise.studies.clusters import Cluster
+from equipoise.studies.clusters import elsewhere
 from equipoise.studies.evaluate import evaluator
-from equipoise.studies.outcomes import Block, Evaluator, Progress, Tally
+from equipoise.studies.outcomes import Block, Progress, Tally
 from equipoise.studies.sampling import samples
 from equipoise.studies.store import (
     ABOUT,
@@ -82,10 +79,10 @@ def sweep(
     UsageError : there is something at `path`, or an argument cannot be used; or the sweep had to
         stop: then what is stored by then stays, and `resume` goes on.
     """
-    route = Route.of(study)
-    with closing(route.pool(workers, cluster)) as pool:
+    route = Route(study)
+    with _runner(route, workers, cluster) as runner:
         store = create_store(path, study, route.chunk, route.engine)
-        _fill(store, study, pool, progress)
+        _fill(store, study, runner, progress)
     return store
 
 
@@ -124,21 +121,23 @@ def resume(
         if progress is not None:
             progress(tally.progress())
         return store
-    route = Route.of(study)
+    route = Route(study)
     _check_same(store, route.engine)
-    with closing(route.pool(workers, cluster)) as pool:
-        _fill(store, study, pool, progress)
+    with _runner(route, workers, cluster) as runner:
+        _fill(store, study, runner, progress)
     return store
 
 
-def _fill(store: Store, study: Study, pool: Pool, progress: OnProgress | None) -> None:
+def _fill(
+    store: Store, study: Study, runner: Runner[range, Block], progress: OnProgress | None
+) -> None:
     """Compute and store what is missing or damaged."""
     with store.writing():
         tally, missing = _counted(store, study)
         tell = progress or (lambda _: None)
         tell(tally.progress())
         try:
-            for designs, block in computed(pool, map(store.designs, missing)):
+            for designs, block in runner.each(map(store.designs, missing)):
                 _store(store, designs, block)
                 tally.add(block, computed=True)
                 tell(tally.progress())
@@ -188,39 +187,29 @@ def _check_same(store: Store, engine: str) -> None:
 # -- how a study is computed -----------------------------------------------------------------------
 
 
-@dataclass(frozen=True)
 class Route:
-    """How the designs of a study are computed; the same for the same study and versions.
+    """Draws designs of a study by their numbers, and computes them.
 
     compiled : whether they are computed without holding Python's lock, so that threads are enough.
     engine : name of what computes them.
     chunk : designs that are computed and stored together.
     """
 
-    task: Task
-    compiled: bool
-    engine: str
-    chunk: int
+    def __init__(self, study: Study) -> None:
+        self.study = study
+        self.evaluate = evaluator(study, threads=1)  # other threads have chunks of their own
+        self.compiled: bool = getattr(self.evaluate, "compiled", False)
+        self.engine: str = getattr(self.evaluate, "engine", "general")
+        self.chunk = chunk_of(study, self.compiled)
 
-    @classmethod
-    def of(cls, study: Study) -> Route:
-        """The route of a study."""
-        packed = pickle.dumps(study)
-        _, evaluate = _loaded(packed)
-        compiled = getattr(evaluate, "compiled", False)
-        engine = getattr(evaluate, "engine", "general")
-        return cls(Task(compute, packed), compiled, engine, chunk_of(study, compiled))
+    def __call__(self, designs: range) -> Block:
+        values = samples(self.study, designs.start, len(designs))
+        return Block(values, self.evaluate(values))
 
-    def pool(self, workers: int | None, cluster: str | None) -> Pool:
-        """Whoever computes them."""
-        if cluster is not None:
-            if workers is not None:
-                raise UsageError("workers are those of this machine; leave them out with a cluster")
-            return Cluster(self.task, cluster)
-        count = processors() if workers is None else workers
-        if count < 1:
-            raise UsageError(f"got {count} workers; give 1 or more")
-        return Threads(self.task, count) if self.compiled else Processes(self.task, count)
+
+def _runner(route: Route, workers: int | None, cluster: str | None) -> Runner[range, Block]:
+    make, threads = partial(Route, route.study), route.compiled
+    return Runner(route, make, workers, threads=threads, elsewhere=elsewhere(cluster, workers))
 
 
 def chunk_of(study: Study, compiled: bool) -> int:
@@ -229,20 +218,6 @@ def chunk_of(study: Study, compiled: bool) -> int:
         most = NUMBERS // len(study.paths + study.names)
         return min(study.chunk, study.size, most, max(LEAST_CHUNK, -(-study.size // SHARED)))
     return min(study.chunk, SLOW_CHUNK, -(-study.size // SLOW_SHARED))
-
-
-def compute(packed: bytes, designs: range) -> Block:
-    """Draw some designs of a study and compute them, in whatever process."""
-    study, evaluate = _loaded(packed)
-    values = samples(study, designs.start, len(designs))
-    return Block(values, evaluate(values))
-
-
-@lru_cache(maxsize=2)
-def _loaded(packed: bytes) -> tuple[Study, Evaluator]:
-    """A study and what computes it, made once in a process."""
-    study: Study = pickle.loads(packed)
-    return study, evaluator(study, threads=1)  # other threads have chunks of their own
 
 
 def create_store(path: str | os.PathLike[str], study: Study, chunk: int, engine: str) -> Store:

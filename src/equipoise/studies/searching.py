@@ -132,6 +132,7 @@ def search(
     progress: OnGeneration | None = None,
     compute: Evaluator | None = None,
     workers: int | None = None,
+    cluster: str | None = None,
 ) -> Searched:
     """Look for the best designs of a study.
 
@@ -150,6 +151,8 @@ def search(
     compute : computes designs instead of the study's own evaluator.
     workers : processes that compute what no loop does, where that takes more than some seconds; as
         many as this machine has processors if not given.
+    cluster : address of a Dask scheduler whose workers compute instead, such as
+        ``tcp://192.168.0.7:8786``.
 
     Raises
     ------
@@ -165,7 +168,7 @@ def search(
         raise UsageError(f"got {generations} generations; give 1 to {MOST_GENERATIONS}")
     seed = study.sampling.seed if seed is None else seed
     with ExitStack() as held:
-        evaluate = compute or held.enter_context(pooled(study, workers))
+        evaluate = compute or held.enter_context(pooled(study, workers, cluster))
         return _search(_Archive(study, evaluate), population, generations, seed, progress)
 
 

@@ -123,6 +123,7 @@ def tolerance(
     progress: OnProgress | None = None,
     compute: Evaluator | None = None,
     workers: int | None = None,
+    cluster: str | None = None,
 ) -> Tolerances:
     """What the tolerances of a study do to its outputs, and which to tighten first.
 
@@ -134,6 +135,8 @@ def tolerance(
     compute : computes designs instead of the study's own evaluator.
     workers : processes that compute what no loop does, where that takes more than some seconds; as
         many as this machine has processors if not given.
+    cluster : address of a Dask scheduler whose workers compute instead, such as
+        ``tcp://192.168.0.7:8786``.
 
     Raises
     ------
@@ -143,7 +146,7 @@ def tolerance(
     """
     _check(study)
     with ExitStack() as held:
-        evaluate = compute or held.enter_context(pooled(study, workers))
+        evaluate = compute or held.enter_context(pooled(study, workers, cluster))
         return _tolerances(study, evaluate, progress)
 
 

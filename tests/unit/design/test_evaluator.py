@@ -11,6 +11,7 @@ import pytest
 
 from equipoise import load
 from equipoise.design import evaluator as pooling
+from equipoise.design import processes
 from equipoise.design.evaluator import PooledEvaluator
 from equipoise.design.requirements import Requirement
 from equipoise.errors import UsageError
@@ -41,7 +42,7 @@ def slow(name: str, designs: int) -> Study:
 def at_once(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     """Processes begin with the second design; returns what is computed by them."""
     parts: list[Any] = []
-    computed = pooling.computed
+    computed = processes.computed
 
     def counted(pool: Any, chunks: Any) -> Any:
         for part, outcome in computed(pool, chunks):
@@ -50,7 +51,7 @@ def at_once(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
 
     monkeypatch.setattr(pooling, "PATIENCE", -1.0)
     monkeypatch.setattr(pooling, "HANDY", 0.0)
-    monkeypatch.setattr(pooling, "computed", counted)
+    monkeypatch.setattr(processes, "computed", counted)
     return parts
 
 
@@ -73,14 +74,14 @@ def test_what_is_over_soon_starts_no_process() -> None:
     some = slow("study-of-balance", 64)
     with pooled(some, 2) as evaluate:
         evaluate(samples(some, 0, 4))
-        assert evaluate.pool is None
+        assert evaluate.runner.pool is None
 
 
 def test_loops_share_out_nothing(at_once: list[Any]) -> None:
     some = load_study("study-of-balance")
     with pooled(some, 2) as evaluate:
         evaluate(samples(some, 0, 64))
-        assert evaluate.pool is None
+        assert evaluate.runner.pool is None
     assert not at_once
 
 
@@ -135,9 +136,9 @@ def test_what_is_over_at_once_is_computed_here(monkeypatch: pytest.MonkeyPatch) 
     """Few designs are not sent to processes, though there are some."""
     with PooledEvaluator(np.square, lambda: np.square, np.concatenate, 2) as evaluate:
         evaluate(np.arange(3.0))
-        evaluate.pool = object()  # type: ignore[assignment]  # which computes nothing
+        evaluate.runner.pool = object()  # type: ignore[assignment]  # which computes nothing
         np.testing.assert_array_equal(evaluate(np.array([2.0, 3.0])), [4.0, 9.0])
-        evaluate.pool = None
+        evaluate.runner.pool = None
 
 
 @pytest.mark.parametrize("name", ["kim-chung-a", "transplanter"])

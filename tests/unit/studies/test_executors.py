@@ -12,6 +12,7 @@ import sys
 import time
 from collections.abc import Iterator
 from contextlib import closing, contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -19,14 +20,19 @@ import numpy as np
 import psutil
 import pytest
 
-from equipoise.design import processes
+from equipoise.design import evaluator, processes
 from equipoise.design.processes import Processes, StoppedError, Threads, computed
 from equipoise.errors import UsageError
+from equipoise.mechanism.parts.objectives import Objective
+from equipoise.schema.studies import load_study
+from equipoise.schema.template import Template
 from equipoise.studies import clusters
 from equipoise.studies.clusters import Cluster
-from equipoise.studies.design_space import Sampling
+from equipoise.studies.design_space import Output, Sampling
+from equipoise.studies.objective_map import landscape
 from equipoise.studies.outcomes import Block
 from equipoise.studies.sampling import samples
+from equipoise.studies.searching import search
 from support import studies
 from support.chosen import few
 from support.studies import Formulas, Orders, short_study
@@ -229,6 +235,39 @@ def test_what_the_study_itself_raises_passes_through(address: str, tmp_path: Pat
         with closing(pool), pytest.raises(UsageError, match="no study at 0") as caught:
             list(computed(pool, CHUNKS[:1]))
         assert not isinstance(caught.value, StoppedError)
+
+
+def test_a_cluster_computes_for_a_search_and_a_map_too(
+    address: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What no loop computes, bit for bit as here; the first designs are computed here, for time."""
+    sent: list[Any] = []
+    submit = Cluster.submit
+
+    def counted(pool: Cluster, chunk: Any) -> Any:
+        sent.append(chunk)
+        return submit(pool, chunk)
+
+    monkeypatch.setattr(Cluster, "submit", counted)
+    monkeypatch.setattr(evaluator, "QUICK", 0.0)
+    monkeypatch.setattr(evaluator, "HANDY", 0.0)
+    some = load_study("study-of-balance")
+    swing = Output("swing", "analyze", "strokes.rocker.stroke", make="smallest")
+    some = replace(some, outputs=(swing,), sampling=replace(some.sampling, designs=32))
+    results = [search(some, population=8, generations=2, cluster=one) for one in (None, address)]
+    assert results[0].to_dict() == results[1].to_dict()
+    assert (begun := len(sent)) > 0
+    over = {"links.crank.points.B.x": [0.03, 0.035], "links.coupler.points.C.x": [0.1, 0.12]}
+    model, of = Template.load("yamashita-1"), Objective("shaking_force")
+    here, there = (landscape(model, over, of, cluster=one) for one in (None, address))
+    assert np.array_equal(here.values, there.values)
+    assert len(sent) > begun
+
+
+def test_workers_of_this_machine_have_no_place_beside_a_cluster() -> None:
+    study = load_study("study-of-balance")
+    with pytest.raises(UsageError, match="leave them out with a cluster"):
+        search(study, workers=2, cluster="tcp://127.0.0.1:9")
 
 
 def test_a_cluster_that_lacks_equipoise_or_goes_is_told(

@@ -33,7 +33,6 @@ STUDY = short_study()
 
 @pytest.fixture(autouse=True)
 def formulas(monkeypatch: pytest.MonkeyPatch) -> None:
-    run._loaded.cache_clear()
     monkeypatch.setattr(run, "evaluator", lambda study, threads: Formulas())
 
 
@@ -43,7 +42,6 @@ def undisturbed(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
     path = tmp_path_factory.mktemp("undisturbed") / "s"
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(run, "evaluator", lambda study, threads: Formulas())
-        run._loaded.cache_clear()
         sweep(STUDY, path, workers=1)
     return contents(path)
 
@@ -264,7 +262,6 @@ def test_other_versions_do_not_go_on(tmp_path: Path, monkeypatch: pytest.MonkeyP
 
 def test_another_engine_does_not_go_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     begun(tmp_path / "s")
-    run._loaded.cache_clear()
     monkeypatch.setattr(run, "evaluator", lambda study, threads: Formulas(engine="numpy"))
     with pytest.raises(UsageError, match="begun with engine numba, and here is engine numpy"):
         resume(tmp_path / "s", restore)
