@@ -21,6 +21,7 @@ from equipoise.vibration.forced import respond
 from equipoise.vibration.linear import Linear
 from equipoise.vibration.response import MODELS, Model, Response
 from laws.transforms import mirrored_in_x, shifted
+from support.chosen import few
 from support.machines import make
 from unit.vibration.build import STIFFNESS, Array, cart, close, rig, springs
 
@@ -115,7 +116,7 @@ def test_energy_put_in_is_lost_in_the_mounts(kind: str, seed: int, pivoted: bool
     balanced(respond(machine, model="exact"))
 
 
-@pytest.mark.parametrize("pivoted", [False, True], ids=["free", "pivot"])
+@pytest.mark.parametrize("pivoted", few([False, True], {False}), ids=["free", "pivot"])
 def test_energy_with_a_mount_that_lifts_off(pivoted: bool) -> None:
     """A light body on stiff one-sided feet, shaken harder than it is heavy."""
     machine = supported(eq.load("yamashita-1"), 0, pivoted, heavy=1.2)

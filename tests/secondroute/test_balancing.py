@@ -366,7 +366,7 @@ def test_each_weight_has_a_price() -> None:
     assert sorted(price.at_most for price in masses) == [0.2, 0.6]
 
 
-@pytest.mark.parametrize("which", "abc")
+@pytest.mark.parametrize("which", few("abc", "c"))
 def test_a_free_ratio(which: str) -> None:
     machine = eq.load(f"lee-kim-{which}")
     free = plan(MOMENT, geared=(geared(0.4, 1.5, at_most=0.6),))
