@@ -9,6 +9,7 @@ from __future__ import annotations
 import io
 import re
 from collections.abc import Iterable
+from math import degrees
 from typing import Any
 
 import numpy as np
@@ -129,7 +130,29 @@ def _parts(space: Any, found: list[Part], scene: Scene) -> None:
             moved = [(MM * place + shift, bulge) for place, bulge in edges]
             rows = [(one.real, one.imag, bulge) for one, bulge in moved]
             space.add_lwpolyline(rows, format="xyb", close=True, dxfattribs=layer)
-        corner -= 1j * ((highest - lowest).imag + gap / 3)
-        text = space.add_text(part.title, height=gap / 6, dxfattribs=_layer("names"))
-        text.set_placement((corner.real, corner.imag))
+        _measures(space, part, shift, gap)
+        corner -= 1j * ((highest - lowest).imag + gap)
+        for line in part.lines:
+            text = space.add_text(line, height=gap / 6, dxfattribs=_layer("dimensions", part.name))
+            text.set_placement((corner.real, corner.imag))
+            corner -= 1j * gap / 3
         corner -= 1j * gap
+
+
+def _measures(space: Any, part: Part, shift: complex, gap: float) -> None:
+    """Width and height of a part, diameters of its circles and radii of its arcs."""
+    low, high = (MM * place + shift for place in part.box)
+    looks = {
+        "override": {"dimtxt": gap / 8, "dimasz": gap / 10, "dimdec": 2, "dimzin": 8},
+        "dxfattribs": _layer("dimensions", part.name),
+    }
+    below, left = (low.real, low.imag - gap / 2), (low.real - gap / 2, low.imag)
+    space.add_linear_dim(below, (low.real, low.imag), (high.real, low.imag), **looks).render()
+    ends = (low.real, low.imag), (low.real, high.imag)
+    space.add_linear_dim(left, *ends, angle=90, **looks).render()
+    for curve in part.curves:
+        center = MM * curve.center + shift
+        place, radius = (center.real, center.imag), MM * curve.radius
+        add = space.add_diameter_dim if curve.whole else space.add_radius_dim
+        angle = degrees(curve.direction) if not curve.whole else 45.0
+        add(place, radius=radius, angle=angle, **looks).render()

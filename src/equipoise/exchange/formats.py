@@ -107,8 +107,18 @@ FORMATS: Mapping[str, Format] = {
             "drawing (DXF)",
             "the linkage at a crank angle, paths of its points, pitch circles of gears, strands of "
             "belts, racks, surfaces of cams and the curves of their rollers' centres, parts to be "
-            "cut: outlines and holes of links made of bodies, and of counterweights; in mm",
+            "cut: outlines and holes of links made of bodies, and of counterweights, with "
+            "measures, thickness, material and mass; in mm",
             needs="ezdxf",
+        ),
+        Format(
+            "pdf",
+            ".pdf",
+            "workshop drawing (PDF)",
+            "a sheet of A4 for each of these parts, to scale: outline, measures, holes, thickness, "
+            "material, mass",
+            posed=False,
+            module="figures.workshop_sheet",
         ),
         Format(
             "svg",

@@ -6,17 +6,17 @@ the tangent of a quarter of the arc's angle, above 0 counterclockwise, 0 of a st
 
 from __future__ import annotations
 
-from cmath import rect
+from cmath import phase, rect
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from math import pi, tan
+from math import atan, degrees, pi, sin, tan
 from typing import Any
 
 import numpy as np
 
 from equipoise.errors import UsageError
 from equipoise.exchange.formats import Job
-from equipoise.mechanism.parts.bodies import Body, Points, place_of
+from equipoise.mechanism.parts.bodies import Body, Points, material_of, place_of
 from equipoise.mechanism.parts.body_checks import outlines
 from equipoise.quantities import told
 
@@ -25,17 +25,80 @@ Edge = tuple[complex, float]
 
 
 @dataclass(frozen=True)
+class RoundEdge:
+    """A circle or an arc of a part, in metres and radians.
+
+    direction : from the centre to the middle of the arc.  angle : of the arc.
+    whole : whether it is a circle.
+    """
+
+    center: complex
+    radius: float
+    direction: float
+    angle: float
+    whole: bool
+
+    @property
+    def text(self) -> str:
+        """Diameter of a circle, radius of an arc, mm."""
+        return f"Ø {in_mm(2e3 * self.radius)}" if self.whole else f"R {in_mm(1e3 * self.radius)}"
+
+
+@dataclass(frozen=True)
 class Part:
     """One thing to be cut from a plate.
 
     name : with what tells it from others of its link.  thickness : m, None where not known.
     edges : of its outline and of each opening, closed.
+    density : kg/m3, None where not known.
     """
 
     name: str
     link: str
     thickness: float | None
     edges: tuple[tuple[Edge, ...], ...]
+    density: float | None = None
+
+    @property
+    def area(self) -> float:
+        """Of the outline without the openings, m2."""
+        outline, *openings = map(area_of, self.edges)
+        return outline - sum(openings)
+
+    @property
+    def mass(self) -> float | None:
+        """In kg; None where thickness or density is not known."""
+        if self.thickness is None or self.density is None:
+            return None
+        return self.area * self.thickness * self.density
+
+    @property
+    def curves(self) -> tuple[RoundEdge, ...]:
+        """Circles and arcs, each once."""
+        every = (curve for edges in self.edges for curve in _curves(edges))
+        alike = {(*_rounded(c.center, c.radius), c.whole): c for c in every}
+        return tuple(alike.values())
+
+    @property
+    def lines(self) -> tuple[str, ...]:
+        """What a workshop has to know beside the drawing, a line each."""
+        told_of = [self.name]
+        if self.thickness is not None:
+            told_of.append(f"thickness {in_mm(1e3 * self.thickness)} mm")
+        if self.density is not None:
+            name = material_of(self.density)
+            density = told(self.density, "density")
+            told_of.append(f"material: {name}, {density}" if name else f"material: {density}")
+        if self.mass is not None:
+            told_of.append(f"mass {told(self.mass, 'mass')}")
+        arcs = [one for one in self.curves if not one.whole]
+        if arcs:
+            radii = ", ".join(one.text for one in arcs)
+            told_of.append(f"{radii} about the axis, over {in_mm(degrees(arcs[0].angle))}°")
+        holes = [one.text for edges in self.edges[1:] for one in _curves(edges) if one.whole]
+        if holes:
+            told_of.append(f"holes: {', '.join(dict.fromkeys(holes))}")
+        return tuple(told_of)
 
     @property
     def title(self) -> str:
@@ -72,6 +135,46 @@ def parts(job: Job) -> list[Part]:
     return found
 
 
+def in_mm(length: float) -> str:
+    """A length in mm with two decimals at most, and none where it is whole."""
+    return f"{length:.2f}".rstrip("0").rstrip(".")
+
+
+def area_of(edges: tuple[Edge, ...]) -> float:
+    """Area of a closed outline, m2: that of its corners, and the segments below its arcs."""
+    total = 0.0
+    for (one, bulge), (other, _) in zip(edges, (*edges[1:], edges[0]), strict=True):
+        total += (one.conjugate() * other).imag / 2
+        if bulge:
+            angle = 4 * atan(bulge)
+            radius = abs(other - one) / 2 / sin(angle / 2)
+            total += radius**2 * (angle - sin(angle)) / 2
+    return abs(total)
+
+
+def _rounded(center: complex, radius: float) -> tuple[float, ...]:
+    """Centre and radius to a nanometre, by which arcs of the same circle are known."""
+    return tuple(round(1e9 * size) for size in (center.real, center.imag, radius))
+
+
+def _curves(edges: tuple[Edge, ...]) -> Iterator[RoundEdge]:
+    """Circles and arcs of a closed outline; the halves of an arc are one."""
+    found: dict[tuple[float, ...], list[tuple[complex, float, complex, float]]] = {}
+    for (one, bulge), (other, _) in zip(edges, (*edges[1:], edges[0]), strict=True):
+        if bulge:
+            center = (one + other) / 2 + 1j * (other - one) / 2 / tan(2 * atan(bulge))
+            radius = abs(one - center)
+            middle = complex(along(one, other, bulge, 3)[1])
+            key = _rounded(center, radius)
+            found.setdefault(key, []).append((center, radius, middle, 4 * abs(atan(bulge))))
+    for arcs in found.values():
+        center, radius, *_ = arcs[0]
+        angle = sum(arc[3] for arc in arcs)
+        whole = angle >= 2 * pi * (1 - 1e-9)
+        toward = sum(arc[2] - center for arc in arcs)
+        yield RoundEdge(center, radius, phase(toward) if not whole else 0.0, angle, whole)
+
+
 def along(one: complex, other: complex, bulge: float, count: int) -> Any:
     """Places (count,) on an edge, from its first end to its second."""
     share = np.linspace(0.0, 1.0, count)
@@ -90,7 +193,7 @@ def _of_links(job: Job) -> Iterator[Part]:
                 job.leave_out(f"body {number} of {name!r}, {section}, which no plate gives")
             elif edges:
                 label = f"{name}, {body.shape} {number}"
-                yield Part(label, name, body.thickness, edges)
+                yield Part(label, name, body.thickness, edges, body.density)
             elif body.shape != "point" or not job.changes:  # those are told with what was changed
                 job.leave_out(f"body {number} of {name!r}, a {body.shape} without an outline")
 
@@ -130,7 +233,7 @@ def _of_changes(job: Job) -> Iterator[Part]:
             edges = tuple(_edges_of_piece(piece, center))
             label = f"{change.link}, counterweight {number}"
             if edges:
-                yield Part(label, change.link, piece["thickness"], edges)
+                yield Part(label, change.link, piece["thickness"], edges, piece.get("density"))
             else:
                 job.leave_out(f"{label}, a point mass without an outline")
 

@@ -11,8 +11,9 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.exchange.parts import along
+from equipoise.exchange.parts import along, in_mm
 from equipoise.exchange.reading.formats import import_machine
+from equipoise.quantities import told
 
 START = 0.4
 SAME = 1e-9
@@ -111,6 +112,61 @@ def test_counterweights_weigh_what_they_are_to(name: str, tmp_path: Path) -> Non
             same_lengths(tree, label, corners(line))
             seen += 1
     assert seen > (name == "balance-shafts")
+
+
+@pytest.mark.parametrize("name", ["balance-shafts", "yamashita-rig"])
+def test_a_workshop_drawing_gives_what_was_advised(name: str, tmp_path: Path) -> None:
+    """Of the outline read back: area x thickness x density is the mass in words, and its moment
+    about the link's room is that of the advice.
+    """
+    found = eq.balancing.advise(eq.load(name))
+    drawing = drawn(found, tmp_path / "x.dxf")
+    eq.export(found, tmp_path / "x.pdf")
+    pages = 0
+    for change in found.changes:
+        moment = 0j
+        for number, piece in enumerate(change.values.get("pieces", ()), 1):
+            label = f"{change.link}_ counterweight {number}"
+            (line,) = on_layer(drawing, f"part {label}")
+            beside = on_layer(drawing, f"dimensions {label}")
+            words = [one.dxf.text for one in beside if one.dxftype() == "TEXT"]
+            dims = [one for one in beside if one.dxftype() == "DIMENSION"]
+            edges = corners(line)
+            mass = area(edges) * 1e-6 * piece["thickness"] * piece["density"]
+            assert f"mass {told(mass, 'mass')}" in words
+            assert f"thickness {in_mm(1e3 * piece['thickness'])} mm" in words
+            assert any(one.startswith("material: ") for one in words)
+            sizes = {round(one.get_measurement(), 6) for one in dims}
+            assert {
+                round(1e3 * piece["outer_radius"], 6),
+                round(1e3 * piece["inner_radius"], 6),
+            } <= sizes
+            assert len(dims) == 4  # width, height, and each radius once
+            wide = in_mm(np.degrees(piece["angle"]))
+            assert any(one.endswith(f"about the axis, over {wide}°") for one in words)
+            axis = next(complex(*one.dxf.defpoint.vec2) for one in dims if one.dimtype == 4)
+            moment += mass * (centroid(edges) - axis) * 1e-3
+            pages += 1
+        wanted = change.values["moment"] * np.exp(1j * change.values["direction"])
+        assert abs(moment - wanted) <= 1e-5 * abs(wanted)
+    sheets = re.findall(rb"/Type /Page\b", (tmp_path / "x.pdf").read_bytes())
+    assert pages and len(sheets) == pages
+
+
+def centroid(edges: list[tuple[complex, float]]) -> complex:
+    """Of an outline, from many triangles about the origin."""
+    ends = zip(edges, (*edges[1:], edges[0]), strict=True)
+    a = np.concatenate([along(a, b, bulge, 2001)[:-1] for (a, bulge), (b, _) in ends])
+    b = np.roll(a, -1)
+    areas = (a.conjugate() * b).imag / 2
+    return complex(np.sum(areas * (a + b) / 3) / np.sum(areas))
+
+
+def test_workshop_drawings_are_the_same_bytes_on_every_run(tmp_path: Path) -> None:
+    found = eq.balancing.advise(eq.load("balance-shafts"))
+    for name in ("a.pdf", "b.pdf"):
+        eq.export(found, tmp_path / name)
+    assert (tmp_path / "a.pdf").read_bytes() == (tmp_path / "b.pdf").read_bytes()
 
 
 def svg(what: object, path: Path) -> ET.Element:

@@ -25,7 +25,18 @@ NEARLY = 0.01
 FRAMES = ("frame", "ground", "fixed", "base")
 GUIDES = ("guide", "slider", "rail")
 """Names of what stands still, and of lines on which ends slide, where none are told."""
-BESIDE = ("path", "part", "springs", "gears", "belts", "racks", "cams", "pitch", "names")
+BESIDE = (
+    "path",
+    "part",
+    "dimensions",
+    "springs",
+    "gears",
+    "belts",
+    "racks",
+    "cams",
+    "pitch",
+    "names",
+)
 """First words of layers of what `export` draws beside the links."""
 WORDS = "names"
 """Layer of names of points, among them."""
