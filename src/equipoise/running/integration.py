@@ -184,8 +184,8 @@ class Integration:
         works = len(equation.sources) + bool(self.driver.brake) + 1
         energy = inertia * usual**2 / 2
         circuit = self.driver.circuit
-        current = 1.0 if circuit is None else circuit.voltage / circuit.resistance
-        sizes = [1.0, usual, current, *[energy] * (works + ELECTRIC - 1)]
+        rated = 1.0 if circuit is None else circuit.voltage / circuit.resistance
+        sizes = [1.0, usual, rated, *[energy] * (works + ELECTRIC - 1)]
         self.absolute = ABSOLUTE * np.array(sizes)
         now: Instant | None = Instant(0.0, angle, speed, np.zeros(works))
         assert now is not None
