@@ -118,7 +118,7 @@ def test_a_tool_swings_in_a_mode() -> None:
     succeeded(equipoise("animate", "brush-cutter", "--mode", "3", "--seconds", "4"))
     text = Path("brush-cutter.svg").read_text(encoding="utf-8")
     frames = re.findall(r'<g class="f f\d+">(.*?)</g>', text, re.DOTALL)
-    assert len(frames) == len({*frames}) == TOOL_FRAMES
+    assert len(frames) == len({*frames}) == TOOL_FRAMES >= 24  # pictures a second
     still = text.split('<g class="f f0">')[0]
     assert "mode 3: " in still and "<title>Brush cutter with loop handle</title>" in still
     assert still.count("2s step-end infinite alternate") == TOOL_FRAMES

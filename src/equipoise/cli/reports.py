@@ -176,8 +176,8 @@ def _check_tool(kind: str, **given: object) -> None:
             raise UsageError(f"--{name}: a tool swings in a mode; leave it out")
 
 
-TOOL_FRAMES = 9
-"""Of half a swing."""
+TOOL_FRAMES = 24
+"""Of half a swing, which takes a second where nothing else is asked for: fewer are seen to jump."""
 
 
 def _tool_in_mode(file: str, mode: int | None, seconds: float, width: int) -> str:

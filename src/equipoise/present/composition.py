@@ -29,6 +29,7 @@ from equipoise.present.tool_summary import tool_answers, tool_tiles
 from equipoise.quantities import PER_RPM, chosen_units, number
 from equipoise.results.analysis import Analysis
 from equipoise.results.analysis_blocks import force_blocks, motion_blocks, question_blocks
+from equipoise.results.belt_blocks import belt_blocks
 from equipoise.results.blocks import (
     Block,
     Facts,
@@ -40,9 +41,10 @@ from equipoise.results.blocks import (
     Text,
     beside,
 )
+from equipoise.results.cam_blocks import cam_blocks
 from equipoise.results.drive_blocks import driven
 from equipoise.results.headline import verdict_blocks
-from equipoise.results.joint_blocks import joint_blocks
+from equipoise.results.joint_blocks import elements_tables, joint_blocks
 from equipoise.results.machine_blocks import angles_told, model_blocks
 from equipoise.results.own_words import in_own_words
 from equipoise.vibration.blocks import model_told, response_blocks
@@ -102,6 +104,7 @@ def _of_linkage(found: Findings, language: str, command: str, together: bool) ->
     drawn = drawings(found, together)
     blocks: Parts = {"model": [*drawn.get("model", []), *model_blocks(machine)]}
     blocks["motion"] = [*drawn.get("motion", []), *_details(motion_blocks(analysis))]
+    blocks["motion"] += [*cam_blocks(analysis), *elements_tables(analysis)]
     if found.planting is not None:
         blocks["planting"] = [*drawn.get("planting", []), *planting_blocks(found.planting)]
     later = found.after
@@ -144,6 +147,7 @@ def _verdict(found: Findings) -> Iterator[Text]:
 
 def _joints(analysis: Analysis) -> Iterator[Block]:
     yield from joint_blocks(analysis)
+    yield from belt_blocks(analysis.resolved.forces)
 
 
 def _with_after(

@@ -119,7 +119,7 @@ def test_pictures_stand_in_pairs() -> None:
     assert paired([]) == []
 
 
-@pytest.mark.parametrize("name", ["yamashita-1", "brush-cutter"])
+@pytest.mark.parametrize("name", ["yamashita-1", "brush-cutter", "cam-pusher"])
 def test_long_tables_stand_in_the_appendix_and_none_is_lost(name: str) -> None:
     found, told = found_of(name), document(name)
     in_sections = [b for s in told.sections for b in s.blocks if isinstance(b, Table)]
@@ -131,7 +131,7 @@ def test_long_tables_stand_in_the_appendix_and_none_is_lost(name: str) -> None:
     assert html.count("<table") >= len([*in_sections, *behind])
     if isinstance(found, Findings):
         titles = {table.title for table in (*in_sections, *behind)}
-        results = (found.analysis, found.balanced)
+        results = (found.analysis, *([found.balanced] if found.helped else []))
         wanted = [b.title for one in results for b in one.blocks() if isinstance(b, Table)]
         assert wanted and set(wanted) <= titles
 
@@ -273,3 +273,14 @@ def test_a_force_that_cancels_but_for_rounding_is_none(tmp_path: Path) -> None:
     assert (pushed(found), ordered(found), caused(found.analysis)) == ("", "", "")
     tile = next(one for one in tiles(found) if one.label == "shaking force, peak")
     assert (tile.value, tile.note) == ("0", "")
+
+
+@pytest.mark.parametrize("name", ["yamashita-rig", "brush-cutter", "cam-pusher"])
+def test_every_picture_is_listed_in_the_documentation(name: str) -> None:
+    """By its name, or by what such names begin with, as `gauge-NAME`."""
+    text = (Path(eq.__file__).parents[2] / "docs" / "figures.md").read_text(encoding="utf-8")
+    listed = re.findall(r"`([\w-]+)`", text.partition("## Which pictures")[2].partition("## ")[0])
+    begins = tuple(re.sub("(NAME|LINK|1)$", "", one) for one in listed if re.search("[A-Z1]$", one))
+    for picture in each(found_of(name)):
+        own = re.sub(r"-(lateral|\d+)$", "", picture.name)
+        assert own in listed or picture.name.startswith(begins), picture.name
