@@ -286,10 +286,8 @@ def run(
         duration, turns = plan.duration, plan.turns
     if off is None and off_turns is None:
         off, off_turns = plan.off, plan.off_turns
-    speed, angle = (
-        set_value if given is None else given
-        for given, set_value in ((speed, plan.speed), (angle, plan.angle))
-    )
+    speed = plan.speed if speed is None else speed
+    angle = plan.angle if angle is None else angle
     positive = {"duration": duration, "turns": turns, "off": off, "off_turns": off_turns}
     dimensions: dict[str, Dimension] = {"duration": "time", "off": "time"}
     sizes = {}
