@@ -144,6 +144,28 @@ REACHED = {
 """What is too wide is moved by keys too; headings of the tree have a level."""
 
 
+CELL = re.compile(r"<td>|<td class")
+ROW, HEAD = re.compile(r"<tr.*?</tr>", re.DOTALL), re.compile(r"<th[^>]*>(.*?)</th>", re.DOTALL)
+TABLE = re.compile(r"<table class=\"docutils.*?</table>", re.DOTALL)
+FEWEST = 4
+"""Columns from which on a row of a table is set as a list where a page is narrow."""
+
+
+def as_cards(found: re.Match[str]) -> str:
+    """A table whose cells know their headings, for pages that are too narrow for its columns."""
+    table = found[0]
+    names = [re.sub(r"<[^>]*>", "", name).strip() for name in HEAD.findall(table)]
+    if len(names) < FEWEST:
+        return table
+    row = ROW.sub(lambda row: _named(row[0], names), table)
+    return row.replace('class="docutils', 'class="many-columns docutils', 1)
+
+
+def _named(row: str, names: list[str]) -> str:
+    of = iter(names)
+    return CELL.sub(lambda cell: f'<td data-name="{next(of, "")}"{cell[0][3:]}', row)
+
+
 def reached(app: Sphinx, page: str, template: str, context: dict[str, Any], doctree: Any) -> None:
     """Let keys and readers of screens reach all of a page, and tell its language."""
     folder = page.partition("/")[0]
@@ -151,6 +173,8 @@ def reached(app: Sphinx, page: str, template: str, context: dict[str, Any], doct
     for part in {"body", "furo_navigation_tree"} & context.keys():
         for written, better in REACHED.items():
             context[part] = context[part].replace(written, better)
+    if "body" in context:
+        context["body"] = TABLE.sub(as_cards, context["body"])
 
 
 def setup(app: Sphinx) -> None:

@@ -28,8 +28,15 @@ AROUND = {
 MADE = {"examples": "scripts.md"}
 """Folders of the repository that have a page here."""
 GALLERY = {"en": "examples.md", "ja": "ja/examples.md", "ko": "ko/examples.md"}
-LONG = ("model-file.md", "recipes.md", "errors.md")
+LONG = ("model-file.md", "recipes.md", "errors.md", "conformance.md")
 """Pages of which each part is a page on the site."""
+TABLES_BELOW = re.compile(r"^## `\[", re.MULTILINE)
+"""Headings of tables of the model file, each of which has a page of its own too."""
+TWO_WAYS = re.compile(
+    r"^(```(?:console|bash|toml)\n(?:(?!```).*\n)+```)\n\n(```python\n(?:(?!```).*\n)+```)\n",
+    re.MULTILINE,
+)
+"""A file or a command, and the same in Python."""
 EXTRA = "extra"
 """Folder of what Sphinx takes over as it is."""
 SITE_ONLY = re.compile(r"<!-- site only\n(.*?)-->\n", re.DOTALL)
@@ -37,7 +44,7 @@ SITE_ONLY = re.compile(r"<!-- site only\n(.*?)-->\n", re.DOTALL)
 FRAME = re.compile(r"<iframe .*?\n\n.*?\n\n(?=-->)", re.DOTALL)
 """An interactive file in a page, with what is said of it."""
 ANCHOR = re.compile(r'<a id="([\w-]+)"></a>')
-LINK = re.compile(r"\[([^\]]*)\]\((?!\w+:|[#/])([^)#\s]+)(#[^)\s]*)?\)")
+LINK = re.compile(r"\[((?:[^\[\]]|\[+[^\[\]]*\]+)*)\]\((?!\w+:|[#/])([^)#\s]+)(#[^)\s]*)?\)")
 
 
 def linked(page: Path) -> str:
@@ -84,6 +91,10 @@ def lay_out(source: Path) -> None:
     }
     for page in LONG:
         pages = split(pages, page)
+    for page in sorted(pages):
+        if TABLES_BELOW.search(pages[page]) and page.startswith("model-file/"):
+            pages = split(pages, page)
+    pages = {name: side_by_side(text) for name, text in pages.items()}
     source.mkdir(parents=True)
     live = write_live(source / EXTRA, GALLERY)
     shown = gallery({language: pages[page] for language, page in GALLERY.items()}, live)
@@ -98,6 +109,15 @@ def lay_out(source: Path) -> None:
         path.write_text(SITE_ONLY.sub(r"\1", marked), encoding="utf-8")
     shutil.copytree(DOCS / "pictures", source / "pictures")
     shutil.copy(DOCS / "api.txt", source)
+
+
+def side_by_side(text: str) -> str:
+    """A page on which a file or a command stands beside the same in Python, where there is room."""
+    return TWO_WAYS.sub(
+        "::::{grid} 1 1 2 2\n:gutter: 2\n:class-container: two-ways\n\n"
+        ":::{grid-item}\n\\1\n:::\n\n:::{grid-item}\n\\2\n:::\n::::\n",
+        text,
+    )
 
 
 def scripts() -> str:

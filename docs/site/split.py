@@ -61,11 +61,11 @@ def split(pages: dict[str, str], page: str) -> dict[str, str]:
         part = raised(text[top.start : end])
         parts[name] = part
         inner = [heading for heading in every if top.start < heading.start < end]
-        home |= {top.slug: name}
+        home |= {top.slug: name, make_id(top.title): name}
         for here, there in zip(inner, headings(part), strict=True):
             home[here.slug] = home[make_id(here.title)] = f"{name}#{there.slug}"
         home |= {anchor: f"{name}#{anchor}" for anchor in ANCHOR.findall(part)}
-    listed = "\n".join(f"{folder}/{top.slug}" for top in tops)
+    listed = "\n".join(f"/{folder}/{top.slug}" for top in tops)
     start = f"{text[: tops[0].start]}\n```{{toctree}}\n:maxdepth: 2\n\n{listed}\n```\n"
     moved = {name: relinked(body, name, name, page, home) for name, body in pages.items()}
     moved[page] = relinked(start, page, page, page, home)

@@ -81,6 +81,41 @@ def test_the_first_page_has_a_machine_that_can_be_dragged(page: Page, site: Path
     expect(figures).not_to_have_text(before)
 
 
+READABLE = (
+    "conformance/kim-and-chung.html",
+    "conformance/yamashita-ichikawa-and-mori.html",
+    "conformance/iso-5349.html",
+    "model-file/springs.html",
+    "model-file/support/supportmountsname.html",
+)
+
+
+@pytest.mark.parametrize("width", WIDTHS)
+def test_tables_of_many_columns_are_read_without_moving_them(
+    page: Page, site: Path, width: int
+) -> None:
+    """Each column is in sight; where there is no room for all, a row is a list with headings."""
+    page.set_viewport_size({"width": width, "height": 900})
+    for name in READABLE:
+        page.goto(f"{site.as_uri()}/{name}")
+        assert page.locator("table.many-columns").count(), name
+        hidden = "all => all.filter(one => one.scrollWidth > one.clientWidth + 1).length"
+        assert page.eval_on_selector_all(".table-wrapper", hidden) == 0, name
+
+
+def test_a_command_stands_beside_python(page: Page, site: Path) -> None:
+    """Where there is room; on a narrow page below it, and each has a button that copies it."""
+    for width, beside in ((1280, True), (400, False)):
+        page.set_viewport_size({"width": width, "height": 900})
+        page.goto(f"{site.as_uri()}/recipes/put-a-machine-on-mounts.html")
+        shown = page.locator(".two-ways pre")
+        command, python = (shown.nth(place).bounding_box() for place in (0, 1))
+        assert command is not None and python is not None
+        assert (command["x"] + command["width"] <= python["x"]) == beside
+        assert page.locator(".two-ways button.copybtn").count() == shown.count() == 2
+        assert page.locator("article img").first.get_attribute("src")
+
+
 KINDS = (
     "index.html",
     "first-machine.html",
@@ -89,6 +124,8 @@ KINDS = (
     "ko/examples.html",
     "api/equipoise.measured.html",
     "model-file/springs.html",
+    "conformance/kim-and-chung.html",
+    "recipes/model-a-spring.html",
     "errors/change-point.html",
     "search.html?q=counterweight",
 )

@@ -43,6 +43,17 @@ def test_options_and_values_stand_as_they_are_typed(site: Path) -> None:
     assert "With --json: add every force by cause and by link." in told
 
 
+def test_every_table_of_the_model_file_has_a_page(site: Path) -> None:
+    """Those in other tables too."""
+    text = (DOCS / "model-file.md").read_text(encoding="utf-8")
+    headings = re.findall(r"^##+ `(\[.+\])`$", text, re.MULTILINE)
+    pages = [page.read_text(encoding="utf-8") for page in (site / "model-file").rglob("*.html")]
+    tops = [re.findall(r"<h1>(?:<code.*?>)?(.*?)<a class", page)[0] for page in pages]
+    shown = {re.sub("<.*?>", "", top) for top in tops}
+    assert len(headings) > 40
+    assert [heading for heading in headings if heading not in shown] == []
+
+
 @pytest.mark.parametrize("language", GALLERY)
 def test_the_gallery_has_every_example_with_its_picture(site: Path, language: str) -> None:
     page = site / f"{GALLERY[language]}.html"
