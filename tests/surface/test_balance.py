@@ -18,6 +18,7 @@ import pytest
 import equipoise as eq
 from equipoise.balancing.objectives import measured
 from equipoise.cli.plan import read_objective
+from equipoise.mechanism.parts.balance import Balance, Limit, Objective
 from surface.running import (
     cells,
     changed,
@@ -480,6 +481,13 @@ def test_outputs_of_several_rows_are_taken_by_the_names_that_results_have(row: s
     before = json.loads(text)["objectives"]["peak of drive_torque"]["before"]
     summary = eq.analyze(eq.load("four-row-transplanter"), acceleration=0.0).summary
     assert before == pytest.approx(summary["rows.drive_torque"].peak, rel=1e-9)
+
+
+def test_a_file_names_outputs_of_several_rows_as_results_do() -> None:
+    machine = eq.load("four-row-transplanter")
+    aims = Objective("rows.drive_torque"), Objective("drive_torque")
+    plans = [Balance(objectives=(one,), limits=(Limit(one, ratio=1.0),)) for one in aims]
+    assert plans[0] == plans[1] and machine.with_balance(plans[0]).balance == plans[1]
 
 
 def test_an_output_of_a_link_of_two_words_is_an_objective() -> None:

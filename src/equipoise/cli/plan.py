@@ -241,7 +241,7 @@ def read_objective(option: str, text: str) -> Objective:
             raise UsageError(f"{option}: got {text!r}, with {word} twice; give it once")
         values |= read
     with blaming(option):
-        return Objective(words[0], measure, **values)  # type: ignore[arg-type]
+        return Objective(words[0], measure, **values).of_all_rows  # type: ignore[arg-type]
 
 
 def _read_word(option: str, word: str, value: str) -> dict[str, Any]:

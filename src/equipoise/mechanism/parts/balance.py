@@ -7,6 +7,7 @@ the link that they belong to.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from math import hypot, pi, radians, sqrt
 from typing import Any, Literal
 
@@ -159,6 +160,13 @@ class Balance(Frozen):
     added_mass: float | None = key(
         "mass", "the most that may be added in all", default=None, example="500 g", above=0
     )
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        aims = tuple(one.of_all_rows for one in self.objectives)
+        limits = tuple(replace(one, objective=one.objective.of_all_rows) for one in self.limits)
+        object.__setattr__(self, "objectives", aims)
+        object.__setattr__(self, "limits", limits)
 
     @property
     def asked(self) -> tuple[Objective, ...]:

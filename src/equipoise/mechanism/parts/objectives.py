@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 from math import pi
-from typing import ClassVar
+from typing import ClassVar, Self
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, key_names, to_say
@@ -97,10 +97,13 @@ class Objective(Frozen):
         example=["150 rpm", "240 rpm"],
     )
 
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        # Of several rows an output is that of all of them, which results name ``rows.OUTPUT``.
-        object.__setattr__(self, "output", str(self.output).removeprefix(ROWS))
+    @property
+    def of_all_rows(self) -> Self:
+        """The objective as balancing calls it: an output of several rows is that of all of them,
+        which results call ``rows.OUTPUT``.
+        """
+        name = self.output.removeprefix(ROWS)
+        return self if name == self.output else replace(self, output=name)
 
     @property
     def name(self) -> str:
