@@ -19,6 +19,9 @@ from equipoise.i18n import Note, to_say
 
 Array = np.ndarray[Any, Any]
 
+UNPROVED = to_say("nothing proves that no other design is better; another seed may lead further")
+"""What the result of a solver without a proof says of itself."""
+
 
 @dataclass(frozen=True, eq=False)
 class DesignProblem:

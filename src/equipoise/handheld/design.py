@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -215,6 +215,7 @@ class ToolDesign(Result):
     speed: Array
     a_hv: Array
 
+    solver: ClassVar[str] = "sequential quadratic programs"
     blocks_in = "handheld.hand_blocks.design_blocks"
     pictures_in = "figures.tool_side.design_pictures"
 
@@ -237,6 +238,8 @@ class ToolDesign(Result):
             "variables": told(self.variables),
             "figures": told(self.figures),
             "edges": dict(zip(names, self.edges, strict=True)),
+            "solver": self.solver,
+            "proved": False,  # however many searches arrive at the same place
             "searches": self.searches,
             "arrived": self.arrived,
             "speed": self.speed,

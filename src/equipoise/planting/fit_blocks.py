@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from equipoise.design.solvers import UNPROVED
 from equipoise.i18n import Note, say, to_say
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.dynamics.assessment import remarks
@@ -31,6 +32,8 @@ def fit_blocks(fit: Fit) -> Iterator[Block]:
             "not met: {names}; widen the limits of [vary], loosen the goals, or try another seed"
         )
         notes.append(Note(template, names=", ".join(missed)))
+    elif any(goal.make for goal in fit.goals):
+        notes.append(Note(UNPROVED))
     if notes:
         yield Notes(tuple(notes))
 

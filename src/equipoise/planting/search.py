@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -54,6 +54,7 @@ class Fit(Result):
     goals : what was asked for.  designs : what could change.  values : what it has become.
     steps : for each goal, what counts as one step away from its target.
     judged : number of designs.  seed : of the random numbers.
+    proved : whether no design can be better: every target is met to rounding, and every limit kept.
     """
 
     machine: Machine
@@ -65,7 +66,9 @@ class Fit(Result):
     steps: tuple[float, ...]
     judged: int
     seed: int
+    proved: bool = False
 
+    solver: ClassVar[str] = "differential evolution"
     blocks_in = "planting.fit_blocks.fit_blocks"
 
     @property
@@ -87,6 +90,8 @@ class Fit(Result):
         return {
             "seed": self.seed,
             "judged": self.judged,
+            "solver": self.solver,
+            "proved": self.proved,
             "values": dict(self.values),
             "goals": [self._told(goal) for goal in self.goals],
             "before": None if self.before is None else self.before.to_dict(),
@@ -159,6 +164,8 @@ def _fit(
         polished = list(_polished(problem, best))
     candidates = np.vstack([best, *polished])
     values, after = _best(problem, candidates)
+    best_outcome = problem.judge_here(values[None])
+    met = bool(best_outcome.kept[0] and best_outcome.cost[0] < MET)
     names = [variable.path for variable in problem.designs.variables]
     return Fit(
         machine=after.machine,
@@ -170,6 +177,7 @@ def _fit(
         steps=tuple(problem.scales),
         judged=problem.judged,
         seed=seed,
+        proved=met and not problem.makes,
     )
 
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from equipoise.design.solvers import UNPROVED
 from equipoise.design.spreads import Choices, Normal, Range
 from equipoise.i18n import Note, say, to_say
 from equipoise.quantities import number
@@ -227,10 +228,7 @@ def searched_blocks(
     if not found.stood_still:
         yield Notes((Note(to_say("it may get better yet; give more generations")),))
     elif found.proof is None:
-        unproved = to_say(
-            "nothing proves that no other design is better; another seed may lead further"
-        )
-        yield Notes((Note(unproved),))
+        yield Notes((Note(UNPROVED),))
 
 
 def _front(found: Searched, units: Units | None, own: tuple[Array, Array] | None) -> Table:

@@ -161,6 +161,7 @@ def test_it_is_better_and_within_its_limits(name: str) -> None:
     assert (found.speed[0], found.speed[-1]) == plan.speeds
     assert 1 <= found.arrived <= found.searches
     told = found.to_dict()
+    assert (told["solver"], told["proved"]) == ("sequential quadratic programs", False)
     for part in ("variables", "figures"):
         for row in getattr(found, part):
             assert told[part][row.name] == {"before": row.before, "after": row.after}

@@ -15,8 +15,10 @@ from equipoise.mechanism.parts.gear_shapes import GearShape
 from equipoise.mechanism.parts.gears import closed
 from equipoise.mechanism.parts.machine import FRAME
 from equipoise.planting.designs import Designs
+from equipoise.planting.fit_blocks import fit_blocks
 from equipoise.planting.goals import PlantingProblem
 from equipoise.planting.search import Fit, fit_planting
+from equipoise.results.blocks import Notes
 from support.chosen import EXHAUSTIVE
 from support.machines import make
 from unit.planting.build import two_arms
@@ -114,6 +116,35 @@ def test_the_same_seed_gives_the_same_result() -> None:
     assert one.machine == two.machine
     assert one.judged == two.judged
     assert one.machine != other.machine
+
+
+def told_of(fit: Fit) -> str:
+    """Its notes."""
+    found = [one.notes for one in fit_blocks(fit) if isinstance(one, Notes)]
+    return " ".join(str(note) for notes in found for note in notes)
+
+
+def test_what_is_as_small_as_was_found_is_not_called_proved(
+    calmer: tuple[Fit, list[Requirement]],
+) -> None:
+    fit, _ = calmer
+    assert (fit.to_dict()["solver"], fit.to_dict()["proved"]) == ("differential evolution", False)
+    assert "nothing proves that no other design is better" in told_of(fit)
+
+
+def test_a_design_that_meets_every_target_is_proved() -> None:
+    """By the figures of the new machine itself; a target out of reach is not met."""
+    machine, few = eq.load("kim-chung-c"), {"generations": 30, "population": 15}
+    wanted = {"curve.width": 0.1, "curve.height": 0.24}
+    goals = [Requirement(name, target=value) for name, value in wanted.items()]
+    fit = fit_planting(machine, goals, **few)
+    figures = eq.plant(fit.machine)
+    for name, value in wanted.items():
+        assert figures[name] == pytest.approx(value, rel=1e-8)
+    assert fit.to_dict()["proved"] is True
+    assert "nothing proves" not in told_of(fit)
+    far = fit_planting(machine, [Requirement("curve.width", target=9.0)], **few)
+    assert far.to_dict()["proved"] is False
 
 
 def test_progress_is_told() -> None:
