@@ -153,6 +153,25 @@ def test_a_linkage_that_never_closes() -> None:
     with pytest.raises(RangeError, match="cannot be joined at any crank angle") as caught:
         eq.move(four_bar(5.0, 0.9, 0.5, 0.7))
     assert caught.value.ranges == ()
+    said = str(caught.value)  # what is given, where, and what would be right
+    assert "in links.coupler.points" in said
+    assert "in links.rocker.points" in said
+    assert "they have to be" in said
+
+
+def test_what_a_linkage_that_never_closes_is_told_lets_it_be_mended() -> None:
+    """The distance of the pins that is said to be right is that from which on it can be joined."""
+    with pytest.raises(RangeError) as caught:
+        eq.move(four_bar(0.1, 2.0, 0.5, 0.7))
+    wrong, right = re.findall(r"(\d\S* m?m) to (\d\S* m?m) apart", str(caught.value))
+    assert wrong == ("1900 mm", "2100 mm")
+    assert right == ("200.0 mm", "1200 mm")
+    for frame in (1.2 + 0.099, 0.2 - 0.099):  # of some crank angle alone
+        with pytest.raises(RangeError, match="the crank cannot turn fully") as caught:
+            eq.move(four_bar(0.1, frame, 0.5, 0.7))
+        assert caught.value.ranges
+    with pytest.raises(RangeError, match="at any crank angle"):
+        eq.move(four_bar(0.1, 1.2 + 0.101, 0.5, 0.7))
 
 
 @pytest.mark.parametrize(

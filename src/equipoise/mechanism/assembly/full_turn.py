@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from math import degrees, pi
 from typing import Any
@@ -12,8 +12,17 @@ import numpy as np
 from equipoise.errors import ChangePointError, RangeError
 from equipoise.i18n import Note, all_of
 from equipoise.mechanism.assembly.builder import Group
-from equipoise.mechanism.assembly.steps import Array, initial_state, needed_references, run
-from equipoise.mechanism.parts.machine import Machine
+from equipoise.mechanism.assembly.sides import key_text
+from equipoise.mechanism.assembly.steps import (
+    Array,
+    State,
+    initial_state,
+    needed_references,
+    planar,
+    run,
+)
+from equipoise.mechanism.parts.machine import FRAME, Machine
+from equipoise.quantities import told
 from equipoise.signals import EQUAL, highest_at
 
 MOST_DIPS = 6
@@ -87,6 +96,11 @@ class FullTurn:
 
     def margin(self, group: Group, theta: Array) -> Array:
         """A dyad's margin at any crank angles."""
+        assert group.margin is not None
+        return np.broadcast_to(self.state(theta)[group.margin], theta.shape)
+
+    def state(self, theta: Array) -> State:
+        """What is known at any crank angles of the groups so far."""
         state = initial_state(self.machine, theta)
         for earlier in self.done:
             for name in needed_references(earlier.motion):
@@ -94,19 +108,13 @@ class FullTurn:
         with np.errstate(all="ignore"):
             for earlier in self.done:
                 run(earlier.motion, state)
-        assert group.margin is not None
-        return np.broadcast_to(state[group.margin], theta.shape)
+        return state
 
     def range_error(self, group: Group, margin: Array, dip: float, names: Note | str) -> RangeError:
         """Tell between which crank angles a dyad can be closed; not at the angle `dip`."""
         if not np.any(margin > 0):
-            return RangeError(
-                Note(
-                    "{names} cannot be joined at any crank angle; check their lengths and "
-                    "where their pins are",
-                    names=names,
-                ).about("links-cannot-be-joined-at-any-crank-angle")
-            )
+            note = self.never_joined(group, names)
+            return RangeError(note.about("links-cannot-be-joined-at-any-crank-angle"))
         period = 2 * pi * self.turns
         theta, where = np.unique([*self.theta[:-1], dip % period], return_index=True)
         good = np.append(margin[:-1] > 0, False)[where]
@@ -123,6 +131,55 @@ class FullTurn:
         if not self.machine.crank_turns:
             return RangeError(self.beyond(dip, names), tuple(ranges))
         return RangeError(_only_between(ranges, names), tuple(ranges))
+
+    def never_joined(self, group: Group, names: Note | str) -> Note:
+        """Tell that a dyad can be closed at no crank angle: of two links with a pin at each end,
+        how long these are, and how far apart their other pins are.
+        """
+        spans = [*self._spans(group)]
+        if len(spans) != 2:
+            return Note(
+                "{names} cannot be joined at any crank angle; check their lengths and "
+                "where their pins are",
+                names=names,
+            )
+        (one, first, own), (other, second, its) = spans
+        state = self.state(self.theta)
+        apart = np.abs(state[f"p({first})"] - state[f"p({second})"])
+        return Note(
+            "{names} cannot be joined at any crank angle: "
+            "{first} and {second} are {least} to {most} apart; "
+            "with {own} from {first} to {joint} in links.{one}.points and "
+            "{its} from {second} to {joint} in links.{other}.points they have to be "
+            "{low} to {high} apart",
+            names=names,
+            first=first,
+            second=second,
+            joint=group.joint,
+            one=key_text(one),
+            other=key_text(other),
+            least=told(float(np.min(apart)), "length"),
+            most=told(float(np.max(apart)), "length"),
+            own=told(own, "length"),
+            its=told(its, "length"),
+            low=told(abs(own - its), "length"),
+            high=told(own + its, "length"),
+        )
+
+    def _spans(self, group: Group) -> Iterator[tuple[str, str, float]]:
+        """Of each link of a dyad that a pin joins to a link before and another to the second link:
+        its name, the first pin, and the length between both, m.
+        """
+        machine = self.machine
+        before = {FRAME, *machine.moved(np.zeros(1))}
+        before.update(link for one in self.done if one is not group for link in one.links)
+        places = {point for body in before for point in machine.points_of(body)}
+        for link in group.links:
+            points = machine.links[link].points
+            if group.joint in points and len(shared := places & {*points} - {group.joint}) == 1:
+                (pin,) = shared
+                length = abs(planar(points[group.joint]) - planar(points[pin]))
+                yield link, pin, float(length)
 
     def beyond(self, dip: float, names: Note | str) -> Note:
         """Tell that the drive's own motion leads where a dyad cannot be closed."""
