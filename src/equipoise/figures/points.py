@@ -32,6 +32,8 @@ if TYPE_CHECKING:
 
 STILL = 1e-9
 """Over the motion of what moves most: what is less stands still."""
+ALIKE = 1e-3
+"""Over the size of a path: paths that are nearer to each other look like one."""
 MOST_POINTS, MOST_VECTORS = 4, 3
 """Points that are followed in one picture: their paths, and their hodographs."""
 MOST_PATHS = 3
@@ -77,6 +79,34 @@ def followed(motion: Motion) -> list[str]:
     return _tips(motion)[:MOST_PATHS] or traced(motion)[:MOST_PATHS]
 
 
+def _together(motion: Motion, names: Sequence[str]) -> list[list[str]]:
+    """Points whose paths are one curve, which they may pass at different times, together."""
+    groups: list[list[str]] = []
+    for name in names:
+        path = motion.points[name].place
+        alike = (one for one in groups if _coincide(motion.points[one[0]].place, path))
+        group = next(alike, None) if motion.whole_cycle else None
+        if group is None:
+            groups.append([name])
+        else:
+            group.append(name)
+    return groups
+
+
+def _coincide(one: Array, other: Array) -> bool:
+    """Whether two paths (N,) lie on each other but for a thousandth of their size."""
+    size = float(np.ptp(one.real) + np.ptp(one.imag))
+    if abs(np.mean(one) - np.mean(other)) > ALIKE * size:  # most differ by that already
+        return False
+    apart = np.abs(one[:, None] - other)
+    return float(max(np.max(np.min(apart, axis=0)), np.max(np.min(apart, axis=1)))) <= ALIKE * size
+
+
+def _names_of(group: Sequence[str]) -> str:
+    """Names of points on one path."""
+    return short(group[0], 12) if len(group) == 1 else short(say(", ").join(group), 24)
+
+
 def curves(analysis: Analysis, points: Sequence[str] | None = None) -> Chart:
     """Paths of points of couplers, with dots after equal times; those of other points pale.
 
@@ -88,16 +118,21 @@ def curves(analysis: Analysis, points: Sequence[str] | None = None) -> Chart:
     frame = {name: complex(*place) for name, place in analysis.machine.frame.items()}
     every = [motion.points[name].place for name in (*names, *others)]
     size = extent(*every, np.array([*frame.values()]))
-    drawn = [Curve.of(over(analysis, motion.points[name].place)[1], "", "faint") for name in others]
+    groups, other_groups = _together(motion, names), _together(motion, others)
+    drawn = [
+        Curve.of(over(analysis, motion.points[group[0]].place)[1], "", "faint")
+        for group in other_groups
+    ]
     marks = [
         Mark.of(z, short(name), "stand", 45.0, near=5.0, bold=True) for name, z in frame.items()
     ]
     arrows: list[Arrow] = []
     dots: list[Mark] = []
     numbered: list[Mark] = []
-    for number, name in enumerate(names, 1):
+    for number, group in enumerate(groups, 1):
+        name = group[0]
         role, path = f"several {number}", motion.points[name].place
-        label = say("path of {point}", point=short(name, 12))
+        label = say("path of {point}", point=_names_of(group))
         drawn.append(Curve.of(over(analysis, path)[1], label, role))
         arrows += _sense(analysis, name, role, size)
         if motion.whole_cycle:
@@ -105,12 +140,12 @@ def curves(analysis: Analysis, points: Sequence[str] | None = None) -> Chart:
             at = np.round(ways * len(path) / (360 * motion.turns)).astype(int)
             dots += [Mark.of(z, "", role) for z in path[at]]
             numbered += numbers(told_angles(motion.crank_angle), path, role, size)
-    for name in (*names, *others):
-        role = f"several {names.index(name) + 1}" if name in names else "lines"
-        path = motion.points[name].place
+    for number, group in enumerate((*groups, *other_groups), 1):
+        role = f"several {number}" if number <= len(groups) else "lines"
+        path = motion.points[group[0]].place
         farthest = path[np.argmax((path * np.exp(-0.7j)).real)]
-        named = Mark.of(farthest, short(name), role, 40.0, sign=False, near=4.0, bold=True)
-        marks.append(named)
+        text = _names_of(group)
+        marks.append(Mark.of(farthest, text, role, 40.0, sign=False, near=4.0, bold=True))
     x, y = (Axis.of(say("{axis} in the frame", axis=a), "length", every and size) for a in "xy")
     panel = Panel(
         x,

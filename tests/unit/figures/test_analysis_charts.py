@@ -361,3 +361,15 @@ def test_every_cause_looks_different_and_further_signals_like_the_first() -> Non
     looks = [look_of(f"several {number}") for number in range(1, len(CAUSES) + 1)]
     assert all(one not in looks[:k] for k, one in enumerate(looks))
     assert all(look_of(f"several {number}") in looks for number in range(1, 40))
+
+
+def test_paths_that_coincide_are_drawn_once_with_all_their_names() -> None:
+    """The walkers of a straw walker stand a quarter turn apart on the same throws."""
+    analysis = eq.analyze(eq.load("straw-walker"), 360)
+    (panel,) = points.curves(analysis).panels
+    legend = [curve.label for curve in panel.curves if curve.label]
+    assert legend == ["path of T1, T2, T3, T4"]
+    assert len(panel.curves) == 3  # with those of the pins of both crankshafts
+    assert {"F1, F2, F3, F4", "R1, R2, R3, R4"} <= {mark.text for mark in panel.marks}
+    apart = points.curves(eq.analyze(eq.load("yamashita-1"), 360)).panels[0]
+    assert all("," not in curve.label for curve in apart.curves)
