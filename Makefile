@@ -123,6 +123,7 @@ bench: $(VENV)/.installed-test
 	$(BIN)/python benchmarks/report.py
 	$(BIN)/python benchmarks/live_page.py
 	$(BIN)/python benchmarks/exudyn_slider_crank.py
+	$(BIN)/python benchmarks/exudyn_run.py
 	$(BIN)/python benchmarks/squeezing_mechanism.py
 
 clean:
