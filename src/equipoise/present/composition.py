@@ -366,8 +366,12 @@ def check(outs: Iterable[str | os.PathLike[str]], language: str) -> None:
 
 def write_document(document: ReportDocument, outs: Iterable[str | os.PathLike[str]]) -> None:
     """Write a document as each of these files."""
-    from equipoise.schema.files import write_all
+    from equipoise.schema.files import write, write_all
 
     for out in outs:
         data = pdf(document) if kind_of(out) == "pdf" else page(document).encode()
-        write_all(os.path.dirname(out) or ".", {os.path.basename(out): data})
+        folder, name = os.path.split(out)
+        if os.path.isdir(folder or "."):  # one that is named may be a link
+            write(out, data)
+        else:
+            write_all(folder, {name: data})
