@@ -77,6 +77,7 @@ def lay_out(source: Path) -> None:
     """Write every page and picture that Sphinx reads."""
     from commands import commands
     from gallery import gallery
+    from glossary import glossary
     from live import write_live
     from names import names
     from pictures import draw
@@ -88,6 +89,7 @@ def lay_out(source: Path) -> None:
         **names(),
         "commands.md": commands(),
         "scripts.md": scripts(),
+        "glossary.md": glossary(),
     }
     for page in LONG:
         pages = split(pages, page)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 import re
 import runpy
 import shlex
@@ -11,6 +12,8 @@ from urllib.parse import urlsplit
 import pytest
 
 from equipoise.cli import COMMANDS, app
+from equipoise.i18n import LANGUAGES, say, speaking
+from equipoise.mechanism.outputs.declared import DECLARED
 from equipoise.schema.opening import bundled
 from unit.test_public_names import NAMES
 
@@ -41,6 +44,20 @@ def test_options_and_values_stand_as_they_are_typed(site: Path) -> None:
     told = (site / "commands.html").read_text(encoding="utf-8")
     assert re.findall(r".{20}[“”‘].{20}", told) == []
     assert "With --json: add every force by cause and by link." in told
+
+
+def test_the_glossary_has_every_output_in_three_languages(site: Path) -> None:
+    """As the catalogues say it, and none in English where it is to be Japanese or Korean."""
+    text = (site / "glossary.html").read_text(encoding="utf-8")
+    cells = {html.unescape(re.sub("<.*?>", "", cell)) for cell in re.findall(r"<td.*?</td>", text)}
+    for language in LANGUAGES:
+        with speaking(language):
+            said = {
+                say(one.label, name="B") for one in DECLARED.values() if "{row}" not in one.label
+            }
+        assert said - cells == set()
+        other = language != "en"
+        assert not other or not any(term.isascii() for term in said)
 
 
 def test_every_table_of_the_model_file_has_a_page(site: Path) -> None:
