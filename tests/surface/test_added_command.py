@@ -1,28 +1,40 @@
-"""A command that is registered in one line is in the help and among the tools of programs."""
+"""A command that is one declaration is in the help, is parsed and is shown, and programs call it.
+
+Nothing else knows of it: it loads, prints and writes nothing itself.
+"""
 
 from __future__ import annotations
 
-import sys
+import json
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Annotated
 
+import numpy as np
 import pytest
 
 from equipoise.cli import app
-from equipoise.cli.options import File
-from equipoise.cli.outputs import Printed
+from equipoise.cli.models import LinkageFile
+from equipoise.cli.options import BelongsTo
+from equipoise.cli.outputs import Outputs
+from equipoise.cli.runner import Answer, command
 from equipoise.cli.tools import tools
 from equipoise.results.blocks import Text
 from equipoise.schema.models import load_linkage
-from surface.running import equipoise, succeeded
+from surface.running import equipoise, read, refused, succeeded
 
 
-def heft(file: File, /, *, outputs: Printed = Printed()) -> None:
-    """Tell how many links a machine has."""
-    machine = load_linkage(file)
-    links = len(machine.links)
-    sys.stdout.write("counted\n")
-    outputs.print(machine, lambda: {"links": links}, lambda: [Text(f"{links} links")])
+@command(Outputs, long=True)
+def heft(
+    machine: LinkageFile, /, *, times: int = 1, names: Annotated[bool, BelongsTo("--json")] = False
+) -> Answer:
+    """Report how many links a machine has."""
+    links = times * len(machine.links)
+    return Answer(
+        lambda: [Text(f"{links} links")],
+        lambda: {"links": links} | ({"names": [*machine.links]} if names else {}),
+        columns=lambda: [("link", "", np.arange(links))],
+    )
 
 
 @pytest.fixture(autouse=True)
@@ -32,17 +44,46 @@ def added() -> Iterator[None]:
     del app["heft"]
 
 
+LINKS = len(load_linkage("yamashita-1").links)
+
+
 def test_it_is_in_the_help() -> None:
     assert "heft" in succeeded(equipoise("--help"))
-    assert "--json" in succeeded(equipoise("heft", "--help"))
-    assert "links" in succeeded(equipoise("heft", "yamashita-1"))
+    told = succeeded(equipoise("heft", "--help"))
+    assert all(one in told for one in ("FILE", "--times", "--units", "--json", "--csv", "--plot"))
+
+
+def test_it_prints_below_the_title_of_what_it_has_loaded() -> None:
+    title, *_, last = succeeded(equipoise("heft", "yamashita-1", "--times", "2")).splitlines()
+    assert load_linkage("yamashita-1").title.startswith(title)
+    assert last == f"{2 * LINKS} links"
+
+
+def test_its_values_are_json_and_its_columns_a_csv_file() -> None:
+    assert read("heft", "yamashita-1") == {"links": LINKS}
+    result = equipoise("heft", "yamashita-1", "--csv", "links.csv", "--json", "--names")
+    assert json.loads(succeeded(result))["names"] == [*load_linkage("yamashita-1").links]
+    assert result.err == "wrote links.csv\n"
+    assert Path("links.csv").read_text().splitlines() == ["link", *map(str, range(LINKS))]
+
+
+def test_what_cannot_be_is_refused_before_anything_is_written() -> None:
+    assert refused(equipoise("heft", "no.toml")).startswith("no.toml: there is no such file")
+    said = refused(equipoise("heft", "yamashita-1", "--names"))
+    assert said == "--names belongs to --json; give both"
+    assert "is there already" not in refused(equipoise("heft", "yamashita-1", "--csv", "no/x.csv"))
+    assert not list(Path().iterdir())
 
 
 @pytest.mark.parametrize("given", [{}, {"json": True}])
 def test_programs_get_its_values_and_not_its_text(given: dict[str, bool], tmp_path: Path) -> None:
-    """Whatever else it prints: nothing reads values back from standard output."""
+    """Nothing reads values back from standard output."""
     tool = tools()["heft"]
-    assert tool.schema()["required"] == ["file"]
-    answer = tool.answer({"file": "yamashita-1", **given}, tmp_path)
-    assert answer.values == {"links": len(load_linkage("yamashita-1").links)}
-    assert answer.text.startswith("counted\n")
+    assert tool.long and tool.schema()["required"] == ["file"]
+    answer = tool.answer({"file": "yamashita-1", "csv": "x.csv", **given}, tmp_path)
+    assert answer.values == {"links": LINKS}
+    assert [path.name for path in answer.written] == ["x.csv"]
+
+
+def test_it_is_a_function_that_returns_its_answer() -> None:
+    assert heft("yamashita-1", times=3).values == {"links": 3 * LINKS}

@@ -16,7 +16,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from threading import Event, Thread, Timer
 from time import monotonic
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
 from cyclopts import App, CycloptsError, Parameter
 
@@ -29,6 +29,15 @@ from equipoise_command import INTERRUPTED
 
 if TYPE_CHECKING:
     from rich.console import Console
+
+
+@runtime_checkable
+class Given(Protocol):
+    """What a command returns that leaves writing and printing to its caller, as `runner.Run`."""
+
+    def give(self) -> None:
+        """Write and print it."""
+
 
 app = App(
     name="equipoise",
@@ -83,12 +92,7 @@ def _run(arguments: Sequence[str] | None) -> int:
         _prepare(given)
         with recorded(), together(), _signs_of_life(given):
             check_repeated(given)
-            app(
-                arguments,
-                exit_on_error=False,
-                print_error=False,
-                result_action="return_value",
-            )
+            give(answered_by(arguments))
             if sys.stdout is not None:  # None where the shell has closed it
                 sys.stdout.flush()
             check()
@@ -109,6 +113,17 @@ def _run(arguments: Sequence[str] | None) -> int:
         _drop_output()
         return _refuse(UsageError(_mishap(error)))
     return 0
+
+
+def answered_by(arguments: Sequence[str] | None) -> object:
+    """What the command of a command line returns: a `Run`, unless it prints by itself."""
+    return app(arguments, exit_on_error=False, print_error=False, result_action="return_value")
+
+
+def give(returned: object) -> None:
+    """Write and print what a command has returned."""
+    if isinstance(returned, Given):
+        returned.give()
 
 
 def _prepare(given: Sequence[str]) -> None:

@@ -2,41 +2,33 @@
 
 from __future__ import annotations
 
-from contextlib import nullcontext
+from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import App, Parameter
 
-from equipoise.cli.models import linkage_of
-from equipoise.cli.options import (
-    CrankZero,
-    File,
-    Goals,
-    Limits,
-    Out,
-    Speed,
-    blaming,
-    count,
-    naming,
-    size,
-)
-from equipoise.cli.outputs import Length, Outputs, Printed, check_new, sources_of, write_model
+from equipoise.cli.models import LinkageFile, PlannedFile, at_speed
+from equipoise.cli.options import CrankZero, Goals, Limits, Out, Speed, blaming, count, size
+from equipoise.cli.outputs import Length, Outputs, Printed, check_new, write_model
 from equipoise.cli.plan import Freed, plan_of, read_objective
 from equipoise.cli.progress import counted
+from equipoise.cli.runner import Answer, command
 from equipoise.errors import UsageError
 from equipoise.i18n import Note, say
 
 if TYPE_CHECKING:
     from equipoise.balancing.balanced import Balanced
+    from equipoise.results.result import Result
 
 app = App(name="balance")
 MOST_POINTS, MOST_ROWS = 500, 64
 
 
 @app.default
+@command(Length, Outputs, long=True)
 def balance(
-    file: Annotated[str, Parameter(name="FILE")],
+    machine: PlannedFile,
     /,
     *,
     objective: Goals = None,
@@ -44,14 +36,12 @@ def balance(
     speed: Speed = None,
     freed: Freed = Freed(),
     out: Out = None,
-    length: Length = Length(),
-    outputs: Outputs = Outputs(),
-) -> None:
+) -> Answer:
     """What to change so that the machine shakes less, with proof that nothing better exists.
 
     Parameters
     ----------
-    file
+    machine
         Path of a model file, or the name of a bundled example.  Its table [balance] says what may
         change and what is to become small; the options below take the place of it.  Without either,
         remedies that can be built are tried.
@@ -65,23 +55,17 @@ def balance(
     """
     from equipoise.balancing import advice, optimisation
 
-    machine = linkage_of(file, speed)
-    outputs.check(sources_of(machine, file), [out])
+    machine = at_speed(machine, speed)
     if out is not None:
         check_new(machine, out)
-    with naming(file):
-        plan = plan_of(machine, freed, objective, limit)
-        with counted("step") as progress:
-            solve = partial(optimisation.balance, progress=progress)
-            asked = freed.any or objective or limit
-            found = solve(machine, plan) if asked else advice.advise(machine, solve)
-        if out is not None and not found.helps:
-            _refuse(found)
-        outputs.write(found.columns)
-        outputs.draw_result(found)
-        if out is not None:  # after tables and pictures, which may fail
-            _save(found, out)
-        length.show(found, outputs)
+    plan = plan_of(machine, freed, objective, limit)
+    with counted("step") as progress:
+        solve = partial(optimisation.balance, progress=progress)
+        asked = freed.any or objective or limit
+        found = solve(machine, plan) if asked else advice.advise(machine, solve)
+    if out is not None and not found.helps:
+        _refuse(found)
+    return replace(Answer.of(found), save=lambda: None if out is None else _save(found, out))
 
 
 def _refuse(found: Balanced) -> None:
@@ -106,8 +90,9 @@ def _save(found: Balanced, out: str) -> None:
 
 
 @app.command
+@command(Outputs, long=True)
 def trade_off(
-    file: Annotated[str, Parameter(name="FILE")],
+    machine: PlannedFile,
     first: Annotated[str, Parameter(name="FIRST")],
     second: Annotated[str, Parameter(name="SECOND")],
     /,
@@ -116,13 +101,12 @@ def trade_off(
     limit: Limits = None,
     speed: Speed = None,
     freed: Freed = Freed(),
-    outputs: Outputs = Outputs(),
-) -> None:
+) -> Result:
     """The best that can be had of two objectives at once: their Pareto front, point by point.
 
     Parameters
     ----------
-    file
+    machine
         Path of a model file, or the name of a bundled example.  Its table [balance] says what may
         change; the options below take the place of it.
     first
@@ -136,49 +120,46 @@ def trade_off(
     """
     from equipoise.balancing import pareto
 
-    machine = linkage_of(file, speed)
-    outputs.check(sources_of(machine, file))
-    with naming(file):
-        plan = plan_of(machine, freed, None, limit)
-        one, other = read_objective("FIRST", first), read_objective("SECOND", second)
-        with counted("point") as progress:
-            found = pareto.trade_off(machine, one, other, plan, points, progress)
-        outputs.give(found)
+    machine = at_speed(machine, speed)
+    plan = plan_of(machine, freed, None, limit)
+    objectives = read_objective("FIRST", first), read_objective("SECOND", second)
+    with counted("point") as progress:
+        return pareto.trade_off(machine, *objectives, plan, points, progress)
 
 
 @app.command
-def conditions(file: File, /, *, speed: Speed = None, outputs: Printed = Printed()) -> None:
+@command(Printed)
+def conditions(machine: LinkageFile, /, *, speed: Speed = None) -> Answer:
     """When the shaking force is zero or a pure sine, and whether mass can make it so."""
     from equipoise.balancing import linear_conditions as balancing
     from equipoise.balancing.linear_conditions import conditions_blocks
     from equipoise.balancing.physical_consistency import feasibility
 
-    machine = linkage_of(file, speed)
-    # conditions are told in words when they are found; those of the JSON object are in SI units
-    shown = nullcontext() if outputs.json else outputs.showing(machine)
-    with naming(file), shown:
-        found = {kind: balancing.conditions(machine, kind) for kind in ("zero", "sine")}
-        values = {kind: one.to_dict() for kind, one in found.items()}
-        told = feasibility(machine)
-        outputs.print(
-            machine,
-            lambda: values | {"verdict": told.to_dict()},
-            lambda: conditions_blocks(
-                *found.values(), verdict=[one.reason for one in told.answers]
-            ),
-        )
+    driven = at_speed(machine, speed)
+    kinds: tuple[Literal["zero", "sine"], ...] = ("zero", "sine")
+    # conditions have their units in words from the start; those of the JSON object are in SI units
+    return Answer(
+        lambda: conditions_blocks(
+            *(balancing.conditions(driven, kind) for kind in kinds),
+            verdict=[one.reason for one in feasibility(driven).answers],
+        ),
+        lambda: {
+            **{kind: balancing.conditions(driven, kind).to_dict() for kind in kinds},
+            "verdict": feasibility(driven).to_dict(),
+        },
+    )
 
 
 @app.command
+@command(Printed)
 def sensitivities(
-    file: File,
+    machine: LinkageFile,
     output: Annotated[str, Parameter(name="OUTPUT")],
     /,
     *,
     crank_zero: CrankZero = None,
     speed: Speed = None,
-    outputs: Printed = Printed(),
-) -> None:
+) -> Answer:
     """What each link's mass, centre of mass and inertia does to an output.
 
     Parameters
@@ -189,17 +170,17 @@ def sensitivities(
     from equipoise.balancing import sensitivity
     from equipoise.vibration.forced import check_moving
 
-    machine = linkage_of(file, speed)
-    with naming(file):
-        check_moving(machine)
-        with blaming("OUTPUT"):
-            found = sensitivity.sensitivities(machine, output)
-    outputs.show(found, zero=crank_zero or 0.0)
+    machine = at_speed(machine, speed)
+    check_moving(machine)
+    with blaming("OUTPUT"):
+        found = sensitivity.sensitivities(machine, output)
+    return Answer.of(found, zero=crank_zero or 0.0)
 
 
 @app.command
+@command(Printed)
 def arrangements(
-    file: File,
+    machine: LinkageFile,
     rows: Annotated[int, count(2, MOST_ROWS, "ROWS")],
     /,
     *,
@@ -207,8 +188,7 @@ def arrangements(
         float, size("length", "give a length of more than 0"), Parameter(show_default=False)
     ] = 0.3,
     speed: Speed = None,
-    outputs: Printed = Printed(),
-) -> None:
+) -> Answer:
     """Named arrangements of so many rows in fixed phases, and what each leaves of the forces.
 
     Parameters
@@ -221,11 +201,9 @@ def arrangements(
     from equipoise.balancing.patterns import pattern_blocks, patterns_for
     from equipoise.vibration.forced import check_moving
 
-    machine = linkage_of(file, speed)
-    with naming(file):
-        check_moving(machine)
-        outputs.print(
-            machine,
-            lambda: {"patterns": [one.to_dict() for one in patterns_for(rows)]},
-            lambda: pattern_blocks(machine, rows, spacing),
-        )
+    driven = at_speed(machine, speed)
+    check_moving(driven)
+    return Answer(
+        lambda: pattern_blocks(driven, rows, spacing),
+        lambda: {"patterns": [one.to_dict() for one in patterns_for(rows)]},
+    )

@@ -2,31 +2,29 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import App, Parameter
 
-from equipoise.cli.models import linkage_of
+from equipoise.cli.models import LinkageFile, PlantingFile, SupportFile, at_speed
 from equipoise.cli.options import (
     SIGNED,
     Angle,
+    BelongsTo,
     CrankZero,
-    File,
     Model,
     Names,
     NewFile,
+    OtherFile,
     Out,
-    PlantingFile,
     Speed,
-    SupportFile,
     WorkerCount,
     blaming,
-    check_belonging,
     count,
     crank_angles,
     ends_of_range,
-    naming,
     place_in,
     quantity,
     read_by,
@@ -40,17 +38,17 @@ from equipoise.cli.outputs import (
     Outputs,
     Printed,
     check_new,
-    check_result_file,
-    sources_of,
     write_model,
     write_text,
 )
 from equipoise.cli.progress import counted, generations
+from equipoise.cli.runner import Answer, command
 from equipoise.errors import EquipoiseError, UsageError
 from equipoise.i18n import Note
 
 if TYPE_CHECKING:
     from equipoise.mechanism.parts.machine import Machine
+    from equipoise.results.result import Result
     from equipoise.vibration.response import Response
 
 planting = App(name="plant")
@@ -59,23 +57,22 @@ QUICK = 40
 """Free swings of the support in a turn, up to which the exact model answers in a moment."""
 
 
+@command(Length, Printed)
 def analyze(
-    file: File,
+    machine: LinkageFile,
     /,
     *,
     angles: Annotated[Any, read_by(crank_angles), Parameter(show_default=True)] = 360,
     speed: Speed = None,
     acceleration: Annotated[float | None, size("angular acceleration")] = None,
     about: Annotated[str | None, SIGNED, wants("POINT")] = None,
-    split: bool = False,
+    split: Annotated[bool, BelongsTo("--json")] = False,
     csv: NewFile = None,
     orders: Annotated[int | None, count(1, MOST_ORDERS)] = None,
-    crank_zero: Angle = None,
+    crank_zero: Annotated[Angle, BelongsTo("--orders")] = None,
     output: Names = None,
     dwell: Annotated[Any, read_by(tolerance, '"0.5 mm"')] = None,
-    length: Length = Length(),
-    outputs: Printed = Printed(),
-) -> None:
+) -> Answer:
     """Motion, shaking force and moment, drive torque and every joint force over a cycle.
 
     Parameters
@@ -102,42 +99,30 @@ def analyze(
     """
     from equipoise.results.analysis import analyze as analyzed
     from equipoise.results.analysis import order_values
+    from equipoise.schema.files import to_csv
 
-    check_belonging("--json", outputs.json, split=split or None)
-    check_belonging("--orders", orders is not None, crank_zero=crank_zero)
-    machine = linkage_of(file)
     zero = crank_zero or 0.0
-    if csv is not None:
-        check_result_file("--csv", csv, sources_of(machine, file))
     place = None if about is None else place_in(machine, about)
-    with naming(file):
-        analysis = analyzed(machine, angles, speed, acceleration, place)
-        further = {} if orders is None else {"by_order": order_values(analysis, orders, zero)}
-        held = None if dwell is None else analysis.dwells(*dwell)
+    analysis = analyzed(machine, angles, speed, acceleration, place)
+    further = {} if orders is None else {"by_order": order_values(analysis, orders, zero)}
+    held = None if dwell is None else analysis.dwells(*dwell)
     further |= {} if held is None else {"dwells": {name: vars(one) for name, one in held.items()}}
     with blaming("--output"):
         chosen = [one.name for one in analysis.outputs.chosen(output or ())]
-    if csv is not None:
-        from equipoise.schema.files import to_csv
-
-        write_text(csv, to_csv(analysis, chosen))
-    asked = orders is not None or chosen or held is not None
-    outputs.print(
-        machine,
-        lambda: analysis.to_dict(split, chosen) | further,
-        lambda: (
-            analysis.blocks(orders=orders, zero=zero, outputs=chosen, dwells=held)
-            if asked
-            else length.blocks(analysis)
-        ),
-        None if asked else length.most(analysis),
+    answer = Answer.of(analysis, orders=orders, zero=zero, outputs=chosen, dwells=held)
+    return replace(
+        answer,
+        values=lambda: analysis.to_dict(split, chosen) | further,
+        headline=None if orders is not None or chosen or held is not None else answer.headline,
+        save=lambda: None if csv is None else write_text(csv, to_csv(analysis, chosen)),
     )
 
 
 # -- on the support --------------------------------------------------------------------------------
 
 
-def modes(file: SupportFile, /, *, model: Model | None = None, outputs: Drawn = Drawn()) -> None:
+@command(Drawn)
+def modes(machine: SupportFile, /, *, model: Model | None = None) -> Result:
     """Natural frequencies, damping and shapes of a machine on its support.
 
     Parameters
@@ -148,10 +133,7 @@ def modes(file: SupportFile, /, *, model: Model | None = None, outputs: Drawn = 
     """
     from equipoise.vibration import free
 
-    machine = linkage_of(file)
-    with naming(file):
-        found = free.modes(machine, model)
-    outputs.give(found)
+    return free.modes(machine, model)
 
 
 def _speeds(option: str, text: str) -> list[float]:
@@ -170,17 +152,16 @@ def _speeds(option: str, text: str) -> list[float]:
     return ends
 
 
+@command(Length, Outputs, long=True)
 def respond(
-    file: SupportFile,
+    machine: SupportFile,
     /,
     *,
     model: Model | None = None,
     speed: Annotated[Any, read_by(_speeds, '"193 rpm"')] = None,
     speeds: Annotated[int | None, count(2, 20_000)] = None,
     drive: bool = False,
-    length: Length = Length(),
-    outputs: Outputs = Outputs(),
-) -> None:
+) -> Answer:
     """How the support of a machine vibrates under its linkages, at one speed or over a range.
 
     Parameters
@@ -200,7 +181,6 @@ def respond(
     """
     from equipoise.vibration import forced, sweep
 
-    machine = linkage_of(file)
     ends: list[float] = speed or []
     if speeds is not None and speed is None:
         ends = [*(machine.drive.range or ())]
@@ -209,19 +189,16 @@ def respond(
             '--speeds belongs to a range, --speed "20 rpm : 400 rpm"; give both, or speeds in '
             "[drive] of the file"
         )
-    outputs.check(sources_of(machine, file))
-    with naming(file):
-        if len(ends) == 2:
-            with counted("speed") as told:
-                count = speeds or sweep.SPEEDS
-                over_speed = sweep.sweep_speed(machine, ends[0], ends[1], model, drive, count, told)
-            outputs.give(over_speed, length)
-        else:
-            found = forced.respond(machine, ends[0] if ends else None, model, drive)
-            others = (
-                _others(machine, found) if length.full and not drive and not outputs.json else None
-            )
-            outputs.give(found, length, others=others)
+    if len(ends) == 2:
+        with counted("speed") as progress:
+            count = speeds or sweep.SPEEDS
+            over_speed = sweep.sweep_speed(machine, ends[0], ends[1], model, drive, count, progress)
+        return Answer.of(over_speed)
+    found = forced.respond(machine, ends[0] if ends else None, model, drive)
+    return replace(
+        Answer.of(found),
+        blocks=lambda: found.blocks(others=None if drive else _others(machine, found)),
+    )
 
 
 def _others(machine: Machine, found: Response) -> dict[str, Response | None]:
@@ -243,15 +220,15 @@ def _others(machine: Machine, found: Response) -> dict[str, Response | None]:
     return others
 
 
+@command(Outputs, long=True)
 def simulate(
-    file: SupportFile,
+    machine: SupportFile,
     duration: Annotated[float, size("time", "give a time of more than 0", "DURATION")],
     /,
     *,
     speed: Speed = None,
     drive: bool = False,
-    outputs: Outputs = Outputs(),
-) -> None:
+) -> Result:
     """How the support vibrates when the machine starts from rest, by the model exact.
 
     Parameters
@@ -263,11 +240,7 @@ def simulate(
     """
     from equipoise.vibration import transient
 
-    machine = linkage_of(file)
-    outputs.check(sources_of(machine, file))
-    with naming(file):
-        found = transient.simulate(machine, duration, speed, drive)
-    outputs.give(found)
+    return transient.simulate(machine, duration, speed, drive)
 
 
 def _share(_: str, text: str) -> float:
@@ -276,8 +249,9 @@ def _share(_: str, text: str) -> float:
     return share_of_mean(text)
 
 
+@command(Length, Outputs)
 def run(
-    file: File,
+    machine: LinkageFile,
     duration: Annotated[
         float | None, size("time", "give a time of more than 0", "DURATION")
     ] = None,
@@ -289,9 +263,7 @@ def run(
     off: Annotated[float | None, size("time", "give a time of more than 0")] = None,
     off_turns: Annotated[int | None, count(1, 10_000)] = None,
     fluctuation: Annotated[float | None, read_by(_share, '"2 %"')] = None,
-    length: Length = Length(),
-    outputs: Outputs = Outputs(),
-) -> None:
+) -> Result:
     """How a machine on a fixed frame runs when its motor, weight, springs and loads decide.
 
     What no option says is as in the table [run] of the file.
@@ -316,35 +288,31 @@ def run(
     """
     from equipoise.running.run import run as follow
 
-    machine = linkage_of(file)
-    outputs.check(sources_of(machine, file))
-    with naming(file):
-        found = follow(
-            machine,
-            duration,
-            turns=turns,
-            speed=speed,
-            angle=angle,
-            off=off,
-            off_turns=off_turns,
-            fluctuation=fluctuation,
-        )
-    outputs.give(found, length)
+    return follow(
+        machine,
+        duration,
+        turns=turns,
+        speed=speed,
+        angle=angle,
+        off=off,
+        off_turns=off_turns,
+        fluctuation=fluctuation,
+    )
 
 
 # -- planting --------------------------------------------------------------------------------------
 
 
 @planting.default
+@command(Outputs)
 def plant(
-    file: PlantingFile,
+    machine: PlantingFile,
     /,
     *,
     speed: Speed = None,
     crank_zero: CrankZero = None,
-    angles: Annotated[int | None, count(0, MOST)] = None,
-    outputs: Outputs = Outputs(),
-) -> None:
+    angles: Annotated[int | None, count(0, MOST), BelongsTo("--csv")] = None,
+) -> Answer:
     """The path of a planting finger relative to machine and ground, and every figure of it.
 
     Parameters
@@ -355,28 +323,25 @@ def plant(
     from equipoise.planting.summary import plant as read_off
     from equipoise.planting.summary import table
 
-    check_belonging("--csv", outputs.csv is not None, angles=angles)
-    machine = linkage_of(file, speed)
-    outputs.check(sources_of(machine, file))
-    with naming(file):
-        figures = read_off(machine)
-        outputs.write(lambda: table(figures, 360 if angles is None else angles))
-    outputs.draw_result(figures)
-    outputs.show(figures, zero=crank_zero or 0.0)
+    figures = read_off(at_speed(machine, speed))
+    return replace(
+        Answer.of(figures, zero=crank_zero or 0.0),
+        columns=lambda: table(figures, 360 if angles is None else angles),
+    )
 
 
 @planting.command
+@command(Outputs, long=True)
 def fit(
-    file: PlantingFile,
-    targets: Annotated[str, Parameter(name="TARGETS")],
+    machine: PlantingFile,
+    targets: Annotated[str, Parameter(name="TARGETS"), OtherFile()],
     /,
     *,
-    out: Out = None,
+    out: Annotated[Out, OtherFile("-fit.toml")] = None,
     seed: int | None = None,
     speed: Speed = None,
     workers: WorkerCount = None,
-    outputs: Outputs = Outputs(),
-) -> None:
+) -> Answer:
     """Look for the geometry that meets targets and limits, and write it as a new model file.
 
     Parameters
@@ -398,14 +363,11 @@ def fit(
 
     if seed is not None and seed < 0:
         raise UsageError(f"--seed: got {seed}; give 0 or more")
-    machine = linkage_of(file, speed)
-    new = out if out is not None else f"{Path(file).stem}-fit.toml"
+    machine = at_speed(machine, speed)
+    new = out or ""  # FILE-fit.toml where none is given
     check_new(machine, new)
-    outputs.check(sources_of(machine, file), [targets, new])
-    with naming(file):
-        known = figure_names(machine)
-    given = read_targets(targets, known)
-    with naming(file), generations() as progress, blaming(printable(targets)):
+    given = read_targets(targets, figure_names(machine))
+    with generations() as progress, blaming(printable(targets)):
         fitted = fit_planting(
             machine,
             given.goals,
@@ -422,7 +384,9 @@ def fit(
         file=Path(targets).name,
         seed=fitted.seed,
     )
-    write_model(fitted.machine, new, Note(", fitted"), origin.said)
-    outputs.write(lambda: table(fitted.after))
-    outputs.draw_result(fitted.after)
-    outputs.show(fitted)
+    return replace(
+        Answer.of(fitted),
+        columns=lambda: table(fitted.after),
+        pictures=fitted.after.charts,
+        save=lambda: write_model(fitted.machine, new, Note(", fitted"), origin.said),
+    )

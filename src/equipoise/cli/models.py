@@ -1,16 +1,64 @@
-"""The models that commands are given."""
+"""The files that commands are given, and what is loaded from each."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated, Any
+
+from cyclopts import Parameter
+
+from equipoise.cli.options import file_named
+from equipoise.cli.outputs import sources_of
+from equipoise.errors import ModelError, UsageError
 
 if TYPE_CHECKING:
+    from typing import TypeAlias
+
     from equipoise.mechanism.parts.machine import Machine
+
+
+@dataclass(frozen=True)
+class Source:
+    """What stands for the name of a file: the command gets what is loaded from it.
+
+    load : from its name.  reads : all files from which that was read, of it and its name.
+    """
+
+    load: Callable[[str], Any]
+    reads: Callable[[Any, str], list[str]]
 
 
 def linkage_of(file: str, speed: float | None = None) -> Machine:
     """The machine of a file, whose crank turns at another speed where one is given, rad/s."""
     from equipoise.schema.models import load_linkage
 
-    machine = load_linkage(file)
-    return machine if speed is None else machine.with_drive(speed=speed)
+    return at_speed(load_linkage(file), speed)
+
+
+def at_speed(machine: Machine, speed: float | None) -> Machine:
+    """A machine whose crank turns at the speed of an option, rad/s, where one is given.
+
+    Raises
+    ------
+    UsageError : its crank cannot turn so, whatever file it is from.
+    """
+    try:
+        return machine if speed is None else machine.with_drive(speed=speed)
+    except ModelError as error:
+        raise UsageError(error.note).like(error) from error
+
+
+if TYPE_CHECKING:
+    LinkageFile: TypeAlias = Machine
+    PlantingFile: TypeAlias = Machine
+    SupportFile: TypeAlias = Machine
+    PlannedFile: TypeAlias = Machine
+else:
+    LINKAGE = Source(linkage_of, sources_of)
+    LinkageFile = Annotated[str, file_named("Path of a model file"), LINKAGE]
+    PlantingFile = Annotated[
+        str, file_named("Path of a model file with a table [planting]"), LINKAGE
+    ]
+    SupportFile = Annotated[str, file_named("Path of a model file with a table [support]"), LINKAGE]
+    PlannedFile = Annotated[str, Parameter(name="FILE"), LINKAGE]

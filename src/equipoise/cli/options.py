@@ -174,6 +174,28 @@ def ends_of_range(text: str) -> list[str]:
 # -- what many commands ask for --------------------------------------------------------------------
 
 
+class ResultFile:
+    """Marks a file of results, which takes the place of nothing that is read or written besides."""
+
+
+@dataclass(frozen=True)
+class OtherFile:
+    """Marks a file that is read or written besides what a command loads and its results.
+
+    ending : of its name where none is given, behind that of the file that is loaded; empty where
+        it is not written then.
+    """
+
+    ending: str = ""
+
+
+@dataclass(frozen=True)
+class BelongsTo:
+    """Marks an option that does nothing without another, such as ``--json``."""
+
+    owner: str
+
+
 def file_named(text: str, name: str = "FILE") -> Parameter:
     """An argument that is a file; `text` says of what."""
     return Parameter(name=name, help=f"{text}, or the name of a bundled example.")
@@ -182,16 +204,14 @@ def file_named(text: str, name: str = "FILE") -> Parameter:
 SIGNED = Parameter(allow_leading_hyphen=True)
 """Of an option whose value may begin with a minus sign."""
 File = Annotated[str, file_named("Path of a model file")]
-PlantingFile = Annotated[str, file_named("Path of a model file with a table [planting]")]
-SupportFile = Annotated[str, file_named("Path of a model file with a table [support]")]
 ToolFile = Annotated[str, file_named("Path of a tool's file, with a table [shaft]")]
 StudyFile = Annotated[str, file_named("Path of a study file", "STUDY")]
 WorkerCount = Annotated[int | None, count(1, 1000)]
 StorePath = Annotated[
     str, Parameter(name="STORE", help='Path of a store, as "equipoise sweep" makes it.')
 ]
-Out = Annotated[str | None, Parameter(name=["--out", "-o"], metavar="PATH")]
-NewFile = Annotated[str | None, wants("FILE")]
+Out = Annotated[str | None, Parameter(name=["--out", "-o"], metavar="PATH"), OtherFile()]
+NewFile = Annotated[str | None, wants("FILE"), ResultFile()]
 NewFolder = Annotated[str | None, wants("FOLDER")]
 Many = Annotated[list[str] | None, Parameter(consume_multiple=False)]
 Names = Annotated[Many, wants("NAME")]

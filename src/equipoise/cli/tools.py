@@ -18,8 +18,9 @@ from typing import TYPE_CHECKING, Any, get_args, get_origin
 
 from cyclopts import App
 
-from equipoise.cli import app, check_repeated
+from equipoise.cli import answered_by, app, check_repeated, give
 from equipoise.cli.outputs import values_given
+from equipoise.cli.runner import Run, declared_of
 from equipoise.errors import UsageError, unknown
 from equipoise.fence import Fence, fenced
 from equipoise.mechanism.outputs.declared import declared
@@ -32,10 +33,9 @@ if TYPE_CHECKING:
 LEFT_OUT = {"completion", "mcp", "serve", "site"}
 """Commands for a person at a terminal."""
 LONG = {
-    *("animate", "balance", "plant fit", "report", "respond", "resume", "search", "simulate"),
-    *("sweep", "tolerance", "tool design"),
+    *("animate", "report", "resume", "search", "sweep", "tolerance", "tool design"),
 }
-"""Commands that may take minutes, with all below them."""
+"""Commands that may take minutes and do not declare it, with all below them."""
 HIDDEN = {"--cluster", "--workers"}
 """Options that reach beyond the folder, or are of the computer."""
 WRITTEN = {"FILE", "FOLDER", "PATH"}
@@ -80,7 +80,10 @@ class CommandTool:
     @property
     def long(self) -> bool:
         """Whether it may take minutes."""
-        return any(" ".join(self.words[: k + 1]) in LONG for k in range(len(self.words)))
+        declared = declared_of(self.command.default_command)
+        return (declared is not None and declared.long) or any(
+            " ".join(self.words[: k + 1]) in LONG for k in range(len(self.words))
+        )
 
     @cached_property
     def arguments(self) -> dict[str, Argument]:
@@ -130,7 +133,10 @@ class CommandTool:
         try:
             check_repeated(line)
             with redirect_stdout(printed), redirect_stderr(told), fenced(fence), together():
-                app(line, exit_on_error=False, print_error=False, result_action="return_value")
+                returned = answered_by(line)
+                if isinstance(returned, Run):
+                    values.append(returned.values)
+                give(returned)
         finally:
             values_given.reset(token)
         merged = {key: value for one in values for key, value in one.items()}

@@ -1,0 +1,283 @@
+"""What runs a command: it loads files, sets units, writes, draws and prints.
+
+A command is a declaration: what it takes, and a function that returns its result::
+
+    @command(Drawn)
+    def modes(machine: SupportFile, /, *, model: Model | None = None) -> Result:
+        from equipoise.vibration import free
+
+        return free.modes(machine, model)
+
+The command line shows what it returns, and so do programs that call it as a tool; a line in
+`equipoise.cli.MODULES` registers it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import AbstractContextManager, nullcontext
+from dataclasses import dataclass
+from functools import cached_property
+from inspect import Parameter, Signature, signature
+from json import loads
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar, get_type_hints
+
+from equipoise.cli.models import Source
+from equipoise.cli.options import BelongsTo, OtherFile, ResultFile, check_belonging, naming
+from equipoise.cli.outputs import (
+    BRIEF,
+    MORE,
+    Blocks,
+    Chosen,
+    Columns,
+    Drawings,
+    Drawn,
+    Length,
+    Outputs,
+    Printed,
+    Shown,
+    Values,
+    check_result_file,
+    write_pictures,
+    write_text,
+)
+from equipoise.i18n import say
+from equipoise.interrupts import check
+
+if TYPE_CHECKING:
+    from equipoise.results.blocks import Block, Section
+    from equipoise.results.result import Result
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What a command returns: functions, since what is not asked for is not computed.
+
+    blocks : what is printed below the title.
+    values : the JSON object, in SI units; none where the command has no ``--json``.
+    owner : machine, tool or study in whose units and words all is shown; if None, what was loaded.
+    title : if None that of the owner.
+    headline : what is printed first, called with whether nothing follows; without ``--full`` there
+        is nothing else.
+    columns : of the CSV file, as name, unit and values.
+    pictures : by name.
+    save : writes further files, after columns and pictures.
+    """
+
+    blocks: Blocks
+    values: Values = dict
+    owner: Any = None
+    title: str | None = None
+    headline: Callable[[bool], Iterable[Block | Section]] | None = None
+    columns: Callable[[], Columns] = tuple
+    pictures: Drawings = dict
+    save: Callable[[], object] = dict
+
+    @staticmethod
+    def of(result: Result, **options: Any) -> Answer:
+        """All that a result has; options of its `blocks`."""
+        return Answer(
+            lambda: result.blocks(**options),
+            result.to_dict,
+            result.owner,
+            result.title,
+            result.headline if result.headline_in else None,
+            result.columns,
+            result.charts,
+        )
+
+
+@dataclass(frozen=True)
+class Run:
+    """A command that was run: its answer, and how that is to be given.
+
+    answer : None where it has written files and has nothing else to show.
+    length : None where all is printed.
+    owner : as of `Answer`.
+    file : whose name stands in front of what turns out wrong; empty for none.
+    """
+
+    answer: Answer | None
+    outputs: Shown
+    length: Length | None = None
+    owner: Any = None
+    file: str = ""
+
+    @cached_property
+    def json(self) -> str:
+        """The JSON object, in SI units and radians."""
+        from equipoise.schema.files import json_text
+
+        with self._naming():
+            return json_text(dict(self.answer.values() if self.answer else {}))
+
+    @property
+    def values(self) -> dict[str, Any]:
+        """The JSON object as plain values, without arrays."""
+        values: dict[str, Any] = loads(self.json)
+        return values
+
+    def give(self) -> None:
+        """Write the files that are wanted, then print."""
+        check()
+        if self.answer is None:
+            return
+        with self._naming():
+            self._write(self.answer)
+            if isinstance(self.outputs, Printed) and self.outputs.json:
+                print(self.json)
+            else:
+                self._print(self.answer)
+
+    def _naming(self) -> AbstractContextManager[None]:
+        return naming(self.file) if self.file else nullcontext()
+
+    def _write(self, answer: Answer) -> None:
+        outputs = self.outputs
+        if isinstance(outputs, Outputs) and outputs.csv is not None:
+            from equipoise.schema.files import csv_text
+
+            write_text(outputs.csv, csv_text(answer.columns()))
+        if isinstance(outputs, Drawn) and outputs.plot is not None:
+            with outputs.showing(self.owner):
+                write_pictures(answer.pictures(), outputs.plot, outputs.format or "svg")
+        answer.save()
+
+    def _print(self, answer: Answer) -> None:
+        from equipoise.present import show_blocks
+
+        brief = answer.headline and self.length and not self.length.full
+        with self.outputs.showing(self.owner):
+            title = self.owner.title if answer.title is None else answer.title
+            show_blocks(title, self._blocks(answer), most=BRIEF if brief else None)
+
+    def _blocks(self, answer: Answer) -> Iterator[Block | Section]:
+        from equipoise.results.blocks import Text
+
+        first: list[Block | Section] = []
+        if answer.headline is not None and self.length is not None:
+            first += answer.headline(not self.length.full)
+        yield from first
+        if first and self.length is not None and not self.length.full:
+            yield Text(say(MORE))
+        else:
+            yield from answer.blocks()
+
+
+@dataclass(frozen=True)
+class Command:
+    """What is declared of a command.
+
+    function : what it computes.  groups : options that it has besides, of how much is printed and
+    of where results go.  long : whether it may take minutes.
+    """
+
+    function: Callable[..., Answer | Result | None]
+    groups: tuple[type[Shown | Length], ...]
+    long: bool
+
+    @cached_property
+    def signature(self) -> Signature:
+        """What the command line takes."""
+        own = signature(self.function).parameters.values()
+        added = (
+            Parameter(_name(group), Parameter.KEYWORD_ONLY, default=group(), annotation=group)
+            for group in self.groups
+        )
+        return Signature([*own, *added])
+
+    def run(self, hints: Mapping[str, Any], *arguments: Any, **options: Any) -> Run:
+        """Compute, after everything that can be refused before; hints : annotations as types."""
+        bound = self.signature.bind(*arguments, **options)
+        bound.apply_defaults()
+        given = bound.arguments
+        marks = {name: getattr(hint, "__metadata__", ()) for name, hint in hints.items()}
+        outputs = next((one for one in given.values() if isinstance(one, Shown)), Shown())
+        length = next((one for one in given.values() if isinstance(one, Length)), None)
+        _check_belonging({**vars(outputs), **given}, marks)
+        owner, file, read = None, "", list[str]()
+        for name, source in _marked(marks, Source):
+            named, given[name] = given[name], source.load(given[name])
+            owner, read, file = given[name], source.reads(given[name], named), named
+            for other, mark in _marked(marks, OtherFile):
+                if mark.ending and given[other] is None:
+                    given[other] = f"{Path(named).stem}{mark.ending}"
+        _check_places(given, marks, outputs, read)
+        for group in self.groups:
+            del given[_name(group)]
+        with naming(file) if file else nullcontext(), outputs.showing(owner):
+            found = self.function(*bound.args, **bound.kwargs)
+        answer = found if found is None or isinstance(found, Answer) else Answer.of(found)
+        if answer is not None and answer.owner is not None:
+            owner = answer.owner
+        return Run(answer, outputs, length, owner, file)
+
+
+def command(
+    *groups: type[Shown | Length], long: bool = False
+) -> Callable[[Callable[..., Answer | Result | None]], Callable[..., Run]]:
+    """Declare a command: a function of what it takes, which returns its result.
+
+    groups : options that it has besides, the last of which says where results go.  long : whether
+    it may take minutes.
+    """
+
+    def declare(function: Callable[..., Answer | Result | None]) -> Callable[..., Run]:
+        declared = Command(function, groups, long)
+
+        def run(*arguments: Any, **options: Any) -> Run:
+            return declared.run(get_type_hints(run, include_extras=True), *arguments, **options)
+
+        taken = declared.signature.parameters.items()  # not what it returns, which is imported late
+        about = {
+            **{"__name__": function.__name__, "__doc__": function.__doc__, "declared": declared},
+            **{"__wrapped__": function, "__signature__": declared.signature},
+            "__annotations__": {name: one.annotation for name, one in taken},
+        }
+        for name, value in about.items():
+            setattr(run, name, value)
+        return run
+
+    return declare
+
+
+def declared_of(function: object) -> Command | None:
+    """What is declared of a command; None of one that no program calls."""
+    return getattr(function, "declared", None)
+
+
+def _name(group: type[Shown | Length]) -> str:
+    return group.__name__.lower()
+
+
+def _marked(marks: Mapping[str, tuple[object, ...]], kind: type[T]) -> Iterator[tuple[str, T]]:
+    """Names of what the command takes that have a mark of a kind, with that."""
+    for name, ones in marks.items():
+        yield from ((name, one) for one in ones if isinstance(one, kind))
+
+
+def _check_belonging(given: Mapping[str, Any], marks: Mapping[str, tuple[object, ...]]) -> None:
+    for name, mark in _marked(marks, BelongsTo):
+        owner = given[mark.owner.strip("-").replace("-", "_")]
+        value = None if given[name] is False else given[name]
+        check_belonging(mark.owner, owner is not None and owner is not False, **{name: value})
+
+
+def _check_places(
+    given: Mapping[str, Any],
+    marks: Mapping[str, tuple[object, ...]],
+    outputs: Shown,
+    read: list[str],
+) -> None:
+    """Columns must have a place to go, and take none of what is read or written besides."""
+    others = [given[name] for name, _ in _marked(marks, OtherFile)]
+    others += [one.out for one in given.values() if isinstance(one, Chosen)]
+    tables = {f"--{name}": given[name] for name, _ in _marked(marks, ResultFile)}
+    if isinstance(outputs, Outputs):
+        tables["--csv"] = outputs.csv
+    for option, path in tables.items():
+        if path is not None:
+            check_result_file(option, path, read, others)
