@@ -206,11 +206,7 @@ def _tasks(text: str) -> tuple[Task, ...]:
 
 def _tasks_header(line: int, header: list[str]) -> tuple[list[str], list[str]]:
     """Names and units of the columns that are no text."""
-    right = told_forms(_TASKS)
-    whole = right.replace("acceleration", "task,acceleration")
+    right = told_forms(_TASKS, "task,")
     if header.count("task") != 1:
-        raise wrong(line, f"got {header.count('task')} columns task; {whole}")
-    try:
-        return header_of(line, [cell for cell in header if cell != "task"], _TASKS)
-    except ModelError as error:
-        raise ModelError("", error.what.replace(right, whole)) from error
+        raise wrong(line, f"got {header.count('task')} columns task; {right}")
+    return header_of(line, [cell for cell in header if cell != "task"], _TASKS, right)

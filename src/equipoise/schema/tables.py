@@ -96,10 +96,11 @@ def in_table(path: str | os.PathLike[str]) -> Iterator[None]:
         raise ModelError("", f"{shown}, {error.what}") from error
 
 
-def told_forms(forms: Forms) -> str:
-    """Say which headers would be right."""
+def told_forms(forms: Forms, first: str = "") -> str:
+    """Say which headers would be right; `first` begins each."""
     whole = [form for form in forms if not any(set(form) < set(other) for other in forms)]
-    headers = [",".join(f"{name} [{_column(name, forms)[1]}]" for name in form) for form in whole]
+    columns = ([f"{name} [{_column(name, forms)[1]}]" for name in form] for form in whole)
+    headers = [first + ",".join(form) for form in columns]
     return f"the header is {' or '.join(headers)}"
 
 
@@ -167,8 +168,14 @@ def _whole(lines: Iterator[Row], forms: Forms) -> dict[str, Array] | None:
     return found if not CsvTable.like(first).rises or np.all(np.diff(found[first]) > 0) else None
 
 
-def header_of(line: int, cells: list[str], forms: Forms) -> tuple[list[str], list[str]]:
-    """Names and units of the columns; a wrong one is told with its line."""
+def header_of(
+    line: int, cells: list[str], forms: Forms, right: str = ""
+) -> tuple[list[str], list[str]]:
+    """Names and units of the columns; a wrong one is refused with its line.
+
+    right : says which headers would be right, where more than those of the forms stands in them.
+    """
+    right = right or told_forms(forms)
     names: list[str] = []
     unit_of: list[str] = []
     for cell in cells:
@@ -177,18 +184,18 @@ def header_of(line: int, cells: list[str], forms: Forms) -> tuple[list[str], lis
         if name in TIMES and forms == LoadTable.forms:
             raise wrong(line, f"got the column {name}; {OF_TIME}", name)
         if not any(name in form for form in forms):
-            raise wrong(line, f"got the column {shortened(cell)}; {told_forms(forms)}")
+            raise wrong(line, f"got the column {shortened(cell)}; {right}")
         if match is None:
             unit = KINDS[_column(name, forms)[0]].si
             raise wrong(line, f"the unit is missing; {name} [{unit}]", name)
         if name in names:
-            raise wrong(line, f"given twice; {told_forms(forms)}", name)
+            raise wrong(line, f"given twice; {right}", name)
         unit = usual_unit(match[2], _column(name, forms)[0])
         value_of(line, name, unit, "0", forms)  # a wrong unit is the header's fault
         names.append(name)
         unit_of.append(unit)
     if not any(sorted(names) == sorted(form) for form in forms):
-        raise wrong(line, f"got {', '.join(names) or 'no column'}; {told_forms(forms)}")
+        raise wrong(line, f"got {', '.join(names) or 'no column'}; {right}")
     return names, unit_of
 
 
