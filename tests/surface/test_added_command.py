@@ -17,7 +17,7 @@ from equipoise.cli import app
 from equipoise.cli.models import LinkageFile
 from equipoise.cli.options import BelongsTo
 from equipoise.cli.outputs import Outputs
-from equipoise.cli.runner import Answer, command
+from equipoise.cli.runner import CommandResult, command
 from equipoise.cli.tools import tools
 from equipoise.results.blocks import Text
 from equipoise.schema.models import load_linkage
@@ -27,10 +27,10 @@ from surface.running import equipoise, read, refused, succeeded
 @command(Outputs, long=True)
 def heft(
     machine: LinkageFile, /, *, times: int = 1, names: Annotated[bool, BelongsTo("--json")] = False
-) -> Answer:
+) -> CommandResult:
     """Report how many links a machine has."""
     links = times * len(machine.links)
-    return Answer(
+    return CommandResult(
         lambda: [Text(f"{links} links")],
         lambda: {"links": links} | ({"names": [*machine.links]} if names else {}),
         columns=lambda: [("link", "", np.arange(links))],

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 @runtime_checkable
 class Given(Protocol):
-    """What a command returns that leaves writing and printing to its caller, as `runner.Run`."""
+    """What a command returns that leaves writing and printing to its caller."""
 
     def give(self) -> None:
         """Write and print it."""
@@ -116,7 +116,7 @@ def _run(arguments: Sequence[str] | None) -> int:
 
 
 def answered_by(arguments: Sequence[str] | None) -> object:
-    """What the command of a command line returns: a `Run`, unless it prints by itself."""
+    """What the command of a command line returns: a `Given`, unless it prints by itself."""
     return app(arguments, exit_on_error=False, print_error=False, result_action="return_value")
 
 

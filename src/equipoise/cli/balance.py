@@ -13,7 +13,7 @@ from equipoise.cli.options import CrankZero, Goals, Limits, Out, Speed, blaming,
 from equipoise.cli.outputs import Length, Outputs, Printed, check_new, write_model
 from equipoise.cli.plan import Freed, plan_of, read_objective
 from equipoise.cli.progress import counted
-from equipoise.cli.runner import Answer, command
+from equipoise.cli.runner import CommandResult, command
 from equipoise.errors import UsageError
 from equipoise.i18n import Note, say
 
@@ -36,7 +36,7 @@ def balance(
     speed: Speed = None,
     freed: Freed = Freed(),
     out: Out = None,
-) -> Answer:
+) -> CommandResult:
     """What to change so that the machine shakes less, with proof that nothing better exists.
 
     Parameters
@@ -65,7 +65,7 @@ def balance(
         found = solve(machine, plan) if asked else advice.advise(machine, solve)
     if out is not None and not found.helps:
         _refuse(found)
-    return replace(Answer.of(found), save=lambda: None if out is None else _save(found, out))
+    return replace(CommandResult.of(found), save=lambda: None if out is None else _save(found, out))
 
 
 def _refuse(found: Balanced) -> None:
@@ -129,7 +129,7 @@ def trade_off(
 
 @app.command
 @command(Printed)
-def conditions(machine: LinkageFile, /, *, speed: Speed = None) -> Answer:
+def conditions(machine: LinkageFile, /, *, speed: Speed = None) -> CommandResult:
     """When the shaking force is zero or a pure sine, and whether mass can make it so."""
     from equipoise.balancing import linear_conditions as balancing
     from equipoise.balancing.linear_conditions import conditions_blocks
@@ -138,7 +138,7 @@ def conditions(machine: LinkageFile, /, *, speed: Speed = None) -> Answer:
     driven = at_speed(machine, speed)
     kinds: tuple[Literal["zero", "sine"], ...] = ("zero", "sine")
     # conditions have their units in words from the start; those of the JSON object are in SI units
-    return Answer(
+    return CommandResult(
         lambda: conditions_blocks(
             *(balancing.conditions(driven, kind) for kind in kinds),
             verdict=[one.reason for one in feasibility(driven).answers],
@@ -159,7 +159,7 @@ def sensitivities(
     *,
     crank_zero: CrankZero = None,
     speed: Speed = None,
-) -> Answer:
+) -> CommandResult:
     """What each link's mass, centre of mass and inertia does to an output.
 
     Parameters
@@ -174,7 +174,7 @@ def sensitivities(
     check_moving(machine)
     with blaming("OUTPUT"):
         found = sensitivity.sensitivities(machine, output)
-    return Answer.of(found, zero=crank_zero or 0.0)
+    return CommandResult.of(found, zero=crank_zero or 0.0)
 
 
 @app.command
@@ -188,7 +188,7 @@ def arrangements(
         float, size("length", "give a length of more than 0"), Parameter(show_default=False)
     ] = 0.3,
     speed: Speed = None,
-) -> Answer:
+) -> CommandResult:
     """Named arrangements of so many rows in fixed phases, and what each leaves of the forces.
 
     Parameters
@@ -203,7 +203,7 @@ def arrangements(
 
     driven = at_speed(machine, speed)
     check_moving(driven)
-    return Answer(
+    return CommandResult(
         lambda: pattern_blocks(driven, rows, spacing),
         lambda: {"patterns": [one.to_dict() for one in patterns_for(rows)]},
     )

@@ -42,7 +42,7 @@ from equipoise.cli.outputs import (
     write_text,
 )
 from equipoise.cli.progress import counted, generations
-from equipoise.cli.runner import Answer, command
+from equipoise.cli.runner import CommandResult, command
 from equipoise.errors import EquipoiseError, UsageError
 from equipoise.i18n import Note
 
@@ -72,7 +72,7 @@ def analyze(
     crank_zero: Annotated[Angle, BelongsTo("--orders")] = None,
     output: Names = None,
     dwell: Annotated[Any, read_by(tolerance, '"0.5 mm"')] = None,
-) -> Answer:
+) -> CommandResult:
     """Motion, shaking force and moment, drive torque and every joint force over a cycle.
 
     Parameters
@@ -109,7 +109,7 @@ def analyze(
     further |= {} if held is None else {"dwells": {name: vars(one) for name, one in held.items()}}
     with blaming("--output"):
         chosen = [one.name for one in analysis.outputs.chosen(output or ())]
-    answer = Answer.of(analysis, orders=orders, zero=zero, outputs=chosen, dwells=held)
+    answer = CommandResult.of(analysis, orders=orders, zero=zero, outputs=chosen, dwells=held)
     return replace(
         answer,
         values=lambda: analysis.to_dict(split, chosen) | further,
@@ -161,7 +161,7 @@ def respond(
     speed: Annotated[Any, read_by(_speeds, '"193 rpm"')] = None,
     speeds: Annotated[int | None, count(2, 20_000)] = None,
     drive: bool = False,
-) -> Answer:
+) -> CommandResult:
     """How the support of a machine vibrates under its linkages, at one speed or over a range.
 
     Parameters
@@ -193,10 +193,10 @@ def respond(
         with counted("speed") as progress:
             count = speeds or sweep.SPEEDS
             over_speed = sweep.sweep_speed(machine, ends[0], ends[1], model, drive, count, progress)
-        return Answer.of(over_speed)
+        return CommandResult.of(over_speed)
     found = forced.respond(machine, ends[0] if ends else None, model, drive)
     return replace(
-        Answer.of(found),
+        CommandResult.of(found),
         blocks=lambda: found.blocks(others=None if drive else _others(machine, found)),
     )
 
@@ -312,7 +312,7 @@ def plant(
     speed: Speed = None,
     crank_zero: CrankZero = None,
     angles: Annotated[int | None, count(0, MOST), BelongsTo("--csv")] = None,
-) -> Answer:
+) -> CommandResult:
     """The path of a planting finger relative to machine and ground, and every figure of it.
 
     Parameters
@@ -325,7 +325,7 @@ def plant(
 
     figures = read_off(at_speed(machine, speed))
     return replace(
-        Answer.of(figures, zero=crank_zero or 0.0),
+        CommandResult.of(figures, zero=crank_zero or 0.0),
         columns=lambda: table(figures, 360 if angles is None else angles),
     )
 
@@ -341,7 +341,7 @@ def fit(
     seed: int | None = None,
     speed: Speed = None,
     workers: WorkerCount = None,
-) -> Answer:
+) -> CommandResult:
     """Look for the geometry that meets targets and limits, and write it as a new model file.
 
     Parameters
@@ -385,7 +385,7 @@ def fit(
         seed=fitted.seed,
     )
     return replace(
-        Answer.of(fitted),
+        CommandResult.of(fitted),
         columns=lambda: table(fitted.after),
         pictures=fitted.after.charts,
         save=lambda: write_model(fitted.machine, new, Note(", fitted"), origin.said),

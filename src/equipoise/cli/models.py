@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Source:
+class LoadedFile:
     """What stands for the name of a file: the command gets what is loaded from it.
 
     load : from its name.  reads : all files from which that was read, of it and its name.
@@ -55,7 +55,7 @@ if TYPE_CHECKING:
     SupportFile: TypeAlias = Machine
     PlannedFile: TypeAlias = Machine
 else:
-    LINKAGE = Source(linkage_of, sources_of)
+    LINKAGE = LoadedFile(linkage_of, sources_of)
     LinkageFile = Annotated[str, file_named("Path of a model file"), LINKAGE]
     PlantingFile = Annotated[
         str, file_named("Path of a model file with a table [planting]"), LINKAGE

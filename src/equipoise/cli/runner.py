@@ -23,7 +23,7 @@ from json import loads
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar, get_type_hints
 
-from equipoise.cli.models import Source
+from equipoise.cli.models import LoadedFile
 from equipoise.cli.options import BelongsTo, OtherFile, ResultFile, check_belonging, naming
 from equipoise.cli.outputs import (
     BRIEF,
@@ -53,7 +53,7 @@ T = TypeVar("T")
 
 
 @dataclass(frozen=True)
-class Answer:
+class CommandResult:
     """What a command returns: functions, since what is not asked for is not computed.
 
     blocks : what is printed below the title.
@@ -77,9 +77,9 @@ class Answer:
     save: Callable[[], object] = dict
 
     @staticmethod
-    def of(result: Result, **options: Any) -> Answer:
+    def of(result: Result, **options: Any) -> CommandResult:
         """All that a result has; options of its `blocks`."""
-        return Answer(
+        return CommandResult(
             lambda: result.blocks(**options),
             result.to_dict,
             result.owner,
@@ -91,16 +91,16 @@ class Answer:
 
 
 @dataclass(frozen=True)
-class Run:
+class FinishedCommand:
     """A command that was run: its answer, and how that is to be given.
 
     answer : None where it has written files and has nothing else to show.
     length : None where all is printed.
-    owner : as of `Answer`.
+    owner : as of `CommandResult`.
     file : whose name stands in front of what turns out wrong; empty for none.
     """
 
-    answer: Answer | None
+    answer: CommandResult | None
     outputs: Shown
     length: Length | None = None
     owner: Any = None
@@ -135,7 +135,7 @@ class Run:
     def _naming(self) -> AbstractContextManager[None]:
         return naming(self.file) if self.file else nullcontext()
 
-    def _write(self, answer: Answer) -> None:
+    def _write(self, answer: CommandResult) -> None:
         outputs = self.outputs
         if isinstance(outputs, Outputs) and outputs.csv is not None:
             from equipoise.schema.files import csv_text
@@ -146,7 +146,7 @@ class Run:
                 write_pictures(answer.pictures(), outputs.plot, outputs.format or "svg")
         answer.save()
 
-    def _print(self, answer: Answer) -> None:
+    def _print(self, answer: CommandResult) -> None:
         from equipoise.present import show_blocks
 
         brief = answer.headline and self.length and not self.length.full
@@ -154,7 +154,7 @@ class Run:
             title = self.owner.title if answer.title is None else answer.title
             show_blocks(title, self._blocks(answer), most=BRIEF if brief else None)
 
-    def _blocks(self, answer: Answer) -> Iterator[Block | Section]:
+    def _blocks(self, answer: CommandResult) -> Iterator[Block | Section]:
         from equipoise.results.blocks import Text
 
         first: list[Block | Section] = []
@@ -175,7 +175,7 @@ class Command:
     of where results go.  long : whether it may take minutes.
     """
 
-    function: Callable[..., Answer | Result | None]
+    function: Callable[..., CommandResult | Result | None]
     groups: tuple[type[Shown | Length], ...]
     long: bool
 
@@ -189,7 +189,7 @@ class Command:
         )
         return Signature([*own, *added])
 
-    def run(self, hints: Mapping[str, Any], *arguments: Any, **options: Any) -> Run:
+    def run(self, hints: Mapping[str, Any], *arguments: Any, **options: Any) -> FinishedCommand:
         """Compute, after everything that can be refused before; hints : annotations as types."""
         bound = self.signature.bind(*arguments, **options)
         bound.apply_defaults()
@@ -199,7 +199,7 @@ class Command:
         length = next((one for one in given.values() if isinstance(one, Length)), None)
         _check_belonging({**vars(outputs), **given}, marks)
         owner, file, read = None, "", list[str]()
-        for name, source in _marked(marks, Source):
+        for name, source in _marked(marks, LoadedFile):
             named, given[name] = given[name], source.load(given[name])
             owner, read, file = given[name], source.reads(given[name], named), named
             for other, mark in _marked(marks, OtherFile):
@@ -210,25 +210,29 @@ class Command:
             del given[_name(group)]
         with naming(file) if file else nullcontext(), outputs.showing(owner):
             found = self.function(*bound.args, **bound.kwargs)
-        answer = found if found is None or isinstance(found, Answer) else Answer.of(found)
+        answer = (
+            found if found is None or isinstance(found, CommandResult) else CommandResult.of(found)
+        )
         if answer is not None and answer.owner is not None:
             owner = answer.owner
-        return Run(answer, outputs, length, owner, file)
+        return FinishedCommand(answer, outputs, length, owner, file)
 
 
 def command(
     *groups: type[Shown | Length], long: bool = False
-) -> Callable[[Callable[..., Answer | Result | None]], Callable[..., Run]]:
+) -> Callable[[Callable[..., CommandResult | Result | None]], Callable[..., FinishedCommand]]:
     """Declare a command: a function of what it takes, which returns its result.
 
     groups : options that it has besides, the last of which says where results go.  long : whether
     it may take minutes.
     """
 
-    def declare(function: Callable[..., Answer | Result | None]) -> Callable[..., Run]:
+    def declare(
+        function: Callable[..., CommandResult | Result | None],
+    ) -> Callable[..., FinishedCommand]:
         declared = Command(function, groups, long)
 
-        def run(*arguments: Any, **options: Any) -> Run:
+        def run(*arguments: Any, **options: Any) -> FinishedCommand:
             return declared.run(get_type_hints(run, include_extras=True), *arguments, **options)
 
         taken = declared.signature.parameters.items()  # not what it returns, which is imported late

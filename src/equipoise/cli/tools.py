@@ -20,7 +20,7 @@ from cyclopts import App
 
 from equipoise.cli import answered_by, app, check_repeated, give
 from equipoise.cli.outputs import values_given
-from equipoise.cli.runner import Run, declared_of
+from equipoise.cli.runner import FinishedCommand, declared_of
 from equipoise.errors import UsageError, unknown
 from equipoise.fence import Fence, fenced
 from equipoise.mechanism.outputs.declared import declared
@@ -134,7 +134,7 @@ class CommandTool:
             check_repeated(line)
             with redirect_stdout(printed), redirect_stderr(told), fenced(fence), together():
                 returned = answered_by(line)
-                if isinstance(returned, Run):
+                if isinstance(returned, FinishedCommand):
                     values.append(returned.values)
                 give(returned)
         finally:
