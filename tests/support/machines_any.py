@@ -686,7 +686,31 @@ def files(seed: int, wanted: str = "") -> tuple[Document, Files]:
     document, tables = (Growing(chance).grown(), Files()) if grown else of_kind(chance)
     tables |= dress(chance, document, wanted)
     named = parameters_of(random.Random(f"parameters of {seed}"), document)
-    return {"schema": 1, "title": f"Machine {seed}"} | named | document, tables
+    beside = named | beside_the_machine(random.Random(f"beside {seed}"), document)
+    return {"schema": 1, "title": f"Machine {seed}"} | beside | document, tables
+
+
+def beside_the_machine(chance: random.Random, document: Document) -> Document:
+    """Now and then constraints, which mostly do not hold, a run, and states of its duty.
+
+    Drawn by themselves, so that the machine is what it would be without.
+    """
+    found: Document = {}
+    bodies = [[*body["points"]] for body in (document["frame"], *document["links"].values())]
+    lines = [points for points in bodies if len(points) > 1]
+    if len(lines) > 1 and chance.random() < 0.15:
+        one, other = chance.sample(lines, 2)
+        line, to = chance.sample(one, 2), chance.sample(other, 2)
+        if {*line} != {*to}:
+            found["constraints"] = [{"kind": "equal", "line": line, "to": to}]
+    if chance.random() < 0.15:
+        turns = chance.choice((0.4, 2, 7))
+        found["run"] = {"turns": turns, "speed": f"{chance.choice((-1, 0, 1, 9)) * 10} rpm"}
+        if chance.random() < 0.3:
+            found["run"] |= {"angle": "40 deg", "off_turns": turns / 2}
+    if any("bearing" in one for one in document.get("joints", ())) and chance.random() < 0.5:
+        found["duty"] = [{"share": 2}, {"share": 0.3, "speed": "31 rpm", "load_factor": 0.6}]
+    return found
 
 
 def parameters_of(chance: random.Random, document: Document) -> Document:
