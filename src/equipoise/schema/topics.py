@@ -93,7 +93,8 @@ def table_at(place: Sequence[str]) -> str:
         if len(path) <= len(place)
         and all(step in (NAME, given) for step, given in zip(path, place, strict=False))
     ]
-    return ".".join(max(fitting, key=len)) if fitting else ""
+    longest: tuple[str, ...] = max(fitting, key=len, default=())
+    return ".".join(longest)
 
 
 def known_topic(topic: str) -> str:
