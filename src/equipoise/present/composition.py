@@ -243,10 +243,12 @@ def _sections(
     return tuple(sections), tuple(appendix)
 
 
-def parted(blocks: Iterable[Block | Section]) -> tuple[list[Block | Section], list[Block]]:
+def parted(
+    blocks: Iterable[Block | Section],
+) -> tuple[list[Block | Section], list[Block | Section]]:
     """What stands in a section; and long tables, pictures and tables of details."""
     short: list[Block | Section] = []
-    long: list[Block] = []
+    long: list[Block | Section] = []
     for block in blocks:
         of_detail = isinstance(block, Table | SvgPicture) and block.detail
         if of_detail or (isinstance(block, Table) and len(block.rows) > SHORT):
