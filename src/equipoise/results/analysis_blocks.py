@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from math import pi
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -91,7 +92,7 @@ def motion_blocks(analysis: Analysis) -> Iterator[Block]:
     rows = (
         (
             name,
-            turned(analysis, name) or span(link.angle),
+            turned(analysis, name) or span(link.angle, pi),
             span(link.angular_velocity, rate),
             span(link.angular_acceleration, rate**2),
         )

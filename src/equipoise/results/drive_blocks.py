@@ -54,7 +54,9 @@ def drives_table(analysis: Analysis) -> Iterator[Table]:
     """What each drive does in a cycle, where there is more to it than one crank."""
     if not analysis.machine.has_crank and analysis.motion.whole_cycle:
         columns = (say("drive"), Column(say("work"), "energy"))
-        work = ((link, Value(one)) for link, one in analysis.resolved.forces.work.items())
+        forces = analysis.resolved.forces
+        both = forces.work_both_ways
+        work = ((link, Value(one, both[link])) for link, one in forces.work.items())
         yield Table.of(say("Work of the drives in a cycle"), columns, work)
 
 

@@ -20,7 +20,7 @@ from support.found import found as found_of
 
 MACHINES = (
     *("hydraulic-loader", "pick-and-place", "sieve", "twin-engine", "exudyn-slider-crank"),
-    *("planetary-planting-arm", "knife-drive", "yamashita-rig"),
+    *("planetary-planting-arm", "knife-drive", "yamashita-rig", "straw-walker"),
 )
 
 
@@ -56,6 +56,17 @@ def test_a_mean_of_rounding_is_0_and_the_json_keeps_it() -> None:
     (frame,) = (one for one in analysis.blocks() if isinstance(one, Table) and "frame" in one.title)
     (row,) = (row for row in grid(frame).rows if row[0].text.startswith("shaking force x"))
     assert row[1].text == "0"
+
+
+def test_work_that_comes_back_is_none() -> None:
+    """A boom that is lifted and lowered without losses."""
+    (work,) = (one for one in tables("hydraulic-loader") if one.title.startswith("Work of the"))
+    assert [cell.text for cell in grid(work).rows[0]] == ["boom", "0"]
+    analysis = eq.analyze(eq.load("quick-return"))
+    both, net = analysis.forces.work_both_ways["crank"], analysis.forces.work["crank"]
+    torque = analysis.forces.drive_torque
+    assert both == pytest.approx(2 * np.pi * float(np.mean(np.abs(torque))), rel=1e-9)
+    assert both > net > 0
 
 
 def test_what_is_small_in_its_own_row_or_in_the_table_is_0() -> None:

@@ -183,6 +183,17 @@ class Forces(Exerted, Displayed):
             link: float(self.motion.mean(one) * angle) for link, one in self._work_by_angle.items()
         }
 
+    @property
+    def work_both_ways(self) -> dict[str, float]:
+        """Work of each drive in a cycle, J, what comes back counted like what is put in: beside
+        it a `work` of rounding is told from one of friction.
+        """
+        angle = 2 * np.pi * self.motion.turns
+        return {
+            link: float(self.motion.mean(np.abs(one)) * angle)
+            for link, one in self._work_by_angle.items()
+        }
+
     @cached_property
     def _work_by_angle(self) -> dict[str, Array]:
         """Work of each drive by crank angle (N,), N m, by the name of its link."""
