@@ -371,11 +371,17 @@ def test_what_is_written_goes_through_no_link_that_leads_out(
 
 TABLES = {"csv", "parquet"}
 """Kinds of files of a store."""
+DRAWN = ("svg", "pdf")
+"""Formats of outlines alone."""
 KINDS_OF_FILES = [
     *(
         ("export", str(STORE) if name in TABLES else "mine.toml", "-o", f"out{one.ending}")
         for name, one in FORMATS.items()
-        if name != "svg"  # which this machine has no outline for
+        if name not in DRAWN  # which this machine has no outline for
+    ),
+    *(
+        ("export", "yamashita-1", "--balanced", "-o", f"out{FORMATS[name].ending}")
+        for name in DRAWN
     ),
     *(("animate", "mine.toml", "--width", "100", "-o", f"out.{end}") for end in ("gif", "mp4")),
     ("report", "mine.toml", "--pdf", "-o", "out.pdf"),
