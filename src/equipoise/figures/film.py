@@ -31,9 +31,10 @@ MOST_PIXELS = 600_000_000
 """In all frames of a film, each taken as square."""
 MOST_COLORS = 255
 """In a GIF, and the number of one that is not known yet."""
-ENCODING = {"crf": "18", "threads": "1", "bf": "0"}
-"""Options of the encoder: how good, and that its bytes are the same on every run: frames that
-are told from later ones differ now and then."""
+ENCODING = {"crf": "18", "threads": "1", "bf": "0", "mbtree": "0"}
+"""Options of the encoder: how good, and that its bytes are the same on every run: x264 reads memory
+that it has not set where it weighs macroblocks by later frames (`mbtree`), and where frames are
+told from later ones."""
 BT_709 = 1
 """Number of the standard by which players turn a film's brightness and hue into colours."""
 
