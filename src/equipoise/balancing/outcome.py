@@ -161,10 +161,7 @@ def reasons_to_leave(found: Balanced) -> Iterator[str]:
         yield say(
             "Leave the masses as they are: the best that fits the room that is assumed, "
             "{remedy}, takes {gain} % off {aims}; {why}.",
-            aims=aims_told(found),
-            remedy=remedy_named(found),
-            gain=percent(max(found.gain, 0.0), 1),
-            why=why_not(found),
+            **_best_tried(found),
         )
     elif largest is not None and largest.is_shaking:
         yield say(
@@ -179,16 +176,23 @@ def reasons_to_leave(found: Balanced) -> Iterator[str]:
         )
 
 
+def _best_tried(found: Balanced) -> dict[str, str]:
+    """Values of a sentence on the best of what was tried, and why it is not offered."""
+    return {
+        "aims": aims_told(found),
+        "remedy": remedy_named(found),
+        "gain": percent(max(found.gain, 0.0), 1),
+        "why": why_not(found),
+    }
+
+
 def reasons_beside_weights(found: Balanced) -> Iterator[str]:
     """Why no other mass is offered, where a weight is named first."""
     if found.changes:
         yield say(
             "Nothing else that was tried is worth building: the best that fits the room that is "
             "assumed, {remedy}, takes {gain} % off {aims}; {why}.",
-            aims=aims_told(found),
-            remedy=remedy_named(found),
-            gain=percent(max(found.gain, 0.0), 1),
-            why=why_not(found),
+            **_best_tried(found),
         )
 
 

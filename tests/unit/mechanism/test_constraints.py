@@ -12,9 +12,10 @@ from scipy.optimize import minimize
 import equipoise as eq
 from equipoise.errors import ModelError
 from equipoise.mechanism.parts.constraint_solver import constrained
-from equipoise.mechanism.parts.constraints import HOLDS, Constraint
+from equipoise.mechanism.parts.constraints import HOLDS, MISSES, Constraint
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.schema.template import Template
+from equipoise.symbols.constraints import SIGNS
 from equipoise.symbols.pieces import pieces
 from equipoise.symbols.scene import Scene
 from equipoise.web.session import Session
@@ -215,6 +216,11 @@ def test_the_page_keeps_them_while_one_drags_and_types(tmp_path: Path) -> None:
     assert "along" in refusal(ask(session, "entry", place=["constraints", 2], values=wrong, seq=4))
     state(ask(session, "make", do="rename", what="point", name="P", to="Tip", at=0)[0])
     assert session.shown.design.machine.constraints[1].to == ("Tip", "Q")
+
+
+def test_every_kind_has_a_sign() -> None:
+    assert SIGNS.keys() == MISSES.keys()
+    assert len({one.at for one in SIGNS.values()}) == len(SIGNS)
 
 
 def test_its_signs_lie_on_both_lines(tmp_path: Path) -> None:
