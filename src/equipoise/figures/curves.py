@@ -14,7 +14,7 @@ from equipoise.figures.view import Scale, View, corners_of, ends_of, ticks_of
 from equipoise.results.charts import Area, Bars, Cells, Curve, Panel, Rule
 from equipoise.symbols import looks
 from equipoise.symbols.carrier import gauge
-from equipoise.symbols.constraints import SIGNS
+from equipoise.symbols.constraints import LEGENDS, SIGNS
 from equipoise.symbols.shapes import PIN, Shape, circle, mass, sign, zigzag
 from equipoise.symbols.torsion_springs import spiral
 
@@ -284,7 +284,10 @@ def sample_of(role: str) -> list[Shape]:
     signs |= {name: [circle(name, 0, grown=3.0)] for name in ("dot", "float", "pin")}
     spring = zigzag(-15, 15, 4)
     signs |= {name: [sign(name, 0, spring.places + spring.offsets)] for name in SPRINGS}
-    signs["constraint"] = [sign("constraint", 0, stroke) for stroke in SIGNS["equal"].strokes]
+    signs |= {
+        name: [sign(name, 0, stroke) for stroke in SIGNS["equal"].strokes]
+        for name, _ in LEGENDS.values()
+    }
     signs["spiral"] = [sign("spiral", 0, spiral() * 0.5)]
     if role in signs:
         return signs[role]

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from equipoise.exposure.blocks import MEANING, VERDICTS, limit_broken
+from equipoise.exposure.blocks import MEANING, VERDICTS, clock, limit_broken
+from equipoise.exposure.daily import DAY
 from equipoise.handheld.blocks import rpm
 from equipoise.handheld.exposed import WORKING
 from equipoise.handheld.model import PLANES
@@ -17,12 +18,13 @@ from equipoise.results.blocks import Block, Facts, Text
 from equipoise.signals import highest_at
 
 if TYPE_CHECKING:
+    from equipoise.exposure.daily import WorkingTimes
     from equipoise.handheld.exposed import ToolExposure
     from equipoise.handheld.modes import ToolModes
     from equipoise.handheld.sweep import ToolSweep
 
-MOST_MODES, HOUR, DAY = 4, 3600.0, 86400.0
-"""Natural frequencies that stand first; s."""
+MOST_MODES = 4
+"""Natural frequencies that stand first."""
 
 
 def exposure_headline(found: ToolExposure, alone: bool = False) -> Iterator[Block]:
@@ -37,7 +39,7 @@ def exposure_headline(found: ToolExposure, alone: bool = False) -> Iterator[Bloc
         template = to_say("A day of work: A(8) = {a8} m/s², {verdict}; {meaning}.")
         values = {"a8": brief(day.a8), "verdict": verdict, "meaning": say(MEANING[day.verdict])}
         yield Text(say(template, **values), above)
-        yield from _time_left(day.times.to_action, day.times.to_limit)
+        yield from _time_left(day.times)
     elif WORKING in found.named:
         at_work = {name: float(grip.a_hv[0]) for name, grip in found.named[WORKING].items()}
         hand = max(at_work, key=at_work.__getitem__)
@@ -50,16 +52,13 @@ def exposure_headline(found: ToolExposure, alone: bool = False) -> Iterator[Bloc
         yield Facts(say("Vibration of the hands, total value a_hv"), lines)
 
 
-def _time_left(to_action: float, to_limit: float) -> Iterator[Block]:
-    if to_action < DAY:
-        limit = say("{hours} h", hours=brief(to_limit / HOUR)) if to_limit < DAY else say("never")
-        yield Text(
-            say(
-                "Such work reaches the action value after {action}, the limit value: {limit}.",
-                action=say("{hours} h", hours=brief(to_action / HOUR)),
-                limit=limit,
-            )
+def _time_left(times: WorkingTimes) -> Iterator[Block]:
+    """As the table of a day's exposure says it, so that a time is one number everywhere."""
+    if times.to_action < DAY:
+        template = to_say(
+            "This work reaches the action value after {action}, the limit value after {limit}."
         )
+        yield Text(say(template, action=clock(times.to_action), limit=clock(times.to_limit)))
 
 
 def _hands(found: ToolExposure) -> Iterator[str]:

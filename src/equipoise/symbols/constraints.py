@@ -10,7 +10,7 @@ import numpy as np
 
 from equipoise.i18n import to_say
 from equipoise.mechanism.checks import Bodies
-from equipoise.mechanism.parts.constraints import Constraint
+from equipoise.mechanism.parts.constraints import HOLDS, Constraint
 from equipoise.symbols.shapes import BodyMark, sign
 
 
@@ -34,18 +34,25 @@ SIGNS: Mapping[str, ConstraintSign] = MappingProxyType({
     "in line": ConstraintSign(0.35, ((-9, -4), (-2.5, 2.5), (4, 9))),
 })  # fmt: skip
 """Of each kind."""
-LEGEND = "constraint", to_say("geometric constraint")
+LEGENDS = {
+    True: ("constraint", to_say("geometric constraint")),
+    False: ("missed-constraint", to_say("geometric constraint that does not hold")),
+}
+"""Role and name of a sign, by whether its constraint holds."""
 
 
 def constraint_marks(constraints: Iterable[Constraint], bodies: Bodies) -> Iterator[BodyMark]:
-    """The signs on both lines of each; none where a point is not there yet."""
+    """The signs on both lines of each, in another colour and dashed where these places miss it;
+    none where a point is not there yet.
+    """
     for one in constraints:
         if any(one.problems("", bodies)):
             continue
+        legend = LEGENDS[one.misses(bodies) <= HOLDS]
         for (body, start), (_, end) in one.lines(bodies):
             way = complex(*bodies[body][end]) - complex(*bodies[body][start])
             turn = way / abs(way) if way else 1.0
             drawn = SIGNS[one.kind]
             for stroke in drawn.strokes:
-                shape = sign("constraint", way * drawn.at, np.array(stroke) * turn)
-                yield BodyMark(body, start, shape, table="constraints", legend=LEGEND)
+                shape = sign(legend[0], way * drawn.at, np.array(stroke) * turn)
+                yield BodyMark(body, start, shape, table="constraints", legend=legend)

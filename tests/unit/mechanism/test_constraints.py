@@ -11,11 +11,14 @@ from scipy.optimize import minimize
 
 import equipoise as eq
 from equipoise.errors import ModelError
+from equipoise.figures.linkage import keys_of
 from equipoise.mechanism.parts.constraint_solver import constrained
 from equipoise.mechanism.parts.constraints import HOLDS, MISSES, Constraint
 from equipoise.mechanism.parts.machine import Machine
+from equipoise.schema.documents import dumps
 from equipoise.schema.template import Template
 from equipoise.symbols.constraints import SIGNS
+from equipoise.symbols.looks import LOOKS
 from equipoise.symbols.pieces import pieces
 from equipoise.symbols.scene import Scene
 from equipoise.web.session import Session
@@ -230,6 +233,25 @@ def test_its_signs_lie_on_both_lines(tmp_path: Path) -> None:
     assert len(marks) == 2 * 2 + 2 * 2  # strokes of two kinds on two lines each
     drawn = [one for piece in pieces(scene) for one in piece.shapes if one.role == "constraint"]
     assert len(drawn) == len(marks)
+
+
+def test_the_sign_of_one_that_is_missed_differs_in_colour_and_without_it(tmp_path: Path) -> None:
+    """In pictures with their legends, and on the page."""
+    missed = machine(tmp_path, MODEL.replace('"=arm"\n\n[assembly]', '"125 mm"\n\n[assembly]'))
+    scene = Scene.of(eq.analyze(missed, 12).motion)
+    roles = [mark.shape.role for mark in scene.marks]
+    assert (roles.count("missed-constraint"), roles.count("constraint")) == (4, 4)
+    assert [*dict.fromkeys(keys_of(scene))][-2:] == [
+        ("missed-constraint", "geometric constraint that does not hold"),
+        ("constraint", "geometric constraint"),
+    ]
+    wrong, right = LOOKS["missed-constraint"], LOOKS["constraint"]
+    assert wrong.line != right.line and wrong.dashes and not right.dashes
+    session = Session()
+    told = state(ask(session, "open", text=dumps(missed))[0])
+    looks = told.content["scene"]["looks"]
+    assert "stroke-dasharray" in looks["missed-constraint"]
+    assert looks["missed-constraint"] != looks["constraint"]
 
 
 def test_they_hold_while_a_machine_is_drawn() -> None:

@@ -183,6 +183,11 @@ def test_a_time_is_the_same_wherever_it_stands() -> None:
     """A time until a limit is rounded down to minutes everywhere."""
     html = page(document("brush-cutter"))
     assert {*re.findall(r"after ([\d.]+)\s*min", html.replace("\xa0", " "))} == {"31"}
+    found = found_of("brush-cutter")
+    assert isinstance(found, ToolFindings) and found.exposure is not None
+    printed = [str(block) for block in found.exposure.headline(False)]
+    assert not [text for text in printed if re.search(r"\d\.\d+ h", text)]
+    assert any("action value after 31 min, the limit value after 2 h 7 min" in t for t in printed)
 
 
 def test_what_helps_is_told_before_and_after_at_once() -> None:
