@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import io
 import re
 import shlex
 from collections import Counter
 from collections.abc import Iterable, Iterator
-from contextlib import chdir, redirect_stdout
+from contextlib import chdir
 from functools import cache
 from math import cos, exp
 from pathlib import Path
@@ -15,11 +14,11 @@ from pathlib import Path
 import pytest
 from rich.cells import cell_len
 
-import equipoise.present
+import equipoise.present.terminal
 from equipoise.cli import COMMANDS, app
 from equipoise.present.cells import grid
 from equipoise.present.layout import plain
-from equipoise.present.terminal import print_blocks
+from equipoise.present.terminal import block_text
 from equipoise.results.blocks import Block, Listing, Section, Table, Text
 from surface.running import equipoise as equipoise_runs
 from surface.running import example_text, succeeded
@@ -141,10 +140,7 @@ class Told:
 
 
 def shown(title: str | None, blocks: Iterable[Block | Section], width: int) -> str:
-    out = io.StringIO()
-    with redirect_stdout(out):
-        print_blocks(title, blocks, width)
-    return out.getvalue()
+    return block_text(title, blocks, width)
 
 
 def lines_of(one: Listing) -> list[str]:
@@ -173,11 +169,13 @@ def run(line: str, place: Path) -> list[Told]:
         run("sweep study.toml --out designs.zarr", place)
     found: list[Told] = []
 
-    def keep(title: str | None, blocks: Iterable[Block | Section], **_: int | None) -> None:
+    def keep(title: str | None, blocks: Iterable[Block | Section], **_: int | None) -> str:
         found.append(Told(title, blocks))
+        return ""
 
     with pytest.MonkeyPatch.context() as patch, chdir(place):
         patch.setattr(equipoise.present, "show_blocks", keep)
+        patch.setattr(equipoise.present.terminal, "block_text", keep)
         succeeded(equipoise_runs(*shlex.split(line)))
     assert found
     return found

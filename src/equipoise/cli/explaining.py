@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
+from equipoise.cli.runner import CommandResult, command
 from equipoise.errors import UsageError, unknown
 
 if TYPE_CHECKING:
@@ -23,7 +24,8 @@ WIDEST = 88
 """Signs in a line of running text."""
 
 
-def explain(topic: Annotated[str | None, Parameter(name="TOPIC")] = None, /) -> None:
+@command()
+def explain(topic: Annotated[str | None, Parameter(name="TOPIC")] = None, /) -> CommandResult:
     """Explain an error and its cure, or list the keys of a table of a file.
 
     Parameters
@@ -32,20 +34,17 @@ def explain(topic: Annotated[str | None, Parameter(name="TOPIC")] = None, /) -> 
         As below an error, such as change-point; or a table or key, such as springs or drive.speed.
         All topics are listed if not given.
     """
-    from equipoise.present import show_blocks
     from equipoise.schema import topics
 
     if topic is None:
-        show_blocks("", [*_lists()])
-        return
+        return CommandResult(_lists, title="")
     known = topics.known_topic(topic)
     if not known:
         raise UsageError(unknown(topic, [*topics.errors(), *topics.tables()], "topic"))
     if known in topics.errors():
-        print(_page(*topics.errors()[known]))
-    else:
-        table = topics.tables()[known]
-        show_blocks(table.heading, [*_keys(table, known)])
+        return CommandResult(text=lambda: _page(*topics.errors()[known]))
+    table = topics.tables()[known]
+    return CommandResult(lambda: _keys(table, known), title=table.heading)
 
 
 def _lists() -> Iterator[Block]:

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import gc
 import sys
-from typing import TYPE_CHECKING, Annotated, Literal
+from collections.abc import Iterator
+from typing import Annotated, Literal
 
 from cyclopts import Parameter
 
-from equipoise.cli.options import count, file_named, naming
+from equipoise.cli.models import AnyFile
+from equipoise.cli.options import count, naming
 from equipoise.cli.outputs import Shown, check_model_name, wrote
+from equipoise.cli.runner import CommandResult, command
 from equipoise.errors import UsageError
-
-if TYPE_CHECKING:
-    pass
 
 STARTS = {
     # kind of file: text to start from, usual name, what comes next
@@ -23,43 +23,42 @@ STARTS = {
 }
 
 
-def examples() -> None:
+@command()
+def examples() -> CommandResult:
     """List the bundled models and studies; their names can stand for FILE and STUDY everywhere."""
-    from equipoise.present import show_blocks
     from equipoise.results.blocks import Table
     from equipoise.schema import opening
 
-    show_blocks("", [Table.of("", ("", ""), opening.examples().items())])
+    return CommandResult(lambda: [Table.of("", ("", ""), opening.examples().items())], title="")
 
 
-def check(
-    file: Annotated[str, file_named("Path of a model file or a study file")],
-    /,
-    *,
-    shown: Shown = Shown(),
-) -> None:
+@command(Shown)
+def check(file: AnyFile, /) -> CommandResult:
     """Check a file and tell how the linkage or tool is built up, or what a study will compute."""
     from equipoise.handheld.model import Tool
     from equipoise.mechanism.parts.machine import Machine
-    from equipoise.present import checks, show_blocks
+    from equipoise.present import checks
+    from equipoise.results.blocks import Block
     from equipoise.schema.documents import load
     from equipoise.schema.files import printable
 
     found = load(file)
-    with naming(file), shown.showing(found):
+
+    def blocks() -> Iterator[Block]:
         if isinstance(found, Tool):
-            blocks = checks.tool_blocks(found, printable(file))
-        elif isinstance(found, Machine):
-            blocks = checks.machine_blocks(found)
-        else:
-            from equipoise.present.check_study import study_blocks
-            from equipoise.schema.study_units import units_of
+            return checks.tool_blocks(found, printable(file))
+        if isinstance(found, Machine):
+            return checks.machine_blocks(found)
+        from equipoise.present.check_study import study_blocks
+        from equipoise.schema.study_units import units_of
 
-            blocks = study_blocks(found, units_of(found), file)
-        show_blocks(found.title, [*blocks])  # what is wrong is told before the title
+        return study_blocks(found, units_of(found), file)
+
+    return CommandResult(blocks, owner=found)
 
 
-def schema(*, tool: bool = False, study: bool = False) -> None:
+@command()
+def schema(*, tool: bool = False, study: bool = False) -> CommandResult:
     """Print the JSON Schema of the model file, for editors.
 
     Parameters
@@ -73,7 +72,8 @@ def schema(*, tool: bool = False, study: bool = False) -> None:
 
     from equipoise.schema.schemas import json_schema
 
-    print(json.dumps(json_schema(_kind(tool, study)), indent=2))
+    kind = _kind(tool, study)
+    return CommandResult(text=lambda: json.dumps(json_schema(kind), indent=2))
 
 
 def completion(
@@ -92,13 +92,14 @@ def completion(
     print(app.generate_completion(shell=shell))
 
 
+@command()
 def new(
     file: Annotated[str | None, Parameter(name="FILE")] = None,
     /,
     *,
     tool: bool = False,
     study: bool = False,
-) -> None:
+) -> CommandResult:
     """Write a commented model file to start from.
 
     Parameters
@@ -114,12 +115,13 @@ def new(
 
     from equipoise.schema.files import write
 
-    name, usual, command = STARTS[_kind(tool, study)]
+    name, usual, first = STARTS[_kind(tool, study)]
     start = files("equipoise").joinpath("schema", name).read_text(encoding="utf-8")
     path = usual if file is None else file
     check_model_name(path, "FILE")
     write(path, start, replace=False)
-    wrote(f"{path}; next: {command.format(path)}")
+    wrote(f"{path}; next: {first.format(path)}")
+    return CommandResult()
 
 
 def _kind(tool: bool, study: bool) -> Literal["linkage", "tool", "study"]:

@@ -4,42 +4,37 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import chain
 from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import App, Parameter
 
+from equipoise.cli.models import DesignFile, ToolFile
 from equipoise.cli.options import (
     Out,
-    ToolFile,
     blaming,
     check_belonging,
     count,
     ends_of_range,
-    file_named,
-    naming,
     quantity,
     read_by,
     sizes,
     time_a_day,
 )
 from equipoise.cli.outputs import (
-    BRIEF,
-    MORE,
     Drawings,
     Drawn,
     Length,
     Outputs,
     Printed,
     check_new,
-    sources_of,
     write_model,
 )
 from equipoise.cli.progress import counted
+from equipoise.cli.runner import CommandResult, command
 from equipoise.errors import ModelError, UsageError
-from equipoise.i18n import say
 
 if TYPE_CHECKING:
     import numpy as np
@@ -75,8 +70,9 @@ Number = Annotated[int | None, count(1, MOST_MODES)]
 
 
 @app.default
+@command(Length, Outputs)
 def tool(
-    file: ToolFile,
+    tool: ToolFile,
     /,
     *,
     modes: bool = False,
@@ -86,9 +82,8 @@ def tool(
     at: Annotated[Any, sizes("length", "300 mm, 1200 mm")] = None,
     exposure: bool = False,
     duration: Annotated[Any, read_by(time_a_day, '"2 h"')] = None,
-    length: Length = Length(),
-    outputs: Outputs = Outputs(),
-) -> None:
+    outputs: Outputs,
+) -> CommandResult:
     """A hand-held tool: how its shaft vibrates, and what the hands get.
 
     Without any of --modes, --respond and --exposure it tells what stands first of all three.
@@ -112,20 +107,18 @@ def tool(
     """
     from equipoise.handheld.sweep import default_answers
 
-    loaded = _tool_of(file)
     swept = any(one is not None for one in (respond, speeds, at, outputs.csv))
     chosen = {"modes": modes, "respond": swept, "exposure": exposure or duration is not None}
     names = [name for name, is_chosen in chosen.items() if is_chosen]
     check_belonging("--modes", modes or not names, number=number)
-    outputs.check(sources_of(loaded, file))
-    asked = Asked(loaded, number, respond, speeds, tuple(at or ()), duration)
-    first = None if names else length
-    names = names or default_answers(loaded)
-    with naming(file):
-        parts = [getattr(asked, name) for name in names]
-    if outputs.csv is not None:
-        outputs.write(asked.respond.columns)
-    _give(loaded, parts, lambda: asked.pictures(names), outputs, length=first)
+    asked = Asked(tool, number, respond, speeds, tuple(at or ()), duration)
+    brief = not names
+    names = names or default_answers(tool)
+    parts = [getattr(asked, name) for name in names]
+    return replace(
+        _result(tool, parts, lambda: asked.pictures(names), brief=brief),
+        columns=lambda: asked.respond.columns(),  # noqa: PLW0108 - which is computed for it
+    )
 
 
 @dataclass(frozen=True)
@@ -204,61 +197,48 @@ class Asked:
         return drawn
 
 
-def _tool_of(file: str) -> Tool:
-    from equipoise.schema.models import load_tool
-
-    return load_tool(file)
-
-
-def _give(
-    tool: Tool,
-    parts: Sequence[Any],
-    drawings: Drawings,
-    outputs: Drawn,
-    key: str = "",
-    length: Length | None = None,
-) -> None:
-    """Draw what was found, then print it below what the tool is.
+def _result(
+    tool: Tool, parts: Sequence[Any], drawings: Drawings, key: str = "", brief: bool = False
+) -> CommandResult:
+    """What was computed, below what the tool is.
 
     key : of the JSON object below which it stands, if not beside the title.
-    length : how much is printed below what stands first of each part; without, that is left out.
+    brief : whether what stands first of each part is told first.
     """
     from equipoise.handheld.blocks import summary_blocks
-    from equipoise.results.blocks import Text
     from equipoise.results.headline import look_at_next
 
     def values() -> Mapping[str, Any]:
         told = {name: one for part in parts for name, one in part.to_dict().items()}
         return {"title": tool.title, **({key: told} if key else told)}
 
-    outputs.draw(tool, drawings)
-
-    def blocks() -> Iterator[Block | Section]:
-        alone = length is not None and not length.full
-        for part in reversed(parts) if length is not None else ():  # the hands before the shaft
+    def headline(alone: bool) -> Iterator[Block | Section]:
+        for part in reversed(parts):  # the hands before the shaft
             yield from part.headline(alone)
         if alone:
             further = ("tool --exposure", "tool --modes", "tool --respond", "tool sensitivities")
             yield look_at_next(*further)
-            yield Text(say(MORE))
-        else:
-            yield from chain(summary_blocks(tool), *(part.blocks() for part in parts))
 
-    outputs.print(tool, values, blocks, BRIEF if length is not None and not length.full else None)
+    return CommandResult(
+        lambda: chain(summary_blocks(tool), *(part.blocks() for part in parts)),
+        values,
+        headline=headline if brief else None,
+        pictures=drawings,
+    )
 
 
 # -- other questions -------------------------------------------------------------------------------
 
 
 @app.command
+@command(Drawn)
 def vary(
-    file: ToolFile,
+    tool: ToolFile,
     change: Annotated[str, Parameter(name="CHANGE")],
     /,
     *,
     number: Number = None,
-    outputs: Drawn = Drawn(),
-) -> None:
+) -> CommandResult:
     """Natural frequencies against a number of a station.
 
     Parameters
@@ -270,39 +250,37 @@ def vary(
     """
     import numpy as np
 
-    from equipoise.figures.pictures import pictures_of
     from equipoise.handheld.design_plan import KEYS
     from equipoise.handheld.studies import check_key, vary_tool
     from equipoise.handheld.sweep import MODES
 
-    loaded = _tool_of(file)
     match = VARY.fullmatch(change.strip())
     if match is None:
         right = 'one of its numbers and a range, such as "harness position = 0 mm : 400 mm"'
         raise UsageError(f"CHANGE: got {change!r}; give a station, {right}")
     station, key = match["station"], match["key"]
     with blaming("CHANGE"):
-        check_key(loaded.station(station), key)
+        check_key(tool.station(station), key)
     if key.endswith("damping"):
         what = "which natural frequencies without damping do not feel; vary another number"
         raise UsageError(f"CHANGE: got {key!r}, {what}")
     low, high = (quantity("CHANGE", match[end], KEYS[key]) for end in ("low", "high"))
     if not low < high:
         raise UsageError(f"CHANGE: got {change!r}; give a range, the smaller value first")
-    with naming(file), blaming("CHANGE"):
+    with blaming("CHANGE"):
         values = np.linspace(low, high, VALUES)
-        found = vary_tool(loaded, station, key, values, number or MODES)
-    _give(loaded, [found], lambda: pictures_of(found), outputs, "variation")
+        found = vary_tool(tool, station, key, values, number or MODES)
+    return _result(tool, [found], found.charts, "variation")
 
 
 @app.command
+@command(Printed)
 def sensitivities(
-    file: ToolFile,
+    tool: ToolFile,
     /,
     *,
     speeds: Speeds = None,
-    outputs: Printed = Printed(),
-) -> None:
+) -> CommandResult:
     """What each number of a tool does to the hands.
 
     Parameters
@@ -316,33 +294,29 @@ def sensitivities(
     from equipoise.handheld.exposed import tool_sensitivities
     from equipoise.handheld.hand_blocks import sensitivity_blocks
 
-    loaded = _tool_of(file)
-    band = loaded.design.speeds if speeds is None and loaded.design is not None else speeds
-    with naming(file):
-        ends = Asked(loaded, range=band).ends
-        found = tool_sensitivities(loaded, np.linspace(*ends, BAND))
+    band = tool.design.speeds if speeds is None and tool.design is not None else speeds
+    ends = Asked(tool, range=band).ends
+    found = tool_sensitivities(tool, np.linspace(*ends, BAND))
 
     def values() -> Mapping[str, Any]:
         told: dict[str, dict[str, float]] = {}
         for (station, key), slope in found.items():
             told.setdefault(station, {})[key] = slope
-        return {"title": loaded.title, "sensitivities": told}
+        return {"title": tool.title, "sensitivities": told}
 
-    outputs.print(
-        loaded,
-        values,
-        lambda: chain(summary_blocks(loaded), sensitivity_blocks(loaded, found, ends)),
+    return CommandResult(
+        lambda: chain(summary_blocks(tool), sensitivity_blocks(tool, found, ends)), values
     )
 
 
 @app.command
+@command(Drawn, long=True)
 def design(
-    file: Annotated[str, file_named("Path of a tool's file, with a table [design]")],
+    tool: DesignFile,
     /,
     *,
     out: Out = None,
-    outputs: Drawn = Drawn(),
-) -> None:
+) -> CommandResult:
     """Change what [design] allows so that the hands feel least.
 
     Parameters
@@ -350,14 +324,15 @@ def design(
     out
         Write the better tool to this new file.
     """
-    from equipoise.figures.pictures import pictures_of
     from equipoise.handheld.design import design_tool
 
-    loaded = _tool_of(file)
     if out is not None:
-        check_new(loaded, out)
-    with naming(file), counted("search") as progress:
-        found = design_tool(loaded, progress)
-    if out is not None:
-        write_model(found.better, out, what_next=f"; next: equipoise tool {out}")
-    _give(loaded, [found], lambda: pictures_of(found), outputs, "design")
+        check_new(tool, out)
+    with counted("search") as progress:
+        found = design_tool(tool, progress)
+
+    def save() -> None:
+        if out is not None:
+            write_model(found.better, out, what_next=f"; next: equipoise tool {out}")
+
+    return replace(_result(tool, [found], found.charts, "design"), save=save)

@@ -23,6 +23,7 @@ from equipoise.cli.options import (
     wants,
 )
 from equipoise.cli.outputs import Drawn
+from equipoise.cli.runner import CommandResult, command
 from equipoise.errors import UsageError
 
 if TYPE_CHECKING:
@@ -49,6 +50,7 @@ def _stiffness(option: str, text: str) -> tuple[float, bool, str]:
     return value, torsional, text
 
 
+@command(Drawn)
 def decay(
     csv: Annotated[str, Parameter(name="CSV")],
     /,
@@ -57,8 +59,7 @@ def decay(
     arm: Arm = None,
     spring_arm: Arm = None,
     confidence: Annotated[float, SIGNED] = 0.95,
-    outputs: Drawn = Drawn(),
-) -> None:
+) -> CommandResult:
     """Frequency, inertia, viscous damping and Coulomb friction from a recorded free decay.
 
     Parameters
@@ -94,8 +95,12 @@ def decay(
     with blaming(printable(csv)):
         found = identify_decay(record, value, arm=arm, spring_arm=spring_arm, confidence=confidence)
     title = printable(os.path.basename(csv))
-    outputs.draw(None, lambda: pictures.decay_charts(found, title))
-    outputs.print(title, found.to_dict, found.blocks)
+    return CommandResult(
+        found.blocks,
+        found.to_dict,
+        title=title,
+        pictures=lambda: pictures.decay_charts(found, title),
+    )
 
 
 def _check_stiffness(text: str, torsional: bool, angles: bool, spring_arm: float | None) -> None:
@@ -158,6 +163,7 @@ def _acceleration(option: str, text: str) -> float:
 Acceleration = Annotated[float | None, read_by(_acceleration, ACCELERATION)]
 
 
+@command(Drawn)
 def exposure(
     *inputs: Annotated[str, Parameter(name="INPUT")],
     duration: Annotated[Many, SIGNED, wants('"2.5 h"')] = None,
@@ -168,8 +174,7 @@ def exposure(
     single_axis: bool = False,
     periodic: bool = False,
     gauge: Names = None,
-    outputs: Drawn = Drawn(),
-) -> None:
+) -> CommandResult:
     """Hand-arm vibration: weighted acceleration, a day's exposure, and how long one may work.
 
     Parameters
@@ -216,23 +221,21 @@ def exposure(
     _check_options(told, options)
     if gauge and not any(each.weighted for each in told):
         raise UsageError("--gauge belongs to a response of gauges; give one, or leave it out")
-    _give(_timed(told, duration or []), outputs)
+    return _answer(_timed(told, duration or []))
 
 
-def _give(told: list[Told], outputs: Drawn) -> None:
-    """Draw, then print."""
+def _answer(told: list[Told]) -> CommandResult:
     from equipoise.exposure.blocks import told_blocks
     from equipoise.figures import measured as pictures
 
     day = _day(told)
     measured = [(each.name, each.weighted) for each in told if each.weighted is not None]
     tools = [(each.name, each.a_hv) for each in told]
-
-    outputs.draw(None, lambda: pictures.exposure_charts(measured, tools, day))
-    outputs.print(
-        "",
-        lambda: _values(measured, tools, day),
+    return CommandResult(
         lambda: told_blocks(measured, tools, day),
+        lambda: _values(measured, tools, day),
+        title="",
+        pictures=lambda: pictures.exposure_charts(measured, tools, day),
     )
 
 

@@ -15,6 +15,7 @@ from equipoise.errors import ModelError, UsageError
 if TYPE_CHECKING:
     from typing import TypeAlias
 
+    from equipoise.handheld.model import Tool
     from equipoise.mechanism.parts.machine import Machine
 
 
@@ -23,10 +24,12 @@ class LoadedFile:
     """What stands for the name of a file: the command gets what is loaded from it.
 
     load : from its name.  reads : all files from which that was read, of it and its name.
+    owner : of it, in whose units and words the command speaks.
     """
 
     load: Callable[[str], Any]
-    reads: Callable[[Any, str], list[str]]
+    reads: Callable[[Any, str], list[str]] = lambda _, file: [file]
+    owner: Callable[[Any], Any] = lambda loaded: loaded
 
 
 def linkage_of(file: str, speed: float | None = None) -> Machine:
@@ -34,6 +37,13 @@ def linkage_of(file: str, speed: float | None = None) -> Machine:
     from equipoise.schema.models import load_linkage
 
     return at_speed(load_linkage(file), speed)
+
+
+def tool_of(file: str) -> Tool:
+    """The tool of a file."""
+    from equipoise.schema.models import load_tool
+
+    return load_tool(file)
 
 
 def at_speed(machine: Machine, speed: float | None) -> Machine:
@@ -54,6 +64,9 @@ if TYPE_CHECKING:
     PlantingFile: TypeAlias = Machine
     SupportFile: TypeAlias = Machine
     PlannedFile: TypeAlias = Machine
+    ToolFile: TypeAlias = Tool
+    DesignFile: TypeAlias = Tool
+    AnyFile: TypeAlias = str
 else:
     LINKAGE = LoadedFile(linkage_of, sources_of)
     LinkageFile = Annotated[str, file_named("Path of a model file"), LINKAGE]
@@ -62,3 +75,8 @@ else:
     ]
     SupportFile = Annotated[str, file_named("Path of a model file with a table [support]"), LINKAGE]
     PlannedFile = Annotated[str, Parameter(name="FILE"), LINKAGE]
+    TOOL = LoadedFile(tool_of, sources_of)
+    ToolFile = Annotated[str, file_named("Path of a tool's file, with a table [shaft]"), TOOL]
+    DesignFile = Annotated[str, file_named("Path of a tool's file, with a table [design]"), TOOL]
+    NAMED = LoadedFile(str, owner=lambda _: None)
+    AnyFile = Annotated[str, file_named("Path of a model file or a study file"), NAMED]

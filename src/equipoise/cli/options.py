@@ -189,6 +189,10 @@ class OtherFile:
     ending: str = ""
 
 
+class Spoken:
+    """Marks the option that names the language in which a command speaks, English without it."""
+
+
 @dataclass(frozen=True)
 class BelongsTo:
     """Marks an option that does nothing without another, such as ``--json``."""
@@ -204,7 +208,6 @@ def file_named(text: str, name: str = "FILE") -> Parameter:
 SIGNED = Parameter(allow_leading_hyphen=True)
 """Of an option whose value may begin with a minus sign."""
 File = Annotated[str, file_named("Path of a model file")]
-ToolFile = Annotated[str, file_named("Path of a tool's file, with a table [shaft]")]
 StudyFile = Annotated[str, file_named("Path of a study file", "STUDY")]
 WorkerCount = Annotated[int | None, count(1, 1000)]
 StorePath = Annotated[

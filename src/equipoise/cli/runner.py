@@ -15,16 +15,23 @@ The command line shows what it returns, and so do programs that call it as a too
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from contextlib import AbstractContextManager, nullcontext
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from inspect import Parameter, Signature, signature
 from json import loads
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar, get_type_hints
 
 from equipoise.cli.models import LoadedFile
-from equipoise.cli.options import BelongsTo, OtherFile, ResultFile, check_belonging, naming
+from equipoise.cli.options import (
+    BelongsTo,
+    OtherFile,
+    ResultFile,
+    Spoken,
+    check_belonging,
+    naming,
+)
 from equipoise.cli.outputs import (
     BRIEF,
     MORE,
@@ -42,8 +49,9 @@ from equipoise.cli.outputs import (
     write_pictures,
     write_text,
 )
-from equipoise.i18n import say
+from equipoise.i18n import say, speaking
 from equipoise.interrupts import check
+from equipoise.partial import afterwards
 
 if TYPE_CHECKING:
     from equipoise.results.blocks import Block, Section
@@ -56,7 +64,7 @@ T = TypeVar("T")
 class CommandResult:
     """What a command returns: functions, since what is not asked for is not computed.
 
-    blocks : what is printed below the title.
+    blocks : what is printed below the title; if None, neither is.
     values : the JSON object, in SI units; none where the command has no ``--json``.
     owner : machine, tool or study in whose units and words all is shown; if None, what was loaded.
     title : if None that of the owner.
@@ -65,9 +73,10 @@ class CommandResult:
     columns : of the CSV file, as name, unit and values.
     pictures : by name.
     save : writes further files, after columns and pictures.
+    text : what is printed instead of title and blocks, as it stands.
     """
 
-    blocks: Blocks
+    blocks: Blocks | None = None
     values: Values = dict
     owner: Any = None
     title: str | None = None
@@ -75,6 +84,7 @@ class CommandResult:
     columns: Callable[[], Columns] = tuple
     pictures: Drawings = dict
     save: Callable[[], object] = dict
+    text: Callable[[], str] | None = None
 
     @staticmethod
     def of(result: Result, **options: Any) -> CommandResult:
@@ -94,17 +104,18 @@ class CommandResult:
 class FinishedCommand:
     """A command that was run: its answer, and how that is to be given.
 
-    answer : None where it has written files and has nothing else to show.
     length : None where all is printed.
     owner : as of `CommandResult`.
     file : whose name stands in front of what turns out wrong; empty for none.
+    language : in which it speaks.
     """
 
-    answer: CommandResult | None
+    answer: CommandResult
     outputs: Shown
     length: Length | None = None
     owner: Any = None
     file: str = ""
+    language: str = "en"
 
     @cached_property
     def json(self) -> str:
@@ -112,7 +123,7 @@ class FinishedCommand:
         from equipoise.schema.files import json_text
 
         with self._naming():
-            return json_text(dict(self.answer.values() if self.answer else {}))
+            return json_text(dict(self.answer.values()))
 
     @property
     def values(self) -> dict[str, Any]:
@@ -123,40 +134,53 @@ class FinishedCommand:
     def give(self) -> None:
         """Write the files that are wanted, then print."""
         check()
-        if self.answer is None:
-            return
         with self._naming():
-            self._write(self.answer)
-            if isinstance(self.outputs, Printed) and self.outputs.json:
-                print(self.json)
-            else:
-                self._print(self.answer)
+            self._write()
+            if self.answer.text is None:
+                print(self.text, end="")
+            else:  # which may list what was written
+                afterwards(partial(print, self.text, end="", flush=True))
+
+    @cached_property
+    def text(self) -> str:
+        """What is printed."""
+        answer = self.answer
+        if isinstance(self.outputs, Printed) and self.outputs.json:
+            return f"{self.json}\n"
+        if answer.text is not None:
+            return f"{answer.text()}\n"
+        if answer.blocks is None:
+            return ""
+        from equipoise.present.terminal import block_text
+
+        brief = answer.headline and self.length and not self.length.full
+        with self._showing():
+            title = self.owner.title if answer.title is None else answer.title
+            return block_text(title, self._blocks(), most=BRIEF if brief else None)
 
     def _naming(self) -> AbstractContextManager[None]:
         return naming(self.file) if self.file else nullcontext()
 
-    def _write(self, answer: CommandResult) -> None:
-        outputs = self.outputs
+    @contextmanager
+    def _showing(self) -> Iterator[None]:
+        with speaking(self.language), self.outputs.showing(self.owner):
+            yield
+
+    def _write(self) -> None:
+        answer, outputs = self.answer, self.outputs
         if isinstance(outputs, Outputs) and outputs.csv is not None:
             from equipoise.schema.files import csv_text
 
             write_text(outputs.csv, csv_text(answer.columns()))
         if isinstance(outputs, Drawn) and outputs.plot is not None:
-            with outputs.showing(self.owner):
+            with self._showing():
                 write_pictures(answer.pictures(), outputs.plot, outputs.format or "svg")
         answer.save()
 
-    def _print(self, answer: CommandResult) -> None:
-        from equipoise.present import show_blocks
-
-        brief = answer.headline and self.length and not self.length.full
-        with self.outputs.showing(self.owner):
-            title = self.owner.title if answer.title is None else answer.title
-            show_blocks(title, self._blocks(answer), most=BRIEF if brief else None)
-
-    def _blocks(self, answer: CommandResult) -> Iterator[Block | Section]:
+    def _blocks(self) -> Iterator[Block | Section]:
         from equipoise.results.blocks import Text
 
+        answer = self.answer
         first: list[Block | Section] = []
         if answer.headline is not None and self.length is not None:
             first += answer.headline(not self.length.full)
@@ -164,7 +188,7 @@ class FinishedCommand:
         if first and self.length is not None and not self.length.full:
             yield Text(say(MORE))
         else:
-            yield from answer.blocks()
+            yield from answer.blocks() if answer.blocks is not None else ()
 
 
 @dataclass(frozen=True)
@@ -172,22 +196,28 @@ class Command:
     """What is declared of a command.
 
     function : what it computes.  groups : options that it has besides, of how much is printed and
-    of where results go.  long : whether it may take minutes.
+    of where results go; it takes those that it has to know, by their name in small letters.
+    long : whether it may take minutes.
     """
 
-    function: Callable[..., CommandResult | Result | None]
+    function: Callable[..., CommandResult | Result]
     groups: tuple[type[Shown | Length], ...]
     long: bool
 
     @cached_property
     def signature(self) -> Signature:
         """What the command line takes."""
-        own = signature(self.function).parameters.values()
+        groups = set(map(_name, self.groups))
+        own = (one for one in self._own.values() if one.name not in groups)
         added = (
             Parameter(_name(group), Parameter.KEYWORD_ONLY, default=group(), annotation=group)
             for group in self.groups
         )
         return Signature([*own, *added])
+
+    @cached_property
+    def _own(self) -> Mapping[str, Parameter]:
+        return signature(self.function).parameters
 
     def run(self, hints: Mapping[str, Any], *arguments: Any, **options: Any) -> FinishedCommand:
         """Compute, after everything that can be refused before; hints : annotations as types."""
@@ -201,26 +231,25 @@ class Command:
         owner, file, read = None, "", list[str]()
         for name, source in _marked(marks, LoadedFile):
             named, given[name] = given[name], source.load(given[name])
-            owner, read, file = given[name], source.reads(given[name], named), named
+            owner, file = source.owner(given[name]), named
+            read = source.reads(given[name], named)
             for other, mark in _marked(marks, OtherFile):
                 if mark.ending and given[other] is None:
                     given[other] = f"{Path(named).stem}{mark.ending}"
         _check_places(given, marks, outputs, read)
-        for group in self.groups:
-            del given[_name(group)]
-        with naming(file) if file else nullcontext(), outputs.showing(owner):
+        for name in {*map(_name, self.groups)} - self._own.keys():
+            del given[name]
+        language = next((given[option] for option, _ in _marked(marks, Spoken)), "en")
+        with naming(file) if file else nullcontext(), speaking(language), outputs.showing(owner):
             found = self.function(*bound.args, **bound.kwargs)
-        answer = (
-            found if found is None or isinstance(found, CommandResult) else CommandResult.of(found)
-        )
-        if answer is not None and answer.owner is not None:
-            owner = answer.owner
-        return FinishedCommand(answer, outputs, length, owner, file)
+        answer = found if isinstance(found, CommandResult) else CommandResult.of(found)
+        owner = owner if answer.owner is None else answer.owner
+        return FinishedCommand(answer, outputs, length, owner, file, language)
 
 
 def command(
     *groups: type[Shown | Length], long: bool = False
-) -> Callable[[Callable[..., CommandResult | Result | None]], Callable[..., FinishedCommand]]:
+) -> Callable[[Callable[..., CommandResult | Result]], Callable[..., FinishedCommand]]:
     """Declare a command: a function of what it takes, which returns its result.
 
     groups : options that it has besides, the last of which says where results go.  long : whether
@@ -228,7 +257,7 @@ def command(
     """
 
     def declare(
-        function: Callable[..., CommandResult | Result | None],
+        function: Callable[..., CommandResult | Result],
     ) -> Callable[..., FinishedCommand]:
         declared = Command(function, groups, long)
 

@@ -29,17 +29,29 @@ def print_blocks(
 ) -> None:
     """Print a title and what stands below it; all of it, or nothing where a block has an error.
 
+    Arguments as of `block_text`.
+    """
+    text = block_text(title, blocks, width, most)
+    if sys.stdout is not None:  # where the shell has closed it
+        sys.stdout.write(text)
+
+
+def block_text(
+    title: str | None,
+    blocks: Iterable[Block | Section],
+    width: int | None = None,
+    most: int | None = None,
+) -> str:
+    """What a terminal shows of a title and what stands below it, in colours where it has them.
+
     title : none if empty; None where it goes on below something else.
     width : signs in a line; those of the terminal if None.
     most : lines for which lists lose their last items, the last lists first; any if None.
     """
-    if width is None:
-        width = shutil.get_terminal_size().columns
-    if sys.stdout is None:  # where the shell has closed it
-        return
+    columns = shutil.get_terminal_size().columns if width is None else width
 
     def printed(shown: Iterable[Block | Section]) -> list[str]:
-        printer = _Printer(max(width, LEAST), Looks(coloured(sys.stdout)), begun=title is None)
+        printer = _Printer(max(columns, LEAST), Looks(coloured(sys.stdout)), begun=title is None)
         if title:
             printer.words(title, "title")
         printer.blocks(shown)
@@ -50,7 +62,7 @@ def print_blocks(
     while most is not None and len(lines) > most and (shorter := _shortened([*shown])):
         shown = shorter
         lines = printed(shown)
-    sys.stdout.write("".join(f"{line}\n" for line in lines))
+    return "".join(f"{line}\n" for line in lines)
 
 
 def _shortened(blocks: list[Block | Section]) -> list[Block | Section]:
@@ -77,14 +89,16 @@ def _shortened(blocks: list[Block | Section]) -> list[Block | Section]:
     return [*blocks[: lists[-1]], *blocks[lists[-1] + 1 :]] if lists else []
 
 
-def coloured(stream: TextIO) -> bool:
+def coloured(stream: TextIO | None) -> bool:
     """Whether a stream shows colours, by what users may set (no-color.org, force-color.org)."""
     if os.environ.get("NO_COLOR"):
         return False
     if os.environ.get("FORCE_COLOR"):
         return True
     known = os.name != "nt" or "WT_SESSION" in os.environ  # what else Windows has, prints codes
-    return stream.isatty() and known and os.environ.get("TERM") not in ("dumb", "unknown")
+    if stream is None or not stream.isatty():
+        return False
+    return known and os.environ.get("TERM") not in ("dumb", "unknown")
 
 
 def _with_more(text: str, more: int) -> str:
