@@ -114,7 +114,8 @@ def nothing_told(found: Balanced) -> Iterator[str]:
 def why_nothing(found: Balanced) -> Iterator[str]:
     """What is done first where no change of masses is advised, and why none is."""
     assert found.advice is not None
-    yield from _mounts_first(found.advice)
+    if (mounts := found.advice.beyond.mounts) is not None:
+        yield from mount_sentences(mounts, comes_first=True)
     first = [*first_sentences(found)]
     yield from first
     yield from reasons_beside_weights(found) if first else reasons_to_leave(found)
@@ -205,9 +206,11 @@ def sentences_beyond_masses(found: Balanced) -> Iterator[str]:
 
 
 def mounts_beside_change(found: Balanced) -> Iterator[str]:
-    """Other mounts that a machine with a change that was advised needs first."""
-    if found.advice is not None and found.helps:
-        yield from _mounts_first(found.advice)
+    """Other mounts that a machine needs beside a change that was advised, or before it."""
+    if found.advice is None or not found.helps:
+        return
+    if (mounts := found.advice.beyond.mounts) is not None:
+        yield from mount_sentences(mounts, comes_first=mounts.gain > found.gain)
 
 
 def first_sentences(found: Balanced) -> Iterator[str]:
@@ -304,11 +307,6 @@ def _from_to(was: FigureAssessment, new: FigureAssessment) -> str:
         before=shown.text(was.value, max(was.value, new.value), 3),
         after=shown.with_unit(shown.text(new.value, digits=3)),
     )
-
-
-def _mounts_first(advice: Advice) -> Iterator[str]:
-    if advice.beyond.mounts is not None:
-        yield from mount_sentences(advice.beyond.mounts)
 
 
 def _with_more_room(found: Balanced) -> Iterator[str]:

@@ -85,7 +85,8 @@ REACH_OF_CRANK = 2.5
 """Over the throw of a crank that turns, as webs and discs of cranks do, within what the machine
 sweeps."""
 OVER_SOIL = 0.05
-"""m over the soil, below which no counterweight reaches: hills that are planted pass there."""
+"""m over the soil, below which no counterweight reaches: hills that are planted, clods and stubble
+pass there.  A choice, as no file says how high they stand; a plan's own room takes its place."""
 LARGEST_PLATE = 0.6
 """m: beyond which nobody cuts a counterweight of plate."""
 THICKNESS_OF_REACH = 0.3

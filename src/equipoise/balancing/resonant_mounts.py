@@ -195,8 +195,11 @@ def _scaled(mounts: Mapping[str, Mount], names: Sequence[str], factor: float) ->
 # -- sentences -------------------------------------------------------------------------------------
 
 
-def mount_sentences(found: ResonantMounts) -> Iterator[str]:
-    """Which resonance lies beside the speed, and what moves it away."""
+def mount_sentences(found: ResonantMounts, comes_first: bool) -> Iterator[str]:
+    """Which resonance lies beside the speed, and what moves it away.
+
+    comes_first : whether other mounts bring more than the change of masses, if there is one.
+    """
     low, high = sorted(map(abs, found.avoid))
     beside = to_say(
         "First move the resonance at {speed} rpm (keep away from {low} to {high} rpm), beside "
@@ -205,10 +208,11 @@ def mount_sentences(found: ResonantMounts) -> Iterator[str]:
     amplifies = to_say(
         "First move the resonance at {speed} rpm, which amplifies the motion at {near} rpm too"
     )
+    besides = to_say("The resonance at {speed} rpm amplifies the motion at {near} rpm too: move it")
     above, below = to_say("run above {away} rpm"), to_say("run below {away} rpm")
     is_within = low <= found.near <= high
     first = say(
-        beside if is_within else amplifies,
+        beside if is_within else amplifies if comes_first else besides,
         speed=brief(found.speed / PER_RPM),
         low=number(low / PER_RPM),
         high=number(high / PER_RPM),
@@ -218,16 +222,13 @@ def mount_sentences(found: ResonantMounts) -> Iterator[str]:
     yield say("{first}, or {other}.", first=first, other=other)
     if found.factor is None:
         return
-    softer = to_say(
-        "Mounts {mounts} {times} times softer would take {gain} % off what the gauges read."
-    )
-    stiffer = to_say(
-        "Mounts {mounts} {times} times stiffer would take {gain} % off what the gauges read."
-    )
-    times = max(found.factor, 1 / found.factor)
+    single, several = to_say("Mount {names}"), to_say("Mounts {names}")
+    softer = to_say("{mounts} {times} times softer would take {gain} % off what the gauges read.")
+    stiffer = to_say("{mounts} {times} times stiffer would take {gain} % off what the gauges read.")
+    names = found.mounts
     yield say(
         softer if found.factor < 1 else stiffer,
-        mounts=say(", ").join(found.mounts),
-        times=number(times, digits=1),
+        mounts=say(single if len(names) == 1 else several, names=say(", ").join(names)),
+        times=number(max(found.factor, 1 / found.factor), digits=1),
         gain=percent(found.gain),
     )

@@ -275,8 +275,8 @@ def _made(piece: Piece, center: str) -> str:
     return say(
         "sector of {mass} about {at}, radius {inner} to {outer}, {thickness} of {stuff}, "
         "{wide} wide, its middle at {direction}",
-        wide=direction_named(piece["angle"]),
-        direction=direction_named(piece["direction"]),
+        wide=direction_named(piece["angle"], digits=1),
+        direction=direction_named(piece["direction"], digits=1),
         **words,
     )
 
@@ -341,9 +341,12 @@ def weight_named(moment: float, radius: float) -> str:
     )
 
 
-def direction_named(radians: float, named: bool = True) -> str:
-    """An angle above minus half a turn, with its unit where that is to be named."""
+def direction_named(radians: float, named: bool = True, digits: int = 2) -> str:
+    """An angle above minus half a turn, with its unit where that is to be named.
+
+    digits : after the point, none where it is whole: one of what is marked out and cut.
+    """
     unit = display("angle")
-    radians += 2 * pi * (round(degrees(radians), 2) <= -180)
-    text = fixed(unit, radians, 2).removesuffix(".00")
+    radians += 2 * pi * (round(degrees(radians), digits) <= -180)
+    text = fixed(unit, radians, digits).removesuffix("." + digits * "0")
     return unit.with_unit(text) if named else text

@@ -72,7 +72,7 @@ def made(what: Machine | Balanced, one: Format, crank_angle: float) -> tuple[Job
     """A file's content, and what was left out of it."""
     if one.needs:
         needed(one.needs, f"a file of {one.title}")
-    machine, changes = (what.machine, what.changes) if isinstance(what, Balanced) else (what, ())
+    machine, changes = (what.machine, what.changes) if isinstance(what, Balanced) else (what, None)
     if one.turns:
         check_turning(machine, one.title)
     _check_joints(machine, one)

@@ -163,13 +163,14 @@ FORMATS: Mapping[str, Format] = {
 class Job:
     """What is to be written.
 
-    crank_angle : at which it is drawn, rad.  changes : that balancing made of it.
+    crank_angle : at which it is drawn, rad.
+    changes : that balancing made of it; None where it was not balanced.
     left_out : what the format does not hold, as it goes on.
     """
 
     machine: Machine
     crank_angle: float = 0.0
-    changes: tuple[Change, ...] = ()
+    changes: tuple[Change, ...] | None = None
     left_out: list[str] = field(default_factory=list)
 
     def leave_out(self, what: str) -> None:

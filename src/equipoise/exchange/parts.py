@@ -128,11 +128,30 @@ def parts(job: Job) -> list[Part]:
     """
     found = [*_of_links(job), *_of_changes(job)]
     if not found:
-        raise UsageError(
+        raise UsageError(_refusal(job))
+    return found
+
+
+def _refusal(job: Job) -> str:
+    """Why there is nothing to cut, and what would give something."""
+    if job.changes is None:
+        return (
             "the model tells no outline of anything; give a link bodies such as plates, or export "
             "it balanced, with counterweights that are discs, rings or sectors"
         )
-    return found
+    if not job.changes:
+        return (
+            "the model tells no outline of anything, and balancing changes no masses; give a link "
+            "bodies such as plates"
+        )
+    cure = "give a link bodies such as plates"
+    if any(change.values.get("pieces") for change in job.changes):
+        cure += ', or a mass of the plan the shape "disc", "ring" or "sector"'
+    changed = ", ".join(dict.fromkeys(change.link for change in job.changes))
+    return (
+        "the model tells no outline of anything, and balancing gives none to what it changes: "
+        f"{changed}; {cure}"
+    )
 
 
 def in_mm(length: float) -> str:
@@ -226,7 +245,7 @@ def circle(center: complex, radius: float) -> tuple[Edge, ...]:
 
 def _of_changes(job: Job) -> Iterator[Part]:
     """Counterweights that balancing adds."""
-    for change in job.changes:
+    for change in job.changes or ():
         pieces: Iterable[dict[str, Any]] = change.values.get("pieces", ())
         for number, piece in enumerate(pieces, 1):
             center = complex(*change.values["center"])

@@ -19,6 +19,8 @@ from equipoise.results.yardsticks import (
     FigureAssessment,
     GaugeReading,
     assess,
+    contact_sentence,
+    kept_contact,
     sentence,
     verdict,
 )
@@ -51,7 +53,7 @@ def analysis_headline(
     if alone:
         yield Text(what_it_is(analysis))
     is_of_gauge = first is not None and first.output.startswith(GAUGES)
-    rest = [one for one in entries if one is not first]
+    rest = [one for one in entries if one is not first and not one.is_kept_contact]
     if is_of_gauge:  # `respond` has the others
         rest = [one for one in rest if not one.output.startswith(GAUGES)]
     large = [one for one in rest if one.is_large]
@@ -73,14 +75,21 @@ def look_at_next(*commands: str) -> Text:
 def verdict_blocks(
     analysis: Analysis, readings: Mapping[str, GaugeReading] | None = None
 ) -> Iterator[Text]:
-    """The figure by which the machine is judged first; nothing where there is none.
+    """The figure by which the machine is judged first, and up to which speed followers stay on
+    their cams; nothing where there is neither.
 
     readings : of gauges, as of `assess`.
     """
-    first = verdict(assess(analysis, readings))
-    if first is not None:
-        words = say("{sentence}.", sentence=sentence(first, analysis.machine.crank_turns))
-        yield Text(words, broken_if(first.is_limit and first.is_large))
+    entries = assess(analysis, readings)
+    first, kept = verdict(entries), kept_contact(entries)
+    words = []
+    if first is not None and first is not kept:
+        words.append(say("{sentence}.", sentence=sentence(first, analysis.machine.crank_turns)))
+    if kept is not None:
+        words.append(contact_sentence(kept))
+    if words:
+        is_broken = first is not None and first.is_limit and first.is_large
+        yield Text(" ".join(words), broken_if(is_broken))
 
 
 def what_it_is(analysis: Analysis) -> str:

@@ -14,7 +14,8 @@ declared with them (`yardstick` in `mechanism.outputs.declared`):
                   spring, inertia of a link, and what the drive exerts at the crank's throw
     pressure      a pressure angle: peak, over 30 deg, of a follower that swings 45 deg
     transmission  a transmission angle: its distance from 90 deg, over 50 deg
-    limit         a limit that is declared: of a gauge, of the speed at which a follower lifts off
+    limit         a limit that is declared: of a gauge
+    contact       of a cam: the speed of the crank, over that at which the follower lifts off
     vibration     the velocity of a gauge without a limit: RMS, over 4.5 mm/s
 
 A ratio of 1 is the yardstick itself.  More is large; of what a machine always has of its kind,
@@ -39,6 +40,7 @@ from equipoise.i18n import Note, say, to_say
 from equipoise.mechanism.assembly.steps import size_of_links
 from equipoise.mechanism.dynamics import acting
 from equipoise.mechanism.outputs.declared import DECLARED, declared
+from equipoise.mechanism.outputs.spoken import named
 from equipoise.mechanism.parts.drives import Drive, FurtherDrive
 from equipoise.mechanism.parts.machine import STANDARD_GRAVITY, Machine
 from equipoise.mechanism.parts.objectives import GAUGES
@@ -95,6 +97,7 @@ class FigureAssessment:
     shown_unit : in which it is shown, where that is not the usual unit of its dimension.
     is_limit : whether the machine does not do what it is meant to do beyond it: a limit that the
         file gives, or contact that is lost.
+    is_contact : whether it is the speed at which a follower lifts off.
     """
 
     figure: str
@@ -108,6 +111,7 @@ class FigureAssessment:
     item: str = ""
     crank_angle: float | None = None
     is_limit: bool = False
+    is_contact: bool = False
     shown_unit: str | None = None
 
     @property
@@ -147,6 +151,11 @@ class FigureAssessment:
         return self.yardstick_kind == "effort" and self.against == MEAN
 
     @property
+    def is_kept_contact(self) -> bool:
+        """Whether it is that of a follower that stays on its cam at the speed of the machine."""
+        return self.is_contact and not self.is_large
+
+    @property
     def is_nearly_dead(self) -> bool:
         """Whether it is a transmission angle of less than 20 deg."""
         if self.yardstick_kind != "transmission":
@@ -156,8 +165,9 @@ class FigureAssessment:
     @property
     def large_from(self) -> float:
         """Ratio from which figures of its kind are large."""
-        kind = self.yardstick_kind
-        return LARGE if self.is_swing_about_mean else LARGE_FROM.get(kind, LARGE)
+        if self.is_limit or self.is_swing_about_mean:
+            return LARGE
+        return LARGE_FROM.get(self.yardstick_kind, LARGE)
 
     @property
     def excess(self) -> float:
@@ -239,13 +249,34 @@ def _yardstick_of_whole(output: Output) -> str:
 
 def verdict(entries: tuple[FigureAssessment, ...]) -> FigureAssessment | None:
     """The figure by which a machine is judged first: a limit, else a dyad that is nearly dead, else
-    what is largest.
+    what is largest; a contact that is kept comes last, as nothing is wrong there.
 
     entries : from `assess`.
     """
-    limits = (entry for entry in entries if entry.is_limit)
-    nearly_dead = (entry for entry in entries if entry.is_nearly_dead)
-    return next(limits, next(nearly_dead, entries[0] if entries else None))
+    others = [entry for entry in entries if not entry.is_kept_contact]
+    limits = (entry for entry in others if entry.is_limit)
+    nearly_dead = (entry for entry in others if entry.is_nearly_dead)
+    return next(limits, next(nearly_dead, others[0] if others else kept_contact(entries)))
+
+
+def kept_contact(entries: tuple[FigureAssessment, ...]) -> FigureAssessment | None:
+    """Of the followers that stay on their cams, that with the least margin; None without any.
+
+    entries : from `assess`.
+    """
+    return next((entry for entry in entries if entry.is_kept_contact), None)
+
+
+def contact_sentence(entry: FigureAssessment) -> str:
+    """Up to which speed a contact is kept, and its margin."""
+    shown = display(entry.dimension, [entry.value], entry.shown_unit)
+    return say(
+        "The follower of {cam} stays on its cam up to {speed}, {ratio} times the speed of the "
+        "crank.",
+        cam=named(entry.item),
+        speed=shown.with_unit(shown.text(entry.value, digits=3)),
+        ratio=number(1 / entry.ratio, digits=2),
+    )
 
 
 def sentence(entry: FigureAssessment, crank_turns: bool = True) -> str:
@@ -537,7 +568,8 @@ def _of_cams(analysis: Analysis) -> Iterator[FigureAssessment]:
         yield FigureAssessment(
             f"cams.{name}.lift_off_speed", Note("lift-off speed of the crank"),
             cam.lift_off_speed, "angular speed", speed, Note("the speed of the crank"), ratio,
-            f"cams.{name}", name, cam.lift_off_at, is_limit=True, shown_unit="rpm",
+            f"cams.{name}", name, cam.lift_off_at, is_limit=True, is_contact=True,
+            shown_unit="rpm",
         )  # fmt: skip
 
 

@@ -13,6 +13,7 @@ import pytest
 import equipoise as eq
 from equipoise.balancing.balanced import Balanced
 from equipoise.balancing.compared import figures_of, worse_of
+from equipoise.balancing.workshop import Change, in_short
 from equipoise.mechanism.outputs.declared import DECLARED
 from equipoise.mechanism.parts.balance import AddedMass, Balance, Limit, Objective, Weight
 
@@ -122,6 +123,17 @@ def test_changes_make_the_machine() -> None:
         assert new.mass == pytest.approx(mass)
         assert new.center_of_mass == pytest.approx((center.real, center.imag))
         assert new.inertia == pytest.approx(inertia, rel=1e-7)
+
+
+def test_angles_of_a_sector_are_those_that_can_be_marked_out() -> None:
+    """Tenths of a degree, where a plan's optimum has more; none of what is whole."""
+    piece = {"shape": "sector", "angle": 3.14145, "direction": -3.0469, "outer_radius": 0.06,
+             "inner_radius": 0.0, "thickness": 0.01, "density": 7850.0, "mass": 0.4,
+             "place": (0.0, 0.0)}  # fmt: skip
+    values = {"at": "A", "center": (0.0, 0.0), "pieces": [piece], "mass": 0.4, "moment": 0.01,
+              "direction": 0.0, "radius": 0.025}  # fmt: skip
+    (line,) = in_short(Change("added mass", "crank", values))
+    assert "180° wide, its middle at -174.6°" in line
 
 
 def test_equivalent_speeds_give_the_old_figures() -> None:

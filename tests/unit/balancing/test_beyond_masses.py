@@ -288,6 +288,16 @@ def test_where_phases_of_rows_bring_more_no_mounts_are_named() -> None:
     assert beyond("walking-transplanter").mounts is None
 
 
+def test_a_resonance_that_matters_less_than_masses_is_not_moved_first() -> None:
+    """193 rpm beside 119 rpm: a softer spring takes 23 % off, a counterweight 43 %."""
+    found, mounts = found_for("yamashita-rig"), beyond("yamashita-rig").mounts
+    assert found.helps and mounts is not None and mounts.gain < found.gain
+    text = said("yamashita-rig")
+    assert "The resonance at 119 rpm amplifies the motion at 193 rpm too: move it, or run" in text
+    assert "First move" not in text
+    assert "Mount spring 2 times softer would take 23 % off" in text
+
+
 def test_a_damped_resonance_that_amplifies_by_half_is_named_beside_a_counterweight() -> None:
     """411 rpm with a damping of 0.2152, run at 300 rpm: 1.8 times what stiff mounts would leave;
     along and across alike.  Its edges by the equation of a mass on a spring and a damper.

@@ -30,7 +30,7 @@ ADVISED = [
 NARROW = "\N{NO-BREAK SPACE}"
 VERDICTS = {
     "hydraulic-loader": "Force of the cylinder A to B, peak: 25.6 kN",
-    "cam-pusher": "Lift-off speed of the crank: 583 rpm",
+    "cam-pusher": "Shaking moment, peak: 7.13 N m",
     "twin-engine": "Rocking moment, peak: 116 N m",
     "quick-return": "Drive torque, peak to peak: 211 N m",
     "sieve": "Velocity at stand_along, RMS: 143 mm/s",
@@ -217,6 +217,24 @@ def test_a_nearly_dead_dyad_is_judged_before_what_shakes(
         assert printed(capsys, "analyze", str(file))[1].startswith(first)
     (wiper,) = (file for file in ADVISED if file.endswith("wiper.toml"))
     assert printed(capsys, "analyze", wiper)[1].startswith("Transmission angle at C, largest: 162")
+
+
+def test_a_follower_that_stays_on_is_no_trouble(capsys: pytest.CaptureFixture[str]) -> None:
+    """What is large comes first, then up to which speed the follower stays on; one that lifts off
+    stands before all else, and so does the margin of a machine of which nothing is known but that.
+    """
+    lines = " ".join(printed(capsys, "analyze", "cam-pusher")[:5])
+    assert "The follower of “crank to pusher” stays on its cam up to 583 rpm, 2.4 times" in lines
+    assert "ift-off" not in lines
+    report = page(build(found_of("cam-pusher"))).replace(NARROW, " ")
+    assert report.index("stays on its cam up to 583 rpm") < report.index('class="tiles"')
+    fast = eq.analyze(eq.load("cam-pusher"), speed=62.0)
+    first = next(iter(fast.headline()))
+    assert isinstance(first, Text) and first.emphasis == "broken"
+    assert first.text.startswith("Lift-off speed of the crank: 583 rpm")
+    assert "stays on" not in first.text
+    kept = tuple(one for one in assess(eq.analyze(eq.load("cam-pusher"))) if one.is_contact)
+    assert verdict(kept) is kept[0] and verdict(()) is None
 
 
 def test_what_stands_first_has_every_language() -> None:
