@@ -2,13 +2,15 @@
 
 Python blocks are run as they stand, with ``>>>`` as doctests; in console blocks the output of every
 line that begins with ``$ equipoise`` is compared with what follows.  The snippets of a page
-share their names and files, as a reader types them one after the other.
+share their names and files, as a reader types them one after the other.  The notebooks of
+`docs/tutorials` are run cell by cell, in the way in which the site runs them.
 """
 
 from __future__ import annotations
 
 import io
 import os
+import runpy
 import shlex
 import signal
 from collections.abc import Iterator
@@ -80,8 +82,30 @@ class Page(pytest.File):
         yield Snippets.from_parent(self, name="snippets")
 
 
-def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> Page | None:
-    """Collect README.md and the pages of docs."""
+class NotebookCells(pytest.Item):
+    """All cells of a notebook, in order."""
+
+    def runtest(self) -> None:
+        tutorials = runpy.run_path(str(ROOT / "docs" / "site" / "tutorials.py"))
+        notebook = tutorials["Notebook"](self.path)
+        notebook.run()
+        assert all(cell["outputs"] for cell in notebook.cells if cell["cell_type"] == "code")
+
+    def reportinfo(self) -> tuple[Path, int, str]:
+        return self.path, 0, f"cells of {self.path.name}"
+
+
+class NotebookFile(pytest.File):
+    """A notebook."""
+
+    def collect(self) -> Iterator[NotebookCells]:
+        yield NotebookCells.from_parent(self, name="cells")
+
+
+def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> pytest.File | None:
+    """Collect README.md, and the pages and notebooks of docs."""
+    if file_path.suffix == ".ipynb" and ROOT / "docs" in file_path.parents:
+        return NotebookFile.from_parent(parent, path=file_path)
     if file_path == ROOT / "README.md" or (
         file_path.suffix == ".md" and ROOT / "docs" in file_path.parents
     ):

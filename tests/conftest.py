@@ -69,7 +69,7 @@ def pytest_itemcollected(item: pytest.Item) -> None:
     """Mark what stands apart from `make test`: what needs a browser, or the documentation."""
     if item.path.parent.name == "browser":
         item.add_marker("browser")
-    elif item.path.suffix == ".md" or "site" in getattr(item, "fixturenames", ()):
+    elif item.path.suffix in {".md", ".ipynb"} or "site" in getattr(item, "fixturenames", ()):
         item.add_marker("documentation")
 
 

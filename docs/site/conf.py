@@ -51,6 +51,7 @@ html_title = "Equipoise"
 html_static_path = ["static", str(Path(ziamath.__file__).with_name("fonts") / FONT)]
 copybutton_exclude = ".linenos, .gp, .go"  # of a session only what is typed
 html_css_files = ["site.css"]
+html_js_files = [("cells.js", {"defer": "defer"})]
 templates_path = ["templates"] if RANKING.exists() else []
 html_copy_source = html_show_sourcelink = html_show_sphinx = False
 html_show_search_summary = False  # a page opened as a file must not read others

@@ -3,7 +3,7 @@
     make docs
 
 Pages of `docs` are laid out in `build/docs-source` beside what is made of the product itself: the
-gallery, the commands, the public names, the scripts, the pictures of the theory.
+gallery, the commands, the public names, the scripts, the tutorials, the pictures of the theory.
 """
 
 from __future__ import annotations
@@ -47,8 +47,10 @@ ANCHOR = re.compile(r'<a id="([\w-]+)"></a>')
 LINK = re.compile(r"\[((?:[^\[\]]|\[+[^\[\]]*\]+)*)\]\((?!\w+:|[#/])([^)#\s]+)(#[^)\s]*)?\)")
 
 
-def linked(page: Path) -> str:
+def linked(page: Path, written: str | None = None) -> str:
     """The text of a page, whose links go to pages of the site; of what has none, the name remains.
+
+    written : its text, where the file is no Markdown.
 
     Raises
     ------
@@ -60,7 +62,7 @@ def linked(page: Path) -> str:
         target = Path(os.path.normpath(page.parent / path))
         name = target.relative_to(ROOT).as_posix()
         if name.startswith("docs/") or name in AROUND:
-            inside = AROUND.get(name, name).removeprefix("docs/")
+            inside = AROUND.get(name, name).removeprefix("docs/").replace(".ipynb", ".md")
         elif not target.exists():
             raise FileNotFoundError(f"{page}: there is no {path}")
         elif name not in MADE:
@@ -70,7 +72,7 @@ def linked(page: Path) -> str:
         here = page.parent.relative_to(DOCS) if page.is_relative_to(DOCS) else Path()
         return f"[{words}]({os.path.relpath(inside, here)}{place})"
 
-    return LINK.sub(to, page.read_text(encoding="utf-8"))
+    return LINK.sub(to, page.read_text(encoding="utf-8") if written is None else written)
 
 
 def lay_out(source: Path) -> None:
@@ -82,10 +84,15 @@ def lay_out(source: Path) -> None:
     from names import names
     from pictures import draw
     from split import split
+    from topics import write_topics
+    from tutorials import tutorials
 
+    source.mkdir(parents=True)
+    notebooks = tutorials(DOCS / "tutorials", source / EXTRA / "tutorials", linked)
     pages = {
         **{page.relative_to(DOCS).as_posix(): linked(page) for page in DOCS.rglob("*.md")},
         **{name: linked(ROOT / path) for path, name in AROUND.items()},
+        **notebooks,
         **names(),
         "commands.md": commands(),
         "scripts.md": scripts(),
@@ -97,7 +104,7 @@ def lay_out(source: Path) -> None:
         if TABLES_BELOW.search(pages[page]) and page.startswith("model-file/"):
             pages = split(pages, page)
     pages = {name: side_by_side(text) for name, text in pages.items()}
-    source.mkdir(parents=True)
+    write_topics(pages, source / EXTRA)
     live = write_live(source / EXTRA, GALLERY)
     shown = gallery({language: pages[page] for language, page in GALLERY.items()}, live)
     if not live:

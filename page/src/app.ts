@@ -5,6 +5,7 @@ import { Bench } from "./bench";
 import { Charts } from "./charts";
 import { type Asking, ContextMenu, type Menu } from "./context_menu";
 import { Conversation, type Events } from "./conversation";
+import { cureOf } from "./cure";
 import { h, set, write } from "./dom";
 import { dropZone, handOut, picker, save, tooLarge } from "./files";
 import { follow, measure } from "./format";
@@ -124,7 +125,7 @@ export class App {
         this.charts.pale(numbers);
       },
       variants: (message) => this.seeing.variants.show(message),
-      refused: (message, edit) => this.refuse(message, edit),
+      refused: (message, edit, told) => this.refuse(message, edit, cureOf(told)),
       balanced: (message) => {
         this.balance.show(message);
         this.tour.did("balanced", headline(message));
@@ -494,13 +495,13 @@ export class App {
   }
 
   /** Say something wherever it is seen. */
-  private tell(text: string, bad: boolean): void {
+  private tell(text: string, bad: boolean, cure: HTMLElement | null = null): void {
     this.views.say(text, bad);
-    this.board.say(text, bad);
+    this.board.say(text, bad, cure);
   }
 
-  private refuse(message: string, edit: number | null): void {
-    this.tell(message, true);
+  private refuse(message: string, edit: number | null, cure: HTMLElement | null): void {
+    this.tell(message, true, cure);
     if (edit !== null) {
       this.hands.refused();
       this.frames.draw(edit); // what is shown of the attempt is its answer

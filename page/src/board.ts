@@ -1,5 +1,6 @@
 /** The sheet that the linkage is drawn on: moving it, zooming, and what is said on it. */
 
+import { withCure } from "./cure";
 import { h, icon, write } from "./dom";
 import type { Stage } from "./stage";
 import { Touch } from "./touch";
@@ -60,11 +61,12 @@ export class Board {
   }
 
   /** A sentence about what was asked; `bad` where it cannot be. */
-  say(text: string, bad: boolean): void {
+  say(text: string, bad: boolean, cure: HTMLElement | null = null): void {
     this.since = performance.now();
     clearTimeout(this.later);
     this.later = 0;
     write(this.spoken, text);
+    withCure(this.spoken, cure);
     this.spoken.classList.toggle("bad", bad && text !== "");
   }
 

@@ -19,7 +19,7 @@ export interface Events {
   study(message: StudyMessage, numbers: Numbers): void;
   stores(message: Stores): void;
   /** Something could not be done; `edit`: the number of the edit that was tried, if it was one. */
-  refused(message: string, edit: number | null): void;
+  refused(message: string, edit: number | null, told: Refused | null): void;
   balanced(message: Extract<Told, { type: "balanced" }>): void;
   busy(what: string | null): void;
   tables(message: Tables): void;
@@ -189,7 +189,7 @@ export class Conversation {
       case "side":
         return this.events.side(told);
       case "refused":
-        if (!this.repeated(told.seq)) this.refuse(told.seq, told.message);
+        if (!this.repeated(told.seq)) this.refuse(told);
         return this.end(told.seq, told.message, told);
       case "tables":
         this.events.tables(told);
@@ -216,12 +216,13 @@ export class Conversation {
     else this.events.file(told, bytes);
   }
 
-  private refuse(seq: number, message: string): void {
+  private refuse(told: Refused): void {
+    const { seq, message } = told;
     const asked = this.flight?.seq === seq ? this.flight.asked : null;
     if (asked && ASIDE.has(asked.type) && this.flight?.answered) return;
-    if (asked?.type !== "edit") return this.events.refused(message, null);
+    if (asked?.type !== "edit") return this.events.refused(message, null, told);
     // Who asks for a number and waits for the answer says it beside that number.
-    if (!asked.commit || !this.flight?.answered) this.events.refused(message, seq);
+    if (!asked.commit || !this.flight?.answered) this.events.refused(message, seq, told);
   }
 
   private end(seq: number, refusal: string | null, told: Refused | null = null): void {
@@ -332,7 +333,7 @@ export class Conversation {
   private unheard(answered: Answered | undefined): void {
     const message = say("the server does not answer; ask again when it does");
     if (answered) answered(message, null);
-    else this.events.refused(message, null);
+    else this.events.refused(message, null, null);
   }
 
   /** A new connection knows nothing: tell it all that was done, and then what has waited. */

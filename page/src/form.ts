@@ -1,5 +1,6 @@
 /** The form of one table of a model file: a control for each key, as the server tells them. */
 
+import { cureOf, withCure } from "./cure";
 import { fresh, h, set, write } from "./dom";
 import { type Around, type Input, input, type Picked } from "./inputs";
 import { demandsOf } from "./rules";
@@ -89,14 +90,14 @@ export class Form {
     const key = path === undefined ? null : keyOf(path, this.subject.where);
     const here = key !== null || path === this.subject.where;
     const text = path === undefined || here ? (what ?? message) : message;
-    if (key !== null && this.errors.has(key)) this.wrong(key, text)?.focus();
-    else this.say(this.problem, text);
+    if (key !== null && this.errors.has(key)) this.wrong(key, text, cureOf(told))?.focus();
+    else this.say(this.problem, text, cureOf(told));
   }
 
   /** Say at a key what is wrong, and give back what it is typed into. */
-  private wrong(key: string, text: string): HTMLElement | null {
+  private wrong(key: string, text: string, cure: HTMLElement | null = null): HTMLElement | null {
     const line = this.errors.get(key) as HTMLElement;
-    this.say(line, text);
+    this.say(line, text, cure);
     const row = line.parentElement as HTMLElement;
     const first = row.querySelector<HTMLElement>(GIVEN);
     set(first ?? row, { "aria-invalid": "true", "aria-errormessage": line.id });
@@ -137,8 +138,9 @@ export class Form {
     return values;
   }
 
-  private say(line: HTMLElement, text: string): void {
+  private say(line: HTMLElement, text: string, cure: HTMLElement | null = null): void {
     write(line, text);
+    withCure(line, cure);
     line.hidden = !text;
   }
 

@@ -1,5 +1,6 @@
 /** The keys, in a dialog. */
 
+import { documentation } from "./cure";
 import { h } from "./dom";
 import { TOOLS } from "./palette";
 import { say, toSay } from "./words";
@@ -68,6 +69,6 @@ export function helpDialog(version: () => string, tour: () => void): HTMLDialogE
 
 /** The way to the documentation, where it lies beside the page. */
 function documented(): HTMLElement | null {
-  const link = document.querySelector<HTMLLinkElement>('link[rel="help"]');
-  return link && h("p", {}, h("a", { href: link.href, target: "_blank", rel: "noopener" }, say("Documentation")));
+  const href = documentation();
+  return href === null ? null : h("p", {}, h("a", { href, target: "_blank", rel: "noopener" }, say("Documentation")));
 }

@@ -487,6 +487,10 @@ export interface Refused {
   path?: string;
   /** What is wrong, without its place, and keys by the words of forms. */
   what?: string;
+  /** What `equipoise explain` knows about it. */
+  topic?: string;
+  /** Title and text of its page, where it is a page of errors. */
+  cure?: [string, string];
 }
 
 /** A file to be kept; `files` are texts of the tables that it names. */

@@ -1,9 +1,10 @@
 /** One number of the machine: typed, stepped by keys, or moved by its slider. */
 
 import type { Conversation } from "./conversation";
+import { cureOf, withCure } from "./cure";
 import { fresh, h, put, set, show, write } from "./dom";
 import { Gesture } from "./gesture";
-import type { Field } from "./protocol";
+import type { Field, Refused } from "./protocol";
 import { breakable } from "./format";
 import { say } from "./words";
 
@@ -124,10 +125,10 @@ export class Row {
     const { path, unit } = this.field;
     const bare = Number.isFinite(Number(text));
     const edits = [{ set: path, text: bare ? `${text} ${unit}` : text, ...this.keep }];
-    this.talk.ask({ type: "edit", commit: true, label: this.label, edits }, (refusal) => {
+    this.talk.ask({ type: "edit", commit: true, label: this.label, edits }, (refusal, told) => {
       this.asked = null;
       if (refusal === null) this.typing = false;
-      this.complain(refusal);
+      this.complain(refusal, told);
       if (refusal === null) this.revert();
     });
   }
@@ -193,9 +194,10 @@ export class Row {
     set(slider, { "aria-valuetext": this.field.shown });
   }
 
-  private complain(message: string | null): void {
+  private complain(message: string | null, told: Refused | null = null): void {
     show(this.error, message !== null);
     write(this.error, message ?? "");
+    withCure(this.error, cureOf(told));
     set(this.input, {
       "aria-invalid": message !== null && "true",
       "aria-describedby": message !== null && this.error.id,

@@ -96,6 +96,22 @@ class EquipoiseError(Exception):
         with speaking(language or spoken()):
             return said(in_english(self.sentence if lines else self.note))
 
+    @property
+    def explained_by(self) -> str:
+        """The command that prints what there is about it, such as ``equipoise explain units``;
+        empty if there is nothing.
+        """
+        topics = import_module("equipoise.schema.topics")  # a room above
+        topic = topics.known_topic(self.topic) if self.topic else ""
+        return f"equipoise explain {topic}" if topic else ""
+
+    def _render_traceback_(self) -> list[str]:
+        """What IPython and notebooks show: its traceback, and below it where there is more."""
+        shell = import_module("IPython").get_ipython()
+        shown = shell.InteractiveTB.structured_traceback(type(self), self, self.__traceback__)
+        more = self.explained_by
+        return [*shown, *([f"more: {more}"] if more else [])]
+
     def with_paste(self, paste: Paste | None) -> Self:
         """The same error, with lines that can be pasted into the file."""
         self._paste = paste

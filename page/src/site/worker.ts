@@ -2,7 +2,8 @@
  * A worker that computes with Python in WebAssembly, for a page without a server.
  *
  * The first one answers the page.  It starts another of the same script, which computes what takes
- * long; see `equipoise/web/worker.py` for what each of them does.
+ * long; see `equipoise/web/worker.py` for what each of them does.  A page of the documentation starts
+ * one that is called `cells`, which runs the cells of a tutorial (`equipoise/web/cells.py`).
  */
 
 /** What `site.json` tells: where the runtime is, and what Python packages there are. */
@@ -46,6 +47,12 @@ interface Background {
   missing: string | undefined;
   lacks(name: string): void;
 }
+interface CellRunner {
+  /** Outputs in JSON; nothing where a package is missing. */
+  run_in_page(source: string): string | undefined;
+  missing: string;
+  lacks(name: string): void;
+}
 interface Pyodide {
   loadPackage(names: string[], options?: object): Promise<unknown>;
   unpackArchive(data: Uint8Array, format: string): void;
@@ -85,7 +92,7 @@ const others = (): Promise<void> =>
     channel.port2.postMessage(0);
   });
 
-async function start(kind: "Foreground" | "Background"): Promise<[Pyodide, unknown]> {
+async function start(kind: "worker.Foreground" | "worker.Background" | "cells.CellRunner"): Promise<[Pyodide, unknown]> {
   const site = (await (await fetch(new URL("site.json", base))).json()) as Site;
   const runtime = new URL(site.runtime, base);
   const { loadPyodide } = (await import(new URL("pyodide.mjs", runtime).href)) as {
@@ -111,7 +118,8 @@ async function start(kind: "Foreground" | "Background"): Promise<[Pyodide, unkno
     if (!here(one)) one.file_name = published + one.file_name;
   await python.loadPackage(first, { messageCallback: () => undefined });
   for (const data of await Promise.all(fetched)) python.unpackArchive(data, "wheel");
-  const code = `from equipoise.web.worker import ${kind}; ${kind}()`;
+  const [module, name] = kind.split(".");
+  const code = `from equipoise.web.${module} import ${name}; ${name}()`;
   return [python, python.runPython(code)];
 }
 
@@ -135,7 +143,7 @@ async function load(python: Pyodide, module: string): Promise<boolean> {
 async function foreground(): Promise<void> {
   const early: string[] = [];
   self.onmessage = ({ data }: MessageEvent<string>) => early.push(data);
-  const [python, page] = (await start("Foreground")) as [Pyodide, Foreground];
+  const [python, page] = (await start("worker.Foreground")) as [Pyodide, Foreground];
   /** It starts once the first machine is shown, so that this one has the processor to itself until then. */
   let other: Worker | null = null;
   const hand = (task: Uint8Array): void => (other ??= begin()).postMessage({ task });
@@ -195,18 +203,40 @@ async function foreground(): Promise<void> {
   void work();
 }
 
-async function background(): Promise<void> {
-  const waiting: Uint8Array[] = [];
+/** What is sent to this worker, one after the other. */
+function inbox<Sent>(): () => Promise<Sent> {
+  const waiting: Sent[] = [];
   let wake: (() => void) | null = null;
-  self.onmessage = ({ data }: MessageEvent<{ task: Uint8Array }>) => {
-    waiting.push(data.task);
+  self.onmessage = ({ data }: MessageEvent<Sent>) => {
+    waiting.push(data);
     wake?.();
   };
-  const [python, tasks] = (await start("Background")) as [Pyodide, Background];
+  return async () => {
+    while (!waiting.length) await new Promise<void>((done) => (wake = done));
+    return waiting.shift() as Sent;
+  };
+}
+
+async function cells(): Promise<void> {
+  const next = inbox<string>();
+  const [python, page] = (await start("cells.CellRunner")) as [Pyodide, CellRunner];
   for (;;) {
-    if (!waiting.length) await new Promise<void>((done) => (wake = done));
-    const task = waiting.shift();
-    if (!task) continue;
+    const source = await next();
+    let outputs = page.run_in_page(source);
+    while (outputs === undefined) {
+      const module = page.missing;
+      if (!(await load(python, module))) page.lacks(module);
+      outputs = page.run_in_page(source);
+    }
+    post({ type: "ran", outputs });
+  }
+}
+
+async function background(): Promise<void> {
+  const next = inbox<{ task: Uint8Array }>();
+  const [python, tasks] = (await start("worker.Background")) as [Pyodide, Background];
+  for (;;) {
+    const { task } = await next();
     tasks.begin(python.toPy(task));
     for (let done = false; !done; ) {
       const step = tasks.step();
@@ -227,4 +257,5 @@ async function background(): Promise<void> {
 }
 
 const failed = (error: unknown): void => post({ type: "failed", what: String(error) });
-(self.name === "background" ? background() : foreground()).catch(failed);
+const ROLES: Record<string, () => Promise<void>> = { background, cells };
+(ROLES[self.name] ?? foreground)().catch(failed);

@@ -185,12 +185,8 @@ def _refuse(error: Exception) -> int:
 
 def _more(error: EquipoiseError) -> tuple[str, ...]:
     """The command that explains an error; nothing where there is no more to say."""
-    if not error.topic:
-        return ()
-    from equipoise.schema.topics import known_topic
-
-    topic = known_topic(error.topic)
-    return (f"more: equipoise explain {topic}",) if topic else ()
+    command = error.explained_by
+    return (f"more: {command}",) if command else ()
 
 
 SIGN, RAREST = 5.0, 50.0

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import re
 import shutil
 from collections.abc import Iterator
-from textwrap import fill, indent
 from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
@@ -17,9 +15,6 @@ if TYPE_CHECKING:
     from equipoise.results.blocks import Block
     from equipoise.schema.topics import FileTable
 
-CODE = re.compile(r"^```\w*\n(.*?)^```$", re.MULTILINE | re.DOTALL)
-PARAGRAPH = re.compile(r"\n\n|\n(?=- )")
-LINK = re.compile(r"\[((?:[^\[\]]|\[+[^\[\]]*\]+)*)\]\([^)]*\)")
 WIDEST = 88
 """Signs in a line of running text."""
 
@@ -86,16 +81,4 @@ def _page(title: str, text: str) -> str:
 
     width = min(shutil.get_terminal_size().columns, WIDEST)
     machine = f"The examples of these pages change this machine:\n\n{topics.example_of_errors()}"
-    return "\n\n".join([title, *_paragraphs(text, width), *_paragraphs(machine, width)])
-
-
-def _paragraphs(text: str, width: int) -> Iterator[str]:
-    """Markdown as paragraphs that are wrapped, and lines of a file as they stand there."""
-    for at, part in enumerate(CODE.split(text)):
-        if at % 2:
-            yield indent(part.rstrip(), "    ")
-            continue
-        for paragraph in filter(None, map(str.strip, PARAGRAPH.split(part))):
-            words = LINK.sub(r"\1", " ".join(paragraph.split())).replace("`", "")
-            further = "  " * words.startswith("- ")
-            yield fill(words, width, subsequent_indent=further, break_long_words=False)
+    return "\n\n".join([title, *topics.paragraphs(text, width), *topics.paragraphs(machine, width)])

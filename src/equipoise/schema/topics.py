@@ -10,12 +10,18 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
 from importlib import resources
+from textwrap import fill, indent
 from typing import NamedTuple
 
 from equipoise import keys
 from equipoise.schema.opening import FileKind, document_of
 
 FILES: tuple[FileKind, ...] = ("linkage", "tool", "study")
+CODE = re.compile(r"^```\w*\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+PARAGRAPH = re.compile(r"\n\n|\n(?=- )")
+LINK = re.compile(r"\[((?:[^\[\]]|\[+[^\[\]]*\]+)*)\]\([^)]*\)")
+UNWRAPPED = 100_000
+"""Signs of a line, where whoever shows it wraps it."""
 NAME = "NAME"
 """Stands in a path for a name of the user's."""
 
@@ -52,6 +58,30 @@ def example_of_errors() -> str:
     """The file that the page of errors changes, as a block of Markdown."""
     page = resources.files("equipoise").joinpath("errors.md").read_text(encoding="utf-8")
     return page[page.index("```toml") : page.index("\n## ")].strip()
+
+
+def paragraphs(text: str, width: int = UNWRAPPED) -> Iterator[str]:
+    """Markdown as plain paragraphs of lines of a width, and lines of a file as they stand there."""
+    for at, part in enumerate(CODE.split(text)):
+        if at % 2:
+            yield indent(part.rstrip(), "    ")
+            continue
+        for paragraph in filter(None, map(str.strip, PARAGRAPH.split(part))):
+            words = LINK.sub(r"\1", " ".join(paragraph.split())).replace("`", "")
+            further = "  " * words.startswith("- ")
+            yield fill(words, width, subsequent_indent=further, break_long_words=False)
+
+
+@cache
+def plain_page(topic: str) -> tuple[str, str]:
+    """Title and plain text of the page of an error; one line a paragraph.
+
+    Raises
+    ------
+    KeyError : no error has that topic.
+    """
+    page = errors()[topic]
+    return page.title, "\n\n".join(paragraphs(page.text))
 
 
 @cache

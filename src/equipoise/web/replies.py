@@ -11,6 +11,7 @@ from typing import Any
 from equipoise.errors import EquipoiseError, ModelError, UsageError
 from equipoise.i18n import key_words
 from equipoise.limits import out_of_memory
+from equipoise.schema.topics import errors, known_topic, plain_page
 from equipoise.web.forms import word_in_forms
 
 LONGEST = 800
@@ -34,6 +35,9 @@ def refused(seq: int | None, error: EquipoiseError, language: str = "en") -> Rep
     if isinstance(error, ModelError):
         what = EquipoiseError(error.what)
         content |= {"path": error.where} if error.where else {}
+    if topic := known_topic(error.topic):
+        content["topic"] = topic
+        content |= {"cure": plain_page(topic)} if topic in errors() else {}
     with key_words(word_in_forms):
         content["what"] = _shortened(what.told(language))
     return Reply(content)

@@ -12,6 +12,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import re
 import shutil
 import stat
 import tempfile
@@ -140,12 +141,15 @@ def write_site(
     return Site(target, first, tuple(sorted(missing)))
 
 
+NEEDS_PAGE = re.compile(r'(<\w+ [^>]*class="(?:open-page|run-cell|runs-here)") hidden')
+"""In the documentation, an element that is of use beside the live page only."""
+
+
 def _link_page(docs: Path) -> None:
-    """Show the links by which a gallery opens its machines in the live page."""
-    for gallery in docs.rglob("examples.html"):
-        text = gallery.read_text(encoding="utf-8")
-        shown = text.replace('<a class="open-page" hidden ', '<a class="open-page" ')
-        gallery.write_text(shown, encoding="utf-8")
+    """Show what opens machines of a gallery in the live page, and runs the cells of tutorials."""
+    for page in (*docs.rglob("examples.html"), *docs.glob("tutorials/*.html")):
+        shown = NEEDS_PAGE.sub(r"\1", page.read_text(encoding="utf-8"))
+        page.write_text(shown, encoding="utf-8")
 
 
 OWN = {*PAGE, "index.html", "site.json", "runtime", "wheels", "docs"}
