@@ -26,7 +26,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from functools import partial
+from functools import cache, partial
 from math import degrees, hypot, pi, radians, sqrt
 
 import numpy as np
@@ -50,7 +50,7 @@ from literature.yamashita import (
     vertical_acceleration,
     with_table_3,
 )
-from support.conformance import Cause, Printed, published
+from support.conformance import Cause, Observation, Printed, published
 from support.sources import YAMASHITA
 
 KGF = 9.80665
@@ -75,14 +75,16 @@ PRINTED = {
 }
 """Table 4, its slips put right: A_n, B_n, R_n in m/s2, R_n in kgf, phi_n in degrees; and exact."""
 SLIPS = {
-    (1, "phi"): ("162.5", "its A_1 and B_1 make 110.8 deg; 162.5 belongs to n = 2"),
-    (2, "M R"): ("0.344", "its R_2 makes 0.346 kgf"),
-    (9, "R"): ("0.099", "its A_9 and B_9 make 0.035 m/s2"),
-    (9, "M R"): ("0.012", "its A_9 and B_9 make 0.004 kgf"),
-    (9, "phi"): ("106.2", "its A_9 and B_9 make 104.2 deg"),
+    (1, "phi"): ("162.5", "its A_1 and B_1 make {} deg; 162.5 belongs to n = 2", "110.8"),
+    (2, "M R"): ("0.344", "its R_2 makes {} kgf", "0.346"),
+    (9, "R"): ("0.099", "its A_9 and B_9 make {} m/s2", "0.035"),
+    (9, "M R"): ("0.012", "its A_9 and B_9 make {} kgf", "0.004"),
+    (9, "phi"): ("106.2", "its A_9 and B_9 make {} deg", "104.2"),
 }
-"""Of Table 4: as printed, and what is wrong."""
-BUMP = "all that Table 4 has more is one bump near 47 deg"
+"""Of Table 4: as printed, what is wrong, and what its other columns make of the number."""
+BUMP = Observation(
+    "all that Table 4 has more is one bump near 47 deg", lambda: is_bump(47.5, 0.406)
+)
 
 
 def links_mass(machine: eq.Machine) -> float:
@@ -154,24 +156,38 @@ def rows_of_table_4() -> Iterator[Printed]:
         for (key, (unit, read)), one, told in zip(
             columns.items(), printed.split(), exact.split(), strict=True
         ):
-            slip, why = SLIPS.get((n, key), ("", their_own(n, key)))
+            slip, words, right = SLIPS.get((n, key), ("", "", ""))
+            why = is_right(n, key, words, right) if slip else their_own(n, key)
             yield Printed(
                 "yamashita-1", f"Y_G'', {key} of order {n}", "Table 4", slip or one, told, unit,
                 why=why, slip=bool(slip), of=partial(read, n),
             )  # fmt: skip
 
 
-def their_own(n: int, key: str) -> Cause | str:
-    """What their A_n and B_n, or their R_n, make of the other columns; with g = 9.8 m/s2."""
-    a, b, size, *_ = map(float, PRINTED[n][0].split())
+def their_own(n: int, key: str) -> Cause | Observation:
+    """What their A_n and B_n, or their R_n, make of the other columns."""
     if key in "AB":
         return BUMP
-    name, value = {
-        "R": ("A_n and B_n", hypot(a, b)),
-        "M R": ("R_n", 1.145 * size / 9.8),
-        "phi": ("A_n and B_n", degrees(np.arctan2(a, b))),
-    }[key]
-    return Cause(f"their own {name}", lambda: value)
+    name = "R_n" if key == "M R" else "A_n and B_n"
+    return Cause(f"their own {name}", lambda: of_their_own(n, key))
+
+
+def of_their_own(n: int, key: str) -> float:
+    """A column by their A_n and B_n, or their R_n with g = 9.8 m/s2."""
+    a, b, size, *_ = map(float, PRINTED[n][0].split())
+    values = {"R": hypot(a, b), "M R": 1.145 * size / 9.8, "phi": degrees(np.arctan2(a, b))}
+    return values[key]
+
+
+def is_right(n: int, key: str, words: str, right: str) -> Observation:
+    """What their other columns make of a slip; where it says so, another order has what is printed
+    here.
+    """
+    after = len(right.partition(".")[2])
+    moved = "162.5" not in words or PRINTED[2][0].split()[-1] == "162.5"
+    return Observation(
+        words.format(right), lambda: f"{of_their_own(n, key):.{after}f}" == right and moved
+    )
 
 
 @published(YAMASHITA, *rows_of_table_4())
@@ -188,15 +204,20 @@ def test_columns_of_table_4_agree(order: int) -> None:
     assert phase == pytest.approx(degrees(np.arctan2(a, b)), abs=0.3)
 
 
-def test_table_4_misses_by_a_bump_at_one_place() -> None:
-    """What Table 4 adds to the exact acceleration lies near theta_b = 47 deg and is 0.4 m/s2."""
+@cache
+def is_bump(place: float, height: float) -> bool:
+    """Whether what Table 4 adds to the exact acceleration lies near a place, deg of theta_b, is so
+    high, m/s2, and a tenth of that elsewhere.
+    """
     theta_b = np.radians(np.arange(0.0, 360.0, 0.05))
     wrong = table_4() - over_theta_b("yamashita-1").amplitudes[:10]
     bump = (wrong @ np.exp(1j * np.outer(np.arange(10), theta_b))).real
-    assert np.degrees(theta_b[np.argmax(bump)]) == pytest.approx(47.5, abs=1)
-    assert np.max(bump) == pytest.approx(0.406, abs=0.005)
     elsewhere = (np.degrees(theta_b) > 90) & (np.degrees(theta_b) < 330)
-    assert np.max(np.abs(bump[elsewhere])) < 0.04
+    return bool(
+        abs(np.degrees(theta_b[np.argmax(bump)]) - place) < 1
+        and abs(np.max(bump) - height) < 0.005
+        and np.max(np.abs(bump[elsewhere])) < 0.1 * height
+    )
 
 
 def table_4() -> np.ndarray:
@@ -383,7 +404,7 @@ def test_rates_of_the_rig_are_small(row: Printed) -> float:
     ),
     Printed(
         "yamashita-2", "swing less by the flattest coupler", "section 5-2", "40", "36.9", "%",
-        why="half a digit of Table 3 gives 38.6 at most",
+        why=Observation("half a digit of Table 3 gives 38.6 at most", lambda: is_short_of_40(38.6)),
         of=lambda: 100 * (1 - at_200_rpm(5.8 + 27.8j) / at_200_rpm(-45 - 20j)),
     ),
 )  # fmt: skip
@@ -434,26 +455,33 @@ def left(size: float, phase: float) -> float:
     return float(one / best)
 
 
+def rises(size: float, phase: float, percent: int) -> bool:
+    """Whether shares of R and X, to either side, make U so much more, to the digit of the share."""
+
+    def more(sign: int, off: float) -> float:
+        moved = (1 + sign * (share + off) if share else 1.0 for share in (size, phase))
+        return 100 * (left(*moved) - 1)
+
+    return all(more(sign, -5e-4) <= percent <= more(sign, 5e-4) for sign in (1, -1))
+
+
 @published(
     YAMASHITA,
     Printed("yamashita-1", "U more for 5 % of R", "section 5-3", "1", "1.9", "%",
-            why="it is that for 3.6 % of R", of=[(0.95, 1.0), (1.05, 1.0)]),
+            why=Observation("it is that for 3.6 % of R", lambda: rises(0.036, 0, 1)),
+            of=[(0.95, 1.0), (1.05, 1.0)]),
     Printed("yamashita-1", "U more for 5 % of X", "section 5-3", "3", "6.9", "%",
-            why="it is that for 3.3 % of X", of=[(1.0, 0.95), (1.0, 1.05)]),
+            why=Observation("it is that for 3.3 % of X", lambda: rises(0, 0.033, 3)),
+            of=[(1.0, 0.95), (1.0, 1.05)]),
 )  # fmt: skip
 def test_phase_matters_more_than_radius(row: Printed) -> list[float]:
     return [100 * (left(*one) - 1) for one in row.of]
 
 
-def test_what_gives_the_printed_rises_of_u() -> None:
-    """1 % of U more at 3.6 % of R, 3 % at 3.3 % of X, to either side."""
-    for sign in (1, -1):
-        assert left(1 + sign * 0.0362, 1) == pytest.approx(1.01, abs=1e-4)
-        assert left(1, 1 + sign * 0.0325) == pytest.approx(1.03, abs=1e-4)
-
-
-def test_rounded_data_do_not_give_the_printed_swing() -> None:
-    """40 % less by the flattest coupler: on the rig half a digit of Table 3 gives 35.2 to 38.6."""
+def is_short_of_40(most: float) -> bool:
+    """Whether half a digit of Table 3 takes so much off at most by the flattest coupler, %, on the
+    rig.
+    """
 
     def peak_to_peak(finger: Finger, center: complex) -> float:
         centers = (finger.centers[0], center, finger.centers[2])
@@ -467,8 +495,8 @@ def test_rounded_data_do_not_give_the_printed_swing() -> None:
             1 - peak_to_peak(finger, 5.8 + 27.8j) / peak_to_peak(finger, finger.centers[1])
         )
 
-    assert less(TYPE_2) == pytest.approx(36.93, abs=0.01)
-    assert by_table_3(TYPE_2, less).gives() == pytest.approx([35.18, 38.64], abs=0.01)
+    low, high = by_table_3(TYPE_2, less).gives()
+    return low < less(TYPE_2) < high and round(high, 1) == most
 
 
 @pytest.mark.parametrize("name", PSI)

@@ -53,13 +53,29 @@ class Cause:
 
 
 @dataclass(frozen=True)
+class Observation:
+    """What is known of a printed number that no cause explains, or of a slip.
+
+    text : in words, for the page.
+    holds : computes whether it is so.
+    """
+
+    text: str
+    holds: Callable[[], bool] = field(compare=False)
+
+    def __str__(self) -> str:
+        return self.text
+
+
+@dataclass(frozen=True)
 class Printed:
     """A published number.
 
     printed : as printed; "over 90" and "under 1.0" are bounds; none where it is drawn only.
     computed : what comes out here, each digit of it held; none where it is what is printed.
     within : how exactly a number that is met is met, if not to its last digit.
-    why : the two differ: a cause that is computed, or what is known of an open difference.
+    why : the two differ: a cause, or what is known of an open difference or a slip, both computed;
+        empty where they do not.
     slip : of the print, which cannot be met.
     of : what the test needs to compute it.
     """
@@ -71,13 +87,13 @@ class Printed:
     computed: str = ""
     unit: str = ""
     within: float = 0.0
-    why: Cause | str = ""
+    why: Cause | Observation | str = ""
     slip: bool = False
     of: Any = field(default=None, compare=False)
 
     def __post_init__(self) -> None:
         """Refuse a difference that is not accounted for."""
-        accounted = bool(str(self.why)) or not self.differs
+        accounted = isinstance(self.why, Cause | Observation) or not self.differs
         if self.bound:
             accounted &= (self.off > 0) == (self.bound == "over")
         if not accounted:
@@ -128,7 +144,11 @@ class Printed:
         return off - 360 * round(off / 360) if self.unit == "deg" else off
 
     def check_cause(self) -> None:
-        """Hold what a cause gives to the printed digits, where one is needed."""
+        """Hold what a cause gives to the printed digits, where one is needed; and what else is
+        known of a difference to what is computed.
+        """
+        if isinstance(self.why, Observation):
+            assert self.why.holds(), f"{self}: not so: {self.why}"
         if not isinstance(self.why, Cause) or self.kind not in ("explained", "slip"):
             return
         printed = number(self.printed)

@@ -21,6 +21,7 @@ from support.conformance import (
     TESTS,
     Agreement,
     Cause,
+    Observation,
     Printed,
     Source,
     number,
@@ -59,7 +60,7 @@ What stands where:
 - **why**: a cause, which a test computes: what it gives, or the range that it leaves, meets the
   printed digits. *Half a digit* of a table is the range that is left where each of its numbers may
   be off by half of its last digit. *Open* is what no cause is known of, *slip* what is wrong in
-  print.
+  print; what is said of either is computed by a test as well.
 - **at most**: the largest difference, as a part of the largest value, or of a thousandth of all
   forces where an output vanishes.
 """
@@ -224,6 +225,9 @@ def test_a_printed_number_stands_once() -> None:
         assert [key for key, count in often.items() if count > 1] == [], source.name
 
 
+MISREAD = Observation("a misreading", lambda: True)
+
+
 def row(printed: str, computed: str = "", **more: Any) -> Printed:
     return Printed("case", "what", "Table 1", printed, computed, **more)
 
@@ -233,10 +237,10 @@ def row(printed: str, computed: str = "", **more: Any) -> Printed:
     [
         (row("12.4"), 12.449),
         (row("12.4", "12.415"), 12.4154),
-        (row("360", "355", unit="deg", why="flat"), -5.0),
+        (row("360", "355", unit="deg", why=Observation("flat", lambda: True)), -5.0),
         (row("over 90", "95.7"), 95.66),
         (row("", "1.238"), [1.2381, 1.2379]),
-        (row("1800", "1613", why="a misreading", slip=True), 1613.2),
+        (row("1800", "1613", why=MISREAD, slip=True), 1613.2),
     ],
 )
 def test_a_row_holds_every_digit_told(told: Printed, found: Any) -> None:
@@ -252,6 +256,7 @@ def test_a_row_holds_every_digit_told(told: Printed, found: Any) -> None:
         ("12.4", "12.46", {}),
         ("12.4", "12.46", {"within": 0.1}),
         ("1800", "1613", {"slip": True}),
+        ("1800", "1613", {"why": "a misreading that nothing computes"}),
         ("over 90", "89", {}),
         ("under 1.0", "1.2", {}),
     ],
@@ -259,6 +264,15 @@ def test_a_row_holds_every_digit_told(told: Printed, found: Any) -> None:
 def test_a_difference_is_told_why(printed: str, computed: str, more: dict[str, Any]) -> None:
     with pytest.raises(ValueError, match="nothing says why"):
         row(printed, computed, **more)
+
+
+def test_what_is_known_of_a_difference_is_computed() -> None:
+    """Of open rows and of slips."""
+    for slip in (False, True):
+        row("1800", "1613", why=MISREAD, slip=slip).check_cause()
+        untrue = row("1800", "1613", why=Observation("a rounding", lambda: False), slip=slip)
+        with pytest.raises(AssertionError, match="not so: a rounding"):
+            untrue.check_cause()
 
 
 @pytest.mark.parametrize(
