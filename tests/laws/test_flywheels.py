@@ -11,7 +11,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import equipoise as eq
-from equipoise.errors import UsageError
+from equipoise.errors import ResponseError, UsageError
 from equipoise.mechanism.parts.dc_motors import DcMotor
 from equipoise.mechanism.parts.force_elements import Motor
 from equipoise.running.blocks import run_headline
@@ -102,6 +102,55 @@ def test_a_heavy_flywheel_is_sized_in_few_pieces(
     run = Integration(shooting.equation, Driver(shooting.equation.machine), limits)
     run.follow(0.0, float(state[0]) * found.speed)
     assert run.events[-1].speed == pytest.approx(float(state[0]) * found.speed, rel=1e-9)
+
+
+def test_a_steady_state_far_from_the_usual_speed_is_met_on_the_way(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Where none is met from the usual speed on, after some cycles another try meets it."""
+    machine = with_flywheel(subject_of("yamashita-rig").machine, 1.0)
+    tries, turns, real = [], [0], Shooting.steady
+
+    def steady(self: Shooting, near: Any = None) -> Any:
+        tries.append(near)
+        return None if len(tries) == 1 else real(self, near)
+
+    directly = size_flywheel(machine, 0.5).present
+    monkeypatch.setattr(Shooting, "steady", steady)
+    found = size_flywheel(machine, 0.5, lambda done, most: turns.append(done))
+    assert found.present == pytest.approx(directly, rel=1e-6)
+    assert max(turns) == 4
+    assert len(tries) == 2
+
+
+def test_turns_towards_steady_states_have_one_limit_for_all_flywheels(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Each takes six turns, and together they take more than 20."""
+    machine, seen = subject_of("yamashita-rig").machine, []
+    monkeypatch.setattr(Shooting, "steady", lambda *_: None)
+    monkeypatch.setattr("equipoise.running.flywheel.MOST_TURNS", 20)
+
+    def progress(done: int, most: int) -> None:
+        seen.append((done, most))
+
+    with pytest.raises(ResponseError, match=r"no steady state .* is met within 20 turns"):
+        size_flywheel(machine, 0.05, progress)
+    assert seen == sorted(seen)
+    assert seen[-1] == (20, 20)
+    monkeypatch.setattr("equipoise.running.flywheel.MOST_TURNS", 400)
+    assert size_flywheel(machine, 0.05).inertia > 0
+
+
+def test_how_far_a_run_is_can_be_seen() -> None:
+    seen: list[tuple[int, int]] = []
+    eq.run(
+        subject_of("yamashita-rig").machine,
+        turns=2.5,
+        progress=lambda done, most: seen.append((done, most)),
+    )
+    assert {most for _, most in seen} == {3}
+    assert {done for done, _ in seen} == {0, 1, 2}
 
 
 def test_a_current_that_is_far_quicker_than_the_crank_takes_few_steps(

@@ -288,16 +288,18 @@ def run(
     """
     from equipoise.running.run import run as follow
 
-    return follow(
-        machine,
-        duration,
-        turns=turns,
-        speed=speed,
-        angle=angle,
-        off=off,
-        off_turns=off_turns,
-        fluctuation=fluctuation,
-    )
+    with counted("turn") as progress:
+        return follow(
+            machine,
+            duration,
+            turns=turns,
+            speed=speed,
+            angle=angle,
+            off=off,
+            off_turns=off_turns,
+            fluctuation=fluctuation,
+            progress=progress,
+        )
 
 
 # -- planting --------------------------------------------------------------------------------------

@@ -13,7 +13,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cache, cached_property
-from math import inf, nan
+from math import ceil, inf, nan, pi
 from typing import Any
 
 import numpy as np
@@ -24,7 +24,7 @@ from equipoise.mechanism.parts.machine import Machine
 from equipoise.running.drivers import Driver
 from equipoise.running.equation import CrankEquation
 from equipoise.running.integration import Integration, Limits
-from equipoise.running.shooting import Shooting
+from equipoise.running.shooting import Shooting, Start
 from equipoise.running.tabulated import NODES, POINTS, TO_CHEBYSHEV, integral_to, polynomials
 from equipoise.signals import Array
 
@@ -38,7 +38,9 @@ LARGEST, MANY_TIMES = 1e6, 4.0
 """Inertia looked for at most, over the estimate or the machine's own, and the factor from one try
 to the next."""
 MOST_TURNS = 400
-"""Of a motor's crank until it is steady, once it begins at the speed that a constant torque has."""
+"""Of a motor's crank, followed on the way to its steady states, of all inertias together."""
+FIRST_CYCLES = 4
+"""Followed before it is tried whether a steady state is near by; then four times as many."""
 WHOLE, TO_NODES = integral_to(1.0, -1.0), integral_to(POINTS, -1.0)
 """Integral over a piece, and up to each of its nodes, by values at the nodes."""
 DENSELY = polynomials(np.linspace(-1.0, 1.0, DENSE + 1))[:, :NODES] @ TO_CHEBYSHEV
@@ -191,10 +193,14 @@ def share_of_mean(given: float | str) -> float:
     return share
 
 
-def size_flywheel(machine: Machine, wanted: float) -> Flywheel:
+def size_flywheel(
+    machine: Machine, wanted: float, progress: Callable[[int, int], None] | None = None
+) -> Flywheel:
     """A flywheel on the crank for a wanted fluctuation, by the steady state itself.
 
     wanted : coefficient of fluctuation, highest less lowest speed over the mean; 0.02 is 2 %.
+    progress : called with the turns of the crank that were followed towards a steady state, and the
+        most there can be.
 
     Raises
     ------
@@ -206,7 +212,7 @@ def size_flywheel(machine: Machine, wanted: float) -> Flywheel:
     work, own = work_at_constant_speed(equation), equation.shaft_inertia
     needed = work / (wanted * machine.drive.speed**2)
 
-    motor = MotorCycles(machine)
+    motor = MotorCycles(machine, progress or (lambda done, most: None))
 
     @cache
     def fluctuation(added: float) -> float:
@@ -241,13 +247,17 @@ def _least(fluctuation: Callable[[float], float], wanted: float, about: float) -
 class MotorCycles:
     """Steady states of a machine with its motor's own curve, by the inertia that is added.
 
+    progress : called with `turns` and the most there can be.
     first : state from which the next one is looked for.  cycles : how many were followed.
+    turns : of the crank that were followed where no steady state was near by.
     slower : the speed of the drive over the mean speed with the motor, of the last one.
     """
 
     machine: Machine
+    progress: Callable[[int, int], None] = lambda done, most: None
     first: Array | None = None
     cycles: int = 0
+    turns: int = 0
     slower: float = 1.0
 
     def fluctuation(self, steady: SteadyCycle) -> float:
@@ -261,38 +271,75 @@ class MotorCycles:
         ResponseError : no steady state is met.
         """
         drive = replace(self.machine.drive, flywheel=self.machine.drive.flywheel + steady.added)
-        equation = CrankEquation(replace(self.machine, drive=drive))
+        shooting = Shooting(
+            CrankEquation(replace(self.machine, drive=drive)), float(self.machine.drive.speed)
+        )
         assert steady.speed is not None
-        speed = float(np.sign(drive.speed) * steady.speed[0, 0])
-        shooting = Shooting(equation, float(drive.speed))
-        found = shooting.steady(self.first)
-        self.cycles += shooting.cycles
-        if found is None:
-            return self._followed(equation, speed)
-        self.first, track = found
+        track = self._near(shooting, self.first)
+        if track is None:
+            track = self._followed(shooting, float(np.sign(drive.speed) * steady.speed[0, 0]))
+        if track is None:
+            return inf
         mean = (track[-1, 1] - track[0, 1]) / (track[-1, 0] - track[0, 0])
         self.slower = float(drive.speed / mean)
         return _fluctuation_of(track)
 
-    def _followed(self, equation: CrankEquation, speed: float) -> float:
-        """From a speed on, rad/s, cycle after cycle, where none was met that ends as it begins."""
-        limits = Limits(inf, MOST_TURNS, inf, inf, steady=True)
-        found = Integration(equation, Driver(equation.machine), limits)
-        found.follow(0.0, speed)
-        self.cycles += len(found.begins)
-        if found.events[-1].kind == "turns":
-            raise ResponseError(
-                Note(
-                    "no steady state with the motor is met within {count} turns of the crank, for "
-                    "which a flywheel could be sized",
-                    count=MOST_TURNS,
-                )
+    def _near(self, shooting: Shooting, state: Array | None) -> Array | None:
+        """Rows of the track of a steady cycle, met from a state near by; None where none is."""
+        before, shooting.cycles = shooting.cycles, 0
+        met = shooting.steady(state)
+        self.cycles += shooting.cycles
+        shooting.cycles += before
+        if met is None:
+            return None
+        self.first, track = met
+        return track
+
+    def _followed(self, shooting: Shooting, speed: float) -> Array | None:
+        """Rows of the track of a steady cycle that is met from a speed on, rad/s, cycle after
+        cycle; None where the motor stalls.
+
+        Raises
+        ------
+        ResponseError : it takes too many turns.
+        """
+        start: Start = (speed, 0.0, None)
+        count = FIRST_CYCLES
+        in_cycle = max(round(shooting.equation.period / (2 * pi)), 1)
+        while (count := min(count, (MOST_TURNS - self.turns) // in_cycle)) > 0:
+            run = self._turned(shooting.equation, start, count * in_cycle)
+            self.cycles += len(run.begins)
+            if run.events[-1].kind == "steady" and len(run.begins) > 1:
+                rows, (begin, end) = np.vstack(run.track), (one.time for one in run.begins[-2:])
+                return rows[(rows[:, 0] >= begin) & (rows[:, 0] <= end)]
+            if run.events[-1].kind != "turns":
+                return None
+            state = shooting.end_of(run)
+            track = self._near(shooting, state) if state[0] > 0 else None
+            if track is not None:
+                return track
+            start, count = shooting.start_of(state), 4 * count
+        raise ResponseError(
+            Note(
+                "no steady state with the motor is met within {count} turns of the crank, for "
+                "which a flywheel could be sized",
+                count=MOST_TURNS,
             )
-        if found.events[-1].kind != "steady" or len(found.begins) < 2:
-            return inf
-        track = np.vstack(found.track)
-        first, last = found.begins[-2:]
-        return _fluctuation_of(track[(track[:, 0] >= first.time) & (track[:, 0] <= last.time)])
+        )
+
+    def _turned(self, equation: CrankEquation, start: Start, turns: int) -> Integration:
+        """So many turns from speed, current and lag on, or until something ends the run before."""
+        before = self.turns
+        run = Integration(
+            equation, Driver(equation.machine), Limits(inf, turns, inf, inf, steady=True)
+        )
+        run.on_turns = lambda done: self.progress(before + int(done), MOST_TURNS)
+        speed, current, lag = start
+        run.follow(0.0, speed, current, lag)
+        self.turns += ceil(abs(run.events[-1].crank_angle) / (2 * pi))
+        self.turns = min(self.turns, before + turns)
+        self.progress(self.turns, MOST_TURNS)
+        return run
 
 
 def _fluctuation_of(track: Array) -> float:

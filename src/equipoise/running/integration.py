@@ -158,6 +158,7 @@ class Integration:
     begins : instants at which a cycle begins.
     cycle_before : of each part, by its place, what was gained when it was passed last: near a
         steady state Newton's method takes a round or two from there.
+    on_turns : called with the turns of the crank from the start, as often as these may change.
     """
 
     def __init__(self, equation: CrankEquation, driver: Driver, limits: Limits) -> None:
@@ -169,6 +170,7 @@ class Integration:
         self.direction = 1.0
         self.halvings = 0
         self.cycle_before: dict[tuple[float, ...], Gained] = {}
+        self.on_turns: Callable[[float], None] = lambda turns: None
 
     def follow(
         self, angle: float, speed: float, current: float = 0.0, lag: float | None = None
@@ -204,6 +206,7 @@ class Integration:
             now = self._piece(now)
             if now is None:
                 return
+            self.on_turns(abs(now.angle - angle) / (2 * pi))
             if k % LOOKED == 0:
                 marks = [*marks[-2:], now]
                 self._foresee(marks, k)

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
-from math import copysign, inf, pi
+from math import ceil, copysign, inf, pi
 from typing import Any, ClassVar
 
 import numpy as np
@@ -27,6 +27,7 @@ TURNS = 300
 STARTED = 0.95
 """Share of the mean speed of a steady state at which a machine has started."""
 BRAKE, DRIVE = "brake", "drive"
+Progress = Callable[[int, int], None]
 
 
 @dataclass(frozen=True)
@@ -254,6 +255,7 @@ def run(
     off: float | str | None = None,
     off_turns: float | None = None,
     fluctuation: float | str | None = None,
+    progress: Progress | None = None,
 ) -> Run:
     """Let a machine run on a fixed frame: its crank follows from motor, weight, springs and loads.
 
@@ -273,6 +275,8 @@ def run(
     off_turns : turns of the crank from the start after which it is.
     fluctuation : highest less lowest speed over the mean for which a flywheel is sized; a share of
         1, or a text such as ``"2 %"``.
+    progress : called with the turns of the crank that were followed, and the most there can be; not
+        where only a time ends the run.
 
     Raises
     ------
@@ -319,8 +323,11 @@ def run(
     wanted = None if fluctuation is None else share_of_mean(fluctuation)
     equation, driver = CrankEquation(machine), Driver(machine)
     found = Integration(equation, driver, limits)
+    if progress is not None and limits.turns < inf:
+        most = ceil(limits.turns)
+        found.on_turns = lambda done: progress(int(done), most)
     found.follow(float(start[1]), float(start[0]))
-    flywheel = None if wanted is None else size_flywheel(machine, wanted)
+    flywheel = None if wanted is None else size_flywheel(machine, wanted, progress)
     return _result(equation, found, flywheel)
 
 

@@ -26,6 +26,10 @@ FARTHEST = 0.5
 MOST_CYCLES = 40
 
 
+Start = tuple[float, float, float | None]
+"""Speed, rad/s, current, A, and lag, rad, with which `Integration.follow` begins."""
+
+
 class Stopped(Exception):
     """The crank does not come to the end of a cycle."""
 
@@ -104,23 +108,31 @@ class Shooting:
         Stopped : the crank stands still on the way.
         """
         self.cycles += 1
-        values = np.array(self.sizes) * state
-        speed, *more = values.tolist()
         if not state[0] > 0:
             raise Stopped
+        start = self.start_of(state)
         limits = Limits(inf, self.equation.period / (2 * pi), inf, inf, steady=False)
         run = Integration(self.equation, self.driver, limits)
         run.cycle_before = self.before
+        run.follow(0.0, *start)
+        end = run.events[-1]
+        if len(run.events) > 1 or end.kind != "turns" or end.crank_angle * start[0] < 0:
+            raise Stopped
+        return self.end_of(run), np.vstack(run.track)
+
+    def start_of(self, state: Array) -> Start:
+        """What is followed from a state on; the lag is None without a servo motor."""
+        speed, *more = (np.array(self.sizes) * state).tolist()
         current = more[0] if self.driver.lags else 0.0
         lag = None if self.driver.servo is None else more[0] if more else 0.0
-        run.follow(0.0, speed, current, lag)
-        track = np.vstack(run.track)
+        return speed, current, lag
+
+    def end_of(self, run: Integration) -> Array:
+        """The state in which a run has ended."""
         end = run.events[-1]
-        if len(run.events) > 1 or end.kind != "turns" or end.crank_angle * speed < 0:
-            raise Stopped
         ends = [end.speed]
-        if more and self.driver.lags:
-            ends.append(float(track[-1, 3]))
-        elif more:
-            ends.append(self.driver.lag_at(end.crank_angle, end.time))
-        return np.array(ends) / self.sizes, track
+        if len(self.sizes) > 1 and self.driver.lags:
+            ends.append(float(run.track[-1][-1, 3]))
+        elif len(self.sizes) > 1:
+            ends.append(run.driver.lag_at(end.crank_angle, end.time))
+        return np.array(ends) / self.sizes
