@@ -152,7 +152,7 @@ class _Adviser:
         limits = zip(own.limits, values, strict=True)
         self.watched = (
             *watched_of(self.before),
-            *(HeadlineLimit((one.objective,), _most_of(one, value)) for one, value in limits),
+            *(HeadlineLimit((one.objective,), one.most(value)) for one, value in limits),
         )
 
     def advised(self) -> Balanced:
@@ -303,7 +303,7 @@ class _Adviser:
         asked = tuple(one.objective for one in limits)
         reached = zip(limits, self.values(asked), Problem.values_of(machine, asked), strict=True)
         prices = {
-            one.name: Price(_most_of(one, old), new, 0.0, unit_of(one.objective, machine))
+            one.name: Price(one.most(old), new, 0.0, unit_of(one.objective, machine))
             for one, old, new in reached
         }
         method = Note("comparison of shapes")
@@ -456,11 +456,6 @@ def _radius_of(found: Balanced) -> float:
     """Of the largest piece that is added, m."""
     pieces = (piece for one in found.changes for piece in one.values.get("pieces", ()))
     return max((float(piece["outer_radius"]) for piece in pieces), default=0.0)
-
-
-def _most_of(limit: Limit, before: float) -> float:
-    """The most that a limit allows, SI units."""
-    return limit.at_most if limit.at_most is not None else (limit.ratio or 0.0) * before
 
 
 # -- what gauges are read for ----------------------------------------------------------------------

@@ -476,9 +476,7 @@ def _prices(found: Solution) -> dict[str, Price]:
         prices[bound.name] = Price(bound.at_most, bound.used, paid, bound.unit)
 
     for limit in plan.limits:
-        scale, at_most = problem.scale(limit.objective), limit.at_most
-        if at_most is None:
-            at_most = (limit.ratio or 0.0) * problem.before[limit.name]
+        scale, at_most = problem.scale(limit.objective), limit.most(problem.before[limit.name])
         used = problem.value_of(found.machine, limit.objective)
         si_unit = unit_of(limit.objective, problem.machine)
         add(Bound(limit.name, at_most, used, si_unit), scale, scale)

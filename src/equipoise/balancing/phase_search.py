@@ -144,7 +144,7 @@ class PhaseSearch:
     def _limit(self, limit: Limit) -> Term:
         term = Term(limit.objective, self.rows.signals(limit.objective, "limits"))
         before = float(term.values(self.present))
-        most = (limit.ratio or 0.0) * before if limit.at_most is None else limit.at_most
+        most = limit.most(before)
         if not most > NOTHING * term.single:
             raise UsageError(
                 Note(

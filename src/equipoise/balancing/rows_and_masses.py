@@ -258,7 +258,7 @@ class JointPhaseMassOptimizer:
         """Value of each objective that counts as one, and each limit."""
         problem = self.problem
         most = [
-            (one.ratio or 0.0) * problem.before[one.name] if one.at_most is None else one.at_most
+            one.most(problem.before[one.name])
             for one in problem.plan.limits
             if one.objective in self._measured[len(problem.plan.objectives) :]
         ]

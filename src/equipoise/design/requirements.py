@@ -1,17 +1,20 @@
-"""What is wanted of a figure: an objective, limits, a target, or that it is reported."""
+"""What is wanted of a figure: an objective, limits, a target, or that it is reported.
+
+The kinds of these are declared in `keys.requirement_kinds`.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from math import pi, radians
-from typing import Literal
+from typing import Any
 
 import numpy as np
 
 from equipoise.errors import UsageError
+from equipoise.keys.requirement_kinds import Asks, RequiredFigure, asks_of
 from equipoise.signals import Array
 
-Make = Literal["smallest", "largest"]
 TURNING = {"crank_angle", "direction", "attitude", "min_at", "max_at"}
 """Last parts of the names of angles that are the same after a turn."""
 USUAL_SHARE = 0.01
@@ -19,13 +22,14 @@ USUAL_ANGLE = radians(1)
 """Tolerance where none is given: a share of the value, or an angle."""
 
 
-@dataclass(frozen=True)
-class Requirement:
+@dataclass(frozen=True, init=False)
+class Requirement(RequiredFigure):
     """What one figure has to be, in SI units and radians.
 
     figure : its dotted name, such as ``soil.hole_length``.
-    target : value to come close to.  at_least, at_most : limits, which are kept.
-    make : whether it is to become as small or as large as the limits allow.
+    more : what is asked, by the key of a `RequirementKind`: `target`, a value to come close to;
+        `at_least` and `at_most`, limits, which are kept; `make`, whether it is to become the
+        ``smallest`` or ``largest`` that the limits allow.
     tolerance : what counts as one step away; `USUAL_SHARE` of the value where not given.
     turning : whether it is an angle that is the same after a turn; told by its name if None.
 
@@ -33,18 +37,29 @@ class Requirement:
     """
 
     figure: str
-    target: float | None = None
-    at_least: float | None = None
-    at_most: float | None = None
-    make: Make | None = None
     tolerance: float | None = None
     turning: bool | None = None
 
-    def __post_init__(self) -> None:
+    def __init__(
+        self,
+        figure: str,
+        *,
+        tolerance: float | None = None,
+        turning: bool | None = None,
+        asks: Asks = (),
+        **more: Any,
+    ) -> None:
+        object.__setattr__(self, "figure", figure)
+        object.__setattr__(self, "tolerance", tolerance)
+        object.__setattr__(self, "turning", turning)
+        object.__setattr__(self, "asks", asks_of(more, asks))
+        self._check()
+
+    def _check(self) -> None:
         if self.target is not None and self.make:
             raise UsageError(f"{self.figure}: give either target or make")
-        if self.make not in (None, "smallest", "largest"):
-            raise UsageError(f"{self.figure}: got make = {self.make!r}; give smallest or largest")
+        for key, wrong in self.wrong_asks():
+            raise UsageError(f"{self.figure}: {wrong.replace('got', f'got {key} =', 1)}")
         if None not in (self.at_least, self.at_most) and self.at_least > self.at_most:  # type: ignore[operator]
             raise UsageError(f"{self.figure}: at_least is above at_most")
         outside = (
@@ -65,17 +80,12 @@ class Requirement:
         return self.turning
 
     @property
-    def limited(self) -> bool:
-        """Whether it has a limit."""
-        return (self.at_least, self.at_most) != (None, None)
-
-    @property
     def is_fact(self) -> bool:
         """Whether nothing is asked of it but that it is reported."""
-        return not (self.asks or self.make)
+        return not (self.can_be_met or self.make)
 
     @property
-    def asks(self) -> bool:
+    def can_be_met(self) -> bool:
         """Whether there is a target or a limit, which can be met or not."""
         return (self.target, self.at_least, self.at_most) != (None, None, None)
 

@@ -20,7 +20,7 @@ from equipoise.studies.blocks import unit_in
 from equipoise.studies.cloud import Blocks, Cloud, cloud_of
 
 if TYPE_CHECKING:
-    from equipoise.design.requirements import Make
+    from equipoise.keys.requirement_kinds import Make
     from equipoise.studies.design_space import Output
 
 Own = tuple[Array, Array]

@@ -9,7 +9,7 @@ design usually lies where two peaks tie, at a kink that stops methods which trus
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
@@ -79,7 +79,7 @@ class Fit(Result):
         """
         met: dict[str, bool] = {}
         for goal, step in zip(self.goals, self.steps, strict=True):
-            if goal.asks:
+            if goal.can_be_met:
                 value = self.after.get(goal.figure)
                 here = value is not None and goal.met(value, step)
                 met[goal.figure] = met.get(goal.figure, True) and here
@@ -102,7 +102,7 @@ class Fit(Result):
         """A goal, whether it is met, and its figure before and after."""
         figures = {"before": self.before, "after": self.after}
         values = {when: one and one.get(goal.figure) for when, one in figures.items()}
-        asked = {name: value for name, value in asdict(goal).items() if name != "turning"}
+        asked = {"figure": goal.figure, **goal.asked_in("goals"), "tolerance": goal.tolerance}
         return {**asked, "met": self.met.get(goal.figure), **values}
 
 

@@ -100,19 +100,22 @@ def _limit(machine: Machine, given: dict[str, Any]) -> Any:
     from equipoise.mechanism.parts.balance import Limit
     from equipoise.mechanism.parts.objectives import quantity_of, wrong_limit
 
-    text, objective = given["at_most"], given["objective"]
-    try:
-        share = parse_share(text)
-        if share is not None:
-            return Limit(objective, ratio=share)
-        # Only an output that there is tells what unit is wanted.
-        for wrong in wrong_limit("", Limit(objective, at_most=1.0), machine):
-            raise ModelError(wrong.where.removeprefix("."), wrong.what)
-        quantity = quantity_of(objective, machine)
-        assert quantity is not None
-        return Limit(objective, at_most=parse(text, quantity))
-    except UsageError as error:
-        raise ModelError("at_most", str(error)) from error
+    objective, asks = given["objective"], {**given}
+    del asks["objective"]
+    for key, text in asks.items():
+        try:
+            share = parse_share(text) if key == "at_most" else None
+            if share is not None:
+                return Limit(objective, ratio=share)
+            # Only an output that there is tells what unit is wanted.
+            for wrong in wrong_limit("", Limit(objective, asks=((key, 1.0),)), machine):
+                raise ModelError(wrong.where.removeprefix("."), wrong.what)
+            quantity = quantity_of(objective, machine)
+            assert quantity is not None
+            asks[key] = parse(text, quantity)
+        except UsageError as error:
+            raise ModelError(key, str(error)) from error
+    return Limit(objective, **asks)
 
 
 # -- what lies beside -----------------------------------------------------------------------------
@@ -234,12 +237,11 @@ def _limit_table(machine: Machine, limit: Any) -> dict[str, Any]:
     from equipoise.mechanism.parts.objectives import quantity_of
 
     if limit.ratio is not None:
-        at_most = format_share(limit.ratio)
-    else:
-        quantity = quantity_of(limit.objective, machine)
-        assert quantity is not None
-        at_most = format_exact(limit.at_most, quantity)
-    return {"objective": limit.objective, "at_most": at_most}
+        return {"objective": limit.objective, "at_most": format_share(limit.ratio)}
+    quantity = quantity_of(limit.objective, machine)
+    assert quantity is not None
+    asks = {key: format_exact(value, quantity) for key, value in limit.asks}
+    return {"objective": limit.objective, **asks}
 
 
 def dumped(model: Machine | Tool) -> str:

@@ -11,6 +11,7 @@ from typing import Any
 from equipoise.design.spreads import Choices, Normal, Range, Spread, Uniform
 from equipoise.design.variables import Variable
 from equipoise.errors import EquipoiseError, ModelError, UsageError
+from equipoise.keys.requirement_kinds import REQUIREMENT_KINDS
 from equipoise.quantities import KINDS, format_exact
 from equipoise.quantities.reading import described
 from equipoise.schema.numbers import read_number, si_value
@@ -196,13 +197,12 @@ def _accuracy(given: AccuracyTable | None) -> tuple[int | None, float]:
 def _output(where: str, given: OutputTable, template: Template) -> Output:
     of = given.of or ("tool" if template.kind == "tool" else "analyze")
     dimension = dimension_of(template.base(), of, given.value)
-    limits = {
-        key: _limit(f"{where}.{key}", getattr(given, key), dimension)
-        for key in ("at_least", "at_most")
-        if getattr(given, key) is not None
+    asks = {
+        key: value if REQUIREMENT_KINDS[key].choices else _limit(f"{where}.{key}", value, dimension)
+        for key, value in given.asks.items()
     }
     name = given.value if given.name is None else given.name
-    return Output(name, of, given.value, dimension, make=given.make, **limits)  # type: ignore[arg-type]
+    return Output(name, of, given.value, dimension, **asks)  # type: ignore[arg-type]
 
 
 def _limit(where: str, given: Any, dimension: str | None) -> float:
@@ -269,9 +269,12 @@ def _vary_table(one: Variable) -> VaryTable:
 
 
 def _output_table(one: Output) -> OutputTable:
-    least, most = (_written(limit, one.dimension) for limit in (one.at_least, one.at_most))
+    asks = {
+        key: value if REQUIREMENT_KINDS[key].choices else _written(value, one.dimension)
+        for key, value in one.asks
+    }
     name = None if one.name == one.value else one.name
-    return OutputTable(one.value, name, one.of, least, most, one.make)
+    return OutputTable(one.value, name, one.of, asks)
 
 
 def _sampling_table(given: Sampling) -> SamplingTable:

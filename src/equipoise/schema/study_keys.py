@@ -19,8 +19,10 @@ from equipoise.keys import (
     Whole,
     Wording,
     declared,
+    inside,
     key,
 )
+from equipoise.keys.requirement_kinds import RequirementKeys, split_asks
 from equipoise.quantities import NUMBER
 from equipoise.studies.design_space import COMMANDS, METHODS, Sampling
 
@@ -98,16 +100,22 @@ class SamplingTable(Frozen):
 class OutputTable(Frozen):
     """A figure that is computed of every design."""
 
+    beside: ClassVar[Keys] = RequirementKeys("outputs", VALUE)
+
     value: str = key(
         Text(), "place in the JSON object of the command", example="shaking_force.y.rms"
     )
     name: str | None = key(Text(), "of its column; its place if left out", default=None)
     of: str | None = key(Text(suggested=(*COMMANDS,)), "the command that has it", default=None)
-    at_least: Any = key(VALUE, "designs below are not kept", default=None)
-    at_most: Any = key(VALUE, "designs above are not kept", default=None)
-    make: str | None = key(
-        Text(("smallest", "largest")), "whether it is to become small or large", default=None
-    )
+    asks: Any = inside(Anything(), factory=dict)
+
+    @classmethod
+    def from_table(cls, given: dict[str, Any]) -> OutputTable:
+        return cls(**split_asks(given, cls.beside))
+
+    @classmethod
+    def to_table(cls, value: OutputTable) -> dict[str, Any]:
+        return {**super().to_table(value), **value.asks}
 
 
 @declared

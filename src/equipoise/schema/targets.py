@@ -8,7 +8,7 @@ from __future__ import annotations
 import os
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar, Literal, get_args
+from typing import Any, ClassVar, get_args
 
 from equipoise.design.lifts import dimension_of_lift
 from equipoise.design.requirements import Requirement
@@ -24,8 +24,10 @@ from equipoise.keys import (
     Text,
     Whole,
     declared,
+    inside,
     key,
 )
+from equipoise.keys.requirement_kinds import REQUIREMENT_KINDS, RequirementKeys, split_asks
 from equipoise.mechanism.parts.machine import unknown
 from equipoise.planting.designs import Sense
 from equipoise.planting.goals import check_asks
@@ -56,14 +58,15 @@ class SearchTable(Frozen):
 class GoalTable(Frozen):
     """What one figure has to be."""
 
+    beside: ClassVar[Keys] = RequirementKeys("goals", VALUE)
+
     figure: str = key(Text(), "that `equipoise plant` tells", example="curve.height")
-    target: Quantity | None = key(VALUE, "what it has to be", default=None)
-    at_least: Quantity | None = key(VALUE, "lower limit", default=None)
-    at_most: Quantity | None = key(VALUE, "upper limit", default=None)
     tolerance: Quantity | None = key(VALUE, "of the target", default=None)
-    make: Literal["smallest", "largest"] | None = key(
-        Text(("smallest", "largest")), "whether it is to become small or large", default=None
-    )
+    asks: Any = inside(Anything(), factory=dict)
+
+    @classmethod
+    def from_table(cls, given: dict[str, Any]) -> GoalTable:
+        return cls(**split_asks(given, cls.beside))
 
 
 @declared
@@ -128,14 +131,14 @@ def _goal(where: str, goal: GoalTable, figures: Collection[str]) -> Requirement:
         )
     if goal.figure not in figures:
         raise ModelError(f"{where}.figure", unknown(goal.figure, figures, "figure"))
-    keys = ("target", "at_least", "at_most", "tolerance")
-    given: dict[str, Any] = {
-        one: si_value(f"{where}.{one}", getattr(goal, one), dimension_of(goal.figure))
-        for one in keys
-        if getattr(goal, one) is not None
-    }
+    given: dict[str, Any] = dict(goal.asks)
+    if goal.tolerance is not None:
+        given["tolerance"] = goal.tolerance
+    for one, value in given.items():
+        if one not in REQUIREMENT_KINDS or not REQUIREMENT_KINDS[one].choices:
+            given[one] = si_value(f"{where}.{one}", value, dimension_of(goal.figure))
     try:
-        asked = Requirement(goal.figure, make=goal.make, **given)
+        asked = Requirement(goal.figure, **given)
         check_asks(asked)
     except UsageError as error:
         raise ModelError(where, str(error)) from error

@@ -19,8 +19,8 @@ from equipoise.results.outputs import objective_named
 from equipoise.studies.outcomes import far_apart, signs_of
 
 if TYPE_CHECKING:
-    from equipoise.design.requirements import Make
     from equipoise.design.spreads import Spread
+    from equipoise.keys.requirement_kinds import Make
     from equipoise.studies.design_space import Output
     from equipoise.studies.objective_map import Landscape
     from equipoise.studies.searching import Searched

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal, Protocol, get_args
+from typing import TYPE_CHECKING, Any, Literal, Protocol, get_args
 
-from equipoise.design.requirements import Make, Requirement
+from equipoise.design.requirements import Requirement
+from equipoise.keys.requirement_kinds import Asks, RequiredFigure, asks_of
 
 if TYPE_CHECKING:
     from equipoise.handheld.model import Tool
@@ -43,43 +44,48 @@ class Model(Protocol):
         """Everything that is needed to have the same model elsewhere."""
 
 
-@dataclass(frozen=True)
-class Output:
+@dataclass(frozen=True, init=False)
+class Output(RequiredFigure):
     """A figure that is computed of every design.
 
     name : of its column.
     of : the command that has it.  value : its place in that command's JSON object.
     dimension : where it is known.
-    at_least, at_most : limits in SI units; a design outside of them is not kept.
-    make : whether it is to become small or large.
+    more : what is asked of it, by the key of a `RequirementKind`: `at_least` and `at_most`, limits
+        in SI units, outside of which a design is not kept; `make`, whether it is to become the
+        ``smallest`` or ``largest``.
     """
 
     name: str
     of: Command = "analyze"
     value: str = ""
     dimension: str | None = None
-    at_least: float | None = None
-    at_most: float | None = None
-    make: Make | None = None
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "value", self.value or self.name)
+    def __init__(
+        self,
+        name: str,
+        of: Command = "analyze",
+        value: str = "",
+        dimension: str | None = None,
+        *,
+        asks: Asks = (),
+        **more: Any,
+    ) -> None:
+        given = {"name": name, "of": of, "value": value or name, "dimension": dimension}
+        for field, one in (given | {"asks": asks_of(more, asks)}).items():
+            object.__setattr__(self, field, one)
 
     @property
     def requirement(self) -> Requirement:
         """What it has to be."""
         return Requirement(
-            self.value,
-            at_least=self.at_least,
-            at_most=self.at_most,
-            make=self.make,
-            turning=False,  # a cycle may have several turns
-        )
+            self.value, asks=self.asks, turning=False
+        )  # a cycle may have several turns
 
-    @property
-    def limited(self) -> bool:
-        """Whether it has a limit."""
-        return self.requirement.limited
+    def to_plain(self) -> dict[str, Any]:
+        """As plain values, in SI units; ``Output(**plain)`` is the same again."""
+        fields = {one: getattr(self, one) for one in ("name", "of", "value", "dimension")}
+        return fields | self.asked_in("outputs")
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from equipoise.codegen.figures import COMPUTED, REASONS
 from equipoise.errors import needed
 
 if TYPE_CHECKING:
-    from equipoise.design.requirements import Make
+    from equipoise.keys.requirement_kinds import Make
     from equipoise.studies.design_space import Output
 
 Array = np.ndarray[Any, Any]

@@ -17,10 +17,10 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from equipoise.codegen.figures import COMPUTED, NO_ASSEMBLY, NO_FULL_TURN, NO_MACHINE
-from equipoise.design.requirements import Make
 from equipoise.design.solvers import DesignProblem, solver_for
 from equipoise.design.spreads import Choices, Range
 from equipoise.errors import ModelError, UsageError
+from equipoise.keys.requirement_kinds import Make
 from equipoise.results.result import Result
 from equipoise.sequences import sobol
 from equipoise.studies.evaluate import pooled

@@ -18,8 +18,8 @@ from typing import Any, BinaryIO, ClassVar
 import numpy as np
 
 from equipoise.codegen.figures import COMPUTED, REASONS
-from equipoise.design.requirements import Make
 from equipoise.errors import UsageError, needed
+from equipoise.keys.requirement_kinds import Make
 from equipoise.mechanism.checks import unknown
 from equipoise.partial import replaced
 from equipoise.results.result import Result

@@ -22,15 +22,13 @@ from dataclasses import dataclass
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from json import dumps, loads
-from math import isfinite
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, get_args
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 import equipoise
 from equipoise.codegen.figures import COMPUTED
-from equipoise.design.requirements import Make
 from equipoise.errors import UsageError, needed
 from equipoise.fence import OutsideError, open_folder
 from equipoise.folders import Folder, LinkError
@@ -326,8 +324,7 @@ def _opened(path: Path, folder: Folder, group: Any) -> Store:
     if designs not in (None, size):
         raise ValueError(f"it has places for {size} designs, and its study has {designs!r:.60}")
     for wish in wishes:
-        limits = [one for one in (wish.at_least, wish.at_most) if one is not None]
-        if wish.make not in (None, *get_args(Make)) or not all(map(isfinite, limits)):
+        if any(wish.wrong_asks()):
             raise ValueError(f"output {wish.name} has no limits or aims that can be read")
     content = loads(folder.read(ABOUT))
     if about[MARK] == LAYOUT or CHECKSUM in about:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, fields, replace
-from math import inf, isfinite, prod
+from math import prod
 from typing import Any
 
 import numpy as np
@@ -113,8 +113,8 @@ class Study:
 def to_plain(study: Study) -> dict[str, Any]:
     """All but the model and the file as plain values, such as JSON takes; numbers in SI units."""
     plain = {one.name: getattr(study, one.name) for one in fields(study)}
-    for name in ("outputs", "correlations"):
-        plain[name] = [asdict(one) for one in plain[name]]
+    plain["outputs"] = [one.to_plain() for one in study.outputs]
+    plain["correlations"] = [asdict(one) for one in study.correlations]
     plain["vary"] = [
         {**asdict(one), "spread": {"kind": KEYS[type(one.spread)], **asdict(one.spread)}}
         for one in study.vary
@@ -327,12 +327,7 @@ def _wrong_output(where: str, output: Output, kind: str) -> Iterator[ModelError]
         right = "tool" if kind == "tool" else "analyze, plant, respond or balance"
         told = f"got {output.of!r}, but the model is a {kind}; give {right}"
         yield ModelError(f"{where}.of", told)
-    if output.make not in (None, "smallest", "largest"):
-        yield ModelError(f"{where}.make", f"got {output.make!r}; give smallest or largest")
-    low = -inf if output.at_least is None else output.at_least
-    high = inf if output.at_most is None else output.at_most
-    for key, limit in (("at_least", output.at_least), ("at_most", output.at_most)):
-        if limit is not None and not isfinite(limit):
-            yield ModelError(f"{where}.{key}", f"got {limit}; give a finite number")
-    if low > high:
+    for key, wrong in output.wrong_asks():
+        yield ModelError(f"{where}.{key}", wrong)
+    if None not in (output.at_least, output.at_most) and output.at_least > output.at_most:  # type: ignore[operator]
         yield ModelError(where, "at_least is above at_most")

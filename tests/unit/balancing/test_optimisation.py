@@ -169,7 +169,7 @@ def test_a_limit_on_a_gauge_is_kept_where_it_is_read(ratio: float) -> None:
     assert machine.balance is not None
     gauge, joint = machine.balance.objectives[0], Objective("joints.A", "peak")
     plan = Balance(
-        masses=machine.balance.masses, objectives=(joint,), limits=(Limit(gauge, None, ratio),)
+        masses=machine.balance.masses, objectives=(joint,), limits=(Limit(gauge, ratio=ratio),)
     )
     found = eq.balance(machine, plan)
     price = found.prices[gauge.name]

@@ -178,14 +178,14 @@ PARTS: list[tuple[Any, str, str]] = [
      "got 120 mm to 20 mm; give the smaller one first"),
     (Limit(Objective("drive_torque")), "",
      "give either at_most or ratio, its share of the value before"),
-    (Limit(Objective("drive_torque"), 1.0, 1.0), "",
+    (Limit(Objective("drive_torque"), at_most=1.0, ratio=1.0), "",
      "give either at_most or ratio, its share of the value before"),
-    (Limit(Objective("drive_torque"), 0.0), ".at_most", "got 0 N m; give more than 0"),
+    (Limit(Objective("drive_torque"), at_most=0.0), ".at_most", "got 0 N m; give more than 0"),
     (Limit(Objective("drive_torque"), ratio=-0.8), ".at_most", "got -80 %; give more than 0"),
-    (Limit(Objective("shaking_force.x", "area"), 1.0), ".at_most",
+    (Limit(Objective("shaking_force.x", "area"), at_most=1.0), ".at_most",
      "there is no unit for the area under shaking_force.x; give a share of the value before, "
      'such as "80 %"'),
-    (Limit(Objective("gauges.g", "area"), 1.0), ".at_most",
+    (Limit(Objective("gauges.g", "area"), at_most=1.0), ".at_most",
      "there is no unit for the area under gauges.g; give a share of the value before, such as "
      '"80 %"'),
 ]  # fmt: skip
@@ -330,7 +330,7 @@ def test_the_whole() -> None:
 def test_numbers_of_items(key: str) -> None:
     torque = Objective("drive_torque")
     many = dict(LISTED.values())
-    many |= {"springs": (SPRING,), "objectives": (torque,), "limits": (Limit(torque, 1.0),)}
+    many |= {"springs": (SPRING,), "objectives": (torque,), "limits": (Limit(torque, at_most=1.0),)}
     refused(f"balance.{key}", f"got {MOST + 1}; at most {MOST} are computed with",
             Balance(**{key: many[key] * (MOST + 1)}))  # fmt: skip
 
@@ -346,7 +346,7 @@ def test_numbers_of_items(key: str) -> None:
         ("balance.shafts[1].axes[2][1]",
          Balance(shafts=(replace(SHAFTS, axes=(ORIGIN, (inf, 0.0))),))),
         ("balance.limits[1].orders[1]",
-         Balance(limits=(Limit(Objective("drive_torque", orders=(inf,)), 1.0),))),
+         Balance(limits=(Limit(Objective("drive_torque", orders=(inf,)), at_most=1.0),))),
     ],
 )  # fmt: skip
 def test_numbers_are_finite(where: str, balance: Balance) -> None:
@@ -365,7 +365,7 @@ def test_what_is_right_is_kept() -> None:
         springs=(SPRING, replace(SPRING, free_length=None)),
         phases=Phases(),
         objectives=(Objective("joints.B.x", "area"), Objective("shaking_moment", about="D")),
-        limits=(Limit(Objective("frame_force", "peak"), 10.0),),
+        limits=(Limit(Objective("frame_force", "peak"), at_most=10.0),),
     )
     machine = replace(FOUR, balance=balance)
     assert pickle.loads(pickle.dumps(machine)) == machine

@@ -68,7 +68,7 @@ def test_all_values_arrive_in_si_units() -> None:
         Objective("gauges.handle", speeds=(150 * RPM, 240 * RPM)),
     )
     assert balance.limits == (
-        Limit(Objective("joints.B", "peak"), 120.0),
+        Limit(Objective("joints.B", "peak"), at_most=120.0),
         Limit(Objective("shaking_force.x", "area"), ratio=0.8),
     )
 
@@ -192,7 +192,11 @@ wishes = st.builds(
     speeds=st.lists(length, unique=True, max_size=3).map(tuple),
 )
 limits = st.builds(Limit, wishes.map(lambda wish: replace(wish, weight=1.0)), ratio=length) | (
-    st.builds(Limit, st.sampled_from(MEASURES).map(lambda m: Objective("frame_moment", m)), length)
+    st.builds(
+        Limit,
+        st.sampled_from(MEASURES).map(lambda m: Objective("frame_moment", m)),
+        at_most=length,
+    )
 )
 
 

@@ -120,9 +120,11 @@ def test_everything(tmp_path: Path) -> None:
     assert study.correlations == (Correlation("links.crank.mass", "links.crank.inertia", 0.9),)
     assert study.sampling == Sampling("latin-hypercube", 1000, 7)
     assert study.outputs == (
-        Output("vertical", "analyze", "shaking_force.y.rms", "force", None, 20.0, "smallest"),
+        Output(
+            "vertical", "analyze", "shaking_force.y.rms", "force", at_most=20.0, make="smallest"
+        ),
         Output("summary.drive_torque.peak_at", dimension="angle", at_least=radians(-90)),
-        Output("gap", "balance", "gap", None, None, 0.5),
+        Output("gap", "balance", "gap", at_most=0.5),
     )
     assert (study.angles, study.file) == (360, WHOLE)
     assert study.model.base() == eq.load("yamashita-1")

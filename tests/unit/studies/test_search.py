@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 
 from equipoise.codegen.figures import NO_ASSEMBLY, NO_MACHINE
-from equipoise.design.requirements import Make
 from equipoise.design.spreads import Choices, Normal, Range
 from equipoise.design.variables import Variable
 from equipoise.errors import ModelError, UsageError
+from equipoise.keys.requirement_kinds import Make
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.studies import searching
 from equipoise.studies.design_space import Correlation, Output

@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 from math import pi
-from typing import ClassVar, Self
+from typing import Any, ClassVar, Self
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, key_names, to_say
 from equipoise.keys import (
     Frozen,
-    Key,
     Keys,
     Listing,
     Number,
@@ -22,6 +21,13 @@ from equipoise.keys import (
     declared,
     inside,
     key,
+)
+from equipoise.keys.requirement_kinds import (
+    REQUIREMENT_KINDS,
+    Asks,
+    RequiredFigure,
+    RequirementKeys,
+    asks_of,
 )
 from equipoise.mechanism.checks import numbered, positive, unknown
 from equipoise.mechanism.outputs.declared import DECLARED
@@ -118,29 +124,40 @@ class Objective(Frozen):
 
 
 @declared
-class Limit(Frozen):
+class Limit(Frozen, RequiredFigure):
     """What must not become larger: a measure of an output, whose weight does not count.
 
-    at_most : in SI units.  ratio : over the value before, instead.
+    more : what is asked, by the key of a `RequirementKind`, such as `at_most`, in SI units.
+    ratio : the most over the value before, instead.
     """
 
     called = to_say("{what} of limit {number}")
-    beside: ClassVar[Keys] = {
-        "at_most": Key(
-            "at_most",
-            Told(
-                right='give number and unit in quotes, such as "120 N", or a share of the value '
-                'before, such as "80 %"',
-                schema={"pattern": "|".join([rf"^{NUMBER} +%$", *map(pattern, MEASURED_IN)])},
-            ),
-            '`"120 N"`, in a unit of the output; or a share of the value before, such as `"80 %"`',
-            example="120 N",
-        )
-    }
+    beside: ClassVar[Keys] = RequirementKeys(
+        "limits",
+        Told(
+            right='give number and unit in quotes, such as "120 N", or a share of the value '
+            'before, such as "80 %"',
+            schema={"pattern": "|".join([rf"^{NUMBER} +%$", *map(pattern, MEASURED_IN)])},
+        ),
+        needed=True,
+        text='`"120 N"`, in a unit of the output; or a share of the value before, such as `"80 %"`',
+        example="120 N",
+    )
 
     objective: Objective = key(Table(Objective, flat=True, without=("weight",)))
-    at_most: float | None = inside(Number(), default=None)
     ratio: float | None = inside(Number(), default=None)
+
+    def __init__(
+        self, objective: Objective, *, ratio: float | None = None, asks: Asks = (), **more: Any
+    ) -> None:
+        for name, value in (("objective", objective), ("ratio", ratio)):
+            object.__setattr__(self, name, value)
+        object.__setattr__(self, "asks", asks_of(more, asks))
+        self.__post_init__()
+
+    def most(self, before: float) -> float:
+        """The most that it may be, in SI units, where it was `before`."""
+        return (self.ratio or 0.0) * before if self.at_most is None else self.at_most
 
     @property
     def name(self) -> str:
@@ -266,7 +283,8 @@ def _wrong_speeds(where: str, objective: Objective) -> Iterator[ModelError]:
 def wrong_limit(where: str, limit: Limit, machine: Mechanism) -> Iterator[ModelError]:
     """Everything that is wrong with what must not become larger."""
     yield from wrong_objective(where, limit.objective, machine)
-    if (limit.at_most is None) == (limit.ratio is None):
+    values = {key: value for key, value in limit.asks if not REQUIREMENT_KINDS[key].choices}
+    if bool(limit.asks) == (limit.ratio is not None):
         yield ModelError(
             where,
             Note(
@@ -274,14 +292,17 @@ def wrong_limit(where: str, limit: Limit, machine: Mechanism) -> Iterator[ModelE
                 **key_names("at_most"),
             ),
         )
-    elif limit.at_most is not None and quantity_of(limit.objective, machine) is None:
+    elif limit.asks and limit.at_most is None:
+        what = f"{limit.asks[0][0]}: balancing needs an upper limit; give at_most"
+        yield ModelError(where, what)
+    elif values and quantity_of(limit.objective, machine) is None:
         yield ModelError(
-            f"{where}.at_most",
+            f"{where}.{next(iter(values))}",
             f"there is no unit for the area under {limit.objective.output}; give a share of the "
             'value before, such as "80 %"',
         )
-    elif limit.at_most is not None:
-        dimension = quantity_of(limit.objective, machine)
-        yield from positive(f"{where}.at_most", limit.at_most, dimension)
+    else:
+        for name, value in values.items():
+            yield from positive(f"{where}.{name}", value, quantity_of(limit.objective, machine))
     if limit.ratio is not None and limit.ratio <= 0:
         yield ModelError(f"{where}.at_most", f"got {100 * limit.ratio:g} %; give more than 0")
