@@ -171,7 +171,9 @@ OPTIONS = {
     "decay": ["CSV", "--stiffness", "--arm", "--spring-arm", "--confidence", *DRAWN],
     "examples": [],
     "explain": ["TOPIC"],
-    "export": ["FILE", "--out", "--format", "--at", "--balanced", "--kept"],
+    "export": [
+        *["FILE", "--out", "--format", "--at", "--balanced", "--kept", "--link", "--angles"],
+    ],
     "exposure": [
         *["INPUT", "--duration", "--idle", "--racing", "--bands", "--weighted", "--single-axis"],
         *["--periodic", "--gauge", *DRAWN],

@@ -149,6 +149,7 @@ OF_MACHINES = {
     "export model.toml -o out.fmu": 1,
     "export model.toml -o out.mo --balanced": 1,
     "export model.toml -o out.mat; export model.toml -o out.html; export model.toml -o out.pdf": 1,
+    "export model.toml -o out.inp; export model.toml -o out.csv --angles 12": 1,
     "serve model.toml": 6,
     "mcp analyze": 1,
     "mcp balance_conditions": 1,

@@ -340,6 +340,7 @@ OFTEN = (
 def inputs() -> None:
     """Files for each of these commands."""
     Path("mine.toml").write_text(MODEL)
+    Path("rod.toml").write_text(example_text("slider-crank-engine") + SECTION)
     Path("study.toml").write_text(TOLERANCES)
     Path("search.toml").write_text(LENGTHS)
     Path("tasks.csv").write_text("task,acceleration [m/s^2],duration [h]\nbrush saw,4.6,2\n")
@@ -371,18 +372,24 @@ def test_what_is_written_goes_through_no_link_that_leads_out(
 
 TABLES = {"csv", "parquet"}
 """Kinds of files of a store."""
+SECTION = """
+[links.rod.section]
+diameter = "12 mm"
+elastic_modulus = "206 GPa"
+"""
 DRAWN = ("svg", "pdf")
 """Formats of outlines alone."""
 KINDS_OF_FILES = [
     *(
         ("export", str(STORE) if name in TABLES else "mine.toml", "-o", f"out{one.ending}")
         for name, one in FORMATS.items()
-        if name not in DRAWN  # which this machine has no outline for
+        if name not in DRAWN and not one.of_link  # this machine has neither outlines nor sections
     ),
     *(
         ("export", "yamashita-1", "--balanced", "-o", f"out{FORMATS[name].ending}")
         for name in DRAWN
     ),
+    *(("export", "rod.toml", "-o", f"out{one.ending}") for one in FORMATS.values() if one.of_link),
     *(("animate", "mine.toml", "--width", "100", "-o", f"out.{end}") for end in ("gif", "mp4")),
     ("report", "mine.toml", "--pdf", "-o", "out.pdf"),
 ]

@@ -5,12 +5,12 @@ from __future__ import annotations
 import os
 import sys
 from functools import partial
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
 from equipoise.cli.models import linkage_of
-from equipoise.cli.options import Angle, Out, blaming, naming, wants
+from equipoise.cli.options import Angle, Out, blaming, crank_angles, naming, read_by, wants
 from equipoise.cli.outputs import check_result_file, sources_of, tell, wrote
 from equipoise.errors import UsageError
 
@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from equipoise.balancing.balanced import Balanced
     from equipoise.mechanism.parts.machine import Machine
 
+STORE = ".zarr"
+"""Ending by which a store is known before it is there."""
 FILE = "Path of a model file or of a store, or the name of a bundled example."
 
 
@@ -30,6 +32,8 @@ def export(
     at: Angle = None,
     balanced: bool = False,
     kept: bool = False,
+    link: Annotated[str | None, wants("LINK")] = None,
+    angles: Annotated[Any, read_by(crank_angles)] = None,
 ) -> None:
     """Write a linkage for another program, or all designs of a store as one table, in SI units.
 
@@ -37,39 +41,48 @@ def export(
     ----------
     out
         The file, whose ending tells the format: .html for an interactive page, .xml for MuJoCo,
-        .dxf, .xlsx, and for the designs of a store .csv or .parquet.  docs/exchange.md has them
-        all.
+        .dxf, .xlsx, .inp for finite elements of a link, and for the designs of a store .csv or
+        .parquet.  docs/exchange.md has them all.
     format
         Name of the format, such as mjcf, where the ending is to be another.
     at
-        Crank angle at which a linkage is drawn; 0 deg if not given.
+        Crank angle at which a linkage is drawn; 0 deg if not given.  Of loads along a link that of
+        the largest stress, or, as CSV, all.
     balanced
         Balance the linkage first, as "equipoise balance" would; its counterweights are told too.
     kept
         Of a store, only designs that keep every limit.
+    link
+        Of loads along a link: which; the only one with a section if not given.
+    angles
+        Of loads along a link: number of crank angles a turn, or the angles: "0 deg, 45 deg".
     """
-    from equipoise.exchange.export import check_kind, format_of
+    from equipoise.exchange.export import check_kind, check_link_loads, format_of
     from equipoise.exchange.export import export as write
     from equipoise.schema.opening import bundled
 
     if out is None:
         raise UsageError("--out: missing; give the name of a file")
     with blaming("--out" if format is None else "--format"):
-        one = format_of(out, format)
+        one = format_of(out, format, of_store=os.path.isdir(file) or file.endswith(STORE))
         if os.path.exists(file) or file in bundled():
             check_kind(one, of_store=os.path.isdir(file))
     if one.of_store:
         _check(f"a file of {one.title} holds the designs of a store", at=at, balanced=balanced)
+        check_link_loads(one, prefix="--", link=link, angles=angles)
         _designs(file, out, kept)
         return
     _check("it goes with a store", kept=kept)
+    check_link_loads(one, prefix="--", link=link, angles=angles)
+    if angles is not None and at is not None:
+        raise UsageError("--at and --angles were given; give one of them")
     if not one.posed:
         _check(f"a file of {one.title} is the same at every crank angle", at=at)
     machine = linkage_of(file)
     check_result_file("--out", out, sources_of(machine, file))
     with naming(file):
         what = _balanced(machine) if balanced else machine
-        for part in write(what, out, one.name, crank_angle=at or 0.0):
+        for part in write(what, out, one.name, crank_angle=at, link=link, angles=angles):
             tell(f"note: the file leaves out {part}", sys.stderr)
     wrote(out)
 

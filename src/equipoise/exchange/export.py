@@ -8,7 +8,7 @@ from math import isfinite
 
 from equipoise.balancing.balanced import Balanced
 from equipoise.errors import ChangePointError, RangeError, UsageError, needed, unknown
-from equipoise.exchange.formats import FORMATS, Format, Job
+from equipoise.exchange.formats import FORMATS, Angles, Format, Job
 from equipoise.i18n import Note, to_say
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.checks import numbered
@@ -24,8 +24,10 @@ def export(
     path: str | os.PathLike[str],
     format: str | None = None,
     *,
-    crank_angle: float = 0.0,
+    crank_angle: float | None = None,
     kept: bool = False,
+    link: str | None = None,
+    angles: Angles = None,
 ) -> tuple[str, ...]:
     """Write a machine, or all designs of a store, as a file of another program.
 
@@ -35,8 +37,12 @@ def export(
     path : of the file, which is replaced where it is there.
     format : a name in ``equipoise.exchange.formats.FORMATS`` such as ``mjcf``; as the file's ending
         says if None.
-    crank_angle : at which a machine is drawn, rad.
+    crank_angle : at which a machine is drawn, rad; 0 if None.  Loads along a link are those at it;
+        if None at that of the largest stress, or, as a table, at all.
     kept : of a store only those designs that keep every limit.
+    link : whose loads are written, in a format of them; the only link with a section if None.
+    angles : instead of ``crank_angle``, crank angles of these loads: a number of them in each turn,
+        or the angles, rad.
 
     Returns
     -------
@@ -48,14 +54,17 @@ def export(
         file cannot be written.
     MassError, MotionError, ModelError : the machine cannot be computed as far as the format needs.
     """
-    one = format_of(path, format)
+    one = format_of(path, format, of_store=isinstance(what, Store))
     check_kind(one, of_store=isinstance(what, Store))
-    if not isfinite(crank_angle):
+    if crank_angle is not None and not isfinite(crank_angle):
         raise UsageError(f"crank_angle: got {crank_angle}; give an angle in rad")
     if isinstance(what, Store):
         write_designs(what, path, kept=kept)
         return ()
-    job, data = made(what, one, crank_angle)
+    check_link_loads(one, link=link, angles=angles)
+    if angles is not None and crank_angle is not None:
+        raise UsageError("crank_angle and angles were given; give one of them")
+    job, data = made(what, one, crank_angle, link, angles)
     write(path, data)
     return tuple(job.left_out)
 
@@ -68,7 +77,24 @@ def check_kind(one: Format, *, of_store: bool) -> None:
         raise UsageError(f"{one.title} is for {holds}; give one of {wanted}")
 
 
-def made(what: Machine | Balanced, one: Format, crank_angle: float) -> tuple[Job, str | bytes]:
+def check_link_loads(one: Format, *, prefix: str = "", **options: object) -> None:
+    """Refuse options of loads along a link in a format without them."""
+    for name, given in options.items():
+        if given is not None and not one.of_link:
+            formats = ", ".join(other.name for other in FORMATS.values() if other.of_link)
+            raise UsageError(
+                f"{prefix}{name}: it goes with loads along a link, in the formats {formats}; leave "
+                "it out"
+            )
+
+
+def made(
+    what: Machine | Balanced,
+    one: Format,
+    crank_angle: float | None = None,
+    link: str | None = None,
+    angles: Angles = None,
+) -> tuple[Job, str | bytes]:
     """A file's content, and what was left out of it."""
     if one.needs:
         needed(one.needs, f"a file of {one.title}")
@@ -77,7 +103,10 @@ def made(what: Machine | Balanced, one: Format, crank_angle: float) -> tuple[Job
         check_turning(machine, one.title)
     _check_joints(machine, one)
     frictionless = machine.rubs and not one.rubs
-    job = Job(machine.without_friction() if frictionless else machine, crank_angle, changes)
+    if angles is None and crank_angle is not None:
+        angles = [crank_angle]
+    drawn = machine.without_friction() if frictionless else machine
+    job = Job(drawn, crank_angle or 0.0, changes, link, angles)
     if frictionless:
         job.leave_out("friction in joints: forces are those without it")
     if one.joints == ():  # its joints bear no preload either
@@ -125,8 +154,12 @@ def check_turning(machine: Machine, title: str) -> None:
         raise refused.like(error) from error
 
 
-def format_of(path: str | os.PathLike[str], name: str | None = None) -> Format:
+def format_of(
+    path: str | os.PathLike[str], name: str | None = None, *, of_store: bool = False
+) -> Format:
     """The format of a name, or of a file's ending.
+
+    of_store : whether designs of a store are written, where an ending has a format of both.
 
     Raises
     ------
@@ -137,11 +170,11 @@ def format_of(path: str | os.PathLike[str], name: str | None = None) -> Format:
             raise UsageError(unknown(name, FORMATS, "format"))
         return FORMATS[name]
     ending = os.path.splitext(path)[1].lower()
-    found = next((one for one in FORMATS.values() if one.ending == ending), None)
-    if found is None:
-        endings = ", ".join(one.ending for one in FORMATS.values())
+    fitting = [one for one in FORMATS.values() if one.ending == ending]
+    if not fitting:
+        endings = ", ".join(dict.fromkeys(one.ending for one in FORMATS.values()))
         raise UsageError(
             f"got {printable(path)!r}; give the name of a file that ends in one of {endings}, "
             "or a format"
         )
-    return found
+    return next((one for one in fitting if one.of_store == of_store), fitting[0])

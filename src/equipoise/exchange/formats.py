@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -28,6 +28,7 @@ class Format:
     joints : that it has beside pins, guides and what turns two links in a fixed ratio, as kinds of
     parts call them (`PartKind.special`); None where it has all.
     rubs : whether it holds friction in joints, or what follows from it.
+    of_link : whether it holds the loads along one link, at one crank angle or at several.
     """
 
     name: str
@@ -41,6 +42,7 @@ class Format:
     joints: tuple[str, ...] | None = None
     module: str = ""
     rubs: bool = True
+    of_link: bool = False
 
     @property
     def maker(self) -> str:
@@ -152,11 +154,31 @@ FORMATS: Mapping[str, Format] = {
             module="web.interactive",
             rubs=False,
         ),
+        Format(
+            "inp",
+            ".inp",
+            "finite elements (CalculiX, Abaqus)",
+            "a link with a section as beam elements, loaded by inertia, weight and all joints: a "
+            "step for each crank angle asked for, or for that of the largest stress",
+            of_link=True,
+        ),
+        Format(
+            "link-loads",
+            ".csv",
+            "loads along a link (CSV)",
+            "axial force, shear force, bending moment and stress along a link with a section, at "
+            "every crank angle",
+            of_link=True,
+            module="exchange.link_loads",
+        ),
         Format("csv", ".csv", "CSV", "all designs of a store", of_store=True),
         Format("parquet", ".parquet", "Parquet", "all designs of a store", of_store=True),
     )
 }
 """By name."""
+
+Angles = int | Sequence[float] | None
+"""Crank angles, as an analysis takes them; None for those that suit a format."""
 
 
 @dataclass(frozen=True)
@@ -165,12 +187,17 @@ class Job:
 
     crank_angle : at which it is drawn, rad.
     changes : that balancing made of it; None where it was not balanced.
+    link : whose loads are written; the only one with a section if None.
+    angles : at which they are, a number of them in a turn or the angles, rad; as suits the format
+        if None.
     left_out : what the format does not hold, as it goes on.
     """
 
     machine: Machine
     crank_angle: float = 0.0
     changes: tuple[Change, ...] | None = None
+    link: str | None = None
+    angles: Angles = None
     left_out: list[str] = field(default_factory=list)
 
     def leave_out(self, what: str) -> None:

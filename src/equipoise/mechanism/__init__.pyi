@@ -35,6 +35,7 @@ from .parts.machine import Slider as Slider
 from .parts.racks import Rack as Rack
 from .parts.rolling_bearings import RollingBearing as RollingBearing
 from .parts.run_plans import RunPlan as RunPlan
+from .parts.sections import LinkSection as LinkSection
 from .parts.servo_motors import ServoMotor as ServoMotor
 from .parts.springs import Spring as Spring
 from .parts.support import Gauge as Gauge

@@ -89,8 +89,8 @@ def test_what_is_no_format(tmp_path: Path) -> None:
         eq.export(MACHINE, tmp_path / "x.xmll")
     with pytest.raises(eq.EquipoiseError, match="no format is called 'mjfc'; did you mean 'mjcf'"):
         eq.export(MACHINE, tmp_path / "x.xml", "mjfc")
-    with pytest.raises(eq.EquipoiseError, match="CSV is for designs of a store; give one of mjcf"):
-        eq.export(MACHINE, tmp_path / "x.csv")
+    with pytest.raises(eq.EquipoiseError, match="Parquet is for designs of a store; give one of"):
+        eq.export(MACHINE, tmp_path / "x.parquet")
     with pytest.raises(eq.EquipoiseError, match="crank_angle: got nan; give an angle in rad"):
         eq.export(MACHINE, tmp_path / "x.xml", crank_angle=float("nan"))
     assert [*tmp_path.iterdir()] == []

@@ -1,0 +1,95 @@
+"""Loads along one link over crank angle: which link, at which angles, and a table of them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from equipoise.errors import MassError, UsageError, unknown
+from equipoise.exchange.formats import Job
+from equipoise.i18n import Note, to_say
+from equipoise.limits import check_memory
+from equipoise.mechanism.dynamics.forces import massless
+from equipoise.mechanism.dynamics.section_loads import Cut, SectionLoads
+from equipoise.results.analysis import ANGLES, Analysis, analyze
+from equipoise.schema.files import csv_text
+from equipoise.signals import Array
+
+ROW = 700
+"""Bytes that a row takes at once, as numbers of Python and as text."""
+
+
+def link_of(job: Job) -> str:
+    """Name of the link whose loads are written.
+
+    Raises
+    ------
+    UsageError : it has no section, or several have one and none is chosen.
+    MassError : masses are missing.
+    """
+    links = job.machine.links
+    known = [name for name, link in links.items() if link.section is not None]
+    if job.link is not None and job.link not in links:
+        raise UsageError(unknown(job.link, links, "link"))
+    if not known or (job.link is not None and job.link not in known):
+        missing = to_say("loads along {link} need its section; give [links.{link}.section]")
+        raise UsageError(Note(missing, link=job.link or next(iter(links))))
+    if job.link is None and len(known) > 1:
+        several = to_say("several links have a section; give the link as one of {names}")
+        raise UsageError(Note(several, names=", ".join(known)))
+    if missing_masses := massless(job.machine):
+        raise MassError(missing_masses)
+    return job.link or known[0]
+
+
+def analysis_of(job: Job) -> Analysis:
+    """The machine at the crank angles of the loads: those asked for, or those at which an analysis
+    has its figures.
+    """
+    if job.angles is None:
+        return analyze(job.machine, ANGLES).resolved
+    return analyze(job.machine, job.angles)
+
+
+def made(job: Job) -> str:
+    """Loads and stress in every cut at every crank angle, a row each."""
+    link = link_of(job)
+    analysis = analysis_of(job)
+    loads = analysis.forces.sections[link]
+    cuts, angles = different_cuts(loads.cuts), analysis.crank_angle
+    what = Note("loads in {cuts} cuts at {angles} crank angles", cuts=len(cuts), angles=len(angles))
+    check_memory(len(cuts) * len(angles) * ROW, what)
+    return csv_text(_columns(angles, loads, cuts))
+
+
+def different_cuts(cuts: Sequence[Cut]) -> list[Cut]:
+    """Cuts without those that are the same as a former one at all crank angles."""
+    fixed = {(float(cut.at[0]), cut.behind): cut for cut in cuts if cut.fixed}
+    return [*fixed.values(), *(cut for cut in cuts if not cut.fixed)]
+
+
+def _columns(
+    angles: Array, loads: SectionLoads, cuts: Sequence[Cut]
+) -> list[tuple[str, str, Array]]:
+    """One crank angle after the other, from the first end of the link to the last, and before what
+    acts at a place to behind it.
+    """
+    every = [loads.in_cut(cut) for cut in cuts]
+    stress = np.stack([loads.in_fibres(one) for one in every], axis=1)
+    places = np.array([cut.at for cut in cuts])
+    behind = np.broadcast_to(np.array([[cut.behind] for cut in cuts]), places.shape)
+    order = np.lexsort((behind, places), axis=0)
+    table = (
+        ("crank_angle", "rad", np.broadcast_to(angles, places.shape)),
+        ("place", "m", places),
+        ("axial_force", "N", np.array([one.axial for one in every])),
+        ("shear_force", "N", np.array([one.shear for one in every])),
+        ("bending_moment", "N m", np.array([one.bending for one in every])),
+        ("stress_left", "Pa", stress[0]),
+        ("stress_right", "Pa", stress[1]),
+    )
+    return [
+        (name, unit, np.take_along_axis(values, order, axis=0).T.ravel() + 0.0)  # no -0.0
+        for name, unit, values in table
+    ]
