@@ -122,6 +122,17 @@ class Motion(Displayed):
         w, a = _rates(self, speed, acceleration)
         return replace(self, speed=w, acceleration=a)
 
+    def part(self, places: slice) -> Motion:
+        """At some of the crank angles only, for work that takes much memory for each of them."""
+        count = len(self.crank_angle)
+
+        def taken(value: Any) -> Any:
+            return value[..., places] if np.shape(value)[-1:] == (count,) else value
+
+        state = {name: taken(value) for name, value in self.state.items()}
+        angles = self.crank_angle[places]
+        return replace(self, crank_angle=angles, whole_cycle=False, state=state, sampling=None)
+
     def lengths(self, drive: Drive | FurtherDrive) -> tuple[Array, Array, Array]:
         """Length between the points that a drive pushes apart, or travel of its sliding joint, m,
         and both derivatives by crank angle, each (N,).
