@@ -174,7 +174,6 @@ def run(line: str, place: Path) -> list[Told]:
         return ""
 
     with pytest.MonkeyPatch.context() as patch, chdir(place):
-        patch.setattr(equipoise.present, "show_blocks", keep)
         patch.setattr(equipoise.present.terminal, "block_text", keep)
         succeeded(equipoise_runs(*shlex.split(line)))
     assert found

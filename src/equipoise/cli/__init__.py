@@ -16,7 +16,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from threading import Event, Thread, Timer
 from time import monotonic
-from typing import TYPE_CHECKING, Protocol, runtime_checkable
+from typing import TYPE_CHECKING
 
 from cyclopts import App, CycloptsError, Parameter
 
@@ -30,13 +30,7 @@ from equipoise_command import INTERRUPTED
 if TYPE_CHECKING:
     from rich.console import Console
 
-
-@runtime_checkable
-class Given(Protocol):
-    """What a command returns that leaves writing and printing to its caller."""
-
-    def give(self) -> None:
-        """Write and print it."""
+    from equipoise.cli.runner import FinishedCommand
 
 
 app = App(
@@ -92,7 +86,9 @@ def _run(arguments: Sequence[str] | None) -> int:
         _prepare(given)
         with recorded(), together(), _signs_of_life(given):
             check_repeated(given)
-            give(answered_by(arguments))
+            finished = answered_by(arguments)
+            if finished is not None:
+                finished.give()
             if sys.stdout is not None:  # None where the shell has closed it
                 sys.stdout.flush()
             check()
@@ -115,15 +111,12 @@ def _run(arguments: Sequence[str] | None) -> int:
     return 0
 
 
-def answered_by(arguments: Sequence[str] | None) -> object:
-    """What the command of a command line returns: a `Given`, unless it prints by itself."""
-    return app(arguments, exit_on_error=False, print_error=False, result_action="return_value")
-
-
-def give(returned: object) -> None:
-    """Write and print what a command has returned."""
-    if isinstance(returned, Given):
-        returned.give()
+def answered_by(arguments: Sequence[str] | None) -> FinishedCommand | None:
+    """What the command of a command line returns; None of help, and of what serves a person."""
+    finished: FinishedCommand | None = app(
+        arguments, exit_on_error=False, print_error=False, result_action="return_value"
+    )
+    return finished
 
 
 def _prepare(given: Sequence[str]) -> None:

@@ -65,7 +65,7 @@ def balance(
         found = solve(machine, plan) if asked else advice.advise(machine, solve)
     if out is not None and not found.helps:
         _refuse(found)
-    return replace(CommandResult.of(found), save=lambda: None if out is None else _save(found, out))
+    return replace(CommandResult.of(found), save=lambda: () if out is None else _save(found, out))
 
 
 def _refuse(found: Balanced) -> None:
@@ -77,7 +77,7 @@ def _refuse(found: Balanced) -> None:
         raise UsageError(f"--out: nothing is written: {told[:1].lower()}{told[1:]}")
 
 
-def _save(found: Balanced, out: str) -> None:
+def _save(found: Balanced, out: str) -> list[str]:
     """Write the new machine, with what was changed in its description."""
     from equipoise.balancing.workshop import sentences
 
@@ -86,7 +86,7 @@ def _save(found: Balanced, out: str) -> None:
         changes = " ".join(say("{sentence}.", sentence=line) for line in lines)
         return say("Changed by equipoise balance: {changes}", changes=changes)
 
-    write_model(found.machine, out, Note(", balanced"), origin)
+    return write_model(found.machine, out, Note(", balanced"), origin)
 
 
 @app.command

@@ -3,22 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from functools import cache
 from typing import TYPE_CHECKING, Annotated, Any
 
-from equipoise.cli.options import Computers, Names, StorePath, StudyFile, count, naming
-from equipoise.cli.outputs import (
-    Chosen,
-    Columns,
-    Outputs,
-    check_new,
-    write_model,
-)
+from equipoise.cli.models import OpenedStore, StudyFile
+from equipoise.cli.options import Computers, Names, count
+from equipoise.cli.outputs import Chosen, Columns, Outputs, check_new, write_model
 from equipoise.cli.progress import Watched, swept
+from equipoise.cli.runner import CommandResult, command
 from equipoise.i18n import Note
 
 if TYPE_CHECKING:
     import numpy as np
 
+    from equipoise.figures import Picture
     from equipoise.studies.study import Study
 
     Array = np.ndarray[Any, Any]
@@ -26,16 +24,17 @@ if TYPE_CHECKING:
 MOST_TOLD, MOST_SEED = 100_000, 2**32 - 1
 
 
+@command(Outputs)
 def best(
-    store: StorePath,
+    store: OpenedStore,
     /,
     *,
     by: Names = None,
     largest: Names = None,
     most: Annotated[int, count(1, MOST_TOLD, "--count")] = 10,
     chosen: Chosen = Chosen(),
-    outputs: Outputs = Outputs(),
-) -> None:
+    outputs: Outputs,
+) -> CommandResult:
     """The best designs of a store, of those that keep every limit; of several aims, the trade-offs.
 
     Parameters
@@ -52,34 +51,34 @@ def best(
     from equipoise.schema.study_units import machine_of, owner_of, study_of, units_in
     from equipoise.studies import selection as of_stores
     from equipoise.studies.blocks import columns_of
-    from equipoise.studies.store import open_store
 
-    opened = open_store(store)
-    chosen.check(0, opened.size - 1)
-    outputs.check([], [chosen.out])
+    chosen.check(0, store.size - 1)
     if chosen.out is not None:
-        check_new(study_of(opened).model.base(), chosen.out)
+        check_new(study_of(store).model.base(), chosen.out)
     ways: Any = dict.fromkeys(by or ()) | dict.fromkeys(largest or (), "largest")
-    found = of_stores.best(opened, most, ways, nearest=outputs.plot is not None)
+    found = of_stores.best(store, most, ways, nearest=outputs.plot is not None)
     first = int(found.designs[0]) if chosen.design is None else chosen.design
-    model = None if chosen.out is None else machine_of(opened, first)
-    title, owner = opened.title, owner_of(opened)
+    model = None if chosen.out is None else machine_of(store, first)
+    title, units = store.title, units_in(store)
+
+    def charts() -> Mapping[str, Picture]:
+        owner = owner_of(store)
+        own = None if owner is None else own_of(owner)
+        return best_charts(found, title, units, store, own)
 
     columns = columns_of(found.numbers, found.values, found.outputs, found.figures)
-    outputs.write(lambda: _columns(found.designs, columns, opened.units))
-    with outputs.showing(owner):
-        units = units_in(opened)
-        own = None if owner is None or outputs.plot is None else own_of(owner)
-        outputs.draw(owner, lambda: best_charts(found, title, units, opened, own))
-        outputs.print(
-            title,
-            lambda: {"title": title, **found.to_dict()},
-            lambda: found.blocks(outputs=opened.wishes, units=units),
-        )
-    if model is not None and chosen.out is not None:
-        _save(model, chosen.out, first, Note('the study "{title}"', title=title))
+    source = Note('the study "{title}"', title=title)
+    return CommandResult(
+        lambda: found.blocks(outputs=store.wishes, units=units),
+        lambda: {"title": title, **found.to_dict()},
+        title=title,
+        columns=lambda: _columns(found.designs, columns, store.units),
+        pictures=charts,
+        save=lambda: _save(model, chosen.out, first, source),
+    )
 
 
+@command(Outputs, long=True)
 def search(
     study: StudyFile,
     /,
@@ -89,8 +88,7 @@ def search(
     seed: Annotated[int | None, count(0, MOST_SEED)] = None,
     computers: Computers = Computers(),
     chosen: Chosen = Chosen(),
-    outputs: Outputs = Outputs(),
-) -> None:
+) -> CommandResult:
     """Look for the best designs of a study; of several aims, those that no other beats.
 
     Parameters
@@ -104,43 +102,39 @@ def search(
         Of the random numbers, that of the study if not given; the same gives the same designs.
     """
     from equipoise.figures.designs import searched_charts
-    from equipoise.schema.studies import load_study
     from equipoise.schema.study_units import units_of
     from equipoise.studies.blocks import columns_of
     from equipoise.studies.searching import search, search_size
 
-    asked = load_study(study)
-    outputs.check([study], [chosen.out])
     if chosen.out is not None:
-        check_new(asked.model.base(), chosen.out)
-    with naming(study), outputs.showing(asked):
-        size, turns = search_size(asked, population, generations)
-        units = units_of(asked)
-        with swept(units) as told, Watched(asked, told, computers) as watched:
-            found = search(
-                asked,
-                population=size,
-                generations=turns,
-                seed=seed,
-                progress=lambda *_: watched.tell(size * turns),
-                compute=watched,
-            )
-        chosen.check(0, len(found.values) - 1)
-        own = own_of(found.study) if outputs.plot is not None or not outputs.json else None
-
-        designs, made_of = range(len(found.values)), found.study
-        columns = columns_of(made_of.paths, found.values, made_of.names, found.figures)
-        outputs.write(lambda: _columns(designs, columns, _si_units(made_of)))
-        outputs.draw(made_of, lambda: searched_charts(found, units, own))
-        outputs.print(made_of, found.to_dict, lambda: found.blocks(units=units, own=own))
-    if chosen.out is not None:
-        number = chosen.design or 0
-        of = Note(
-            'a search of the study "{title}", seed {seed}',
-            title=found.study.title,
-            seed=found.seed,
+        check_new(study.model.base(), chosen.out)
+    size, turns = search_size(study, population, generations)
+    units = units_of(study)
+    with swept(units) as told, Watched(study, told, computers) as watched:
+        found = search(
+            study,
+            population=size,
+            generations=turns,
+            seed=seed,
+            progress=lambda *_: watched.tell(size * turns),
+            compute=watched,
         )
-        _save(found.machine(number), chosen.out, number, of)
+    chosen.check(0, len(found.values) - 1)
+    number, made_of = chosen.design or 0, found.study
+    model = None if chosen.out is None else found.machine(number)
+    own = cache(lambda: own_of(made_of))
+    columns = columns_of(made_of.paths, found.values, made_of.names, found.figures)
+    source = Note(
+        'a search of the study "{title}", seed {seed}', title=made_of.title, seed=found.seed
+    )
+    return CommandResult(
+        lambda: found.blocks(units=units, own=own()),
+        found.to_dict,
+        made_of,
+        columns=lambda: _columns(range(len(found.values)), columns, _si_units(made_of)),
+        pictures=lambda: searched_charts(found, units, own()),
+        save=lambda: _save(model, chosen.out, number, source),
+    )
 
 
 def own_of(study: Study) -> tuple[Array, Array] | None:
@@ -152,9 +146,12 @@ def own_of(study: Study) -> tuple[Array, Array] | None:
     return (study.own, outcome.figures[0]) if outcome.reason[0] == COMPUTED else None
 
 
-def _save(model: Any, out: str, number: int, of: Note) -> None:
+def _save(model: Any, out: str | None, number: int, of: Note) -> list[str]:
+    """Write a design as a new model, where that is wanted."""
+    if out is None:
+        return []
     origin = Note("Design {number} of {of}.", number=number, of=of)
-    write_model(model, out, Note(", design {number}", number=number), origin.said)
+    return write_model(model, out, Note(", design {number}", number=number), origin.said)
 
 
 def _columns(

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import os
-import sys
 from functools import partial
 from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
-from equipoise.cli.models import linkage_of
-from equipoise.cli.options import Angle, Out, blaming, crank_angles, naming, read_by, wants
-from equipoise.cli.outputs import check_result_file, sources_of, tell, wrote
+from equipoise.cli.models import NamedFile, linkage_of
+from equipoise.cli.options import Angle, Out, blaming, crank_angles, read_by, wants
+from equipoise.cli.outputs import check_result_file, sources_of, wrote
+from equipoise.cli.runner import CommandResult, command
 from equipoise.errors import UsageError
 
 if TYPE_CHECKING:
@@ -23,8 +23,9 @@ STORE = ".zarr"
 FILE = "Path of a model file or of a store, or the name of a bundled example."
 
 
+@command(long=True)
 def export(
-    file: Annotated[str, Parameter(name="FILE", help=FILE)],
+    file: Annotated[NamedFile, Parameter(name="FILE", help=FILE)],
     /,
     *,
     out: Out = None,
@@ -34,7 +35,7 @@ def export(
     kept: bool = False,
     link: Annotated[str | None, wants("LINK")] = None,
     angles: Annotated[Any, read_by(crank_angles)] = None,
-) -> None:
+) -> CommandResult:
     """Write a linkage for another program, or all designs of a store as one table, in SI units.
 
     Parameters
@@ -70,8 +71,7 @@ def export(
     if one.of_store:
         _check(f"a file of {one.title} holds the designs of a store", at=at, balanced=balanced)
         check_link_loads(one, prefix="--", link=link, angles=angles)
-        _designs(file, out, kept)
-        return
+        return CommandResult(save=lambda: _designs(file, out, kept))
     _check("it goes with a store", kept=kept)
     check_link_loads(one, prefix="--", link=link, angles=angles)
     if angles is not None and at is not None:
@@ -80,11 +80,10 @@ def export(
         _check(f"a file of {one.title} is the same at every crank angle", at=at)
     machine = linkage_of(file)
     check_result_file("--out", out, sources_of(machine, file))
-    with naming(file):
-        what = _balanced(machine) if balanced else machine
-        for part in write(what, out, one.name, crank_angle=at, link=link, angles=angles):
-            tell(f"note: the file leaves out {part}", sys.stderr)
-    wrote(out)
+    what = _balanced(machine) if balanced else machine
+    parts = write(what, out, one.name, crank_angle=at, link=link, angles=angles)
+    notes = [f"note: the file leaves out {part}" for part in parts]
+    return CommandResult(save=lambda: [*notes, wrote(out)])
 
 
 def _check(why: str, **options: object) -> None:
@@ -94,13 +93,13 @@ def _check(why: str, **options: object) -> None:
             raise UsageError(f"--{name}: {why}; leave it out")
 
 
-def _designs(store: str, out: str, kept: bool) -> None:
+def _designs(store: str, out: str, kept: bool) -> list[str]:
     from equipoise.studies.selection import write_designs
     from equipoise.studies.store import open_store
 
     opened = open_store(store)
     check_result_file("--out", out, [])
-    wrote(f"{write_designs(opened, out, kept=kept)} designs to {out}")
+    return [wrote(f"{write_designs(opened, out, kept=kept)} designs to {out}")]
 
 
 def _balanced(machine: Machine) -> Balanced:

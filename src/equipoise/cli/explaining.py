@@ -37,7 +37,7 @@ def explain(topic: Annotated[str | None, Parameter(name="TOPIC")] = None, /) -> 
     if not known:
         raise UsageError(unknown(topic, [*topics.errors(), *topics.tables()], "topic"))
     if known in topics.errors():
-        return CommandResult(text=lambda: _page(*topics.errors()[known]))
+        return CommandResult(lines=lambda: _page(*topics.errors()[known]).splitlines())
     table = topics.tables()[known]
     return CommandResult(lambda: _keys(table, known), title=table.heading)
 

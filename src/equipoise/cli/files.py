@@ -73,7 +73,7 @@ def schema(*, tool: bool = False, study: bool = False) -> CommandResult:
     from equipoise.schema.schemas import json_schema
 
     kind = _kind(tool, study)
-    return CommandResult(text=lambda: json.dumps(json_schema(kind), indent=2))
+    return CommandResult(lines=lambda: json.dumps(json_schema(kind), indent=2).splitlines())
 
 
 def completion(
@@ -120,8 +120,7 @@ def new(
     path = usual if file is None else file
     check_model_name(path, "FILE")
     write(path, start, replace=False)
-    wrote(f"{path}; next: {first.format(path)}")
-    return CommandResult()
+    return CommandResult(save=lambda: [wrote(f"{path}; next: {first.format(path)}")])
 
 
 def _kind(tool: bool, study: bool) -> Literal["linkage", "tool", "study"]:

@@ -331,8 +331,8 @@ def design(
     with counted("search") as progress:
         found = design_tool(tool, progress)
 
-    def save() -> None:
-        if out is not None:
-            write_model(found.better, out, what_next=f"; next: equipoise tool {out}")
+    def save() -> list[str]:
+        following = f"; next: equipoise tool {out}"
+        return [] if out is None else write_model(found.better, out, what_next=following)
 
     return replace(_result(tool, [found], found.charts, "design"), save=save)

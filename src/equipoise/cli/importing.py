@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Annotated
 
 from cyclopts import Parameter
 
-from equipoise.cli.options import Many, Names, Rate, naming, read_by, size, wants
+from equipoise.cli.models import NamedFile
+from equipoise.cli.options import Many, Names, OtherFile, Rate, read_by, size, wants
 from equipoise.cli.outputs import Shown, check_new, wrote
+from equipoise.cli.runner import CommandResult, command
 from equipoise.errors import UsageError
 
 
@@ -30,11 +31,14 @@ def _unit(option: str, text: str) -> float:
     return value
 
 
+@command(Shown)
 def import_file(
-    file: Annotated[str, Parameter(name="FILE")],
+    file: Annotated[NamedFile, Parameter(name="FILE")],
     /,
     *,
-    out: Annotated[str | None, Parameter(name=["--out", "-o"], metavar="FILE")] = None,
+    out: Annotated[
+        str | None, Parameter(name=["--out", "-o"], metavar="FILE"), OtherFile(".toml")
+    ] = None,
     crank: Annotated[str | None, wants("LINK")] = None,
     speed: Rate = None,
     frame: Names = None,
@@ -45,8 +49,8 @@ def import_file(
     tolerance: Annotated[
         float | None, size("length", "give more than 0"), wants('"0.1 mm"')
     ] = None,
-    shown: Shown = Shown(),
-) -> None:
+    shown: Shown,
+) -> CommandResult:
     """Make a model file of a DXF or SVG drawing, of MJCF or URDF, or of Linkage or PMKS+.
 
     Parameters
@@ -78,27 +82,27 @@ def import_file(
         Of a drawing: distance below which ends of lines meet; a millionth of its size if not given.
     """
     from equipoise.exchange.reading.formats import import_machine
-    from equipoise.present import show_blocks
     from equipoise.schema.files import write
 
-    path = f"{Path(file).stem}.toml" if out is None else out
-    with naming(file):
-        found = import_machine(
-            file,
-            crank=crank or "",
-            speed=speed,
-            frame=frame or (),
-            guide=guide or (),
-            link=link or (),
-            tolerance=tolerance or 0.0,
-            pin=pin or (),
-            unit=unit,
-        )
+    path = out or ""  # FILE.toml where none is given
+    found = import_machine(
+        file,
+        crank=crank or "",
+        speed=speed,
+        frame=frame or (),
+        guide=guide or (),
+        link=link or (),
+        tolerance=tolerance or 0.0,
+        pin=pin or (),
+        unit=unit,
+    )
     if shown.units:
         found = found.shown_in(shown.units)
     check_new(found.outline.machine(), path)
-    text = found.text()
-    with shown.showing(found.machine):
-        show_blocks(str(found.outline.rest["title"]), found.blocks())
-    write(path, text, replace=False)
-    wrote(path)
+
+    def save() -> list[str]:
+        write(path, found.text(), replace=False)
+        return [wrote(path)]
+
+    title = str(found.outline.rest["title"])
+    return CommandResult(found.blocks, owner=found.machine, title=title, save=save)

@@ -114,7 +114,7 @@ def analyze(
         answer,
         values=lambda: analysis.to_dict(split, chosen) | further,
         headline=None if orders is not None or chosen or held is not None else answer.headline,
-        save=lambda: None if csv is None else write_text(csv, to_csv(analysis, chosen)),
+        save=lambda: () if csv is None else write_text(csv, to_csv(analysis, chosen)),
     )
 
 

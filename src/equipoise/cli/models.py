@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
     from equipoise.handheld.model import Tool
     from equipoise.mechanism.parts.machine import Machine
+    from equipoise.studies.store import Store
+    from equipoise.studies.study import Study
 
 
 @dataclass(frozen=True)
@@ -46,6 +48,27 @@ def tool_of(file: str) -> Tool:
     return load_tool(file)
 
 
+def study_of(file: str) -> Study:
+    """The study of a file."""
+    from equipoise.schema.studies import load_study
+
+    return load_study(file)
+
+
+def store_of(path: str) -> Store:
+    """An open store."""
+    from equipoise.studies.store import open_store
+
+    return open_store(path)
+
+
+def owner_of(store: Store) -> Study | None:
+    """The study of a store, in whose units and words it is told; None where it cannot be read."""
+    from equipoise.schema import study_units
+
+    return study_units.owner_of(store)
+
+
 def at_speed(machine: Machine, speed: float | None) -> Machine:
     """A machine whose crank turns at the speed of an option, rad/s, where one is given.
 
@@ -66,7 +89,12 @@ if TYPE_CHECKING:
     PlannedFile: TypeAlias = Machine
     ToolFile: TypeAlias = Tool
     DesignFile: TypeAlias = Tool
+    StudyFile: TypeAlias = Study
+    TolerancedFile: TypeAlias = Study
+    OpenedStore: TypeAlias = Store
     AnyFile: TypeAlias = str
+    ModelFile: TypeAlias = str
+    NamedFile: TypeAlias = str
 else:
     LINKAGE = LoadedFile(linkage_of, sources_of)
     LinkageFile = Annotated[str, file_named("Path of a model file"), LINKAGE]
@@ -78,5 +106,17 @@ else:
     TOOL = LoadedFile(tool_of, sources_of)
     ToolFile = Annotated[str, file_named("Path of a tool's file, with a table [shaft]"), TOOL]
     DesignFile = Annotated[str, file_named("Path of a tool's file, with a table [design]"), TOOL]
+    STUDY = LoadedFile(study_of)
+    StudyFile = Annotated[str, file_named("Path of a study file", "STUDY"), STUDY]
+    TolerancedFile = Annotated[
+        str, file_named("Path of a study file whose numbers have tolerances", "STUDY"), STUDY
+    ]
+    OpenedStore = Annotated[
+        str,
+        Parameter(name="STORE", help='Path of a store, as "equipoise sweep" makes it.'),
+        LoadedFile(store_of, lambda *_: [], owner_of),
+    ]
     NAMED = LoadedFile(str, owner=lambda _: None)
+    NamedFile = Annotated[str, NAMED]
+    ModelFile = Annotated[str, file_named("Path of a model file"), NAMED]
     AnyFile = Annotated[str, file_named("Path of a model file or a study file"), NAMED]

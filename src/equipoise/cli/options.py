@@ -207,12 +207,7 @@ def file_named(text: str, name: str = "FILE") -> Parameter:
 
 SIGNED = Parameter(allow_leading_hyphen=True)
 """Of an option whose value may begin with a minus sign."""
-File = Annotated[str, file_named("Path of a model file")]
-StudyFile = Annotated[str, file_named("Path of a study file", "STUDY")]
 WorkerCount = Annotated[int | None, count(1, 1000)]
-StorePath = Annotated[
-    str, Parameter(name="STORE", help='Path of a store, as "equipoise sweep" makes it.')
-]
 Out = Annotated[str | None, Parameter(name=["--out", "-o"], metavar="PATH"), OtherFile()]
 NewFile = Annotated[str | None, wants("FILE"), ResultFile()]
 NewFolder = Annotated[str | None, wants("FOLDER")]

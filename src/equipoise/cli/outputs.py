@@ -1,16 +1,13 @@
-"""Where a command's results go: standard output, a table, pictures, a new model file."""
+"""Where a command's results go: options that say so, and what writes tables, pictures, models."""
 
 from __future__ import annotations
 
 import os
 import re
-import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
-from contextvars import ContextVar
 from dataclasses import dataclass, replace
-from json import loads
-from typing import TYPE_CHECKING, Annotated, Any, Literal, TextIO
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import Parameter
 
@@ -25,8 +22,6 @@ from equipoise.cli.options import (
 from equipoise.errors import UsageError
 from equipoise.fence import hold_place, may_be_replaced
 from equipoise.i18n import Note, in_each, said, say, to_say
-from equipoise.interrupts import check
-from equipoise.partial import afterwards
 
 if TYPE_CHECKING:
     import numpy as np
@@ -35,7 +30,6 @@ if TYPE_CHECKING:
     from equipoise.handheld.model import Tool
     from equipoise.mechanism.parts.machine import Machine
     from equipoise.results.blocks import Block, Section
-    from equipoise.results.result import Result
 
 Kind = Literal["svg", "png", "pdf"]
 Columns = Sequence[tuple[str, str, "np.ndarray[Any, Any]"]]
@@ -49,8 +43,6 @@ MORE = to_say("--full prints all tables, --json every number.")
 """Below what stands first of a result."""
 BRIEF = 15
 """Lines of what stands first, on a terminal that is 80 signs wide."""
-values_given: ContextVar[list[dict[str, Any]] | None] = ContextVar("values_given", default=None)
-"""Gets the values of each JSON object, printed or not, for programs that call a command."""
 
 
 @Parameter(name="*")
@@ -78,33 +70,6 @@ class Printed(Shown):
     json: bool = False
     """Print one JSON object in SI units, and nothing else."""
 
-    def print(self, of: Any, values: Values, blocks: Blocks, most: int | None = None) -> None:
-        """Print values as JSON, or a title and blocks below it.
-
-        of : the machine, tool or study; its title where there is none.
-        most : lines; any if None.
-        """
-        from equipoise.schema.files import json_text
-
-        check()
-        caller = values_given.get()
-        if self.json or caller is not None:
-            text = json_text(dict(values()))
-            if caller is not None:
-                caller.append(loads(text))  # plain: without arrays
-        if self.json:
-            print(text)
-        else:
-            from equipoise.present import show_blocks
-
-            with self.showing(of):
-                show_blocks(of if isinstance(of, str) else of.title, blocks(), most=most)
-
-    def show(self, found: Result, **options: Any) -> None:
-        """Print a result; further arguments as of its `blocks`."""
-        of = found.title if found.owner is None else found.owner
-        self.print(of, found.to_dict, lambda: found.blocks(**options))
-
 
 @Parameter(name="*")
 @dataclass(frozen=True)
@@ -113,29 +78,6 @@ class Length:
 
     full: bool = False
     """Print all tables, not only what stands first: the verdict, what is large, what to look at."""
-
-    def blocks(self, found: Result, **options: Any) -> Iterator[Block | Section]:
-        """What stands first of a result, and all that it shows where that is wanted.
-
-        options : of the result's `blocks`.
-        """
-        from equipoise.results.blocks import Text
-
-        first = found.headline(alone=not self.full) if found.headline_in else ()
-        yield from first
-        if self.full or not first:
-            yield from found.blocks(**options)
-        else:
-            yield Text(say(MORE))
-
-    def show(self, found: Result, outputs: Printed, **options: Any) -> None:
-        """Print a result so; options of its `blocks`."""
-        of = found.title if found.owner is None else found.owner
-        outputs.print(of, found.to_dict, lambda: self.blocks(found, **options), self.most(found))
-
-    def most(self, found: Result) -> int | None:
-        """Lines that are printed of a result; None for any number."""
-        return BRIEF if found.headline_in and not self.full else None
 
 
 @Parameter(name="*")
@@ -153,33 +95,10 @@ class Drawn(Printed):
         if self.plot is not None:
             check_folder("--plot", self.plot)
 
-    def draw(self, of: Any, drawings: Drawings) -> None:
-        """Write pictures of a machine, tool or study into the folder if there is to be one."""
-        if self.plot is not None:
-            with self.showing(of):
-                write_pictures(drawings(), self.plot, self.format or "svg")
-
-    def draw_result(self, found: Result) -> None:
-        """Write the pictures of a result."""
-        from equipoise.figures.pictures import pictures_of
-
-        self.draw(found.owner, lambda: pictures_of(found))
-
-    def give(self, found: Result, length: Length | None = None, **options: Any) -> None:
-        """Write the files that are wanted, then print; further arguments as of `show`.
-
-        length : how much is printed; all where not given.
-        """
-        self.draw_result(found)
-        if length is None:
-            self.show(found, **options)
-        else:
-            length.show(found, self, **options)
-
 
 @Parameter(name="*")
 @dataclass(frozen=True)
-class PictureFolder(Shown):
+class Pictures(Shown):
     """Where pictures go, and as what."""
 
     out: Out = None
@@ -201,22 +120,6 @@ class Outputs(Drawn):
 
     csv: NewFile = None
     """Write what is told, column by column, to this file."""
-
-    def check(self, sources: Sequence[str], others: Iterable[str | None] = ()) -> None:
-        """Columns must have a place to go: none of those that are read or written besides."""
-        if self.csv is not None:
-            check_result_file("--csv", self.csv, sources, others)
-
-    def write(self, columns: Callable[[], Columns]) -> None:
-        """Write columns, as name, unit and values, if they are wanted."""
-        if self.csv is not None:
-            from equipoise.schema.files import csv_text
-
-            write_text(self.csv, csv_text(columns()))
-
-    def give(self, found: Result, length: Length | None = None, **options: Any) -> None:
-        self.write(found.columns)
-        super().give(found, length, **options)
 
 
 @Parameter(name="*")
@@ -241,52 +144,42 @@ class Chosen:
 
 
 # -- writing ---------------------------------------------------------------------------------------
+# What these return is said on standard error once everything is in its place.
 
 
-def write_text(path: str, text: str) -> None:
-    """Write a file, and say so."""
+def write_text(path: str, text: str) -> list[str]:
+    """Write a file."""
     from equipoise.schema.files import write
 
     write(path, text)
-    wrote(path)
+    return [wrote(path)]
 
 
-def wrote(what: str) -> None:
-    """Say what was written, once it is in its place."""
-    tell(f"wrote {what}", sys.stderr)
+def wrote(what: str) -> str:
+    """What was written."""
+    return f"wrote {what}"
 
 
-def tell(line: str, stream: TextIO | None = None) -> None:
-    """Print a line of which any terminal can print every sign, once everything is written."""
-    from equipoise.schema.files import printable
-
-    shown = "".join(map(printable, line))
-    afterwards(lambda: print(shown, file=stream))
+def wrote_pictures(number: int, folder: str) -> str:
+    """How many pictures were written."""
+    return wrote(f"{'1 picture' if number == 1 else f'{number} pictures'} to {folder}")
 
 
-def write_pictures(figures: Mapping[str, Picture], folder: str, kind: Kind) -> None:
-    """Write pictures into a folder, and say so."""
+def boxes(signs: str, otherwise: str) -> list[str]:
+    """Which signs no font of this computer has, if there are any, and what to do."""
+    shown = "".join(dict.fromkeys(signs))[:20]
+    hint = f"install one such as Noto Sans CJK, or {otherwise}"
+    return [f"note: no font has {shown}, for which boxes are drawn; {hint}"] if signs else []
+
+
+def write_pictures(figures: Mapping[str, Picture], folder: str, kind: Kind) -> list[str]:
+    """Write pictures into a folder."""
     from equipoise.figures import render, unwritten
     from equipoise.schema.files import write_all
 
     write_all(folder, {f"{name}.{kind}": render(figure, kind) for name, figure in figures.items()})
-    if kind != "svg":
-        tell_boxes("".join(map(unwritten, figures.values())), "give --format svg")
-    tell_pictures(len(figures), folder)
-
-
-def tell_boxes(signs: str, otherwise: str) -> None:
-    """Say which signs no font of this computer has, if there are any, and what to do."""
-    if signs:
-        shown = "".join(dict.fromkeys(signs))[:20]
-        hint = f"install one such as Noto Sans CJK, or {otherwise}"
-        tell(f"note: no font has {shown}, for which boxes are drawn; {hint}", sys.stderr)
-
-
-def tell_pictures(number: int, folder: str) -> None:
-    """Say how many pictures were written."""
-    pictures = "1 picture" if number == 1 else f"{number} pictures"
-    wrote(f"{pictures} to {folder}")
+    signs = "" if kind == "svg" else "".join(map(unwritten, figures.values()))
+    return [*boxes(signs, "give --format svg"), wrote_pictures(len(figures), folder)]
 
 
 def write_model(
@@ -295,8 +188,8 @@ def write_model(
     title: Note | str = "",
     origin: Callable[[], str] = str,
     what_next: str = "",
-) -> None:
-    """Save a model and say so.
+) -> list[str]:
+    """Save a model.
 
     title : added to its own; origin : says sentences to stand in front of its description.
     """
@@ -315,7 +208,7 @@ def write_model(
         description=in_each(model.description, described),
     )
     save(made, path)
-    wrote(" and ".join(map(os.fspath, files_of(made, path))) + what_next)
+    return [wrote(" and ".join(map(os.fspath, files_of(made, path))) + what_next)]
 
 
 # -- where results may go --------------------------------------------------------------------------

@@ -4,31 +4,30 @@ from __future__ import annotations
 
 import os
 import re
-import sys
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import App, Parameter
 
+from equipoise.cli.models import ModelFile
 from equipoise.cli.options import (
     AnySpeed,
     Computers,
-    File,
     Many,
     Names,
     Speed,
     blaming,
     count,
     ends_of_range,
-    naming,
     quantities,
     quantity,
     read_by,
     wants,
 )
-from equipoise.cli.outputs import PictureFolder, tell, tell_pictures, write_pictures
+from equipoise.cli.outputs import Pictures, write_pictures, wrote_pictures
 from equipoise.cli.plan import read_objective
 from equipoise.cli.progress import counted
+from equipoise.cli.runner import CommandResult, command
 from equipoise.errors import ModelError, UsageError
 from equipoise.mechanism.checks import unknown
 
@@ -58,16 +57,17 @@ def _crank_angles(option: str, text: str) -> list[float]:
 
 
 @app.default
+@command(Pictures)
 def plot(
-    file: File,
+    file: ModelFile,
     /,
     *,
     only: Names = None,
     output: Names = None,
     at: Annotated[Any, read_by(_crank_angles, '"0 deg, 45 deg"')] = None,
     speed: AnySpeed = None,
-    pictures: PictureFolder = PictureFolder(),
-) -> None:
+    pictures: Pictures,
+) -> CommandResult:
     """Every picture of a linkage or a tool: motion, forces, vibration, balance.
 
     Parameters
@@ -88,17 +88,20 @@ def plot(
     found = find(file, speed=speed, swings=True)
     if at is not None and isinstance(found, ToolFindings):
         raise UsageError("--at: a tool has no crank angles; leave it out")
-    with naming(file), pictures.showing(found.owner):
+    written = list[str]()
+    with pictures.showing(found.owner):
         chosen = _outputs(found, output) if output else _chosen(each(found, at), only)
         for picture in chosen:
             name = f"{picture.name}.{kind}"
             write_all(folder, {name: render(picture.draw(), kind)})
-            tell(f"{os.path.join(folder, name)}  {picture.caption}")
-    if (swings := getattr(found, "swings", None)) is not None:
-        tell(f"note: {swings}", sys.stderr)
-    for part, why in found.failed.items():
-        tell(f"{part}: left out, {why}", sys.stderr)
-    tell_pictures(len(chosen), folder)
+            written.append(f"{os.path.join(folder, name)}  {picture.caption}")
+    swings = getattr(found, "swings", None)
+    notes = [] if swings is None else [f"note: {swings}"]
+    notes += [f"{part}: left out, {why}" for part, why in found.failed.items()]
+    return CommandResult(
+        lines=lambda: written,
+        save=lambda: [*notes, wrote_pictures(len(chosen), folder)],
+    )
 
 
 def _outputs(found: Any, names: Sequence[str]) -> list[Picture]:
@@ -131,8 +134,9 @@ def _chosen(pictures: Iterable[Picture], only: Sequence[str] | None) -> list[Pic
 
 
 @app.command(name="map")
+@command(Pictures, long=True)
 def landscape(
-    file: File,
+    file: ModelFile,
     first: Annotated[str, Parameter(name="FIRST")],
     second: Annotated[str, Parameter(name="SECOND")],
     output: Annotated[str, Parameter(name="OUTPUT")],
@@ -142,8 +146,8 @@ def landscape(
     points: Annotated[int, count(5, MOST_POINTS)] = POINTS,
     speed: Speed = None,
     computers: Computers = Computers(),
-    pictures: PictureFolder = PictureFolder(),
-) -> None:
+    pictures: Pictures,
+) -> CommandResult:
     """An output over two numbers of a machine.
 
     Parameters
@@ -176,15 +180,14 @@ def landscape(
     numbers = dict(_number(model, text) for text in set or ())
     if speed is not None:
         numbers["drive.speed"] = speed
-    with naming(file), counted("machine") as progress:
+    with counted("machine") as progress:
         found = studies.landscape(
             model, dict(both), objective, numbers, progress, **vars(computers)
         )
     with pictures.showing(model.base()):
-        write_pictures({"landscape": drawn_map(found)}, folder, pictures.format)
-        best = told_best(found)
-    tell(os.path.join(folder, f"landscape.{pictures.format}"))
-    tell(best)
+        lines = write_pictures({"landscape": drawn_map(found)}, folder, pictures.format)
+        written = os.path.join(folder, f"landscape.{pictures.format}"), told_best(found)
+    return CommandResult(lines=lambda: written, save=lambda: lines)
 
 
 def _range(model: Model, option: str, text: str, count: int) -> tuple[str, np.ndarray[Any, Any]]:

@@ -4,33 +4,32 @@ from __future__ import annotations
 
 import os
 import shlex
-import sys
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from equipoise.cli.models import linkage_of
+from equipoise.cli.models import ModelFile, linkage_of
 from equipoise.cli.options import (
     SIGNED,
-    File,
     Many,
     Out,
     Rate,
     SpeedText,
+    Spoken,
     blaming,
     check_belonging,
-    naming,
     quantity,
     wants,
 )
 from equipoise.cli.outputs import (
     Shown,
+    boxes,
     check_result_file,
     default_name,
     sources_of,
-    tell,
-    tell_boxes,
     wrote,
 )
 from equipoise.cli.progress import counted
+from equipoise.cli.runner import CommandResult, command
 from equipoise.errors import UsageError
 
 if TYPE_CHECKING:
@@ -45,8 +44,9 @@ MOST_LARGER = 1e9
 """Times that the movement of a support may be drawn larger than true."""
 
 
+@command(long=True)
 def animate(
-    file: File,
+    file: ModelFile,
     /,
     *,
     out: Out = None,
@@ -59,7 +59,7 @@ def animate(
     exaggerate: Annotated[float | None, SIGNED] = None,
     mode: Annotated[int | None, SIGNED] = None,
     dark: bool = False,
-) -> None:
+) -> CommandResult:
     """Show how a linkage and its support move: as SVG for a page, as GIF, or as a film in MP4.
 
     A hand-held tool is shown in a mode of its vertical plane, as SVG.
@@ -108,7 +108,7 @@ def animate(
         given = {"turns": turns, "trace": trace, "speed": speed, "exaggerate": exaggerate}
         _check_tool(kind, **given, force=force or None)
         write(name, _tool_in_mode(file, mode, seconds, width))
-        return wrote(name)
+        return CommandResult(save=lambda: [wrote(name)])
     machine = linkage_of(file, speed)
     _check_support(machine, force, speed, exaggerate, mode)
     check_result_file("--out", name, sources_of(machine, file))
@@ -118,20 +118,19 @@ def animate(
     if kind == "mp4":
         options["turns"] = turns
     count = _angles_of(kind, seconds)
-    with naming(file):
-        if kind != "svg" and mode is None:
-            _check_film(machine, kind, seconds, turns, width)
-        if mode is not None:
-            scene = _in_mode(machine, mode, count)
-        else:
-            found = analyze(machine, count)
-            scene = _swinging(found, exaggerate)
-            options["arrow"] = ForceArrow.of(found) if force else None
-        if trace is None:
-            options["traced"] = () if mode is not None else followed(found.motion)
-        data = _animated(scene, machine.title, kind, options)
-    write(name, data)
-    wrote(name)
+    notes = list[str]()
+    if kind != "svg" and mode is None:
+        _check_film(machine, kind, seconds, turns, width)
+    if mode is not None:
+        scene = _in_mode(machine, mode, count)
+    else:
+        found = analyze(machine, count)
+        scene, notes = _swinging(found, exaggerate)
+        options["arrow"] = ForceArrow.of(found) if force else None
+    if trace is None:
+        options["traced"] = () if mode is not None else followed(found.motion)
+    write(name, _animated(scene, machine.title, kind, options))
+    return CommandResult(save=lambda: [*notes, wrote(name)])
 
 
 def _check_film(machine: Machine, kind: str, seconds: float, turns: int | None, width: int) -> None:
@@ -192,16 +191,15 @@ def _tool_in_mode(file: str, mode: int | None, seconds: float, width: int) -> st
         return flipped(in_mode(modes, 1 if mode is None else mode, TOOL_FRAMES), seconds, width)
 
 
-def _swinging(found: Analysis, factor: float | None) -> Scene:
-    """What moves at speed, its support too, as far as that can be computed."""
+def _swinging(found: Analysis, factor: float | None) -> tuple[Scene, list[str]]:
+    """What moves at speed, its support too, as far as that can be computed, and what is not."""
     from equipoise.figures.swing import moving
 
     scene, problem = moving(found, factor)
     if problem is not None and factor is not None:
         raise problem
-    if problem is not None:
-        tell(f"the support is drawn standing still: {problem}", sys.stderr)
-    return scene
+    still = [] if problem is None else [f"the support is drawn standing still: {problem}"]
+    return scene, still
 
 
 def _in_mode(machine: Machine, number: int, count: int) -> Scene:
@@ -241,20 +239,20 @@ def _animated(scene: Scene, title: str, kind: str, options: dict[str, Any]) -> s
 
 # -- the report ------------------------------------------------------------------------------------
 
-Language = Literal["en", "ja", "ko"]
+Language = Annotated[Literal["en", "ja", "ko"], Spoken()]
 """As in `words`."""
 
 
+@command(Shown, long=True)
 def report(
-    file: File,
+    file: ModelFile,
     /,
     *,
     out: Out = None,
     language: Language = "en",
     pdf: bool = False,
     speed: SpeedText = None,
-    shown: Shown = Shown(),
-) -> None:
+) -> CommandResult:
     """One page that tells all of a linkage or a tool: summary, pictures, tables, before and after.
 
     Parameters
@@ -275,13 +273,16 @@ def report(
     check(paths, language)
 
     found = find(file, speed=rate)
-    with naming(file), shown.showing():
-        document = build(found, language, _command(file, language, speed), together=True)
+    document = build(found, language, _command(file, language, speed), together=True)
     write_document(document, paths)
-    for path in paths:
-        wrote(path)
-        if kind_of(path) == "pdf":
-            tell_boxes(boxed_in_pdf(document), "read the report as .html")
+
+    def lines() -> Iterator[str]:
+        for path in paths:
+            yield wrote(path)
+            if kind_of(path) == "pdf":
+                yield from boxes(boxed_in_pdf(document), "read the report as .html")
+
+    return CommandResult(save=lines)
 
 
 def _paths(file: str, out: str | None, pdf: bool) -> list[str]:

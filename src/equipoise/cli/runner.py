@@ -14,6 +14,7 @@ The command line shows what it returns, and so do programs that call it as a too
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass
@@ -72,8 +73,8 @@ class CommandResult:
         is nothing else.
     columns : of the CSV file, as name, unit and values.
     pictures : by name.
-    save : writes further files, after columns and pictures.
-    text : what is printed instead of title and blocks, as it stands.
+    save : writes further files, after columns and pictures, and returns what is said of them.
+    lines : what is printed instead of title and blocks, once all files are in their places.
     """
 
     blocks: Blocks | None = None
@@ -83,8 +84,8 @@ class CommandResult:
     headline: Callable[[bool], Iterable[Block | Section]] | None = None
     columns: Callable[[], Columns] = tuple
     pictures: Drawings = dict
-    save: Callable[[], object] = dict
-    text: Callable[[], str] | None = None
+    save: Callable[[], Iterable[str]] = tuple
+    lines: Callable[[], Iterable[str]] | None = None
 
     @staticmethod
     def of(result: Result, **options: Any) -> CommandResult:
@@ -134,12 +135,13 @@ class FinishedCommand:
     def give(self) -> None:
         """Write the files that are wanted, then print."""
         check()
-        with self._naming():
-            self._write()
-            if self.answer.text is None:
-                print(self.text, end="")
-            else:  # which may list what was written
-                afterwards(partial(print, self.text, end="", flush=True))
+        lines = self.write()
+        if self.answer.lines is None:
+            afterwards(partial(_say, lines))
+            print(self.text, end="")
+        else:  # which may list what was written
+            afterwards(partial(print, self.text, end="", flush=True))
+            afterwards(partial(_say, lines))
 
     @cached_property
     def text(self) -> str:
@@ -147,14 +149,14 @@ class FinishedCommand:
         answer = self.answer
         if isinstance(self.outputs, Printed) and self.outputs.json:
             return f"{self.json}\n"
-        if answer.text is not None:
-            return f"{answer.text()}\n"
+        if answer.lines is not None:
+            return "".join(map(_line, answer.lines()))
         if answer.blocks is None:
             return ""
         from equipoise.present.terminal import block_text
 
         brief = answer.headline and self.length and not self.length.full
-        with self._showing():
+        with self._naming(), self._showing():
             title = self.owner.title if answer.title is None else answer.title
             return block_text(title, self._blocks(), most=BRIEF if brief else None)
 
@@ -166,16 +168,22 @@ class FinishedCommand:
         with speaking(self.language), self.outputs.showing(self.owner):
             yield
 
-    def _write(self) -> None:
+    def write(self) -> list[str]:
+        """Write the files that are wanted; returns what is said of them."""
+        with self._naming():
+            return [*self._written()]
+
+    def _written(self) -> Iterator[str]:
         answer, outputs = self.answer, self.outputs
         if isinstance(outputs, Outputs) and outputs.csv is not None:
             from equipoise.schema.files import csv_text
 
-            write_text(outputs.csv, csv_text(answer.columns()))
+            yield from write_text(outputs.csv, csv_text(answer.columns()))
         if isinstance(outputs, Drawn) and outputs.plot is not None:
             with self._showing():
-                write_pictures(answer.pictures(), outputs.plot, outputs.format or "svg")
-        answer.save()
+                kind = outputs.format or "svg"
+                yield from write_pictures(answer.pictures(), outputs.plot, kind)
+        yield from answer.save()
 
     def _blocks(self) -> Iterator[Block | Section]:
         from equipoise.results.blocks import Text
@@ -275,6 +283,18 @@ def command(
         return run
 
     return declare
+
+
+def _say(lines: Iterable[str]) -> None:
+    """Say what was written, in lines of which any terminal can print every sign."""
+    for line in lines:
+        print(_line(line), end="", file=sys.stderr)
+
+
+def _line(text: str) -> str:
+    from equipoise.schema.files import printable
+
+    return "".join(map(printable, text)) + "\n"
 
 
 def declared_of(function: object) -> Command | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from typing import Annotated
 
 from cyclopts import Parameter
@@ -45,7 +46,7 @@ def site(
         written = write_site(folder, runtime or "node_modules/pyodide", wheels, docs)
     except OSError as error:
         raise UsageError(f"{folder}: the site cannot be written ({reason(error)})") from error
-    wrote(f"{folder}/index.html")
+    print(wrote(f"{folder}/index.html"), file=sys.stderr)
     print(f"first load: {written.first / 1e6:.1f} MB, compressed")
     if written.missing:
         print("loaded from elsewhere when needed:", ", ".join(written.missing))

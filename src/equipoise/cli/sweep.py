@@ -11,18 +11,16 @@ from shlex import quote
 from typing import TYPE_CHECKING, Annotated, Any
 
 from equipoise.cli.designs import own_of
+from equipoise.cli.models import OpenedStore, StudyFile, TolerancedFile
 from equipoise.cli.options import (
     Computers,
     Out,
-    StorePath,
-    StudyFile,
     blaming_by_place,
     count,
-    file_named,
-    naming,
 )
 from equipoise.cli.outputs import Drawn
 from equipoise.cli.progress import Watched, swept
+from equipoise.cli.runner import CommandResult, command
 from equipoise.errors import UsageError
 from equipoise.quantities.numbers import rate_told, time_told
 
@@ -37,14 +35,10 @@ TOLD = 3
 """Designs that are told in the end."""
 
 
+@command(Drawn, long=True)
 def sweep(
-    study: StudyFile,
-    /,
-    *,
-    out: Out = None,
-    computers: Computers = Computers(),
-    outputs: Drawn = Drawn(),
-) -> None:
+    study: StudyFile, /, *, out: Out = None, computers: Computers = Computers()
+) -> CommandResult:
     """Compute every design of a study into a store, from which any interruption can be resumed.
 
     Parameters
@@ -52,37 +46,26 @@ def sweep(
     out
         The store, a new folder.
     """
-    from equipoise.schema.studies import load_study
     from equipoise.schema.study_units import units_of
     from equipoise.studies.run import sweep
 
-    asked = load_study(study)
     if not out:
         raise UsageError("--out: missing; say where the store is to be, such as -o designs.zarr")
-    with naming(study), outputs.showing(asked):
-        work = partial(sweep, asked, out, **vars(computers))
-        _compute(work, out, units_of(asked), outputs)
+    return _computed(partial(sweep, study, out, **vars(computers)), out, units_of(study))
 
 
-def resume(
-    store: StorePath,
-    /,
-    *,
-    computers: Computers = Computers(),
-    outputs: Drawn = Drawn(),
-) -> None:
+@command(Drawn, long=True)
+def resume(store: OpenedStore, /, *, computers: Computers = Computers()) -> CommandResult:
     """Compute what is missing in a store, as if nothing had ever stopped."""
     from equipoise.schema import study_units
-    from equipoise.studies.store import open_store
 
-    opened = open_store(store)
-    with outputs.showing(study_units.owner_of(opened)):
-        units = study_units.units_in(opened)
-        _compute(partial(study_units.resume, store, **vars(computers)), store, units, outputs)
+    path = str(store.path)
+    work = partial(study_units.resume, path, **vars(computers))
+    return _computed(work, path, study_units.units_in(store))
 
 
-def _compute(work: Callable[..., Store], path: str, units: dict[str, Unit], outputs: Drawn) -> None:
-    """Compute with progress on standard error, and give what came of it.
+def _computed(work: Callable[..., Store], path: str, units: dict[str, Unit]) -> CommandResult:
+    """Compute with progress on standard error.
 
     work : computes a store, which is at the `path`, and tells of its `progress`.
     """
@@ -99,14 +82,14 @@ def _compute(work: Callable[..., Store], path: str, units: dict[str, Unit], outp
             store = work(progress=tell)
         (end,) = last
         summary = _summary(store, end)
-        rate = rate_told(end.computed / max(end.seconds, 1e-9))
-        outputs.draw(None, lambda: _charts(store, units))
-        run = f", {time_told(end.seconds)}, {rate}" if end.computed else ", nothing was missing"
-        outputs.print(
-            summary.title,
-            lambda: _values(summary, end),
-            lambda: summary_blocks(summary, units, run),
-        )
+    rate = rate_told(end.computed / max(end.seconds, 1e-9))
+    run = f", {time_told(end.seconds)}, {rate}" if end.computed else ", nothing was missing"
+    return CommandResult(
+        lambda: summary_blocks(summary, units, run),
+        lambda: _values(summary, end),
+        title=summary.title,
+        pictures=lambda: _charts(store, units),
+    )
 
 
 def _charts(store: Store, units: dict[str, Unit]) -> Mapping[str, Picture]:
@@ -167,16 +150,14 @@ def _values(summary: Summary, last: Progress) -> dict[str, Any]:
 # -- tolerances ------------------------------------------------------------------------------------
 
 
+@command(Drawn, long=True)
 def tolerance(
-    study: Annotated[
-        str, file_named("Path of a study file whose numbers have tolerances", "STUDY")
-    ],
+    study: TolerancedFile,
     /,
     *,
     designs: Annotated[int | None, count(1, MOST_DESIGNS)] = None,
     computers: Computers = Computers(),
-    outputs: Drawn = Drawn(),
-) -> None:
+) -> CommandResult:
     """What manufacturing tolerances do to the figures of a machine, and which to tighten first.
 
     Parameters
@@ -185,21 +166,22 @@ def tolerance(
         Machines that are drawn, instead of as many as the study has.
     """
     from equipoise.figures.studies import tolerance_charts
-    from equipoise.schema.studies import load_study
     from equipoise.schema.study_units import units_of
     from equipoise.studies.tolerances import tolerance as of_study
 
-    asked = load_study(study)
     given: dict[tuple[str, ...], str] = {("sampling", "designs"): "--designs"}
-    with naming(study), outputs.showing(asked):
-        if designs is not None:
-            asked = replace(asked, sampling=replace(asked.sampling, designs=designs))
-        units = units_of(asked)
-        with (
-            blaming_by_place({} if designs is None else given),
-            swept(units) as told,
-            Watched(asked, told, computers) as watched,
-        ):
-            found = of_study(asked, progress=lambda _, total: watched.tell(total), compute=watched)
-    outputs.draw(asked, lambda: tolerance_charts(found, units))
-    outputs.print(asked, found.to_dict, lambda: found.blocks(units=units))
+    if designs is not None:
+        study = replace(study, sampling=replace(study.sampling, designs=designs))
+    units = units_of(study)
+    with (
+        blaming_by_place({} if designs is None else given),
+        swept(units) as told,
+        Watched(study, told, computers) as watched,
+    ):
+        found = of_study(study, progress=lambda _, total: watched.tell(total), compute=watched)
+    return CommandResult(
+        lambda: found.blocks(units=units),
+        found.to_dict,
+        study,
+        pictures=lambda: tolerance_charts(found, units),
+    )

@@ -5,10 +5,8 @@ Both follow from what commands declare for the command line; none is declared he
 
 from __future__ import annotations
 
-import io
 import os
 from collections.abc import Iterator, Mapping
-from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import dataclass
 from functools import cached_property
 from importlib.resources import files
@@ -18,9 +16,8 @@ from typing import TYPE_CHECKING, Any, get_args, get_origin
 
 from cyclopts import App
 
-from equipoise.cli import answered_by, app, check_repeated, give
-from equipoise.cli.outputs import values_given
-from equipoise.cli.runner import FinishedCommand, declared_of
+from equipoise.cli import answered_by, app, check_repeated
+from equipoise.cli.runner import declared_of
 from equipoise.errors import UsageError, unknown
 from equipoise.fence import Fence, fenced
 from equipoise.mechanism.outputs.declared import declared
@@ -30,12 +27,6 @@ from equipoise.quantities import SI
 if TYPE_CHECKING:
     from cyclopts import Argument, ArgumentCollection
 
-LEFT_OUT = {"completion", "mcp", "serve", "site"}
-"""Commands for a person at a terminal."""
-LONG = {
-    *("animate", "report", "resume", "search", "sweep", "tolerance", "tool design"),
-}
-"""Commands that may take minutes and do not declare it, with all below them."""
 HIDDEN = {"--cluster", "--workers"}
 """Options that reach beyond the folder, or are of the computer."""
 WRITTEN = {"FILE", "FOLDER", "PATH"}
@@ -81,9 +72,7 @@ class CommandTool:
     def long(self) -> bool:
         """Whether it may take minutes."""
         declared = declared_of(self.command.default_command)
-        return (declared is not None and declared.long) or any(
-            " ".join(self.words[: k + 1]) in LONG for k in range(len(self.words))
-        )
+        return declared is not None and declared.long
 
     @cached_property
     def arguments(self) -> dict[str, Argument]:
@@ -128,21 +117,15 @@ class CommandTool:
         bundled = Path(str(files("equipoise"))).resolve()
         fence = Fence(folder, (bundled,), replaces=given.get("overwrite") is True)
         line = self.line(given, fence)
-        printed, told, values = io.StringIO(), io.StringIO(), list[dict[str, Any]]()
-        token = values_given.set(values)
-        try:
-            check_repeated(line)
-            with redirect_stdout(printed), redirect_stderr(told), fenced(fence), together():
-                returned = answered_by(line)
-                if isinstance(returned, FinishedCommand):
-                    values.append(returned.values)
-                give(returned)
-        finally:
-            values_given.reset(token)
-        merged = {key: value for one in values for key, value in one.items()}
-        text = printed.getvalue() + told.getvalue()
-        whole = given.get("json") is True
-        return CommandOutput(text, merged if whole else _short(merged), tuple(fence.written))
+        check_repeated(line)
+        with fenced(fence), together():
+            finished = answered_by(line)
+            assert finished is not None  # as of every command that is declared
+            values = finished.values
+            lines = finished.write()
+            text = finished.text + "".join(f"{one}\n" for one in lines)
+        short = values if given.get("json") is True else _short(values)
+        return CommandOutput(text, short, tuple(fence.written))
 
     def line(self, given: Mapping[str, Any], fence: Fence) -> list[str]:
         """The words of the command line that means the same."""
@@ -177,9 +160,9 @@ class CommandTool:
 
 
 def tools() -> dict[str, CommandTool]:
-    """Every command that is of use to a program, by its tool's name."""
+    """Every command that returns something, by its tool's name; others are for people."""
     found = (one for name in sorted(app.resolved_commands()) for one in _below((name,), app[name]))
-    return {one.name: one for one in found if one.words[0] not in LEFT_OUT}
+    return {one.name: one for one in found if declared_of(one.command.default_command) is not None}
 
 
 def _below(words: tuple[str, ...], command: App) -> Iterator[CommandTool]:
