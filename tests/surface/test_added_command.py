@@ -1,11 +1,14 @@
-"""A command that is one declaration is in the help, is parsed and is shown, and programs call it.
+"""A command that is one declaration and one line that registers it is known everywhere.
 
+It is in the help, is parsed and is shown, programs call it, and tests of all commands try it.
 Nothing else knows of it: it loads, prints and writes nothing itself.
 """
 
 from __future__ import annotations
 
 import json
+import runpy
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated
@@ -21,7 +24,11 @@ from equipoise.cli.runner import CommandResult, command
 from equipoise.cli.tools import tools
 from equipoise.results.blocks import Text
 from equipoise.schema.models import load_linkage
+from surface.registered import functions, line_of, loads, options
 from surface.running import equipoise, read, refused, succeeded
+
+DOCS = Path(__file__).parents[2] / "docs"
+DRAWN = ["--units", "--json", "--plot", "--format"]
 
 
 @command(Outputs, long=True)
@@ -39,7 +46,7 @@ def heft(
 
 @pytest.fixture(autouse=True)
 def added() -> Iterator[None]:
-    app.command(heft, name="heft")
+    app.command(f"{__name__}:heft", name="heft")  # as each line of `equipoise.cli.MODULES` does
     yield
     del app["heft"]
 
@@ -51,6 +58,23 @@ def test_it_is_in_the_help() -> None:
     assert "heft" in succeeded(equipoise("--help"))
     told = succeeded(equipoise("heft", "--help"))
     assert all(one in told for one in ("FILE", "--times", "--units", "--json", "--csv", "--plot"))
+
+
+def test_it_is_in_the_pages_of_all_commands(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "argv", ["equipoise"])
+    for page, name in (("man.py", "page"), ("site/commands.py", "commands")):
+        made = runpy.run_path(str(DOCS / page))[name]()
+        text = made if isinstance(made, str) else made.decode()
+        assert "heft" in text and "Report how many links a machine has." in text
+    assert "heft" in succeeded(equipoise("completion", "bash"))
+
+
+def test_tests_of_all_commands_try_it() -> None:
+    """Of widths, of what is written through links, and on machines from nothing."""
+    assert heft in functions().values() and loads("heft")
+    assert options("heft") == ["FILE", "--times", "--names", *DRAWN, "--csv"]
+    assert line_of("heft") == ["heft", "yamashita-1"]
+    assert line_of("heft", "model.toml") == ["heft", "model.toml"]
 
 
 def test_it_prints_below_the_title_of_what_it_has_loaded() -> None:
@@ -80,6 +104,7 @@ def test_programs_get_its_values_and_not_its_text(given: dict[str, bool], tmp_pa
     """Nothing reads values back from standard output."""
     tool = tools()["heft"]
     assert tool.long and tool.schema()["required"] == ["file"]
+    assert tool.schema()["properties"]["file"]["examples"] == ["yamashita-1"]
     answer = tool.answer({"file": "yamashita-1", "csv": "x.csv", **given}, tmp_path)
     assert answer.values == {"links": LINKS}
     assert [path.name for path in answer.written] == ["x.csv"]

@@ -28,9 +28,9 @@ from equipoise.web import server as served_files
 from equipoise.web.disk import on_disk
 from equipoise.web.stores import StoreDesk, stores_in
 from support.chosen import few, few_together
+from surface.registered import functions, line_of, options
 from surface.running import command, equipoise, example_text, refused, succeeded
 from surface.studies import LENGTHS, TOLERANCES
-from surface.test_commands import OPTIONS
 from surface.test_fuzz_commands import FIT, words_of
 from unit.web.pages import unpacked
 
@@ -323,6 +323,12 @@ DRAWING = {
         *("--plot", "pictures"),
     ),
 }
+for name in functions():  # of a file that it tells of, and of nothing else
+    asked, of_file = {*options(name)}, line_of(name)
+    if of_file and "--csv" in asked and f"{name} --csv" not in WRITING:
+        WRITING[f"{name} --csv"] = (*of_file, "--csv", "{}.csv")
+    if of_file and "--plot" in asked and name not in DRAWING:
+        DRAWING[name] = (*of_file, "--plot", "pictures")
 OFTEN = (
     "analyze --csv",
     "report",
@@ -413,8 +419,8 @@ def test_every_option_that_writes_is_tried() -> None:
     lines = [line.replace(" -o ", " --out ") for line in tried]
     left = {
         (command, option)
-        for command, options in OPTIONS.items()
-        for option in {*options} & {"--out", "--csv", "--plot"}
+        for command in functions()
+        for option in {*options(command)} & {"--out", "--csv", "--plot"}
         if not any(line.startswith(f"{command} ") and f" {option} " in line for line in lines)
     }
     assert left == {("site", "--out")}  # which has tests of its own

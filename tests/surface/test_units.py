@@ -9,6 +9,8 @@ from pathlib import Path
 import pytest
 
 import equipoise as eq
+from equipoise.balancing import linear_conditions
+from equipoise.cli.tools import tools
 from equipoise.quantities import parse, showing
 from surface.running import cells, changed, equipoise, read, refused, succeeded
 
@@ -232,3 +234,23 @@ def test_a_json_object_knows_no_units() -> None:
 def test_a_written_file_has_the_numbers_that_were_typed() -> None:
     file = changed("yamashita-1", ('"33.5 mm"', '"1.3 in"'))
     assert 'points.B = ["33.02 mm"' in eq.dumps(eq.load(file))
+
+
+def test_conditions_are_computed_once_for_text_and_json(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Units are those of where they are read."""
+    asked = list[str]()
+    real = linear_conditions.conditions
+
+    def conditions(machine: eq.Machine, kind: linear_conditions.Kind) -> object:
+        asked.append(kind)
+        return real(machine, kind)
+
+    monkeypatch.setattr(linear_conditions, "conditions", conditions)
+    given = {"file": pump(), "units": "in", "json": True}
+    shown = tools()["balance_conditions"].answer({**given, "json": False}, Path.cwd())
+    assert asked == ["zero", "sine"]
+    assert "of crank / 35.433 in" in shown.text and "mm" not in shown.text
+    values = tools()["balance_conditions"].answer(given, Path.cwd()).values
+    assert "crank.moment_x / 900 mm" in values["zero"]["conditions"][0]["condition"]

@@ -15,11 +15,13 @@ import pytest
 from rich.cells import cell_len
 
 import equipoise.present.terminal
-from equipoise.cli import COMMANDS, app
+from equipoise.cli.outputs import Printed
+from equipoise.cli.runner import declared_of
 from equipoise.present.cells import grid
 from equipoise.present.layout import plain
 from equipoise.present.terminal import block_text
 from equipoise.results.blocks import Block, Listing, Section, Table, Text
+from surface.registered import functions, line_of
 from surface.running import equipoise as equipoise_runs
 from surface.running import example_text, succeeded
 from surface.studies import LENGTHS, TOLERANCES
@@ -94,21 +96,23 @@ LINES = [
     "tool vary nagamine-irie 'harness position = 0 mm : 400 mm'",
 ]
 """Of every command that prints blocks, quick ones with much to tell."""
-SILENT = {
-    "animate",
-    "completion",
-    "explain",
-    "export",
-    "mcp",
-    "new",
-    "report",
-    "schema",
-    "serve",
-    "site",
-    "plot",
-    "plot map",
+PRINTING = {
+    name
+    for name, one in functions().items()
+    if any(issubclass(group, Printed) for group in getattr(declared_of(one), "groups", ()))
 }
-"""Commands that print no blocks."""
+"""Commands whose results are printed."""
+
+
+def tried() -> set[str]:
+    return {name for name in PRINTING for one in LINES if f"{one} ".startswith(f"{name} ")}
+
+
+LINES += [
+    shlex.join(line)
+    for name in functions()
+    if name in PRINTING - tried() and (line := line_of(name))
+]
 STAND_OUT = [
     "balance balance-shafts",
     "balance balance-spring",
@@ -181,10 +185,8 @@ def run(line: str, place: Path) -> list[Told]:
 
 
 def test_no_command_is_left_out() -> None:
-    """With its own commands, such as `balance conditions`."""
-    own = {name: [one for one in app[name] if one[0] != "-"] for name in COMMANDS}
-    names = {f"{name} {one}" for name, ones in own.items() for one in ones} | COMMANDS.keys()
-    assert {one for one in names if not any(line.startswith(one) for line in LINES)} == SILENT
+    """A new one joins by the example of its file, or by a line."""
+    assert tried() == PRINTING
 
 
 @pytest.mark.parametrize("line", LINES)

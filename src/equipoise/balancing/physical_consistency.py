@@ -22,7 +22,7 @@ from equipoise.balancing.linear_conditions import (
     parameter_scales,
 )
 from equipoise.balancing.program import Affine, NoSolutionError, Program
-from equipoise.balancing.readings import machine_size, reading
+from equipoise.balancing.readings import Reading, machine_size, reading
 from equipoise.decompositions import pinv
 from equipoise.mechanism.dynamics.parameters import QUANTITIES
 from equipoise.mechanism.parts.machine import Machine
@@ -224,14 +224,18 @@ ASKED: dict[str, tuple[str, ...]] = {
 class Proof:
     """A combination of the conditions that no distribution of mass can make zero.
 
-    coefficients : (P,) of the parameters.  text : the combination in words.
+    coefficients : (P,) of the parameters.  reading : the combination in words, and `text` the same.
     least : the least value that it can have, in `unit`.
     """
 
     coefficients: Array
-    text: str
+    reading: Reading
     least: float
     unit: str
+
+    @property
+    def text(self) -> str:
+        return self.reading.text
 
     def to_dict(self) -> dict[str, Any]:
         return {"text": self.text, "least": self.least, "unit": self.unit}
@@ -257,8 +261,13 @@ class Answer:
     possible: bool
     added_mass: Mapping[str, float] | None
     by_points: bool
-    reason: str
     proof: Proof | None
+
+    @property
+    def reason(self) -> str:
+        if self.added_mass is not None:
+            return _possible(self.what, self.added_mass)
+        return _impossible(self.what, self.proof, self.by_points)
 
     @property
     def masses_kept(self) -> bool:
@@ -315,14 +324,13 @@ def _answer(machine: Machine, effects: ParameterEffects, what: str) -> Answer:
     masses = ConsistentMasses.of(machine, effects.conditions("zero", ASKED[what]))
     added = masses.least_added()
     if added is not None:
-        return Answer(what, True, added, True, _possible(what, added), None)
-    proof, points, found, told = None, masses.by_points(), masses.contradiction(), ""
+        return Answer(what, True, added, True, None)
+    proof, points, found = None, masses.by_points(), masses.contradiction()
     if found is not None:
         row, least = found
         read = reading(machine, row, signed=True)
-        told = read.words
-        proof = Proof(row * read.factor, read.text, least * read.factor, read.unit)
-    return Answer(what, False, None, points, _impossible(what, proof, told, points), proof)
+        proof = Proof(row * read.factor, read, least * read.factor, read.unit)
+    return Answer(what, False, None, points, proof)
 
 
 def _possible(what: str, added: Mapping[str, float]) -> str:
@@ -337,9 +345,10 @@ def _possible(what: str, added: Mapping[str, float]) -> str:
     return f"The {what} can be made zero, but not with every mass as it is: it takes {where}."
 
 
-def _impossible(what: str, proof: Proof | None, told: str, points: bool) -> str:
+def _impossible(what: str, proof: Proof | None, points: bool) -> str:
     if proof is None:
         return f"The {what} can at best be approached, by ever larger masses or moments of inertia."
+    told = proof.reading.words
     dimension, _ = SHOWN[proof.unit]
     unit = display(dimension, [proof.least], SI[dimension])
     because = (

@@ -30,13 +30,26 @@ WORDS = {
 class Term:
     """A parameter of a link in a sum.
 
-    sign : ``+`` or ``-``.  around : what stands before and behind its name, such as a divisor.
+    sign : ``+`` or ``-``.  size : by which it is multiplied, so that the sum is in kg; None where
+    it stands alone.
     """
 
     sign: str
     link: str
     quantity: str
-    around: tuple[str, str] = ("", "")
+    size: float | None = None
+
+    @property
+    def around(self) -> tuple[str, str]:
+        """What stands before and behind its name, such as the length over which it stands."""
+        if self.size is None:
+            return "", ""
+        if self.quantity == "mass":
+            return "" if f"{self.size:.5g}" == "1" else f"{self.size:.5g} ", ""
+        length = 1 / (self.size**0.5 if self.quantity == "inertia" else self.size)
+        unit = display("length", [length])
+        told = f"{unit.factor * length:.5g} {unit.unit}"
+        return "", f" / ({told})^2" if self.quantity == "inertia" else f" / {told}"
 
 
 @dataclass(frozen=True)
@@ -101,7 +114,8 @@ def reading(machine: Machine, row: Array, signed: bool = False) -> Reading:
         term = Term("-" if sign * value < 0 else "+", link, quantity)
         return Reading((term,), sign / abs(value), UNITS[quantity])
     factor = sign / _divisor(machine, terms)
-    parts = tuple(_term(link, quantity, factor * value) for link, quantity, value in terms)
+    sized = ((link, quantity, factor * value) for link, quantity, value in terms)
+    parts = tuple(Term("-" if size < 0 else "+", *named, abs(size)) for *named, size in sized)
     return Reading(parts, factor, "kg")
 
 
@@ -112,16 +126,3 @@ def _divisor(machine: Machine, terms: list[tuple[str, str, float]]) -> float:
             if quantity.startswith(wanted):
                 return abs(value) * joint_length(machine, link) ** power
     return 1.0
-
-
-def _term(link: str, quantity: str, value: float) -> Term:
-    """A term in kg."""
-    sign, size = "-" if value < 0 else "+", abs(value)
-    if quantity == "mass":
-        return Term(sign, link, quantity, ("" if f"{size:.5g}" == "1" else f"{size:.5g} ", ""))
-    length = 1 / (size**0.5 if quantity == "inertia" else size)
-    unit = display("length", [length])
-    told = f"{unit.factor * length:.5g} {unit.unit}"
-    return Term(
-        sign, link, quantity, ("", f" / ({told})^2" if quantity == "inertia" else f" / {told}")
-    )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import App, Parameter
 
@@ -128,30 +128,28 @@ def trade_off(
 
 
 @app.command
-@command(Printed)
+@command(Printed, long=True)
 def conditions(machine: LinkageFile, /, *, speed: Speed = None) -> CommandResult:
     """When the shaking force is zero or a pure sine, and whether mass can make it so."""
     from equipoise.balancing import linear_conditions as balancing
-    from equipoise.balancing.linear_conditions import conditions_blocks
     from equipoise.balancing.physical_consistency import feasibility
 
     driven = at_speed(machine, speed)
-    kinds: tuple[Literal["zero", "sine"], ...] = ("zero", "sine")
-    # conditions have their units in words from the start; those of the JSON object are in SI units
+    found = {kind: balancing.conditions(driven, kind) for kind in balancing.KINDS}
+    able = feasibility(driven)
     return CommandResult(
-        lambda: conditions_blocks(
-            *(balancing.conditions(driven, kind) for kind in kinds),
-            verdict=[one.reason for one in feasibility(driven).answers],
+        lambda: balancing.conditions_blocks(
+            *found.values(), verdict=[one.reason for one in able.answers]
         ),
         lambda: {
-            **{kind: balancing.conditions(driven, kind).to_dict() for kind in kinds},
-            "verdict": feasibility(driven).to_dict(),
+            **{kind: one.to_dict() for kind, one in found.items()},
+            "verdict": able.to_dict(),
         },
     )
 
 
 @app.command
-@command(Printed)
+@command(Printed, long=True)
 def sensitivities(
     machine: LinkageFile,
     output: Annotated[str, Parameter(name="OUTPUT")],
@@ -178,7 +176,7 @@ def sensitivities(
 
 
 @app.command
-@command(Printed)
+@command(Printed, long=True)
 def arrangements(
     machine: LinkageFile,
     rows: Annotated[int, count(2, MOST_ROWS, "ROWS")],

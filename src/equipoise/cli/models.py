@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
@@ -26,12 +26,14 @@ class LoadedFile:
     """What stands for the name of a file: the command gets what is loaded from it.
 
     load : from its name.  reads : all files from which that was read, of it and its name.
-    owner : of it, in whose units and words the command speaks.
+    owner : of it, in whose units and words the command speaks.  example : a bundled file of which
+    such commands have something to tell.
     """
 
     load: Callable[[str], Any]
     reads: Callable[[Any, str], list[str]] = lambda _, file: [file]
     owner: Callable[[Any], Any] = lambda loaded: loaded
+    example: str = ""
 
 
 def linkage_of(file: str, speed: float | None = None) -> Machine:
@@ -96,17 +98,25 @@ if TYPE_CHECKING:
     ModelFile: TypeAlias = str
     NamedFile: TypeAlias = str
 else:
-    LINKAGE = LoadedFile(linkage_of, sources_of)
+    LINKAGE = LoadedFile(linkage_of, sources_of, example="yamashita-1")
+    TOOL = LoadedFile(tool_of, sources_of, example="brush-cutter")
+    STUDY = LoadedFile(study_of, example="study-of-lengths")
+    NAMED = LoadedFile(str, owner=lambda _: None)
+    NAMED_MODEL = replace(NAMED, example="yamashita-1")
     LinkageFile = Annotated[str, file_named("Path of a model file"), LINKAGE]
     PlantingFile = Annotated[
-        str, file_named("Path of a model file with a table [planting]"), LINKAGE
+        str,
+        file_named("Path of a model file with a table [planting]"),
+        replace(LINKAGE, example="transplanter"),
     ]
-    SupportFile = Annotated[str, file_named("Path of a model file with a table [support]"), LINKAGE]
+    SupportFile = Annotated[
+        str,
+        file_named("Path of a model file with a table [support]"),
+        replace(LINKAGE, example="yamashita-rig"),
+    ]
     PlannedFile = Annotated[str, Parameter(name="FILE"), LINKAGE]
-    TOOL = LoadedFile(tool_of, sources_of)
     ToolFile = Annotated[str, file_named("Path of a tool's file, with a table [shaft]"), TOOL]
     DesignFile = Annotated[str, file_named("Path of a tool's file, with a table [design]"), TOOL]
-    STUDY = LoadedFile(study_of)
     StudyFile = Annotated[str, file_named("Path of a study file", "STUDY"), STUDY]
     TolerancedFile = Annotated[
         str, file_named("Path of a study file whose numbers have tolerances", "STUDY"), STUDY
@@ -116,7 +126,6 @@ else:
         Parameter(name="STORE", help='Path of a store, as "equipoise sweep" makes it.'),
         LoadedFile(store_of, lambda *_: [], owner_of),
     ]
-    NAMED = LoadedFile(str, owner=lambda _: None)
     NamedFile = Annotated[str, NAMED]
-    ModelFile = Annotated[str, file_named("Path of a model file"), NAMED]
-    AnyFile = Annotated[str, file_named("Path of a model file or a study file"), NAMED]
+    ModelFile = Annotated[str, file_named("Path of a model file"), NAMED_MODEL]
+    AnyFile = Annotated[str, file_named("Path of a model file or a study file"), NAMED_MODEL]

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any, get_args, get_origin
 from cyclopts import App
 
 from equipoise.cli import answered_by, app, check_repeated
+from equipoise.cli.models import LoadedFile
 from equipoise.cli.runner import declared_of
 from equipoise.errors import UsageError, unknown
 from equipoise.fence import Fence, fenced
@@ -204,6 +205,9 @@ def _value(one: Argument) -> Schema:
     metavar = one.parameter.metavar or ""
     if choices := one.get_choices():
         return {"type": "string", "enum": [*choices]}
+    for mark in get_args(one.field_info.annotation)[1:]:
+        if isinstance(mark, LoadedFile) and mark.example:
+            return {"type": "string", "examples": [mark.example]}
     if metavar.startswith('"'):
         return {"type": "string", "examples": [metavar.strip('"')]}
     if one.parameter.converter and metavar != "NUMBER":
