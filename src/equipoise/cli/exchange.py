@@ -9,7 +9,15 @@ from typing import TYPE_CHECKING, Annotated, Any
 from cyclopts import Parameter
 
 from equipoise.cli.models import NamedFile, linkage_of
-from equipoise.cli.options import Angle, Out, blaming, crank_angles, read_by, wants
+from equipoise.cli.options import (
+    Angle,
+    Out,
+    blaming,
+    crank_angles,
+    read_by,
+    refuse_idle,
+    wants,
+)
 from equipoise.cli.outputs import check_result_file, sources_of, wrote
 from equipoise.cli.runner import CommandResult, command
 from equipoise.errors import UsageError
@@ -69,28 +77,22 @@ def export(
         if os.path.exists(file) or file in bundled():
             check_kind(one, of_store=os.path.isdir(file))
     if one.of_store:
-        _check(f"a file of {one.title} holds the designs of a store", at=at, balanced=balanced)
+        why = f"a file of {one.title} holds the designs of a store"
+        refuse_idle(why, at=at or None, balanced=balanced)
         check_link_loads(one, prefix="--", link=link, angles=angles)
         return CommandResult(save=lambda: _designs(file, out, kept))
-    _check("it goes with a store", kept=kept)
+    refuse_idle("it goes with a store", kept=kept)
     check_link_loads(one, prefix="--", link=link, angles=angles)
     if angles is not None and at is not None:
         raise UsageError("--at and --angles were given; give one of them")
     if not one.posed:
-        _check(f"a file of {one.title} is the same at every crank angle", at=at)
+        refuse_idle(f"a file of {one.title} is the same at every crank angle", at=at or None)
     machine = linkage_of(file)
     check_result_file("--out", out, sources_of(machine, file))
     what = _balanced(machine) if balanced else machine
     parts = write(what, out, one.name, crank_angle=at, link=link, angles=angles)
     notes = [f"note: the file leaves out {part}" for part in parts]
     return CommandResult(save=lambda: [*notes, wrote(out)])
-
-
-def _check(why: str, **options: object) -> None:
-    """Refuse options that do nothing."""
-    for name, given in options.items():
-        if given:
-            raise UsageError(f"--{name}: {why}; leave it out")
 
 
 def _designs(store: str, out: str, kept: bool) -> list[str]:

@@ -285,6 +285,13 @@ def check_belonging(owner: str, given: object, **options: object) -> None:
             raise UsageError(f"--{name.replace('_', '-')} belongs to {owner}; give both")
 
 
+def refuse_idle(why: str, **options: object) -> None:
+    """Refuse options that would do nothing, and say `why`."""
+    for name, value in options.items():
+        if value is not None and value is not False:
+            raise UsageError(f"--{name.replace('_', '-')}: {why}; leave it out")
+
+
 @Parameter(name="*")
 @dataclass(frozen=True)
 class Computers:

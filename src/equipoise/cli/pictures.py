@@ -22,6 +22,7 @@ from equipoise.cli.options import (
     quantities,
     quantity,
     read_by,
+    refuse_idle,
     wants,
 )
 from equipoise.cli.outputs import Pictures, write_pictures, wrote_pictures
@@ -86,8 +87,8 @@ def plot(
 
     folder, kind = pictures.of(file), pictures.format
     found = find(file, speed=speed, swings=True)
-    if at is not None and isinstance(found, ToolFindings):
-        raise UsageError("--at: a tool has no crank angles; leave it out")
+    if isinstance(found, ToolFindings):
+        refuse_idle("a tool has no crank angles", at=at, output=output)
     written = list[str]()
     with pictures.showing(found.owner):
         chosen = _outputs(found, output) if output else _chosen(each(found, at), only)
@@ -109,11 +110,8 @@ def _outputs(found: Any, names: Sequence[str]) -> list[Picture]:
     from functools import partial
 
     from equipoise.figures.points import outputs_chart
-    from equipoise.present.findings import ToolFindings
     from equipoise.present.pictures import Picture
 
-    if isinstance(found, ToolFindings):
-        raise UsageError("--output: a tool has no crank angles; leave it out")
     names = list(dict.fromkeys(names))
     with blaming("--output"):
         caption = ", ".join(one.label() for one in found.analysis.outputs.chosen(names))

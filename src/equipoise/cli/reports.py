@@ -18,6 +18,7 @@ from equipoise.cli.options import (
     blaming,
     check_belonging,
     quantity,
+    refuse_idle,
     wants,
 )
 from equipoise.cli.outputs import (
@@ -100,13 +101,15 @@ def animate(
     kind = _kind(name)
     if turns is not None and (kind != "mp4" or turns < 1):
         raise UsageError(f"--turns: got {turns}; give 1 or more, with a name that ends in .mp4")
-    if dark and kind == "svg":
-        raise UsageError("--dark: an SVG follows the reader's screen; leave it out")
+    if kind == "svg":
+        refuse_idle("an SVG follows the reader's screen", dark=dark)
     check_seconds(seconds)
     check_width(width)
     if kind_of_text(opened(file).text) == "tool":
+        if kind != "svg":
+            raise UsageError("--out: a tool is animated as SVG; give a name that ends in .svg")
         given = {"turns": turns, "trace": trace, "speed": speed, "exaggerate": exaggerate}
-        _check_tool(kind, **given, force=force or None)
+        refuse_idle("a tool swings in a mode", **given, force=force)
         write(name, _tool_in_mode(file, mode, seconds, width))
         return CommandResult(save=lambda: [wrote(name)])
     machine = linkage_of(file, speed)
@@ -154,25 +157,12 @@ def _check_support(
     """Refuse options that do nothing."""
     if exaggerate is not None and not 0 <= exaggerate < MOST_LARGER:
         raise UsageError(f"--exaggerate: got {exaggerate:g}; give 0 to {MOST_LARGER:.0e}")
-    given = {"--exaggerate": exaggerate, "--mode": mode}
     if machine.support is None:
         check_belonging("--force", force, speed=speed)
-        for name, value in given.items():
-            if value is not None:
-                raise UsageError(f"{name}: the machine stands on solid ground; leave it out")
-    others = {"--exaggerate": exaggerate, "--speed": speed, "--force": force or None}
-    for name, value in others.items():
-        if mode is not None and value is not None:
-            raise UsageError(f"{name}: in a mode the crank stands still; leave it out")
-
-
-def _check_tool(kind: str, **given: object) -> None:
-    """Refuse what only a linkage has."""
-    if kind != "svg":
-        raise UsageError("--out: a tool is animated as SVG; give a name that ends in .svg")
-    for name, value in given.items():
-        if value is not None:
-            raise UsageError(f"--{name}: a tool swings in a mode; leave it out")
+        refuse_idle("the machine stands on solid ground", exaggerate=exaggerate, mode=mode)
+    if mode is not None:
+        why = "in a mode the crank stands still"
+        refuse_idle(why, exaggerate=exaggerate, speed=speed, force=force)
 
 
 TOOL_FRAMES = 24
