@@ -11,15 +11,19 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+from cyclopts import App
+
 import equipoise
+from equipoise.cli import app
 from equipoise.keys import Frozen, Quantity, all_keys, innermost
 from equipoise.quantities import SI
 from equipoise.results.result import Result
 
 PAGE = Path(__file__).with_name("api.txt")
 HEAD = """\
-Every public name of Equipoise, for "import equipoise as eq".  All numbers are in SI units and
-radians; arrays are NumPy's.  What is wrong raises eq.EquipoiseError with one sentence.
+Every public name of Equipoise, for "import equipoise as eq", and at the end every command with what
+it takes.  All numbers are in SI units and radians; arrays are NumPy's.  What is wrong raises
+eq.EquipoiseError with one sentence.
 
 This page is written by docs/api.py from the docstrings; docs/python.md is a tour with examples,
 docs/model-file.md has the keys of files, docs/tour.md the commands.
@@ -41,7 +45,17 @@ def page() -> str:
     lines += ["# what functions give, and what all results have\n"]
     for one in sorted({*_given(told)} - told, key=lambda one: one.__name__):
         lines += _named(one.__module__, one.__name__, one)
-    return "\n".join(lines)
+    return "\n".join([*lines, "# commands\n", *_commands(app), ""])
+
+
+def _commands(group: App, before: str = "equipoise") -> Iterator[str]:
+    """Each command with what it takes, and those below it."""
+    for word in sorted(group.resolved_commands()):
+        if not word.startswith("-"):
+            found, words = group[word], f"{before} {word}"
+            taken = found.assemble_argument_collection(parse_docstring=True)
+            yield " ".join([words, *(one.name for one in taken if one.name != "*")])
+            yield from _commands(found, words)
 
 
 def _given(told: set[Any]) -> Iterator[type]:

@@ -18,10 +18,11 @@ import pytest
 
 from equipoise.cli import app
 from equipoise.cli.models import LinkageFile
-from equipoise.cli.options import BelongsTo
+from equipoise.cli.options import BelongsTo, Language
 from equipoise.cli.outputs import Outputs
 from equipoise.cli.runner import CommandResult, command
 from equipoise.cli.tools import tools
+from equipoise.i18n import say, speaking
 from equipoise.results.blocks import Text
 from equipoise.schema.models import load_linkage
 from surface.registered import functions, line_of, loads, options
@@ -33,12 +34,17 @@ DRAWN = ["--units", "--json", "--plot", "--format"]
 
 @command(Outputs, long=True)
 def heft(
-    machine: LinkageFile, /, *, times: int = 1, names: Annotated[bool, BelongsTo("--json")] = False
+    machine: LinkageFile,
+    /,
+    *,
+    times: int = 1,
+    names: Annotated[bool, BelongsTo("--json")] = False,
+    language: Language = "en",
 ) -> CommandResult:
     """Report how many links a machine has."""
     links = times * len(machine.links)
     return CommandResult(
-        lambda: [Text(f"{links} links")],
+        lambda: [Text(f"{say('crank angle')}, {links} links")],
         lambda: {"links": links} | ({"names": [*machine.links]} if names else {}),
         columns=lambda: [("link", "", np.arange(links))],
     )
@@ -72,7 +78,7 @@ def test_it_is_in_the_pages_of_all_commands(monkeypatch: pytest.MonkeyPatch) -> 
 def test_tests_of_all_commands_try_it() -> None:
     """Of widths, of what is written through links, and on machines from nothing."""
     assert heft in functions().values() and loads("heft")
-    assert options("heft") == ["FILE", "--times", "--names", *DRAWN, "--csv"]
+    assert options("heft") == ["FILE", "--times", "--names", "--language", *DRAWN, "--csv"]
     assert line_of("heft") == ["heft", "yamashita-1"]
     assert line_of("heft", "model.toml") == ["heft", "model.toml"]
 
@@ -80,7 +86,14 @@ def test_tests_of_all_commands_try_it() -> None:
 def test_it_prints_below_the_title_of_what_it_has_loaded() -> None:
     title, *_, last = succeeded(equipoise("heft", "yamashita-1", "--times", "2")).splitlines()
     assert load_linkage("yamashita-1").title.startswith(title)
-    assert last == f"{2 * LINKS} links"
+    assert last == f"crank angle, {2 * LINKS} links"
+
+
+def test_it_speaks_the_language_that_is_asked_for() -> None:
+    with speaking("ko"):  # of whoever calls it
+        assert heft("yamashita-1", times=2).text.endswith(f"crank angle, {2 * LINKS} links\n")
+    told = succeeded(equipoise("heft", "yamashita-1", "--language", "ja"))
+    assert told.splitlines()[-1] == f"クランク角, {LINKS} links"
 
 
 def test_its_values_are_json_and_its_columns_a_csv_file() -> None:

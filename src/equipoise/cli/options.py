@@ -23,8 +23,11 @@ from equipoise.errors import (
     UsageError,
     at_place,
 )
+from equipoise.i18n import LANGUAGES
 
 if TYPE_CHECKING:
+    from typing import TypeAlias
+
     from equipoise.mechanism.parts.machine import Machine
     from equipoise.quantities import Units
 
@@ -189,15 +192,21 @@ class OtherFile:
     ending: str = ""
 
 
-class Spoken:
-    """Marks the option that names the language in which a command speaks, English without it."""
-
-
 @dataclass(frozen=True)
 class BelongsTo:
     """Marks an option that does nothing without another, such as ``--json``."""
 
     owner: str
+
+
+class Spoken:
+    """Marks the option that names the language in which a command speaks, English without it."""
+
+
+if TYPE_CHECKING:
+    Language: TypeAlias = str
+else:
+    Language = Annotated[Literal[*LANGUAGES], Spoken()]
 
 
 def file_named(text: str, name: str = "FILE") -> Parameter:

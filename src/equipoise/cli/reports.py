@@ -5,16 +5,16 @@ from __future__ import annotations
 import os
 import shlex
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any
 
 from equipoise.cli.models import ModelFile, linkage_of
 from equipoise.cli.options import (
     SIGNED,
+    Language,
     Many,
     Out,
     Rate,
     SpeedText,
-    Spoken,
     blaming,
     check_belonging,
     quantity,
@@ -228,9 +228,6 @@ def _animated(scene: Scene, title: str, kind: str, options: dict[str, Any]) -> s
 
 
 # -- the report ------------------------------------------------------------------------------------
-
-Language = Annotated[Literal["en", "ja", "ko"], Spoken()]
-"""As in `words`."""
 
 
 @command(Shown, long=True)
