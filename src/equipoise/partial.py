@@ -53,15 +53,17 @@ class _Together:
     then: list[Callable[[], None]] = field(default_factory=list)
 
     def done(self) -> None:
+        """Put all into its place, and then do the rest; called again, what is left of it."""
         check()
-        for (path, name), (folder, begun) in self.places.items():
+        for (path, name), (folder, begun) in [*self.places.items()]:
+            del self.places[path, name]
             try:
                 folder.rename(begun, name)
             except OSError as error:
                 what = f"the file cannot be written ({(error.strerror or '').lower()})"
                 raise UsageError(f"{path / name}: {what}; choose another place or name") from error
-        for act in self.then:
-            act()
+        while self.then:
+            self.then.pop(0)()
 
 
 _waiting: ContextVar[_Together | None] = ContextVar("_waiting", default=None)

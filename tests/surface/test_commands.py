@@ -570,6 +570,16 @@ def test_the_reader_may_stop_early() -> None:
         assert child.wait(60) == 0
 
 
+def test_pictures_stay_where_nobody_reads_their_list() -> None:
+    reader, writer = os.pipe()
+    os.close(reader)
+    words = command("plot", "yamashita-1", "--only", "linkage", "-o", "pictures")
+    done = subprocess.run(words, stdout=writer, stderr=subprocess.PIPE, timeout=60, check=False)
+    os.close(writer)
+    assert (done.returncode, done.stderr) == (0, b"wrote 1 picture to pictures\n")
+    assert Path("pictures/linkage.svg").is_file()
+
+
 def test_closed_output() -> None:
     words = ["sh", "-c", 'exec "$@" >&-', "sh", *command("check", "yamashita-1")]
     done = subprocess.run(words, stderr=subprocess.PIPE, timeout=60, check=False)
