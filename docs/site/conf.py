@@ -63,6 +63,8 @@ LISTED = re.compile(r"^- \[([^\]]+)\]\(([\w./-]+)\.md\)", re.MULTILINE)
 """A page in the lists of `index.md`."""
 ITEM = re.compile(r"^(\w[\w, ]*) : ")
 """In a docstring: what something is called, and what it is."""
+NEXT_ITEM = re.compile(r"\.  (?=\w[\w, ]* : )")
+"""Where another stands in the same line."""
 
 
 def as_tree(app: Sphinx, docname: str, source: list[str]) -> None:
@@ -75,20 +77,32 @@ def as_tree(app: Sphinx, docname: str, source: list[str]) -> None:
         source[0] += f"\n```{{toctree}}\n:hidden:\n:caption: {caption}\n\n{pages}\n```\n"
 
 
-def as_definitions(
-    app: Sphinx, what: str, name: str, found: Any, options: Any, lines: list[str]
+def as_tables(
+    app: Sphinx, what: str, name: str, documented: Any, options: Any, lines: list[str]
 ) -> None:
-    """Docstrings say ``name : meaning``, and nothing in them is markup but what is code."""
-    told: list[str] = []
-    for line in "\n".join(lines).replace(".  ", ".\n").split("\n"):
+    """Docstrings say ``name : meaning``, which is a row of a table, and nothing in them is markup
+    but what is code.
+    """
+    written: list[str] = []
+    in_table = False
+    for line in NEXT_ITEM.sub(".\n", "\n".join(lines)).split("\n"):
         if line.startswith("---"):
-            told[-1:] = [f".. rubric:: {told[-1]}", ""]
+            written[-1:] = [f".. rubric:: {written[-1]}", ""]
+            in_table = False
         elif item := ITEM.match(line):
-            told += ["", f"``{item[1]}``", f"    {plain(line[item.end() :])}"]
+            written += [] if in_table else TABLE_OF_PARAMETERS
+            written += [f"   * - ``{item[1]}``", f"     - {plain(line[item.end() :])}"]
+            in_table = True
+        elif in_table and (not line.strip() or line.startswith(" ")):
+            written.append(f"       {plain(line.strip())}".rstrip())
         else:
-            ended = told and told[-1].startswith("    ") and line[:1].strip()
-            told += [*[""] * bool(ended), plain(line)]
-    lines[:] = told
+            ends = in_table or (written and written[-1].startswith("    ") and line[:1].strip())
+            written += [*[""] * bool(ends), plain(line)]
+            in_table = False
+    lines[:] = written
+
+
+TABLE_OF_PARAMETERS = ["", ".. list-table::", "   :class: names", "   :widths: 1 3", ""]
 
 
 def plain(line: str) -> str:
@@ -183,6 +197,6 @@ def setup(app: Sphinx) -> None:
     app.add_search_language(Words)
     app.add_html_math_renderer("mathml", (inline_math, None), (block_math, None))
     app.connect("source-read", as_tree)
-    app.connect("autodoc-process-docstring", as_definitions)
+    app.connect("autodoc-process-docstring", as_tables)
     app.connect("doctree-read", lazily)
     app.connect("html-page-context", reached, priority=900)  # after the theme's own

@@ -1,13 +1,12 @@
-"""The glossary: what outputs and keys are called in each language, as declarations and catalogues
-have it.
-"""
+"""The glossary: terms in each language and what they mean, as package and catalogues have them."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from string import Formatter
 
-from equipoise.i18n import LANGUAGES, say, speaking
+from equipoise.i18n import LANGUAGES, Note, say, speaking
+from equipoise.i18n.terms import MEANINGS, TERMS
 from equipoise.keys import all_keys
 from equipoise.mechanism.outputs.declared import DECLARED
 from equipoise.schema.topics import tables
@@ -16,39 +15,48 @@ PLACE = "B"
 """Stands for the name of a joint or link in a term."""
 HEAD = """# Glossary
 
-What reports, pictures and the live page call things in each language: outputs with the name that
-commands have for them, and words for keys of files. B stands for the name of a joint, point or
-link.
+Terms of reports, pictures, the live page and the commands in English, Japanese and Korean. B stands
+for the name of a joint, point or link.
 """
+Row = tuple[str, str, str]
+"""Term and meaning in English, and the name in commands and files; empty where there is none."""
 
 
 def glossary() -> str:
     """The page."""
-    outputs = ((one.label, one.name.replace("{}", PLACE)) for one in DECLARED.values())
-    words = (
-        (one.word, f"{path}.{name}")
+    keys = [
+        (one.word, one.text, f"{path}.{name}")
         for path, table in tables().items()
         for name, one in all_keys(table.of).items()
         if one.word
-    )
-    return "\n".join([HEAD, *_table("Outputs", outputs), *_table("Keys of files", words)])
+    ]
+    outputs = [
+        (one.label, MEANINGS[one.label], one.name.replace("{}", PLACE)) for one in DECLARED.values()
+    ]
+    terms = [(term, meaning, "") for term, meaning in TERMS.items()]
+    tables_ = (("Terms", terms), ("Outputs", outputs), ("Keys of files", keys))
+    return "\n".join([HEAD, *(line for title, rows in tables_ for line in _table(title, rows))])
 
 
-def _table(title: str, terms: Iterable[tuple[str, str]]) -> Iterator[str]:
+def _table(title: str, rows: Iterable[Row]) -> Iterator[str]:
     """A heading and a row for each term, which stands once."""
-    yield f"## {title}\n"
-    yield f"| {' | '.join(LANGUAGES.values())} | in commands and files |"
-    yield "|---|---|---|---|"
-    first: dict[str, str] = {}
-    for term, name in terms:
-        first.setdefault(term, name)
+    first: dict[str, Row] = {}
+    for row in rows:
+        first.setdefault(row[0], row)
+    named = any(name for _, _, name in first.values())
+    heads = [*LANGUAGES.values(), *["in commands and files"] * named]
+    yield f"## {title}\n\n| {' | '.join(heads)} |"
+    yield f"|{'---|' * len(heads)}"
     for term in sorted(first, key=str.casefold):
-        said = (_in(term, language) for language in LANGUAGES)
-        yield f"| {' | '.join(said)} | `{first[term]}` |"
+        _, meaning, name = first[term]
+        cells = [_in(term, meaning, language) for language in LANGUAGES]
+        yield f"| {' | '.join([*cells, *[f'`{name}`'] * named])} |"
     yield ""
 
 
-def _in(term: str, language: str) -> str:
-    """A term in a language."""
+def _in(term: str, meaning: str, language: str) -> str:
+    """A term in a language, and what it means."""
     with speaking(language):
-        return say(term, **{field: PLACE for _, field, *_ in Formatter().parse(term) if field})
+        said = say(term, **{field: PLACE for _, field, *_ in Formatter().parse(term) if field})
+        known = Note(meaning).is_translated if meaning and "{" not in meaning else False
+        return f"**{said}**<br>{say(meaning)}" if known else f"**{said}**"

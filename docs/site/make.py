@@ -41,6 +41,8 @@ EXTRA = "extra"
 """Folder of what Sphinx takes over as it is."""
 SITE_ONLY = re.compile(r"<!-- site only\n(.*?)-->\n", re.DOTALL)
 """What is hidden in a page of the repository, for it goes to pages that only the site has."""
+REPOSITORY_ONLY = re.compile(r"<!-- repository only -->\n.*?<!-- /repository only -->\n", re.DOTALL)
+"""What is of no use on the site."""
 FRAME = re.compile(r"<iframe .*?\n\n.*?\n\n(?=-->)", re.DOTALL)
 """An interactive file in a page, with what is said of it."""
 ANCHOR = re.compile(r'<a id="([\w-]+)"></a>')
@@ -114,7 +116,7 @@ def lay_out(source: Path) -> None:
     for name, text in pages.items():
         path = source / name
         path.parent.mkdir(parents=True, exist_ok=True)
-        marked = ANCHOR.sub(r"(\1)=\n", text)
+        marked = ANCHOR.sub(r"(\1)=\n", REPOSITORY_ONLY.sub("", text))
         path.write_text(SITE_ONLY.sub(r"\1", marked), encoding="utf-8")
     shutil.copytree(DOCS / "pictures", source / "pictures")
     shutil.copy(DOCS / "api.txt", source)

@@ -70,28 +70,25 @@ def test_cells_have_no_buttons_in_a_file(context: BrowserContext, site: Path) ->
     page.close()
 
 
-def test_an_error_on_the_live_page_leads_to_its_page(context: BrowserContext, beside: str) -> None:
-    """In the documentation beside it."""
-    page = context.new_page()
-    page.goto(f"{beside}#example=yamashita-1")
-    live = Live(page)
-    live.settled()
-    live.type(live.field("crank point B x"), IMPOSSIBLE)
-    with context.expect_page() as opened:
-        page.get_by_role("link", name="What to do about it").first.click()
-    expect(opened.value.get_by_role("heading", level=1)).to_contain_text("cannot turn fully")
-    page.close()
+HELP = """() => document.head.insertAdjacentHTML(
+    "beforeend", '<link rel="help" href="https://docs.example/index.html">')"""
+"""What a site has whose documentation lies beside the live page."""
 
 
-def test_without_documentation_the_text_of_the_page_is_shown(
+def test_an_error_on_the_live_page_leads_to_its_page(
     new_page: Callable[..., Page], address: str
 ) -> None:
-    """In a dialog, as in a notebook."""
+    """Its text in a dialog, as in a notebook, or the documentation where that is there."""
     live = Live.open(new_page(), address)
-    live.type(live.field("crank point B x"), IMPOSSIBLE)
+    live.type(live.field("crank A to B"), IMPOSSIBLE)
     live.button("What to do about it").first.click()
     dialog = live.page.get_by_role("dialog", name="The crank cannot turn fully")
     expect(dialog).to_contain_text("motion = { between")
     assert live.findings() == []
     dialog.get_by_role("button", name="Close").click()
     expect(dialog).to_have_count(0)
+    live.page.evaluate(HELP)
+    live.type(live.field("crank A to B"), "201 mm")
+    link = live.page.get_by_role("link", name="What to do about it").first
+    where = "https://docs.example/explain/the-crank-cannot-turn-fully.html"
+    expect(link).to_have_attribute("href", where)

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import html
+import importlib
+import io
 import re
 import runpy
 import shlex
+from doctest import ELLIPSIS, NORMALIZE_WHITESPACE, DocTestParser, DocTestRunner
 from pathlib import Path
 from urllib.parse import urlsplit
 
@@ -13,6 +16,7 @@ import pytest
 
 from equipoise.cli import COMMANDS, app
 from equipoise.i18n import LANGUAGES, say, speaking
+from equipoise.i18n.terms import MEANINGS, TERMS
 from equipoise.mechanism.outputs.declared import DECLARED
 from equipoise.schema.opening import bundled
 from unit.test_public_names import NAMES
@@ -37,6 +41,46 @@ def test_it_has_every_command_and_every_public_name(site: Path) -> None:
     assert {name.rpartition(".")[2] for name in NAMES} <= ids
 
 
+FIRST = ("load", "analyze", "balance", "respond", "modes", "move", "plant", "report", "save")
+"""Names that are used first."""
+
+
+def test_public_names_stand_in_tables_and_have_examples(site: Path) -> None:
+    """Each room lists its names with what they are, and each function its parameters."""
+    for page in site.glob("api/*.html"):
+        text = page.read_text(encoding="utf-8")
+        described = len(re.findall(r'<dl class="py (?:class|function)">', text))
+        names = re.search(r'<table class="names.*?</table>', text, re.DOTALL)
+        assert names is not None and names[0].count("<tr") >= described, page.name
+    text = "".join(page.read_text(encoding="utf-8") for page in site.glob("api/*.html"))
+    blocks = re.split(r'(?=<dl class="py (?:class|function)">)', text)
+    own = {
+        key: block for block in blocks for key in re.findall(r'<dt [^>]*id="([\w.]+)"', block)[:1]
+    }
+    shown = {
+        name.rpartition(".")[2] for name, block in own.items() if 'class="highlight-pycon' in block
+    }
+    assert {*FIRST} <= shown and len(shown) > 90
+    assert re.search(r"<td>.*?machine.*?</td>", own["equipoise.analyze"])
+
+
+def test_examples_of_public_names_do_what_they_show(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Each by itself, though it is taken out of a page."""
+    monkeypatch.syspath_prepend(str(DOCS / "site"))
+    names = importlib.import_module("names")
+    samples = {sample.lines for sample in names.samples_of(names.every_name()).values()}
+    monkeypatch.chdir(tmp_path)
+    assert len(samples) > 40
+    for lines in samples:
+        test = DocTestParser().get_doctest("\n".join([*lines, ""]), {}, lines[-1], None, 0)
+        said = io.StringIO()
+        flags = ELLIPSIS | NORMALIZE_WHITESPACE
+        result = DocTestRunner(verbose=False, optionflags=flags).run(test, out=said.write)
+        assert result.failed == 0, said.getvalue()
+
+
 def test_options_and_values_stand_as_they_are_typed(site: Path) -> None:
     """Two hyphens are no dash, and quotes of a value are those of a shell."""
     for page in site.rglob("*.html"):
@@ -46,18 +90,19 @@ def test_options_and_values_stand_as_they_are_typed(site: Path) -> None:
     assert "With --json: add every force by cause and by link." in told
 
 
-def test_the_glossary_has_every_output_in_three_languages(site: Path) -> None:
+def test_the_glossary_has_every_term_and_its_meaning_in_three_languages(site: Path) -> None:
     """As the catalogues say it, and none in English where it is to be Japanese or Korean."""
     text = (site / "glossary.html").read_text(encoding="utf-8")
-    cells = {html.unescape(re.sub("<.*?>", "", cell)) for cell in re.findall(r"<td.*?</td>", text)}
+    cells = re.findall(r"<strong>(.*?)</strong>(?:<br>)?(.*?)(?:</p>)?</td>", text)
+    shown = {html.unescape(term): html.unescape(meaning) for term, meaning in cells}
+    declared = {one.label for one in DECLARED.values() if "{row}" not in one.label}
+    assert {*MEANINGS} == declared
     for language in LANGUAGES:
-        with speaking(language):
-            said = {
-                say(one.label, name="B") for one in DECLARED.values() if "{row}" not in one.label
-            }
-        assert said - cells == set()
-        other = language != "en"
-        assert not other or not any(term.isascii() for term in said)
+        for term, meaning in (TERMS | MEANINGS).items():
+            with speaking(language):
+                said, means = say(term, name="B"), say(meaning)
+            assert shown[said] == means, said
+            assert language == "en" or not (said.isascii() or means.isascii())
 
 
 def test_every_table_of_the_model_file_has_a_page(site: Path) -> None:

@@ -46,7 +46,7 @@ function run(cell) {
     if (!python) begin();
     const outputs = await new Promise((done) => {
       answered = done;
-      python.postMessage(cell.code.textContent);
+      python.postMessage(cell.code.innerText);
     });
     cell.outputs.replaceChildren(...outputs.map(shown));
     cell.button.textContent = was;
