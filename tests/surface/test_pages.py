@@ -137,12 +137,12 @@ def test_the_first_hour_tells_what_is_offered_without_a_plan() -> None:
     told = " ".join((TOP / "docs/first-machine.md").read_text(encoding="utf-8").split())
     assert f"a sector of {plates[0]:.0f} mm plate on the {weight['link']}" in told
     assert (
-        f"of {1e3 * weight['mass']:.0f} g, would take {100 * crank['gain']:.0f} %, and sectors of "
-        f"{plates[1]:.0f} mm plate on the hangers {100 * left['gain']:.0f} %" in told
+        f"of {1e3 * weight['mass']:.0f} g, would reduce them by {100 * crank['gain']:.0f} %, and "
+        f"sectors of {plates[1]:.0f} mm plate on the hangers by {100 * left['gain']:.0f} %" in told
     )
     assert left["gain"] > right["gain"]
     assert not any(one["worth"] for one in (crank, left, right))
-    assert f"they take {100 * found['mounts']['gain']:.0f} % off" in told
+    assert f"reduces both gauges together by {100 * found['mounts']['gain']:.0f} %" in told
 
 
 CLAIMS = {
