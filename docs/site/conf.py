@@ -162,15 +162,18 @@ REACHED = {
 CELL = re.compile(r"<td>|<td class")
 ROW, HEAD = re.compile(r"<tr.*?</tr>", re.DOTALL), re.compile(r"<th[^>]*>(.*?)</th>", re.DOTALL)
 TABLE = re.compile(r"<table class=\"docutils.*?</table>", re.DOTALL)
-FEWEST = 4
-"""Columns from which on a row of a table is set as a list where a page is narrow."""
+FEWEST, LONG = 4, 45
+"""Columns from which on a row of a table is set as a list where a page is narrow; of three columns,
+signs in a cell from which on it is, in the mean.
+"""
 
 
 def as_cards(found: re.Match[str]) -> str:
     """A table whose cells know their headings, for pages that are too narrow for its columns."""
     table = found[0]
     names = [re.sub(r"<[^>]*>", "", name).strip() for name in HEAD.findall(table)]
-    if len(names) < FEWEST:
+    signs = len(re.sub(r"<[^>]*>", "", table)) / max(table.count("<td"), 1)
+    if len(names) < FEWEST - (signs > LONG):
         return table
     row = ROW.sub(lambda row: _named(row[0], names), table)
     return row.replace('class="docutils', 'class="many-columns docutils', 1)

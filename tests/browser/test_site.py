@@ -87,6 +87,7 @@ READABLE = (
     "conformance/iso-5349.html",
     "model-file/springs.html",
     "model-file/support/supportmountsname.html",
+    "glossary.html",
 )
 
 
@@ -123,6 +124,8 @@ KINDS = (
     "decay.html",
     "ko/examples.html",
     "api/equipoise.measured.html",
+    "tutorials/put-it-on-mounts.html",
+    "glossary.html",
     "model-file/springs.html",
     "conformance/kim-and-chung.html",
     "recipes/model-a-spring.html",
