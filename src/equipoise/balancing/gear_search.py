@@ -22,6 +22,8 @@ from equipoise.balancing.problem import Problem
 from equipoise.balancing.solution import Solution, solve_problem
 from equipoise.balancing.weights import AddedWeight
 from equipoise.balancing.workshop import Change
+from equipoise.design.solvers import DesignProblem, DesignSolution, solve
+from equipoise.design.spreads import Choices, Range
 from equipoise.errors import UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism.parts.balance import Balance
@@ -72,8 +74,11 @@ class WithShafts:
         return replace(solve_problem(problem, progress, above), meshes=self.gears)
 
 
-class GearSearch:
-    """The search of the gears of every geared shaft of a plan.
+class GearSearch(DesignProblem):
+    """The gears of every geared shaft of a plan, around the cone program.
+
+    Of each shaft with several choices of gears the variables are which of them, and what of it may
+    be any number between two: ratio, direction.
 
     start : the machine with all that is added to it but these shafts.
 
@@ -83,7 +88,7 @@ class GearSearch:
     """
 
     def __init__(self, start: WithShafts, progress: Progress | None = None) -> None:
-        self.start, self.progress = start, progress
+        self.start, self.progress, self.solvers = start, progress, (GearGrid(),)
         self.gearings = [Gearing(start.base, geared) for geared in start.plan.geared]
         self.options = [gearing.meshes() for gearing in self.gearings]
         self.ranges = [
@@ -96,6 +101,22 @@ class GearSearch:
         self.problems: list[UsageError] = []
         self.most = 0
 
+    @property
+    def spreads(self) -> list[Range | Choices]:
+        options = (Choices(tuple(map(float, range(len(own))))) for own in self.options)
+        return [*options, *(Range(low, high) for _, _, low, high in self.ranges)]
+
+    def evaluate(self, places: Array) -> tuple[Array, Array]:
+        """Costs (n, 1), and 1 where gears do not mesh or limits clash, else 0, (n, 1)."""
+        costs = []
+        for values in self.values_of(places):
+            options, numbers = np.split(values, [len(self.options)])
+            start = (own[int(k)] for own, k in zip(self.options, options, strict=True))
+            choice = self.with_numbers(tuple(start), numbers)
+            costs.append(inf if choice is None else self.cost(choice))
+        impossible = ~np.isfinite(np.array(costs)[:, None])
+        return np.where(impossible, LARGE, np.array(costs)[:, None]), impossible.astype(float)
+
     def run(self) -> Solution:
         """The best choice of gears, the lightest of those that are as good, with its weights.
 
@@ -103,24 +124,16 @@ class GearSearch:
         ------
         UsageError : limits clash, whatever the gears.
         """
-        choices = self._first_choices()
         everything = prod(map(len, self.options))
         if everything == 1:
-            return self._with(choices[0]).solved(self.progress)
-        ranged = len({k for k, *_ in self.ranges})
-        self.most = len(choices) + BEST_CHOICES * MOST_STEPS * ranged
-        for choice in choices:
-            self._cost(choice)
+            (choice,) = product(*self.options)
+            return self._with(choice).solved(self.progress)
+        solve(self)
         if not self.found:
             raise self.problems[0]
-        if thinned := len(choices) < everything:
-            self.most += BEST_CHOICES * sum(map(len, self.options))
-            for choice in self._best_choices():
-                self._by_turns(choice)
-        if self.ranges:
-            for choice in self._best_choices():
-                self._follow(choice)
-        return replace(self._lightest(), gears_left=thinned)
+        options = [set(own) for own in self.options]
+        tried = sum(all(map(set.__contains__, options, choice)) for choice in self.costs)
+        return replace(self._lightest(), gears_left=tried < everything)
 
     def _with(self, choice: Choice) -> WithShafts:
         made = self.start
@@ -128,7 +141,21 @@ class GearSearch:
             made = made.with_gears(gearing, mesh)
         return made
 
-    def _cost(self, choice: Choice) -> float:
+    def with_numbers(self, start: Choice, numbers: Array) -> Choice | None:
+        """Gears with other numbers of `ranges`; None where a counterweight hits a link."""
+        here: list[dict[str, float]] = [{} for _ in start]
+        for (k, name, *_), number in zip(self.ranges, numbers, strict=True):
+            here[k][name] = float(number)
+        each = list(zip(self.gearings, start, here, strict=True))
+        choice = tuple(gearing.near(mesh, own) if own else mesh for gearing, mesh, own in each)
+        clear = all(
+            gearing.is_clear(mesh)
+            for gearing, mesh, own in zip(self.gearings, choice, here, strict=True)
+            if own
+        )
+        return choice if clear else None
+
+    def cost(self, choice: Choice) -> float:
         """Cost with these gears, not closely where others cost less; infinite where none do."""
         least = min((one.best.value for _, one in self.found), default=LARGE)
         try:
@@ -139,65 +166,10 @@ class GearSearch:
             return inf
         self.found.append((choice, solution))
         if self.progress is not None:
-            self.progress(min(len(self.found), self.most), self.most)
+            self.most = max(self.most, len(self.found))
+            self.progress(len(self.found), self.most)
         self.costs[choice] = solution.best.value
         return solution.best.value
-
-    def _first_choices(self) -> list[Choice]:
-        """All choices; of several shafts with too many together, some of each."""
-        kept = self.options
-        several = sum(len(own) > 1 for own in kept) > 1
-        while several and prod(map(len, kept)) > MOST_CHOICES:
-            longest = max(map(len, kept))
-            kept = [_some(own, min(len(own), longest - 1)) for own in self.options]
-        return list(product(*kept))
-
-    def _best_choices(self) -> list[Choice]:
-        """The first among equals, so that the same search ends at the same gears everywhere."""
-        there = [choice for choice, cost in self.costs.items() if np.isfinite(cost)]
-        return sorted(there, key=self.costs.__getitem__)[:BEST_CHOICES]
-
-    def _by_turns(self, best: Choice) -> None:
-        """Try all gears of one shaft after the other, until none is better."""
-        for _ in range(MOST_ROUNDS):
-            before = best
-            for k, own in enumerate(self.options):
-                ways = [(*best[:k], mesh, *best[k + 1 :]) for mesh in own]
-                for way in ways:
-                    if way not in self.costs:
-                        self._cost(way)
-                best = min((best, *ways), key=self.costs.__getitem__)
-            if best == before:
-                return
-
-    def _follow(self, start: Choice) -> None:
-        """Go down from a choice of gears, along all that may be any number between two."""
-        from scipy.optimize import minimize
-
-        def at(numbers: Array) -> float:
-            here: list[dict[str, float]] = [{} for _ in start]
-            for (k, name, *_), number in zip(self.ranges, numbers, strict=True):
-                here[k][name] = float(number)
-            choice = tuple(
-                gearing.near(mesh, own) if own else mesh
-                for gearing, mesh, own in zip(self.gearings, start, here, strict=True)
-            )
-            clear = all(
-                gearing.is_clear(mesh)
-                for gearing, mesh, own in zip(self.gearings, choice, here, strict=True)
-                if own
-            )
-            return self._cost(choice) if clear else inf
-
-        begin = np.array([getattr(start[k], name) for k, name, *_ in self.ranges])
-        limits = np.array([ends for _, _, *ends in self.ranges])
-        steps = (limits[:, 1] - limits[:, 0]) / STEPS
-        simplex = np.vstack([begin, *(begin + step for step in np.diag(steps))])
-        over = simplex > limits[:, 1]
-        simplex[over] = (2 * begin - simplex)[over]
-        most = MOST_STEPS * len({k for k, *_ in self.ranges})
-        options = {"initial_simplex": simplex, "xatol": NEARER, "fatol": CLOSER, "maxfev": most}
-        minimize(at, begin, method="Nelder-Mead", bounds=limits, options=options)
 
     def _lightest(self) -> Solution:
         """The lightest of those that cost least."""
@@ -226,6 +198,79 @@ class GearSearch:
             ties=len(equal),
             weighed=len(tried),
         )
+
+
+class GearGrid:
+    """Choices over the whole range, of which the best are followed downhill."""
+
+    name = "grid of gears, followed downhill"
+
+    def suits(self, problem: GearSearch) -> bool:
+        return True
+
+    def solve(self, problem: GearSearch) -> DesignSolution:
+        choices = _first_choices(problem.options)
+        ranged = len({k for k, *_ in problem.ranges})
+        problem.most = len(choices) + BEST_CHOICES * MOST_STEPS * ranged
+        for choice in choices:
+            problem.cost(choice)
+        if problem.found and len(choices) < prod(map(len, problem.options)):
+            problem.most += BEST_CHOICES * sum(map(len, problem.options))
+            for choice in _best_choices(problem):
+                _try_by_turns(problem, choice)
+        if problem.found and problem.ranges:
+            for choice in _best_choices(problem):
+                _follow(problem, choice)
+        return DesignSolution(np.empty((0, len(problem.spreads))))
+
+
+def _first_choices(options: list[list[Mesh]]) -> list[Choice]:
+    """All choices; of several shafts with too many together, some of each."""
+    kept = options
+    several = sum(len(own) > 1 for own in kept) > 1
+    while several and prod(map(len, kept)) > MOST_CHOICES:
+        longest = max(map(len, kept))
+        kept = [_some(own, min(len(own), longest - 1)) for own in options]
+    return list(product(*kept))
+
+
+def _best_choices(problem: GearSearch) -> list[Choice]:
+    """The first among equals, so that the same search ends at the same gears everywhere."""
+    there = [choice for choice, cost in problem.costs.items() if np.isfinite(cost)]
+    return sorted(there, key=problem.costs.__getitem__)[:BEST_CHOICES]
+
+
+def _try_by_turns(problem: GearSearch, best: Choice) -> None:
+    """Try all gears of one shaft after the other, until none is better."""
+    for _ in range(MOST_ROUNDS):
+        before = best
+        for k, own in enumerate(problem.options):
+            ways = [(*best[:k], mesh, *best[k + 1 :]) for mesh in own]
+            for way in ways:
+                if way not in problem.costs:
+                    problem.cost(way)
+            best = min((best, *ways), key=problem.costs.__getitem__)
+        if best == before:
+            return
+
+
+def _follow(problem: GearSearch, start: Choice) -> None:
+    """Go down from a choice of gears, along all that may be any number between two."""
+    from scipy.optimize import minimize
+
+    def at(numbers: Array) -> float:
+        choice = problem.with_numbers(start, numbers)
+        return inf if choice is None else problem.cost(choice)
+
+    begin = np.array([getattr(start[k], name) for k, name, *_ in problem.ranges])
+    limits = np.array([ends for _, _, *ends in problem.ranges])
+    steps = (limits[:, 1] - limits[:, 0]) / STEPS
+    simplex = np.vstack([begin, *(begin + step for step in np.diag(steps))])
+    over = simplex > limits[:, 1]
+    simplex[over] = (2 * begin - simplex)[over]
+    most = MOST_STEPS * len({k for k, *_ in problem.ranges})
+    options = {"initial_simplex": simplex, "xatol": NEARER, "fatol": CLOSER, "maxfev": most}
+    minimize(at, begin, method="Nelder-Mead", bounds=limits, options=options)
 
 
 def _some(own: list[Mesh], count: int) -> list[Mesh]:

@@ -12,6 +12,8 @@ from equipoise.balancing.multi_row import Combine, Term
 from equipoise.balancing.objectives import unit_of
 from equipoise.balancing.phase_bound import PhaseProof, prove
 from equipoise.balancing.phase_search import PhaseSearch, Progress, with_phases
+from equipoise.design.solvers import DesignProblem, DesignSolution, solve
+from equipoise.design.spreads import Range
 from equipoise.errors import UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism.parts.balance import Limit, Objective, Phases
@@ -78,6 +80,47 @@ class Phasing(Result):
         }
 
 
+class PhaseProblem(DesignProblem):
+    """The phases of all rows but the first, which is at 0."""
+
+    def __init__(self, search: PhaseSearch, progress: Progress = lambda done, total: None) -> None:
+        self.search, self.progress, self.solvers = search, progress, (PhasesWithProof(),)
+
+    @property
+    def spreads(self) -> list[Range]:
+        cost = self.search.cost
+        return [Range(0.0, cost.period)] * (cost.rows - 1)
+
+    def values_of(self, places: Array) -> Array:
+        """Phases (n, m), rad."""
+        return np.hstack([np.zeros((len(places), 1)), super().values_of(places)])
+
+    def evaluate(self, places: Array) -> tuple[Array, Array]:
+        """Costs (n, 1), in which limits that are passed count, and 0 (n, 1)."""
+        costs = self.search.cost.values(self.values_of(places))[:, None]
+        return costs, np.zeros_like(costs)
+
+
+class PhasesWithProof:
+    """A grid of phases, the best of it polished, and boxes of phases in which none is better."""
+
+    name = "branch and bound over all phases of the rows"
+
+    def suits(self, problem: PhaseProblem) -> bool:
+        return True
+
+    def solve(self, problem: PhaseProblem) -> DesignSolution:
+        """The details are the phases (m,) and their `PhaseProof`."""
+        search = problem.search
+        pool = search.pool(problem.progress)
+        found = search.best(pool)
+        known = float(search.cost.values(found))
+        proof = prove(search.cost, found, search.improved, least=known, progress=problem.progress)
+        if proof.phases is not found:
+            found = search.best(np.vstack([pool, proof.phases]))
+        return DesignSolution(found[None, 1:] / search.cost.period, details=(found, proof))
+
+
 def choose_phases(
     machine: Machine,
     objectives: Sequence[Objective],
@@ -107,13 +150,13 @@ def choose_phases(
     MassError, MotionError, ResponseError : the machine cannot be computed.
     """
     search = PhaseSearch(machine, tuple(objectives), phases or Phases(), combine, tuple(limits))
-    told = progress or (lambda done, total: None)
-    pool = search.pool(told)
-    found = search.best(pool)
-    known = float(search.cost.values(found))
-    proof = prove(search.cost, found, search.improved, least=known, progress=told)
-    if proof.phases is not found:
-        found = search.best(np.vstack([pool, proof.phases]))
+    solution = solve(PhaseProblem(search, progress or (lambda done, total: None)))
+    if solution.details is None:  # it proves nothing: no cost is below 0
+        pool = np.vstack([search.present, PhaseProblem(search).values_of(solution.places)])
+        found = search.best(pool)
+        proof = PhaseProof(found, 0.0, 0, False)
+    else:
+        found, proof = solution.details
     for term in search.cost.limits:
         if term.value_at(found) > term.scale * (1 + KEPT):
             least = f"{term.value_at(found):.4g} {unit_of(term.objective, machine)}"

@@ -1,14 +1,17 @@
 """Solvers: who looks for the best designs of a problem, how one is chosen, and what it proves.
 
-A solver knows neither machines nor studies.  It is asked for designs, as places from 0 to 1 in the
-spread of each variable, and is told what became of them: costs, which are all to be small, and
-violations, which are above 0 where a limit is not kept or a design cannot be computed.
+A solver gets a problem and answers ``solve(problem)``.  It knows neither machines nor studies: it
+chooses designs as places from 0 to 1 in the spread of each variable, and the problem answers with
+costs, which are all to be small, and violations, which are above 0 where a limit is not kept or a
+design cannot be computed.  Searches of studies, of gears and phases of balancing, of geometry and
+of tools are problems; each brings the solvers that know more of it, and `SOLVERS` is asked first.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from math import prod
 from typing import Any, Protocol
 
@@ -16,6 +19,7 @@ import numpy as np
 
 from equipoise.design.spreads import Choices, Range
 from equipoise.i18n import Note, to_say
+from equipoise.sequences import sobol
 
 Array = np.ndarray[Any, Any]
 
@@ -24,104 +28,115 @@ UNPROVED = to_say("nothing proves that no other design is better; another seed m
 
 
 @dataclass(frozen=True, eq=False)
-class DesignProblem:
+class DesignSolution:
+    """The best designs of a problem with d variables that a solver has found.
+
+    places : (K, d), the best first.
+    values : (K, d) of these in SI units, where they are known to more digits than by their places.
+    proof : why no design is better; None where nothing proves it.
+    solver : its name.
+    details : what a solver tells the problem that brought it.
+    """
+
+    places: Array
+    values: Array | None = None
+    proof: Note | None = None
+    solver: str = ""
+    details: Any = None
+
+
+class DesignProblem(ABC):
     """What a solver has to know of a problem with d variables.
 
-    spreads : what each variable may be, (d,).
     objectives, limits : how many figures are to become small, M, and violations there are, L.
     population, generations : designs that are computed together, P, and how often at most.
     seed : of random numbers.
-    first : places (P, d) to begin with, evenly spread, the model's own among them.
-    values_of : values (n, d) at places (n, d); equal designs have equal values.
-    known : which designs, by values (n, d), have been computed before, (n,).
+    solvers : those that know more of such problems; the last suits all of them.
     """
 
-    spreads: Sequence[Range | Choices]
-    objectives: int
-    limits: int
-    population: int
-    generations: int
-    seed: int
-    first: Array
-    values_of: Callable[[Array], Array]
-    known: Callable[[Array], Array]
+    solvers: Sequence[DesignSolver] = ()
+    objectives: int = 1
+    limits: int = 1
+    population: int = 100
+    generations: int = 100
+    seed: int = 1
+
+    @property
+    @abstractmethod
+    def spreads(self) -> Sequence[Range | Choices]:
+        """What each variable may be, (d,)."""
+
+    @abstractmethod
+    def evaluate(self, places: Array) -> tuple[Array, Array]:
+        """Costs (n, M) and violations (n, L) of designs at places (n, d)."""
+
+    @property
+    def first(self) -> Array:
+        """Places (P, d) to begin with, evenly spread."""
+        power = (self.population - 1).bit_length()  # SciPy warns of other numbers
+        found: Array = sobol(len(self.spreads), self.seed).random_base2(power)
+        return found[: self.population]
+
+    @property
+    def is_still(self) -> bool:
+        """Whether further generations would bring next to nothing."""
+        return False
 
     @property
     def count(self) -> int:
         """How many designs there are; 0 where a variable may be any number of a range."""
         return prod(spread.count for spread in self.spreads)
 
+    def canonical(self, places: Array) -> Array:
+        """Places (n, d), of equal designs the same."""
+        return places
 
-class SolverRun(Protocol):
-    """A solver at work on one problem."""
+    def values_of(self, places: Array) -> Array:
+        """Values (n, d) at places (n, d), SI units; equal designs have equal values."""
+        columns = [spread.at(u) for spread, u in zip(self.spreads, places.T, strict=True)]
+        return np.stack(columns, axis=1)
 
-    def ask(self) -> Array | None:
-        """Places (n, d) of designs to compute; None where there are no others."""
-
-    def tell(self, places: Array, costs: Array, violations: Array) -> None:
-        """Take in what became of them: costs (n, M), violations (n, L)."""
-
-    @property
-    def best(self) -> Array:
-        """Places (K, d) of the designs that it goes on from, of which the best are shown first."""
-
-    @property
-    def proof(self) -> Note | None:
-        """Why no design is better than the best computed; None while nothing proves it."""
+    def known(self, values: Array) -> Array:
+        """Which designs, by values (n, d), have been computed before, (n,)."""
+        return np.zeros(len(values), bool)
 
 
 class DesignSolver(Protocol):
-    """A way to look for the best designs.
+    """A way to look for the best designs."""
 
-    name : such as ``NSGA-II``, for readers.
-    exact : whether it goes on to its end, where it has a proof, though nothing gets better.
-    """
+    @property
+    def name(self) -> str:
+        """For readers, such as ``NSGA-II``."""
 
-    name: str
-    exact: bool
-
-    def suits(self, problem: DesignProblem) -> bool:
+    def suits(self, problem: Any) -> bool:
         """Whether it can solve the problem, and is the way to do so if none before it suits."""
 
-    def begin(self, problem: DesignProblem) -> SolverRun: ...
+    def solve(self, problem: Any) -> DesignSolution: ...
 
 
-def solver_for(problem: DesignProblem, solvers: Sequence[DesignSolver]) -> DesignSolver:
-    """The first solver that suits a problem; the last suits all."""
-    return next(solver for solver in solvers if solver.suits(problem))
+SOLVERS: list[DesignSolver] = []
+"""Of one's own, for any problem; asked before those that a problem brings."""
+
+
+def solve(problem: DesignProblem) -> DesignSolution:
+    """The best designs by the first solver that suits a problem."""
+    solver = next(one for one in (*SOLVERS, *problem.solvers) if one.suits(problem))
+    return replace(solver.solve(problem), solver=solver.name)
 
 
 class EveryDesign:
     """Computes all designs, where every variable is a list or whole numbers and time allows it."""
 
-    name, exact = "complete enumeration", True
+    name = "complete enumeration"
 
     def suits(self, problem: DesignProblem) -> bool:
         return 0 < problem.count <= problem.population * problem.generations
 
-    def begin(self, problem: DesignProblem) -> SolverRun:
-        return _Enumeration(problem)
-
-
-class _Enumeration:
-    def __init__(self, problem: DesignProblem) -> None:
-        self.problem, self.begun = problem, 0
-        self.best = np.empty((0, len(problem.spreads)))
-
-    def ask(self) -> Array | None:
-        numbers = np.arange(self.problem.count)[self.begun :][: self.problem.population]
-        if not len(numbers):
-            return None
-        self.begun += len(numbers)
-        counts = [spread.count for spread in self.problem.spreads]
-        steps = np.column_stack(np.unravel_index(numbers, counts))
-        return np.asarray((steps + 0.5) / counts)
-
-    def tell(self, places: Array, costs: Array, violations: Array) -> None:
-        """Nothing follows from what became of them."""
-
-    @property
-    def proof(self) -> Note | None:
-        if self.begun < self.problem.count:
-            return None
-        return Note(to_say("every design that there is was computed, so that no other is better"))
+    def solve(self, problem: DesignProblem) -> DesignSolution:
+        counts = [spread.count for spread in problem.spreads]
+        for begin in range(0, problem.count, problem.population):
+            numbers = np.arange(begin, min(begin + problem.population, problem.count))
+            steps = np.column_stack(np.unravel_index(numbers, counts))
+            problem.evaluate(np.asarray((steps + 0.5) / counts))
+        proof = to_say("every design that there is was computed, so that no other is better")
+        return DesignSolution(np.empty((0, len(counts))), proof=Note(proof))

@@ -9,6 +9,8 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from equipoise.design.solvers import DesignProblem, DesignSolution, solve
+from equipoise.design.spreads import Range
 from equipoise.errors import ModelError, ResponseError
 from equipoise.exposure.daily import Exposure
 from equipoise.handheld.design_plan import KEYS, DesignLimit, DesignPlan
@@ -38,21 +40,34 @@ TRIED, FOLLOWED = 256, 8
 STEPS, TOLERANCE = 200, 1e-9
 LEAST = 1e-3
 """Share of the largest force below which an order does not count in the search."""
+WITHIN = 1e-6
+"""Share of a limit by which a design may pass it: what the programs end with."""
+NONE_WITHIN = Note(
+    "no design within the limits was found; raise a limit, or widen the range of a variable"
+)
 SAME = 1e-4
 """Share of the best within which a search has arrived at it too."""
 
 
-class Search:
+class Search(DesignProblem):
     """The measure of a design's numbers, each from 0 to 1 of its range, and the limits.
 
     The measure is a square, (m/s2)^2: mean or largest a_hv^2 over the band, of the worst hand.
     """
 
-    def __init__(self, tool: Tool, design: DesignPlan, speed: Array) -> None:
+    def __init__(
+        self,
+        tool: Tool,
+        design: DesignPlan,
+        speed: Array,
+        told: Told = lambda done, total: None,
+        starts: Array | None = None,
+    ) -> None:
+        self.solvers = (QuadraticPrograms(told, starts),)
         self.tool, self.design, self.band = tool, design, SpeedBand(tool, speed, LEAST)
         self.numbers: list[Number] = [(one.station, one.key) for one in design.variables]
-        self.low = np.array([one.low for one in design.variables])
-        self.wide = np.array([one.high for one in design.variables]) - self.low
+        self.low = np.array([one.low for one in self.spreads])
+        self.wide = np.array([one.high for one in self.spreads]) - self.low
         self.hands = design.hands or tuple(one.name for one in tool.grips)
         forces = (one.station for one in design.limits if one.output == "force" and one.station)
         self.held = tuple(dict.fromkeys(forces))
@@ -96,75 +111,104 @@ class Search:
         wide = self.wide[: len(slopes), None]
         return Dual(np.concatenate([part.value for part in parts]), slopes * wide)
 
+    @property
+    def spreads(self) -> list[Range]:
+        return [Range(one.low, one.high) for one in self.design.variables]
+
+    def evaluate(self, places: Array) -> tuple[Array, Array]:
+        """Measures (P, 1), and by how much the limits are passed, each over its own (P, 1)."""
+        found = [self.at(place, slopes=False) for place in places]
+        measures = [np.max(measure.value) for measure, _ in found]
+        beyond = [np.max(limits.value, initial=0.0) - 1 - WITHIN for _, limits in found]
+        return np.array(measures)[:, None], np.array(beyond)[:, None]
+
     def measure(self, place: Array) -> float:
         """The measure, (m/s2)^2."""
         return float(np.max(self.at(place, slopes=False)[0].value))
 
-    def best(self, told: Told, starts: Array | None = None) -> tuple[Array, int, int]:
-        """Best place, how many searches arrived there, and how many there were."""
-        places = self._promising() if starts is None else starts
+
+@dataclass(frozen=True, eq=False)
+class QuadraticPrograms:
+    """Designs spread over the room are tried, and the best of them followed downhill.
+
+    told : is called with how many are followed, and how many there are.
+    starts : places (K, d) that are followed instead.
+    """
+
+    told: Told
+    starts: Array | None = None
+    name: ClassVar[str] = "sequential quadratic programs"
+
+    def suits(self, problem: Search) -> bool:
+        return True
+
+    def solve(self, problem: Search) -> DesignSolution:
+        """The best place; details : how many searches arrived there, and how many there were.
+
+        Raises
+        ------
+        ResponseError : nothing within the limits was found.
+        """
+        places = _promising(problem) if self.starts is None else self.starts
         found = []
         for done, place in enumerate(places):
-            told(done, len(places))
-            found.append(self._downhill(place))
-        within = [
-            place for place in found if np.all(self.at(place, slopes=False)[1].value <= 1 + 1e-6)
-        ]
-        if not within:
-            raise ResponseError(
-                Note(
-                    "no design within the limits was found; raise a limit, or widen the range "
-                    "of a variable"
-                )
-            )
-        values = np.array([self.measure(place) for place in within])
+            self.told(done, len(places))
+            found.append(_downhill(problem, place))
+        ends = np.array(found)
+        values, beyond = (one[:, 0] for one in problem.evaluate(ends))
+        if not np.any(beyond <= 0):
+            raise ResponseError(NONE_WITHIN)
+        values = np.where(beyond <= 0, values, np.inf)
         best = int(np.argmin(values))
         arrived = int(np.sum(values <= values[best] * (1 + SAME)))
-        return within[best], arrived, len(places)
+        return DesignSolution(ends[best][None], details=(arrived, len(places)))
 
-    def _promising(self) -> Array:
-        """The best of designs spread over the room; the tool's own is among them."""
-        spread = sobol(len(self.wide), 1).random(TRIED)
-        own = np.clip((self.start - self.low) / self.wide, 0, 1)
-        places = np.vstack([own, spread])
-        worth = [self._worth(place) for place in places]
-        order = np.argsort(worth, kind="stable")[:FOLLOWED]
-        return places[order if 0 in order else np.append(order[:-1], 0)]
 
-    def _worth(self, place: Array) -> float:
-        measures, limits = self.at(place, slopes=False)
-        beyond = float(np.sum(np.maximum(limits.value - 1, 0)))
-        return float(np.nan_to_num(np.max(measures.value), nan=np.inf)) * (1 + 10 * beyond)
+def _promising(problem: Search) -> Array:
+    """The best of designs spread over the room; the tool's own is among them."""
+    spread = sobol(len(problem.wide), 1).random(TRIED)
+    own = np.clip((problem.start - problem.low) / problem.wide, 0, 1)
+    places = np.vstack([own, spread])
+    worth = [_worth(problem, place) for place in places]
+    order = np.argsort(worth, kind="stable")[:FOLLOWED]
+    return places[order if 0 in order else np.append(order[:-1], 0)]
 
-    def _downhill(self, place: Array) -> Array:
-        """The least bound on all measures, by sequential quadratic programs."""
-        from scipy.optimize import Bounds, minimize
 
-        unit = self.measure(place)
+def _worth(problem: Search, place: Array) -> float:
+    measures, limits = problem.at(place, slopes=False)
+    beyond = float(np.sum(np.maximum(limits.value - 1, 0)))
+    return float(np.nan_to_num(np.max(measures.value), nan=np.inf)) * (1 + 10 * beyond)
 
-        def room(x: Array) -> Array:
-            measures, limits = self.at(x[:-1])
-            return np.concatenate([x[-1] - measures.value / unit, 1 - limits.value])
 
-        def slopes(x: Array) -> Array:
-            measures, limits = self.at(x[:-1])
-            one = np.ones((measures.value.size, 1))
-            upper = np.hstack([-measures.slopes.T / unit, one])
-            lower = np.hstack([-limits.slopes.T, np.zeros((limits.value.size, 1))])
-            return np.vstack([upper, lower])
+def _downhill(problem: Search, place: Array) -> Array:
+    """The least bound on all measures, by sequential quadratic programs."""
+    from scipy.optimize import Bounds, minimize
 
-        ahead = np.eye(len(place) + 1)[-1]
-        done = minimize(
-            lambda x: x[-1],
-            np.append(place, 1.0),
-            jac=lambda x: ahead,
-            bounds=Bounds(0 * ahead, np.append(np.ones(len(place)), np.inf)),
-            constraints={"type": "ineq", "fun": room, "jac": slopes},
-            method="SLSQP",
-            options={"maxiter": STEPS, "ftol": TOLERANCE},
-        )
-        end = np.clip(done.x[:-1], 0, 1)
-        return np.asarray(end if self._worth(end) <= self._worth(place) else place)
+    unit = problem.measure(place)
+
+    def room(x: Array) -> Array:
+        measures, limits = problem.at(x[:-1])
+        return np.concatenate([x[-1] - measures.value / unit, 1 - limits.value])
+
+    def slopes(x: Array) -> Array:
+        measures, limits = problem.at(x[:-1])
+        one = np.ones((measures.value.size, 1))
+        upper = np.hstack([-measures.slopes.T / unit, one])
+        lower = np.hstack([-limits.slopes.T, np.zeros((limits.value.size, 1))])
+        return np.vstack([upper, lower])
+
+    ahead = np.eye(len(place) + 1)[-1]
+    done = minimize(
+        lambda x: x[-1],
+        np.append(place, 1.0),
+        jac=lambda x: ahead,
+        bounds=Bounds(0 * ahead, np.append(np.ones(len(place)), np.inf)),
+        constraints={"type": "ineq", "fun": room, "jac": slopes},
+        method="SLSQP",
+        options={"maxiter": STEPS, "ftol": TOLERANCE},
+    )
+    end = np.clip(done.x[:-1], 0, 1)
+    return np.asarray(end if _worth(problem, end) <= _worth(problem, place) else place)
 
 
 SPEEDS = 81
@@ -203,6 +247,8 @@ class ToolDesign(Result):
     edges : ``lowest`` or ``highest`` where a variable ends at an end of its range, else empty.
     searches, arrived : followed downhill, and how many of them came to the best.
     speed : (S,), rad/s; a_hv : of the worst hand, before and after, (2, S), m/s2.
+    solver : name of what looked for it.
+    proved : whether no design can be better; however many searches arrive at a place prove nothing.
     """
 
     tool: Tool
@@ -214,8 +260,9 @@ class ToolDesign(Result):
     arrived: int
     speed: Array
     a_hv: Array
+    solver: str = "sequential quadratic programs"
+    proved: bool = False
 
-    solver: ClassVar[str] = "sequential quadratic programs"
     blocks_in = "handheld.hand_blocks.design_blocks"
     pictures_in = "figures.tool_side.design_pictures"
 
@@ -239,7 +286,7 @@ class ToolDesign(Result):
             "figures": told(self.figures),
             "edges": dict(zip(names, self.edges, strict=True)),
             "solver": self.solver,
-            "proved": False,  # however many searches arrive at the same place
+            "proved": self.proved,
             "searches": self.searches,
             "arrived": self.arrived,
             "speed": self.speed,
@@ -268,20 +315,23 @@ def design_tool(tool: Tool, told: Told | None = None) -> ToolDesign:
         raise ModelError("design", NO_DESIGN)
     count, starts = SPEEDS, None
     seen = []
+    tell = told or (lambda done, total: None)
     for _ in range(DOUBLINGS + 1):
-        search = Search(tool, design, np.linspace(*design.speeds, count))
-        best, arrived, searches = search.best(told or (lambda done, total: None), starts)
-        seen.append((arrived, searches))
+        search = Search(tool, design, np.linspace(*design.speeds, count), tell, starts)
+        solution = solve(search)
+        best = solution.places[0]
+        seen.append(solution)
         fine = Search(tool, design, np.linspace(*design.speeds, FINER * (count - 1) + 1))
         coarse, exact = search.measure(best), fine.measure(best)
         if abs(exact - coarse) <= STILL * exact:
             break
         count, starts = 2 * count - 1, best[None]
-    return _found(fine, best, *seen[0])
+    return _found(fine, best, seen[0])
 
 
-def _found(search: Search, best: Array, arrived: int, searches: int) -> ToolDesign:
-    """The result, from the tool that the best numbers make."""
+def _found(search: Search, best: Array, solution: DesignSolution) -> ToolDesign:
+    """The result, from the tool that the best numbers make, found first by a solution."""
+    arrived, searches = solution.details or (1, 1)
     tool, design = search.tool, search.design
     values = search.low + search.wide * best
     better = tool
@@ -297,7 +347,19 @@ def _found(search: Search, best: Array, arrived: int, searches: int) -> ToolDesi
     edges = ("lowest" if at < EDGE else "highest" if at > 1 - EDGE else "" for at in best.tolist())
     a_hv = np.array([np.max(_curves(one, speed, search.hands), axis=0) for one in (tool, better)])
     figures = tuple(_figures(search, better))
-    return ToolDesign(tool, better, rows, figures, tuple(edges), searches, arrived, speed, a_hv)
+    return ToolDesign(
+        tool=tool,
+        better=better,
+        variables=rows,
+        figures=figures,
+        edges=tuple(edges),
+        searches=searches,
+        arrived=arrived,
+        speed=speed,
+        a_hv=a_hv,
+        solver=solution.solver,
+        proved=solution.proof is not None,
+    )
 
 
 def _curves(tool: Tool, speed: Array, hands: Iterable[str]) -> list[Array]:

@@ -12,6 +12,8 @@ import numpy as np
 
 from equipoise.design.evaluator import PooledEvaluator
 from equipoise.design.requirements import Requirement
+from equipoise.design.solvers import DesignProblem
+from equipoise.design.spreads import Range
 from equipoise.errors import EquipoiseError, UsageError
 from equipoise.mechanism.assembly.family import Family
 from equipoise.mechanism.assembly.linkage import assemble
@@ -78,7 +80,7 @@ class GoalOutcome:
         return opened
 
 
-class PlantingProblem:
+class PlantingProblem(DesignProblem):
     """Designs of a machine and the goals that they have to meet; a context manager, which ends the
     processes that judge them.
 
@@ -107,7 +109,7 @@ class PlantingProblem:
             goal.scale(float(known[goal.figure][0]), dimension_of(goal.figure)) for goal in goals
         ]
         make = partial(_judging, *designs.given, self.goals)
-        self.evaluate = PooledEvaluator(
+        self.pooled = PooledEvaluator(
             self.judge_here, make, GoalOutcome.joined, workers, together=TOGETHER
         )
 
@@ -115,7 +117,16 @@ class PlantingProblem:
         return self
 
     def __exit__(self, *error: object) -> None:
-        self.evaluate.close()
+        self.pooled.close()
+
+    @property
+    def spreads(self) -> list[Range]:
+        return [Range(*ends) for ends in zip(*self.designs.bounds, strict=True)]
+
+    def evaluate(self, places: Array) -> tuple[Array, Array]:
+        """Costs (P, 1), in squared steps, and whether a limit is not kept (P, 1)."""
+        outcome = self.judge(self.values_of(places))
+        return outcome.cost[:, None], np.where(outcome.kept, 0.0, 1.0)[:, None]
 
     @property
     def makes(self) -> bool:
@@ -125,7 +136,7 @@ class PlantingProblem:
     def judge(self, values: Array) -> GoalOutcome:
         """Judge designs (P, n), together with processes of this machine where that takes long."""
         self.judged += len(values)
-        return self.evaluate(values)
+        return self.pooled(values)
 
     def judge_here(self, values: Array) -> GoalOutcome:
         """Judge designs (P, n) in this process; of none does the result depend on the others."""

@@ -15,6 +15,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from equipoise.design.requirements import Requirement
+from equipoise.design.solvers import DesignSolution, solve
 from equipoise.errors import EquipoiseError, UsageError
 from equipoise.mechanism.assembly.family import Family
 from equipoise.mechanism.assembly.linkage import assemble
@@ -55,6 +56,7 @@ class Fit(Result):
     steps : for each goal, what counts as one step away from its target.
     judged : number of designs.  seed : of the random numbers.
     proved : whether no design can be better: every target is met to rounding, and every limit kept.
+    solver : name of what looked for it.
     """
 
     machine: Machine
@@ -67,8 +69,8 @@ class Fit(Result):
     judged: int
     seed: int
     proved: bool = False
+    solver: str = "differential evolution"
 
-    solver: ClassVar[str] = "differential evolution"
     blocks_in = "planting.fit_blocks.fit_blocks"
 
     @property
@@ -146,23 +148,37 @@ def fit_planting(
     """
     _check(machine, seed, generations, population)
     with PlantingProblem(Designs(machine, vary, sense), goals, workers) as problem:
-        return _fit(problem, seed, generations, population, progress)
+        problem.seed, problem.generations, problem.population = seed, generations, population
+        problem.solvers = (EvolutionAndPolish(progress),)
+        return _fit(problem)
 
 
-def _fit(
-    problem: PlantingProblem,
-    seed: int,
-    generations: int,
-    population: int,
-    progress: Progress | None,
-) -> Fit:
-    evolution = _Evolution(problem, seed, generations, progress)
-    best = evolution.rounds(population)
-    if problem.makes:
-        polished = [evolution.near(best[0], max(SMALLEST_POPULATION, population // 3))]
-    else:
-        polished = list(_polished(problem, best))
-    candidates = np.vstack([best, *polished])
+@dataclass(frozen=True)
+class EvolutionAndPolish:
+    """Differential evolution of the whole range, then least squares or an evolution nearby."""
+
+    progress: Progress | None = None
+    name: ClassVar[str] = "differential evolution"
+
+    def suits(self, problem: PlantingProblem) -> bool:
+        return True
+
+    def solve(self, problem: PlantingProblem) -> DesignSolution:
+        population = problem.population
+        evolution = _Evolution(problem, problem.seed, problem.generations, self.progress)
+        best = evolution.rounds(population)
+        if problem.makes:
+            polished = [evolution.near(best[0], max(SMALLEST_POPULATION, population // 3))]
+        else:
+            polished = list(_polished(problem, best))
+        values = np.vstack([best, *polished])
+        low, high = problem.designs.bounds
+        return DesignSolution((values - low) / (high - low), values)
+
+
+def _fit(problem: PlantingProblem) -> Fit:
+    solution = solve(problem)
+    candidates = problem.values_of(solution.places) if solution.values is None else solution.values
     values, after = _best(problem, candidates)
     best_outcome = problem.judge_here(values[None])
     met = bool(best_outcome.kept[0] and best_outcome.cost[0] < MET)
@@ -176,8 +192,9 @@ def _fit(
         values={name: float(value) for name, value in zip(names, values, strict=False)},
         steps=tuple(problem.scales),
         judged=problem.judged,
-        seed=seed,
-        proved=met and not problem.makes,
+        seed=problem.seed,
+        proved=(met and not problem.makes) or solution.proof is not None,
+        solver=solution.solver,
     )
 
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.design.solvers import DesignProblem, DesignSolver, EveryDesign, SolverRun
+from equipoise.design.solvers import DesignProblem, DesignSolution, DesignSolver, EveryDesign
 from equipoise.errors import UsageError, lacking
 
 Array = np.ndarray[Any, Any]
@@ -19,17 +19,17 @@ MANY = 4
 class DifferentialEvolution:
     """For one objective."""
 
-    name, exact = "differential evolution", False
+    name = "differential evolution"
 
     def suits(self, problem: DesignProblem) -> bool:
         return problem.objectives == 1
 
-    def begin(self, problem: DesignProblem) -> SolverRun:
+    def solve(self, problem: DesignProblem) -> DesignSolution:
         _check_installed()
         from pymoo.algorithms.soo.nonconvex.de import DE
 
         first, size = problem.first, problem.population
-        return _PymooRun(problem, DE(size, sampling=first, variant="DE/rand/1/bin", CR=0.9))
+        return _evolved(problem, DE(size, sampling=first, variant="DE/rand/1/bin", CR=0.9))
 
 
 class CrowdingSort:
@@ -38,28 +38,28 @@ class CrowdingSort:
     Designs that were computed before are not bred again, so that lists are searched to their ends.
     """
 
-    name, exact = "NSGA-II", False
+    name = "NSGA-II"
 
     def suits(self, problem: DesignProblem) -> bool:
         return problem.objectives < MANY
 
-    def begin(self, problem: DesignProblem) -> SolverRun:
+    def solve(self, problem: DesignProblem) -> DesignSolution:
         _check_installed()
         from pymoo.algorithms.moo.nsga2 import NSGA2
 
         given = {"sampling": problem.first, "eliminate_duplicates": _only_new(problem)}
-        return _PymooRun(problem, NSGA2(problem.population, **given))
+        return _evolved(problem, NSGA2(problem.population, **given))
 
 
 class DirectionSort:
     """For more objectives: designs are kept apart by reference directions."""
 
-    name, exact = "NSGA-III", False
+    name = "NSGA-III"
 
     def suits(self, problem: DesignProblem) -> bool:
         return True
 
-    def begin(self, problem: DesignProblem) -> SolverRun:
+    def solve(self, problem: DesignProblem) -> DesignSolution:
         _check_installed()
         from pymoo.algorithms.moo.nsga3 import NSGA3
         from pymoo.util.ref_dirs import get_reference_directions
@@ -68,15 +68,15 @@ class DirectionSort:
         fine = max(p for p in range(1, size) if comb(p + makes - 1, p) <= size)
         directions = get_reference_directions("das-dennis", makes, n_partitions=fine)
         given = {"sampling": problem.first, "eliminate_duplicates": _only_new(problem)}
-        return _PymooRun(problem, NSGA3(directions, pop_size=size, **given))
+        return _evolved(problem, NSGA3(directions, pop_size=size, **given))
 
 
-SOLVERS: list[DesignSolver] = [
+SOLVERS: tuple[DesignSolver, ...] = (
     EveryDesign(),
     DifferentialEvolution(),
     CrowdingSort(),
     DirectionSort(),
-]
+)
 
 
 def _check_installed() -> None:
@@ -84,32 +84,26 @@ def _check_installed() -> None:
         raise UsageError(missing)
 
 
-class _PymooRun:
-    """An algorithm of pymoo, asked for a generation after the other."""
+def _evolved(problem: DesignProblem, algorithm: Any) -> DesignSolution:
+    """Where an algorithm of pymoo has come to, generation by generation."""
+    from pymoo.core.problem import Problem
+    from pymoo.core.termination import NoTermination
 
-    proof = None
-
-    def __init__(self, problem: DesignProblem, algorithm: Any) -> None:
-        from pymoo.core.problem import Problem
-        from pymoo.core.termination import NoTermination
-
-        width, limits = len(problem.spreads), problem.limits
-        cube = Problem(n_var=width, n_obj=problem.objectives, n_ieq_constr=limits, xl=0.0, xu=1.0)
-        given = {"termination": NoTermination(), "seed": problem.seed, "verbose": False}
-        self.algorithm = algorithm.setup(cube, **given)
-        self.bred: Any = None
-
-    def ask(self) -> Array | None:
-        self.bred = self.algorithm.ask()
-        return None if self.bred is None else np.asarray(self.bred.get("X"))
-
-    def tell(self, places: Array, costs: Array, violations: Array) -> None:
-        self.bred.set("X", places, "F", costs, "G", violations)
-        self.algorithm.tell(infills=self.bred)
-
-    @property
-    def best(self) -> Array:
-        return np.asarray(self.algorithm.pop.get("X"))
+    width, limits = len(problem.spreads), problem.limits
+    cube = Problem(n_var=width, n_obj=problem.objectives, n_ieq_constr=limits, xl=0.0, xu=1.0)
+    given = {"termination": NoTermination(), "seed": problem.seed, "verbose": False}
+    algorithm = algorithm.setup(cube, **given)
+    for _ in range(problem.generations):
+        bred = algorithm.ask()
+        if bred is None:
+            break  # there is hardly another design
+        places = problem.canonical(np.asarray(bred.get("X")))
+        costs, violations = problem.evaluate(places)
+        bred.set("X", places, "F", costs, "G", violations)
+        algorithm.tell(infills=bred)
+        if problem.is_still:
+            break
+    return DesignSolution(np.asarray(algorithm.pop.get("X")))
 
 
 def _only_new(problem: DesignProblem) -> Any:

@@ -17,12 +17,11 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from equipoise.codegen.figures import COMPUTED, NO_ASSEMBLY, NO_FULL_TURN, NO_MACHINE
-from equipoise.design.solvers import DesignProblem, solver_for
+from equipoise.design.solvers import DesignProblem, solve
 from equipoise.design.spreads import Choices, Range
 from equipoise.errors import ModelError, UsageError
 from equipoise.keys.requirement_kinds import Make
 from equipoise.results.result import Result
-from equipoise.sequences import sobol
 from equipoise.studies.evaluate import pooled
 from equipoise.studies.evolution import SOLVERS
 from equipoise.studies.outcomes import (
@@ -175,40 +174,66 @@ def search(
 def _search(
     seen: _Archive, population: int, generations: int, seed: int, progress: OnGeneration | None
 ) -> Searched:
-    problem = _problem(seen, population, generations, seed)
-    solver = solver_for(problem, SOLVERS)
-    solving, volumes, still = solver.begin(problem), Hypervolumes(), False
-    for generation in range(1, generations + 1):
-        asked = solving.ask()
-        if still := asked is None:
-            break  # there is hardly another design
-        places = canonical(seen.study, asked)
-        rows = seen.rows(values_at(seen.study, places))
-        solving.tell(places, seen.costs[rows], seen.violations[rows])
+    problem = _StudyProblem(seen, population, generations, seed, progress or (lambda *_: None))
+    solution = solve(problem)
+    best = seen.rows(problem.values_of(solution.places))
+    found = _result(seen, problem.volumes, seen.some_of_front(best, population), seed)
+    ended = len(problem.volumes.fronts) < generations or problem.is_still
+    still = ended or solution.proof is not None
+    return replace(found, solver=solution.solver, proof=solution.proof, stood_still=still)
+
+
+class _StudyProblem(DesignProblem):
+    """A study to search; each call of `evaluate` is a generation."""
+
+    solvers = SOLVERS
+
+    def __init__(
+        self,
+        seen: _Archive,
+        population: int,
+        generations: int,
+        seed: int,
+        progress: OnGeneration,
+    ) -> None:
+        self.seen, self.progress, self.volumes = seen, progress, Hypervolumes()
+        self.population, self.generations, self.seed = population, generations, seed
+        self.objectives, self.limits = len(seen.makes), 1 + len(seen.limits)
+
+    @property
+    def spreads(self) -> list[Range | Choices]:
+        spreads = (one.spread for one in self.seen.study.vary)
+        return [one for one in spreads if isinstance(one, Range | Choices)]
+
+    @property
+    def first(self) -> Array:
+        """Evenly spread, with the model's own among them."""
+        places, own = super().first, self.seen.study.own.tolist()
+        at = [spread.place(number) for spread, number in zip(self.spreads, own, strict=True)]
+        if all(place is not None for place in at):
+            places[0] = at
+        return self.canonical(places)
+
+    @property
+    def is_still(self) -> bool:
+        return self.volumes.still
+
+    def canonical(self, places: Array) -> Array:
+        return canonical(self.seen.study, places)
+
+    def values_of(self, places: Array) -> Array:
+        return values_at(self.seen.study, self.canonical(places))
+
+    def known(self, values: Array) -> Array:
+        return self.seen.known(values)
+
+    def evaluate(self, places: Array) -> tuple[Array, Array]:
+        seen, volumes = self.seen, self.volumes
+        rows = seen.rows(self.values_of(places))
         volumes.add(seen.costs[seen.front])
-        if progress is not None:
-            progress(generation, generations, len(seen.values), len(seen.front))
-        if still := volumes.still and not solver.exact:
-            break
-    told = seen.some_of_front(seen.rows(values_at(seen.study, solving.best)), population)
-    found = _result(seen, volumes, told, seed)
-    proof = solving.proof
-    return replace(found, solver=solver.name, proof=proof, stood_still=still or proof is not None)
-
-
-def _problem(seen: _Archive, population: int, generations: int, seed: int) -> DesignProblem:
-    study = seen.study
-    return DesignProblem(
-        spreads=[one.spread for one in study.vary if isinstance(one.spread, Range | Choices)],
-        objectives=len(seen.makes),
-        limits=1 + len(seen.limits),
-        population=population,
-        generations=generations,
-        seed=seed,
-        first=_first(study, population, seed),
-        values_of=lambda places: values_at(study, canonical(study, places)),
-        known=seen.known,
-    )
+        done = len(volumes.fronts)
+        self.progress(done, self.generations, len(seen.values), len(seen.front))
+        return seen.costs[rows], seen.violations[rows]
 
 
 def search_size(
@@ -286,17 +311,6 @@ def _result(seen: _Archive, volumes: Hypervolumes, told: Array, seed: int) -> Se
         seed=seed,
         tried=Block(seen.values, seen.outcome),
     )
-
-
-def _first(study: Study, population: int, seed: int) -> Array:
-    """Places (P, d) of the first generation: evenly spread, with the model's own among them."""
-    power = (population - 1).bit_length()  # SciPy warns of other numbers than powers of two
-    places = sobol(len(study.vary), seed).random_base2(power)[:population]
-    spreads: list[Any] = [one.spread for one in study.vary]
-    own = [spread.place(number) for spread, number in zip(spreads, study.own.tolist(), strict=True)]
-    if all(place is not None for place in own):
-        places[0] = own
-    return canonical(study, places)
 
 
 # -- what was computed -----------------------------------------------------------------------------

@@ -1,4 +1,6 @@
-"""A solver of one's own is one class in a list; searches take it, and say what it proves."""
+"""A solver of one's own is one class in a list; searches, balance, fits, tools and the page take
+it, and say what it proves.
+"""
 
 from __future__ import annotations
 
@@ -11,52 +13,50 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.design.solvers import DesignProblem, SolverRun
+from equipoise.design.requirements import Requirement
+from equipoise.design.solvers import SOLVERS, DesignProblem, DesignSolution
 from equipoise.design.spreads import Choices, Range
+from equipoise.handheld.design import design_tool
 from equipoise.i18n import Note
+from equipoise.planting.search import fit_planting
 from equipoise.results.blocks import Notes, Text
 from equipoise.schema.template import Template
 from equipoise.studies.blocks import searched_blocks
 from equipoise.studies.evaluate import evaluator
-from equipoise.studies.evolution import SOLVERS
 from equipoise.studies.searching import Searched, search
+from unit.web.pages import ask, opened
 
 Array = np.ndarray[Any, Any]
 MASSES = {"links.crank.mass": (0.1, 0.15, 0.2, 0.3), "links.rocker.mass": (0.2, 0.1, 0.4)}
 
 
 class RandomSearch:
-    """Designs drawn at random, which ends after two generations."""
+    """Designs drawn at random, in two generations."""
 
-    name, exact = "random search", False
+    name = "random search"
+
+    def __init__(self, designs: int = 16) -> None:
+        self.designs, self.seen = designs, list[DesignProblem]()
 
     def suits(self, problem: DesignProblem) -> bool:
-        return problem.count == 0
+        return problem.objectives == 1
 
-    def begin(self, problem: DesignProblem) -> SolverRun:
-        return _Draws(problem)
-
-
-class _Draws:
-    proof = None
-
-    def __init__(self, problem: DesignProblem) -> None:
-        self.random, self.width = np.random.default_rng(problem.seed), len(problem.spreads)
-        self.left, self.best = 2, np.empty((0, self.width))
-        self.costs: list[Array] = []
-
-    def ask(self) -> Array | None:
-        self.left -= 1
-        return self.random.random((8, self.width)) if self.left >= 0 else None
-
-    def tell(self, places: Array, costs: Array, violations: Array) -> None:
-        self.costs.append(costs)
+    def solve(self, problem: DesignProblem) -> DesignSolution:
+        random = np.random.default_rng(problem.seed)
+        self.seen.append(problem)
+        places, costs = [], []
+        for _ in range(2):
+            places.append(random.random((self.designs // 2, len(problem.spreads))))
+            cost, violations = problem.evaluate(places[-1])
+            costs.append(np.where(np.any(violations > 0, axis=1), np.inf, cost[:, 0]))
+        best = np.argsort(np.concatenate(costs), kind="stable")
+        return DesignSolution(np.concatenate(places)[best])
 
 
 @pytest.fixture
-def added() -> Iterator[None]:
+def added() -> Iterator[RandomSearch]:
     SOLVERS.insert(0, RandomSearch())
-    yield
+    yield SOLVERS[0]  # type: ignore[misc]
     del SOLVERS[0]
 
 
@@ -81,7 +81,7 @@ def told(found: Searched) -> list[str]:
 RANGES = (Range(0.1, 0.3), Range(0.1, 0.4))
 
 
-def test_a_search_takes_a_solver_of_ones_own(added: None) -> None:
+def test_a_search_takes_a_solver_of_ones_own(added: RandomSearch) -> None:
     found = search(study(RANGES))
     assert (found.solver, found.proof, found.computed) == ("random search", None, 16)
     assert found.stood_still, "it had no further designs"
@@ -89,6 +89,51 @@ def test_a_search_takes_a_solver_of_ones_own(added: None) -> None:
     assert found.figures[0, 0] == np.min(values)
     assert found.to_dict()["proved"] is False
     assert any("nothing proves" in one for one in told(found))
+
+
+def test_balance_chooses_gears_by_it(added: RandomSearch) -> None:
+    """As good as the best of its own few choices, and no better than all of them tried."""
+    machine = eq.load("balance-geared-a")
+    found = eq.balance(machine)
+    (problem,) = added.seen
+    assert len(problem.costs) <= 16  # type: ignore[attr-defined]
+    assert found.cost == pytest.approx(min(problem.costs.values()), abs=1e-6)  # type: ignore[attr-defined]
+    SOLVERS.remove(added)
+    assert eq.balance(machine).cost <= found.cost + 1e-8
+    SOLVERS.insert(0, added)
+
+
+def test_the_page_balances_by_it(added: RandomSearch) -> None:
+    session, _ = opened("balance-geared-a")
+    _, shown, _ = ask(session, "balance")
+    assert len(added.seen) == 1
+    found = eq.balance(eq.load("balance-geared-a"))
+    assert shown.content["aims"][0]["after"] == pytest.approx(
+        next(iter(found.objectives.values()))[1], rel=1e-3
+    )
+
+
+def test_phases_are_chosen_by_it_without_a_proof(added: RandomSearch) -> None:
+    machine = eq.load("walking-transplanter")
+    found = eq.balancing.choose_phases(machine, [eq.balancing.Objective("shaking_force")])
+    assert found.bound == 0.0 and found.looked_at == 0
+    assert any("before it had proved" in str(one) for one in found.notes)
+    SOLVERS.remove(added)
+    best = eq.balancing.choose_phases(machine, [eq.balancing.Objective("shaking_force")])
+    assert 0.0 < best.bound <= best.combined[1] <= found.combined[1] + 1e-12
+    SOLVERS.insert(0, added)
+
+
+def test_the_search_of_geometry_takes_it(added: RandomSearch) -> None:
+    goal = Requirement("curve.height", make="smallest")
+    found = fit_planting(eq.load("kim-chung-a"), [goal], {"crank": (0.03, 0.05)})
+    assert found.solver == "random search" and not found.proved
+    assert found.after["curve.height"] < eq.plant(eq.load("kim-chung-a"))["curve.height"]
+
+
+def test_a_tool_is_designed_by_it(added: RandomSearch) -> None:
+    found = design_tool(eq.load("brush-cutter"))
+    assert found.to_dict()["solver"] == "random search" and not found.to_dict()["proved"]
 
 
 def test_without_it_the_solver_follows_from_the_problem() -> None:
