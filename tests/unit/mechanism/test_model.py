@@ -365,3 +365,15 @@ def test_one_point_is_moved() -> None:
 def test_no_point_is_lost_or_made_unawares(change: Callable[[], object], words: str) -> None:
     with pytest.raises(ModelError, match=re.escape(words)):
         change()
+
+
+def test_a_number_is_changed_by_text_with_its_unit() -> None:
+    """As in a file; in SI units without."""
+    machine = eq.load("yamashita-1")
+    crank = machine.with_number("links.crank.mass", "250 g").links["crank"]
+    assert crank == machine.with_number("links.crank.mass", 0.25).links["crank"]
+    moved = machine.with_number("links.crank.points.B.x", "3.4 cm")
+    assert moved.links["crank"].points["B"] == pytest.approx((0.034, 0.0))
+    assert machine.with_number("drive.speed", "30 rpm").drive.speed == pytest.approx(np.pi)
+    with pytest.raises(ModelError, match="mass: got '250'; the unit is missing"):
+        machine.with_number("links.crank.mass", "250")

@@ -405,9 +405,11 @@ class Machine(Driven, Displayed, Frozen):
         changed = replace(self, drive=replace(self.drive, **changes))
         return self._same_motion(changed, not {*changes} & {*MOVING})
 
-    def with_number(self, path: str | KeyPath, number: float) -> Machine:
+    def with_number(self, path: str | KeyPath, number: float | str) -> Machine:
         """Return the machine with another number, by its path such as ``links.crank.mass`` or
-        ``springs[1].stiffness``, in SI units.
+        ``springs[1].stiffness``.
+
+        number : in SI units, or with its unit, such as ``"250 g"``.
 
         A parameter is none of them: `equipoise.schema.Template` has machines with other parameters.
         """
@@ -417,7 +419,7 @@ class Machine(Driven, Displayed, Frozen):
             what = Note("numbers are worked out from it when the file is read; change it there")
             raise ModelError(steps.shown, what)
 
-        def put(_: Any) -> float:
+        def put(_: Any) -> float | str:
             return number
 
         massive = first == "links" and bool({*steps[2:3]} & {*MASS_FIELDS, *BESIDE})
