@@ -14,7 +14,7 @@ import equipoise
 from equipoise import analyze, loads, respond
 from equipoise.errors import EquipoiseError, ModelError, UsageError
 from equipoise.keys import all_keys
-from equipoise.schema.topics import errors, known_topic, tables
+from equipoise.schema.topics import errors, known_topic, tables, terms
 from surface.running import equipoise as equipoise_runs
 from surface.running import refused, succeeded, written
 
@@ -254,7 +254,11 @@ def test_every_table_is_explained(topic: str) -> None:
 def test_topics_are_listed_and_unknown_ones_refused() -> None:
     """A key leads to its table, by its path."""
     listed = succeeded(equipoise_runs("explain"))
-    assert [topic for topic in (*errors(), *tables()) if topic not in listed] == []
+    words = " ".join(listed.split())
+    assert [topic for topic in (*errors(), *tables(), *terms()) if topic not in words] == []
+    assert len(terms()) > 25
+    said = succeeded(equipoise_runs("explain", "shaking moment"))
+    assert said.startswith("shaking moment\n\nMoment of the inertia forces") and "\\n" not in said
     assert known_topic("links.crank.section.width") == "links.NAME.section"
     said = refused(equipoise_runs("explain", "sprngs"))
     assert said == "no topic is called 'sprngs'; did you mean 'springs'?"

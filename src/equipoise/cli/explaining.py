@@ -1,4 +1,4 @@
-"""The command `explain`: errors with their cures, and the keys of a table, without a network."""
+"""The command `explain`: errors with their cures, keys of tables and terms, without a network."""
 
 from __future__ import annotations
 
@@ -21,21 +21,25 @@ WIDEST = 88
 
 @command()
 def explain(topic: Annotated[str | None, Parameter(name="TOPIC")] = None, /) -> CommandResult:
-    """Explain an error and its cure, or list the keys of a table of a file.
+    """Explain an error and its cure, list the keys of a table of a file, or define a term.
 
     Parameters
     ----------
     topic
-        As below an error, such as change-point; or a table or key, such as springs or drive.speed.
-        All topics are listed if not given.
+        As below an error, such as change-point; a table or key, such as springs or drive.speed; or
+        a term, such as shaking-moment. All topics are listed if not given.
     """
     from equipoise.schema import topics
 
     if topic is None:
         return CommandResult(_lists, title="")
     known = topics.known_topic(topic)
+    if not known and (term := topics.terms().get(topics.slug_of(topic))):
+        words = [term.title, "", *topics.paragraphs(term.text, WIDEST)]
+        return CommandResult(lines=lambda: "\n".join(words).splitlines())
     if not known:
-        raise UsageError(unknown(topic, [*topics.errors(), *topics.tables()], "topic"))
+        every = [*topics.errors(), *topics.tables(), *topics.terms()]
+        raise UsageError(unknown(topic, every, "topic"))
     if known in topics.errors():
         return CommandResult(lines=lambda: _page(*topics.errors()[known]).splitlines())
     table = topics.tables()[known]
@@ -44,13 +48,14 @@ def explain(topic: Annotated[str | None, Parameter(name="TOPIC")] = None, /) -> 
 
 def _lists() -> Iterator[Block]:
     """All that can be explained."""
-    from equipoise.results.blocks import Table
+    from equipoise.results.blocks import Table, Text
     from equipoise.schema import topics
 
     errors = ((topic, one.title) for topic, one in topics.errors().items())
     yield Table.of("Errors and their cures", ("", ""), errors)
     tables = ((topic, _about(one)) for topic, one in topics.tables().items())
     yield Table.of("Tables of files", ("", ""), tables)
+    yield Text(f"Terms: {', '.join(topics.terms())}.")
 
 
 def _about(table: FileTable) -> str:

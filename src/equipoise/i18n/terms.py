@@ -160,7 +160,7 @@ MEANINGS = {
     "roll moment": to_say("Moment of all rows together about the direction of travel."),
     "shaking force": to_say("Force of inertia that the moving links put on the frame."),
     "shaking moment": to_say(
-        "Moment of inertia forces of the moving links on the frame, about the pivot of the "
+        "Moment of the inertia forces of the moving links on the frame, about the pivot of the "
         "drive if no other point is given."
     ),
     "sliding acceleration of {name}": to_say("Rate of change of the sliding velocity."),

@@ -1,4 +1,4 @@
-"""What `equipoise explain` knows: errors with their cures, and the tables of files with their keys.
+"""What `equipoise explain` knows: errors with their cures, tables of files with their keys, terms.
 
 An error names its topic itself.  A topic is a heading of `errors.md`, as links have it, or a table
 of a file by its path, such as ``links.NAME.section``.
@@ -14,6 +14,7 @@ from textwrap import fill, indent
 from typing import NamedTuple
 
 from equipoise import keys
+from equipoise.i18n.terms import MEANINGS, TERMS
 from equipoise.schema.opening import FileKind, document_of
 
 FILES: tuple[FileKind, ...] = ("linkage", "tool", "study")
@@ -125,6 +126,16 @@ def table_at(place: Sequence[str]) -> str:
     ]
     longest: tuple[str, ...] = max(fitting, key=len, default=())
     return ".".join(longest)
+
+
+@cache
+def terms() -> Mapping[str, Explained]:
+    """Every term of the glossary that is no topic otherwise, with its meaning, by its topic."""
+    every = {slug_of(term): Explained(term, text) for term, text in (TERMS | MEANINGS).items()}
+    others = {*errors(), *tables()}
+    return {
+        topic: one for topic, one in every.items() if "{" not in one.title and topic not in others
+    }
 
 
 def known_topic(topic: str) -> str:
