@@ -56,6 +56,9 @@ class EquipoiseError(Exception):
     _paste: Paste | None = None
     _topic: str = ""
 
+    def __init__(self, message: Note) -> None:
+        super().__init__(message)
+
     def __str__(self) -> str:
         return "\n\n".join(filter(None, [self.sentence, "\n".join(self.lines)]))
 
@@ -137,9 +140,9 @@ class ModelError(EquipoiseError):
     source : name of the file, once known.
     """
 
-    def __init__(self, where: str, what: Note | str, source: str = "") -> None:
+    def __init__(self, where: str, what: Note, source: str = "") -> None:
         self.where, self.what, self.source = where, what, source
-        super().__init__(where, what, source)
+        Exception.__init__(self, where, what, source)
 
     @property
     def note(self) -> Note:
@@ -170,7 +173,7 @@ class ModelError(EquipoiseError):
         return same.with_topic(self._topic)
 
 
-def at_place(place: Note | str, what: Note | str) -> Note:
+def at_place(place: object, what: Note) -> Note:
     """A sentence behind the place, file or option that it is about."""
     return Note("{place}: {what}", place=place, what=noted(what))
 
@@ -203,7 +206,7 @@ class MotionError(EquipoiseError):
     usual_topic = "the-crank-cannot-turn-fully"
     explain: Callable[[], MotionError] | None = None
 
-    def __init__(self, message: Note | str, *, reason: Note | str = "") -> None:
+    def __init__(self, message: Note, *, reason: Note | None = None) -> None:
         super().__init__(message)
         self._reason = reason or message
 
@@ -220,7 +223,7 @@ class MotionError(EquipoiseError):
         return self._explained()._paste
 
     @property
-    def reason(self) -> Note | str:
+    def reason(self) -> Note:
         """The sentence without what could be done about it."""
         return self._explained()._reason
 
@@ -237,10 +240,10 @@ class RangeError(MotionError):
 
     def __init__(
         self,
-        message: Note | str,
+        message: Note,
         ranges: tuple[tuple[float, float], ...] = (),
         *,
-        reason: Note | str = "",
+        reason: Note | None = None,
     ) -> None:
         super().__init__(message, reason=reason)
         self.ranges = ranges
@@ -256,11 +259,11 @@ class ChangePointError(MotionError):
 
     def __init__(
         self,
-        message: Note | str,
+        message: Note,
         crank_angle: float = float("nan"),
         joint: str = "",
         *,
-        reason: Note | str = "",
+        reason: Note | None = None,
     ) -> None:
         super().__init__(message, reason=reason)
         self.crank_angle = crank_angle
@@ -289,6 +292,16 @@ class UsageError(EquipoiseError):
     """An argument cannot be used."""
 
 
+class CallError(UsageError):
+    """A function was called from Python with what it cannot take, as no file and no command do.
+
+    Whoever writes the call reads it, so that it is in English alone.
+    """
+
+    def __init__(self, message: str) -> None:
+        super().__init__(noted(message))
+
+
 MOST_SHOWN = 20
 """Names in an error."""
 
@@ -302,14 +315,14 @@ def unknown(given: str, known: Iterable[str], kind: str) -> Note:
     return Note("no {kind} is called {given!r}; {hint}", kind=what, given=given, hint=hint)
 
 
-def meant(given: str, names: Sequence[str]) -> str:
+def meant(given: str, names: Sequence[str]) -> Note | None:
     """Ask whether the nearest of some names is meant; empty where none is near."""
     from difflib import get_close_matches
 
     by_form = {form_of(name): name for name in reversed(names)}
     form = form_of(given)
     near = [name for name in get_close_matches(form, by_form, 5, 0.5) if _is_misspelt(form, name)]
-    return Note("did you mean {name!r}?", name=by_form[near[0]]) if near else ""
+    return Note("did you mean {name!r}?", name=by_form[near[0]]) if near else None
 
 
 SHORTEST = 2
@@ -368,7 +381,7 @@ EXTRAS = {
 """Libraries that come with another extra than ``studies``."""
 
 
-def needed(module: str, purpose: str) -> Any:
+def needed(module: str, purpose: Note | str) -> Any:
     """A module of a library that not every user has, loaded when it is wanted.
 
     Raises
@@ -388,16 +401,18 @@ LIBRARIES = {"a sweep": ("zarr",), "a search": ("pymoo", "moocore")}
 """What some purposes need."""
 
 
-def lacking(purpose: str) -> str:
-    """Say what has to be installed for a purpose; empty where everything is there."""
+def lacking(purpose: str) -> Note | None:
+    """Say what has to be installed for a purpose; None where everything is there."""
     from importlib.util import find_spec
 
     absent = (library for library in LIBRARIES[purpose] if find_spec(library) is None)
-    return next((_install(library, purpose) for library in absent), "")
+    return next((_install(library, purpose) for library in absent), None)
 
 
-def _install(library: str, purpose: str) -> str:
-    return (
-        f"{purpose} needs {library}, which is not installed; install it with: "
-        f'pip install "equipoise[{EXTRAS.get(library, "studies")}]"'
+def _install(library: str, purpose: Note | str) -> Note:
+    return Note(
+        "{purpose} needs {library}, which is not installed; install it with: {command}",
+        purpose=purpose if isinstance(purpose, Note) else Note(purpose),
+        library=library,
+        command=f'pip install "equipoise[{EXTRAS.get(library, "studies")}]"',
     )

@@ -15,10 +15,11 @@ from contextvars import ContextVar
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from equipoise.errors import UsageError
+from equipoise.errors import UsageError, at_place
 from equipoise.folders import Folder, LinkError
+from equipoise.i18n import Note
 
-OUTSIDE = "lies outside of the folder that is served; name another"
+OUTSIDE = Note("lies outside of the folder that is served; name another")
 OUT = "which leads out of its folder"
 
 
@@ -46,18 +47,27 @@ class Fence:
         absolute = name.startswith(("/", "\\", "~")) or ntpath.isabs(name)
         if absolute or ".." in re.split(r"[\\/]", name):
             raise UsageError(
-                f"{shown}; name files from the folder that is served, without .. and not from the "
-                "root"
+                Note(
+                    "{shown}; name files from the folder that is served, without .. and not "
+                    "from the root",
+                    shown=shown,
+                )
             )
         if _real(self.folder / name, (self.folder,)) is None:
-            raise UsageError(f"{shown}, which leads out of the folder that is served; name another")
+            raise UsageError(
+                Note(
+                    "{shown}, which leads out of the folder that is served; name another",
+                    shown=shown,
+                )
+            )
 
 
 class OutsideError(Exception):
-    """A file beyond the fence; `str(problem)` says so."""
+    """A file beyond the fence; `note` says so."""
 
     def __init__(self) -> None:
         super().__init__(OUTSIDE)
+        self.note = OUTSIDE
 
 
 def _real(path: str | os.PathLike[str], folders: Sequence[Path]) -> tuple[Path, str] | None:
@@ -240,7 +250,7 @@ def check_written(path: Path) -> None:
     """Refuse a file or a folder that lies beyond the fence."""
     fence = _fence.get()
     if fence is not None and _real(path, (fence.folder,)) is None:
-        raise UsageError(f"{path.name}: {OUTSIDE}")
+        raise UsageError(at_place(path.name, OUTSIDE))
 
 
 def check_link(path: Path) -> None:
@@ -257,5 +267,7 @@ def _note_written(path: Path) -> None:
     if fence is None or path.is_dir():
         return
     if path.exists() and not fence.replaces:
-        raise UsageError(f"{path.name}: is there already; choose another name, or give overwrite")
+        raise UsageError(
+            at_place(path.name, Note("is there already; choose another name, or give overwrite"))
+        )
     fence.written.append(path)

@@ -15,7 +15,7 @@ from typing import Any
 
 from lazy_loader import attach_stub
 
-from equipoise.errors import UsageError, unknown
+from equipoise.errors import CallError, unknown
 
 Names = tuple[Callable[[str], Any], Callable[[], list[str]], list[str]]
 Accepts = Callable[[Any], bool]
@@ -106,7 +106,7 @@ def _guarded(function: Callable[..., Any]) -> Callable[..., Any]:
             parameter = parameters[place]
             each = value if parameter.kind is Parameter.VAR_POSITIONAL else (value,)
             for wrong in filter(None, (_wrong(one, parameter, function) for one in each)):
-                raise UsageError(f"{name}: {place}: {wrong}")
+                raise CallError(f"{name}: {place}: {wrong}")
             if place in plain and not hasattr(value, "ndim"):  # of arrays the shape matters
                 accepted.add((place, type(value)))
         return function(*args, **kwargs)
@@ -127,11 +127,11 @@ def bound(
     takes_any = any(one.kind is Parameter.VAR_KEYWORD for one in declared.parameters.values())
     for given in () if takes_any else kwargs:
         if given not in known:
-            raise UsageError(f"{name}: {unknown(given, known, 'parameter')}")
+            raise CallError(f"{name}: {unknown(given, known, 'parameter')}")
     try:
         return declared.bind(*args, **kwargs).arguments
     except TypeError as error:
-        raise UsageError(f"{name}: {error}; it takes {', '.join(known)}") from None
+        raise CallError(f"{name}: {error}; it takes {', '.join(known)}") from None
 
 
 def _wrong(value: Any, parameter: Parameter, function: Callable[..., Any]) -> str:

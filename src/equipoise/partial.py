@@ -19,9 +19,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import BinaryIO
 
-from equipoise.errors import UsageError
+from equipoise.errors import UsageError, at_place
 from equipoise.fence import check_link, check_written, hold_folder, holding, place_of
 from equipoise.folders import Folder
+from equipoise.i18n import Note
 from equipoise.interrupts import check, held_back
 
 ENDING = ".tmp"
@@ -60,8 +61,15 @@ class _Together:
             try:
                 folder.rename(begun, name)
             except OSError as error:
-                what = f"the file cannot be written ({(error.strerror or '').lower()})"
-                raise UsageError(f"{path / name}: {what}; choose another place or name") from error
+                raise UsageError(
+                    at_place(
+                        path / name,
+                        Note(
+                            "the file cannot be written ({reason}); choose another place or name",
+                            reason=(error.strerror or "").lower(),
+                        ),
+                    )
+                ) from error
         while self.then:
             self.then.pop(0)()
 
@@ -230,8 +238,13 @@ def locked(folder: Folder) -> Iterator[None]:
             _take(descriptor)
         except (BlockingIOError, PermissionError) as error:
             raise UsageError(
-                f"{folder.path}: {_holder(folder)} is writing into this store; wait until it is "
-                "done, or stop it"
+                at_place(
+                    folder.path,
+                    Note(
+                        "{holder} is writing into this store; wait until it is done, or stop it",
+                        holder=_holder(folder),
+                    ),
+                )
             ) from error
         _note(descriptor, f"process {os.getpid()} on {socket.gethostname()}")
         try:

@@ -15,6 +15,7 @@ import numpy as np
 
 from equipoise.displays import Brief
 from equipoise.errors import UsageError
+from equipoise.i18n import Note
 
 __all__ = ["Figures", "Periodic", "harmonics"]
 
@@ -390,7 +391,13 @@ class Periodic(Brief):
 
     def __add__(self, other: Periodic) -> Periodic:
         if self.turns != other.turns:
-            raise UsageError(f"signals of {self.turns} and {other.turns} turns cannot be added")
+            raise UsageError(
+                Note(
+                    "signals of {turns} and {turns_2} turns cannot be added",
+                    turns=self.turns,
+                    turns_2=other.turns,
+                )
+            )
         count = max(self.amplitudes.shape[-1], other.amplitudes.shape[-1])
         return Periodic(self._padded(count) + other._padded(count), self.turns)
 

@@ -18,6 +18,7 @@ from math import inf, isfinite
 import numpy as np
 
 from equipoise.balancing.program import Affine, NoSolutionError, Program, Solved, StalledError
+from equipoise.i18n import Note
 from equipoise.signals import Array
 
 MISSED = 1e-8
@@ -172,7 +173,7 @@ class _Search:
             if progress is not None:
                 progress(self.nodes, MOST_NODES)
         if self.best is None:
-            raise NoSolutionError("no numbers were found that meet every limit")
+            raise NoSolutionError(Note("no numbers were found that meet every limit"))
         if not waiting:  # every other interval is worse than the best by less than is told apart
             bound = self.best.value - CLOSE * self.scale
         bound = min(self.best.value, self.lost, max(bound, root.solved.bound))

@@ -16,6 +16,7 @@ from equipoise.balancing.design_variables import with_parameters
 from equipoise.balancing.weights import AddedWeight
 from equipoise.balancing.workshop import Change
 from equipoise.errors import UsageError
+from equipoise.i18n import Note
 from equipoise.mechanism.dynamics.parameters import parameter_values
 from equipoise.mechanism.formulas.kernels import about
 from equipoise.mechanism.kinematics.motion import Motion, move
@@ -108,22 +109,30 @@ class Gearing:
         if not found:
             raise UsageError(self._why_none())
         clear = [mesh for mesh in found if self.is_clear(mesh)]
-        if not clear:
-            raise UsageError(str(self._hit(found[0])))
+        if not clear and (hit := self._hit(found[0])):
+            raise UsageError(hit)
         return clear
 
-    def _why_none(self) -> str:
+    def _why_none(self) -> Note:
         if self.geared.teeth is not None:
             assert self.geared.module is not None
-            return (
-                f"the gears of the {self.geared.name} do not mesh: shafts {self.apart * 1e3:.5g} "
-                f"mm apart need {2 * self.apart / self.geared.module:.5g} teeth of module "
-                f"{self.geared.module * 1e3:.4g} mm together; move the axis, or leave it out"
+            return Note(
+                "the gears of the {name} do not mesh: shafts {apart:.5g} mm apart need "
+                "{teeth:.5g} teeth of module {module:.4g} mm together; move the axis, "
+                "or leave it out",
+                name=self.geared.name,
+                apart=self.apart * 1e3,
+                teeth=2 * self.apart / self.geared.module,
+                module=self.geared.module * 1e3,
             )
         low, high = self.geared.ratio or (0.0, 0.0)
-        return (
-            f"the {self.geared.name} has no ratio from {low:g} to {high:g} that brings it back "
-            f"within {LARGEST_DENOMINATOR} turns; give another range, or teeth"
+        return Note(
+            "the {name} has no ratio from {low:g} to {high:g} that brings it back "
+            "within {largest_denominator} turns; give another range, or teeth",
+            name=self.geared.name,
+            low=low,
+            high=high,
+            largest_denominator=LARGEST_DENOMINATOR,
         )
 
     def _choices(self) -> Iterator[Mesh]:
@@ -188,18 +197,22 @@ class Gearing:
         """Whether the counterweight runs into no link that it must stay clear of."""
         return not self._hit(mesh)
 
-    def _hit(self, mesh: Mesh) -> str:
+    def _hit(self, mesh: Mesh) -> Note | None:
         """What is wrong with where the shaft is, if anything is."""
         axis, room = self.axis(mesh), max(self.geared.weight.radius, mesh.shaft)
         for link in self.geared.clear_of:
             near = nearest(self.motion, link, axis)
             if near < room:
-                return (
-                    f"the {self.geared.name} would run into {link}, which comes within "
-                    f"{near * 1e3:.4g} mm of its shaft, while it needs {room * 1e3:.4g} mm; give "
-                    "it less room, another place, or another plane (leave the link out of clear_of)"
+                return Note(
+                    "the {name} would run into {link}, which comes within {distance:.4g} mm of "
+                    "its shaft, while it needs {room:.4g} mm; give it less room, another "
+                    "place, or another plane (leave the link out of clear_of)",
+                    name=self.geared.name,
+                    link=link,
+                    distance=near * 1e3,
+                    room=room * 1e3,
                 )
-        return ""
+        return None
 
     def added(self, mesh: Mesh, to: Machine | None = None) -> tuple[Machine, AddedWeight]:
         """A machine with shaft and gears, and the weight that is free on the shaft.

@@ -16,7 +16,7 @@ import numpy as np
 from equipoise.balancing.linear_conditions import conditions, parameter_scales
 from equipoise.decompositions import lstsq, svd
 from equipoise.errors import UsageError
-from equipoise.i18n import say
+from equipoise.i18n import Note, say
 from equipoise.mechanism.dynamics.parameters import parameter_values
 from equipoise.mechanism.parts.machine import Machine, Vector, unknown
 from equipoise.results.blocks import Block, Cell, Column, Table, Value
@@ -77,9 +77,11 @@ def least_moments(machine: Machine, links: Sequence[str], free: Sequence[str] = 
         if name not in machine.links:
             raise UsageError(unknown(name, machine.links, "link"))
         if name in names[:k]:
-            raise UsageError(f"{name} is named twice; name each link once")
+            raise UsageError(Note("{name} is named twice; name each link once", name=name))
         if machine.links[name].mass == 0:
-            raise UsageError(f"{name} has mass 0 and so no first moment; give it a mass")
+            raise UsageError(
+                Note("{name} has mass 0 and so no first moment; give it a mass", name=name)
+            )
     found = conditions(machine)
     places = [
         found.parameters.index((link, moment))
@@ -95,7 +97,11 @@ def least_moments(machine: Machine, links: Sequence[str], free: Sequence[str] = 
     if rest.size and np.max(rest) > MET:
         worst = found.sentences[int(np.argmax(rest))]
         raise UsageError(
-            f"first moments of {', '.join(names) or 'no link'} cannot meet {worst}; name more links"
+            Note(
+                "first moments of {names} cannot meet {worst}; name more links",
+                names=", ".join(names) or "no link",
+                worst=worst,
+            )
         )
     moments, totals = (
         {

@@ -17,7 +17,7 @@ import numpy as np
 from equipoise.balancing.readings import UNITS, Reading, machine_size, reading
 from equipoise.decompositions import lstsq, pinv
 from equipoise.errors import UsageError
-from equipoise.i18n import say, to_say
+from equipoise.i18n import Note, say, to_say
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.dynamics.parameters import (
     QUANTITIES,
@@ -130,10 +130,10 @@ def conditions(
     UsageError : there is no such kind or output.
     """
     if kind not in KINDS:
-        raise UsageError(f"got {kind!r} for kind; give zero or sine")
+        raise UsageError(Note("got {kind!r} for kind; give zero or sine", kind=kind))
     wanted = (outputs,) if isinstance(outputs, str) else tuple(outputs)
     if not wanted:
-        raise UsageError("give at least one output, such as shaking_force")
+        raise UsageError(Note("give at least one output, such as shaking_force"))
     for output in wanted:
         if output not in OUTPUTS:
             raise UsageError(unknown(output, OUTPUTS, "output of this kind"))

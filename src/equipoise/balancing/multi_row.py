@@ -22,6 +22,7 @@ from equipoise.balancing.jumping_rows import JumpingRows, smoothed
 from equipoise.balancing.levers import lever, signals_of_row
 from equipoise.balancing.objectives import read_rows
 from equipoise.errors import UsageError
+from equipoise.i18n import Note
 from equipoise.mechanism.dynamics.forces import forces
 from equipoise.mechanism.kinematics.jumps import bends_of, jumps_of
 from equipoise.mechanism.kinematics.motion import Motion, move
@@ -116,8 +117,11 @@ class Rows:
         one = output_of(output, self.machine)
         if one.group not in OF_ALL or one.needs == "planes":
             raise UsageError(
-                f"{output} acts within one row, so that no phase changes it; choose an output of "
-                "all rows"
+                Note(
+                    "{output} acts within one row, so that no phase changes it; choose an "
+                    "output of all rows",
+                    output=output,
+                )
             )
         if output.startswith(GAUGES):
             found = self._gauge(output.removeprefix(GAUGES), objective.speeds)

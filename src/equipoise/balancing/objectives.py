@@ -19,6 +19,7 @@ from equipoise.balancing.effects import Effects, Signal
 from equipoise.balancing.levers import OWN, arm_of, moment_of_row
 from equipoise.balancing.program import Affine, ConeRows, Program
 from equipoise.errors import ModelError
+from equipoise.i18n import Note
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.dynamics.parameters import parameter_values
 from equipoise.mechanism.parts.balance import Measure, Objective
@@ -114,7 +115,7 @@ def _gauge_signals(effects: Effects, objective: Objective, near: Near) -> list[S
 def reading_of(objective: Objective, near: Near) -> tuple[Linear, Array]:
     """The support near the solution, and a row (D,) that reads a gauge off its coordinates."""
     if near.machine.support is None:
-        raise ModelError("support", "missing; a gauge needs a support that it stands on")
+        raise ModelError("support", Note("missing; a gauge needs a support that it stands on"))
     body, name = near.linear.body, objective.output.removeprefix(GAUGES)
     gauges = gauges_of(body)
     if name not in gauges:

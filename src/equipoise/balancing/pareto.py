@@ -18,7 +18,7 @@ from equipoise.balancing.optimisation import balance
 from equipoise.balancing.problem import Problem
 from equipoise.balancing.told import gap_told, scope_of
 from equipoise.errors import UsageError
-from equipoise.i18n import say
+from equipoise.i18n import Note, say
 from equipoise.mechanism.parts.balance import Balance, Limit, Objective
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.results.blocks import Block, Column, Table, Text, Value
@@ -110,17 +110,22 @@ def trade_off(
     """
     plan = plan or machine.balance or Balance()
     if plan.phases is not None:
-        raise UsageError("a front is not drawn over phases; leave them out")
+        raise UsageError(Note("a front is not drawn over phases; leave them out"))
     if first.name == second.name:
-        raise UsageError(f"{first.name} cannot be traded against itself; give another objective")
+        raise UsageError(
+            Note("{name} cannot be traded against itself; give another objective", name=first.name)
+        )
     ends = [balance(machine, replace(plan, objectives=(one,))) for one in (first, second)]
     ends[1] = _least_of_both(machine, plan, first, ends[1])
     low, high = (Problem.value_of(end.machine, first) for end in ends)
     before = ends[0].objectives[first.name][0] or 1.0
     if high - low <= SAME * before:
         raise UsageError(
-            f"{first.name} and {second.name} become smallest together, so that there is nothing to "
-            "trade"
+            Note(
+                "{name} and {name_2} become smallest together, so that there is nothing to trade",
+                name=first.name,
+                name_2=second.name,
+            )
         )
     found = []
     share = np.linspace(0.0, 1.0, points) ** 2  # closer together near low, where the curve is steep

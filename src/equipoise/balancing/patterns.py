@@ -21,7 +21,7 @@ import numpy as np
 
 from equipoise.balancing.multi_row import Rows, Term
 from equipoise.errors import UsageError
-from equipoise.i18n import say
+from equipoise.i18n import Note, say
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.parts.balance import Objective
 from equipoise.mechanism.parts.machine import Machine
@@ -137,7 +137,9 @@ def halved(rows: int) -> Pattern:
     UsageError : the number of rows is no power of two.
     """
     if rows < 2 or rows & (rows - 1):
-        raise UsageError(f"got {rows} rows; halving needs 2, 4, 8 or another power of two")
+        raise UsageError(
+            Note("got {rows} rows; halving needs 2, 4, 8 or another power of two", rows=rows)
+        )
     parts = [0]
     while len(parts) < rows:
         parts += [part + rows // (2 * len(parts)) for part in parts]
@@ -152,7 +154,7 @@ def patterns_for(rows: int) -> tuple[Pattern, ...]:
     UsageError : there are fewer than two rows.
     """
     if rows < 2:
-        raise UsageError(f"got {rows} rows; give two at least")
+        raise UsageError(Note("got {rows} rows; give two at least", rows=rows))
     found = [pattern for pattern in PATTERNS.values() if pattern.rows == rows]
     if rows >= 8 and not rows & (rows - 1):
         found.append(halved(rows))
@@ -192,7 +194,7 @@ def arranged(machine: Machine, pattern: str | Pattern, spacing: float | str) -> 
     chosen = pattern_named(pattern) if isinstance(pattern, str) else pattern
     spacing = in_si(spacing, "length", "spacing")
     if not 0 < spacing < float("inf"):
-        raise UsageError(f"got a spacing of {spacing:g} m; give more than 0")
+        raise UsageError(Note("got a spacing of {spacing:g} m; give more than 0", spacing=spacing))
     offset = machine.rows[0].offset if machine.rows else (0.0, 0.0)
     return machine.with_rows(
         Row(phase, spacing * place, offset)

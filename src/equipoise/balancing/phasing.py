@@ -161,8 +161,11 @@ def choose_phases(
         if term.value_at(found) > term.scale * (1 + KEPT):
             least = f"{term.value_at(found):.4g} {unit_of(term.objective, machine)}"
             raise UsageError(
-                f"no phases keep the {term.objective.name} within its limit; the best found leave "
-                f"{least}"
+                Note(
+                    "no phases keep the {name} within its limit; the best found leave {least}",
+                    name=term.objective.name,
+                    least=least,
+                )
             )
     return phasing_of(search, found, proof)
 

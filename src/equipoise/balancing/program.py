@@ -17,6 +17,7 @@ import numpy as np
 
 from equipoise.balancing.cone_solver import usual_solver
 from equipoise.errors import EquipoiseError
+from equipoise.i18n import Note
 from equipoise.signals import Array
 
 Cone = Literal["zero", "nonnegative", "second-order"]
@@ -263,9 +264,9 @@ class Program:
             if solution.status == "solved":
                 break
             if solution.status == "infeasible":
-                raise NoSolutionError(f"the cone program is {solution.reason}")
+                raise NoSolutionError(Note("the cone program is {reason}", reason=solution.reason))
         if solution.status == "stalled":
-            raise StalledError(f"the solver ended with {solution.reason}")
+            raise StalledError(Note("the solver ended with {reason}", reason=solution.reason))
         bound = min(solution.value, solution.dual_value)
         prices = self._prices(solution.x, solution.z)
         return Solved(solution.x, solution.value, bound, prices)

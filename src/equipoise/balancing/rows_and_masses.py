@@ -98,7 +98,9 @@ class JointPhaseMassOptimizer:
             shape = (GUESSES, len(pool[0]))
             self._from_any(np.random.default_rng(1).uniform(0.0, self.period, shape), first)
         if self.best is None:
-            raise error or UsageError("no phases were found with which masses keep the limits")
+            raise error or UsageError(
+                Note("no phases were found with which masses keep the limits")
+            )
         self._in_turn(self.best.phases, self.best.solution, ROUNDS, NO_GAIN)
         proof, cost = self._proof(progress), self.search.cost
         needed = len(self._measured) < len(self.problem.asked)  # for limits in joints

@@ -16,7 +16,7 @@ import numpy as np
 
 from equipoise.balancing.readings import machine_size
 from equipoise.errors import UsageError
-from equipoise.i18n import say, to_say
+from equipoise.i18n import Note, say, to_say
 from equipoise.mechanism.dynamics.parameters import ACROSS, QUANTITIES, regressor
 from equipoise.mechanism.kinematics.jumps import resolved
 from equipoise.mechanism.kinematics.motion import Motion, move
@@ -154,7 +154,13 @@ def sensitivities(
         raise UsageError(unknown(output, known, "output of this kind"))
     given: Any = angles
     if not isinstance(given, int | np.integer) or given < LEAST_ANGLES:
-        raise UsageError(f"got {given!r} crank angles; give a number of at least {LEAST_ANGLES}")
+        raise UsageError(
+            Note(
+                "got {given!r} crank angles; give a number of at least {least_angles}",
+                given=given,
+                least_angles=LEAST_ANGLES,
+            )
+        )
     motion = move(machine, int(angles), acceleration=0.0)
     pieces, changes = resolved(motion), _changes(output)
     whole = _derivatives(pieces, output)

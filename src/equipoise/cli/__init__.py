@@ -22,7 +22,8 @@ from cyclopts import App, CycloptsError, Parameter
 
 from equipoise import __version__
 from equipoise.cli.help import Laid
-from equipoise.errors import EquipoiseError, UsageError
+from equipoise.errors import EquipoiseError, UsageError, at_place
+from equipoise.i18n import Note
 from equipoise.interrupts import answered, check, recorded
 from equipoise.partial import together
 from equipoise_command import INTERRUPTED
@@ -147,20 +148,33 @@ def check_repeated(words: Sequence[str]) -> None:
     for name, count in options.most_common(1):
         if count > MOST_REPEATED:
             raise UsageError(
-                f"{name}: given {count} times; give it {MOST_REPEATED} times at most, and run the "
-                "command again for the others"
+                at_place(
+                    name,
+                    Note(
+                        "given {count} times; give it {most_repeated} times at most, and run the "
+                        "command again for the others",
+                        count=count,
+                        most_repeated=MOST_REPEATED,
+                    ),
+                )
             )
 
 
-def _mishap(error: OSError) -> str:
+def _mishap(error: OSError) -> Note:
     """What the system has refused, where nobody nearer to it says so."""
     from equipoise.schema.files import is_nowhere
 
     if isinstance(error, FileNotFoundError) and is_nowhere():
-        return "the current folder does not exist any more; go to another, and run it again there"
+        return Note(
+            "the current folder does not exist any more; go to another, and run it again there"
+        )
     if error.filename is not None:
-        return f"{error.filename!r} cannot be used ({error.strerror})"
-    return f"the output cannot be written ({error.strerror})"
+        return Note(
+            "{filename!r} cannot be used ({strerror})",
+            filename=error.filename,
+            strerror=error.strerror,
+        )
+    return Note("the output cannot be written ({strerror})", strerror=error.strerror)
 
 
 def _refuse(error: Exception) -> int:

@@ -14,7 +14,7 @@ from equipoise.cli.outputs import Length, Outputs, Printed, check_new, write_mod
 from equipoise.cli.plan import Freed, plan_of, read_objective
 from equipoise.cli.progress import counted
 from equipoise.cli.runner import CommandResult, command
-from equipoise.errors import UsageError
+from equipoise.errors import UsageError, at_place
 from equipoise.i18n import Note, say
 
 if TYPE_CHECKING:
@@ -73,8 +73,13 @@ def _refuse(found: Balanced) -> None:
     from equipoise.balancing.outcome import nothing_told
 
     if found.advice is not None:
-        told = next(nothing_told(found)).removesuffix(".")
-        raise UsageError(f"--out: nothing is written: {told[:1].lower()}{told[1:]}")
+        reason = next(nothing_told(found)).removesuffix(".")
+        raise UsageError(
+            at_place(
+                "--out",
+                Note("nothing is written: {reason}", reason=f"{reason[:1].lower()}{reason[1:]}"),
+            )
+        )
 
 
 def _save(found: Balanced, out: str) -> list[str]:

@@ -20,7 +20,8 @@ from equipoise.cli.options import (
 )
 from equipoise.cli.outputs import check_result_file, sources_of, wrote
 from equipoise.cli.runner import CommandResult, command
-from equipoise.errors import UsageError
+from equipoise.errors import UsageError, at_place
+from equipoise.i18n import Note
 
 if TYPE_CHECKING:
     from equipoise.balancing.balanced import Balanced
@@ -71,22 +72,23 @@ def export(
     from equipoise.schema.opening import bundled
 
     if out is None:
-        raise UsageError("--out: missing; give the name of a file")
+        raise UsageError(at_place("--out", Note("missing; give the name of a file")))
     with blaming("--out" if format is None else "--format"):
         one = format_of(out, format, of_store=os.path.isdir(file) or file.endswith(STORE))
         if os.path.exists(file) or file in bundled():
             check_kind(one, of_store=os.path.isdir(file))
     if one.of_store:
-        why = f"a file of {one.title} holds the designs of a store"
+        why = Note("a file of {title} holds the designs of a store", title=one.title)
         refuse_idle(why, at=at or None, balanced=balanced)
         check_link_loads(one, prefix="--", link=link, angles=angles)
         return CommandResult(save=lambda: _designs(file, out, kept))
-    refuse_idle("it goes with a store", kept=kept)
+    refuse_idle(Note("it goes with a store"), kept=kept)
     check_link_loads(one, prefix="--", link=link, angles=angles)
     if angles is not None and at is not None:
-        raise UsageError("--at and --angles were given; give one of them")
+        raise UsageError(Note("--at and --angles were given; give one of them"))
     if not one.posed:
-        refuse_idle(f"a file of {one.title} is the same at every crank angle", at=at or None)
+        why = Note("a file of {title} is the same at every crank angle", title=one.title)
+        refuse_idle(why, at=at or None)
     machine = linkage_of(file)
     check_result_file("--out", out, sources_of(machine, file))
     what = _balanced(machine) if balanced else machine

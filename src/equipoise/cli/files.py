@@ -14,6 +14,7 @@ from equipoise.cli.options import count, naming
 from equipoise.cli.outputs import Shown, check_model_name, wrote
 from equipoise.cli.runner import CommandResult, command
 from equipoise.errors import UsageError
+from equipoise.i18n import Note
 
 STARTS = {
     # kind of file: text to start from, usual name, what comes next
@@ -125,7 +126,7 @@ def new(
 
 def _kind(tool: bool, study: bool) -> Literal["linkage", "tool", "study"]:
     if tool and study:
-        raise UsageError("--tool and --study are two kinds of files; give one of them")
+        raise UsageError(Note("--tool and --study are two kinds of files; give one of them"))
     return "tool" if tool else "study" if study else "linkage"
 
 

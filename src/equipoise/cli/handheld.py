@@ -34,7 +34,8 @@ from equipoise.cli.outputs import (
 )
 from equipoise.cli.progress import counted
 from equipoise.cli.runner import CommandResult, command
-from equipoise.errors import ModelError, UsageError
+from equipoise.errors import ModelError, UsageError, at_place
+from equipoise.i18n import Note
 
 if TYPE_CHECKING:
     import numpy as np
@@ -60,7 +61,14 @@ def _range(option: str, text: str) -> tuple[float, float]:
     ends = [quantity(option, part, "angular speed") for part in parts if len(parts) == 2]
     if not ends or not 0 < ends[0] < ends[1]:
         raise UsageError(
-            f"{option}: got {text!r}; give a range of speeds, the slower one first: {RANGE}"
+            at_place(
+                option,
+                Note(
+                    "got {text!r}; give a range of speeds, the slower one first: {range}",
+                    text=text,
+                    range=RANGE,
+                ),
+            )
         )
     return ends[0], ends[1]
 
@@ -139,8 +147,14 @@ class Asked:
 
         told = self.range or default_speeds(self.tool)
         if told is None:
-            what = "missing, so that no speeds are told; add the table [operation], or give"
-            raise ModelError("operation", f"{what} --respond {RANGE}")
+            raise ModelError(
+                "operation",
+                Note(
+                    "missing, so that no speeds are known; add the table [operation], or "
+                    "give --respond {range}",
+                    range=RANGE,
+                ),
+            )
         return told
 
     @cached_property
@@ -166,8 +180,16 @@ class Asked:
         length = self.tool.shaft.length
         off = [place for place in self.places if not 0 <= place <= length]
         if off:
-            right = f"give places from 0 to {length:g} m"
-            raise UsageError(f"--at: got {off[0]:g} m, off the shaft; {right}")
+            raise UsageError(
+                at_place(
+                    "--at",
+                    Note(
+                        "got {position:g} m, off the shaft; give places from 0 to {length:g} m",
+                        position=off[0],
+                        length=length,
+                    ),
+                )
+            )
         return sweep_tool(self.tool, self.speeds, self.places)
 
     @cached_property
@@ -256,17 +278,38 @@ def vary(
 
     match = VARY.fullmatch(change.strip())
     if match is None:
-        right = 'one of its numbers and a range, such as "harness position = 0 mm : 400 mm"'
-        raise UsageError(f"CHANGE: got {change!r}; give a station, {right}")
+        raise UsageError(
+            at_place(
+                "CHANGE",
+                Note(
+                    "got {change!r}; give a station, one of its numbers and a range, such as "
+                    '"harness position = 0 mm : 400 mm"',
+                    change=change,
+                ),
+            )
+        )
     station, key = match["station"], match["key"]
     with blaming("CHANGE"):
         check_key(tool.station(station), key)
     if key.endswith("damping"):
-        what = "which natural frequencies without damping do not feel; vary another number"
-        raise UsageError(f"CHANGE: got {key!r}, {what}")
+        raise UsageError(
+            at_place(
+                "CHANGE",
+                Note(
+                    "got {key!r}, which natural frequencies without damping do not feel; "
+                    "vary another number",
+                    key=key,
+                ),
+            )
+        )
     low, high = (quantity("CHANGE", match[end], KEYS[key]) for end in ("low", "high"))
     if not low < high:
-        raise UsageError(f"CHANGE: got {change!r}; give a range, the smaller value first")
+        raise UsageError(
+            at_place(
+                "CHANGE",
+                Note("got {change!r}; give a range, the smaller value first", change=change),
+            )
+        )
     with blaming("CHANGE"):
         values = np.linspace(low, high, VALUES)
         found = vary_tool(tool, station, key, values, number or MODES)

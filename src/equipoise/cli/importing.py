@@ -10,7 +10,8 @@ from equipoise.cli.models import NamedFile
 from equipoise.cli.options import Many, Names, OtherFile, Rate, read_by, size, wants
 from equipoise.cli.outputs import Shown, check_new, wrote
 from equipoise.cli.runner import CommandResult, command
-from equipoise.errors import UsageError
+from equipoise.errors import UsageError, at_place
+from equipoise.i18n import Note
 
 
 def _unit(option: str, text: str) -> float:
@@ -26,7 +27,10 @@ def _unit(option: str, text: str) -> float:
         value = 0.0
     if value <= 0:
         raise UsageError(
-            f"{option}: got {text!r}; give a unit such as mm, or a length of more than 0"
+            at_place(
+                option,
+                Note("got {text!r}; give a unit such as mm, or a length of more than 0", text=text),
+            )
         )
     return value
 

@@ -43,7 +43,7 @@ from equipoise.cli.outputs import (
 )
 from equipoise.cli.progress import counted, generations
 from equipoise.cli.runner import CommandResult, command
-from equipoise.errors import EquipoiseError, UsageError
+from equipoise.errors import EquipoiseError, UsageError, at_place
 from equipoise.i18n import Note
 
 if TYPE_CHECKING:
@@ -138,16 +138,19 @@ def modes(machine: SupportFile, /, *, model: Model | None = None) -> Result:
 
 def _speeds(option: str, text: str) -> list[float]:
     """One speed, or the two ends of a range; a unit may stand after the second only."""
-    wrong = f"{option}: got {text!r}; "
+
+    def wrong(right: Note) -> UsageError:
+        return UsageError(at_place(option, Note("got {text!r}; {right}", text=text, right=right)))
+
     parts = ends_of_range(text)
     if not parts:
-        raise UsageError(f'{wrong}give a speed, "193 rpm", or a range: "20 rpm : 400 rpm"')
+        raise wrong(Note('give a speed, "193 rpm", or a range: "20 rpm : 400 rpm"'))
     ends = [quantity(option, part, "angular speed") for part in parts[::-1]][::-1]
     if ends == [0.0]:
-        raise UsageError(f"{wrong}a crank that stands still shakes nothing; give another speed")
+        raise wrong(Note("a crank that stands still shakes nothing; give another speed"))
     if len(ends) == 2 and (ends[0] * ends[1] <= 0 or abs(ends[0]) >= abs(ends[1])):
-        raise UsageError(
-            f"{wrong}give a range of speeds of the same sign that are not 0, the slower one first"
+        raise wrong(
+            Note("give a range of speeds of the same sign that are not 0, the slower one first")
         )
     return ends
 
@@ -186,8 +189,10 @@ def respond(
         ends = [*(machine.drive.range or ())]
     if speeds is not None and len(ends) != 2:
         raise UsageError(
-            '--speeds belongs to a range, --speed "20 rpm : 400 rpm"; give both, or speeds in '
-            "[drive] of the file"
+            Note(
+                '--speeds belongs to a range, --speed "20 rpm : 400 rpm"; give both, or '
+                "speeds in [drive] of the file"
+            )
         )
     if len(ends) == 2:
         with counted("speed") as progress:
@@ -364,7 +369,7 @@ def fit(
     from equipoise.schema.targets import read_targets
 
     if seed is not None and seed < 0:
-        raise UsageError(f"--seed: got {seed}; give 0 or more")
+        raise UsageError(at_place("--seed", Note("got {seed}; give 0 or more", seed=seed)))
     machine = at_speed(machine, speed)
     new = out or ""  # FILE-fit.toml where none is given
     check_new(machine, new)

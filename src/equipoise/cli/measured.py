@@ -24,7 +24,8 @@ from equipoise.cli.options import (
 )
 from equipoise.cli.outputs import Drawn
 from equipoise.cli.runner import CommandResult, command
-from equipoise.errors import UsageError
+from equipoise.errors import UsageError, at_place
+from equipoise.i18n import Note
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -46,7 +47,7 @@ def _stiffness(option: str, text: str) -> tuple[float, bool, str]:
     torsional = unit in KINDS["torsional stiffness"].units
     value = quantity(option, text, "torsional stiffness" if torsional else "stiffness")
     if value <= 0:
-        raise UsageError(f"{option}: got {text!r}; give more than 0")
+        raise UsageError(at_place(option, Note("got {text!r}; give more than 0", text=text)))
     return value, torsional, text
 
 
@@ -82,11 +83,19 @@ def decay(
 
     check_belonging("--stiffness", stiffness is not None, spring_arm=spring_arm)
     if not 0 < confidence < 1:
-        raise UsageError(f"--confidence: got {confidence:g}; give 0.95, or another between 0 and 1")
+        raise UsageError(
+            at_place(
+                "--confidence",
+                Note(
+                    "got {confidence:g}; give 0.95, or another between 0 and 1",
+                    confidence=confidence,
+                ),
+            )
+        )
     record = read_record(csv)
     if arm is not None and record.kind == "angle":
         raise UsageError(
-            "--arm makes an angle of a length, but the record has angles; leave it out"
+            Note("--arm makes an angle of a length, but the record has angles; leave it out")
         )
     value = None
     if stiffness is not None:
@@ -107,23 +116,40 @@ def _check_stiffness(text: str, torsional: bool, angles: bool, spring_arm: float
     """The stiffness has to suit the record."""
     if torsional and spring_arm is not None:
         raise UsageError(
-            f"--spring-arm belongs to a stiffness in N/m, but --stiffness is {text!r}; leave one "
-            "of them out, or change it"
+            Note(
+                "--spring-arm belongs to a stiffness in N/m, but --stiffness is "
+                "{text!r}; leave one of them out, or change it",
+                text=text,
+            )
         )
     if torsional and not angles:
         raise UsageError(
-            f"--stiffness: got {text!r}, but the record has lengths; give a stiffness in N/m, or "
-            "by --arm how far from the pivot they were read"
+            at_place(
+                "--stiffness",
+                Note(
+                    "got {text!r}, but the record has lengths; give a stiffness in N/m, or "
+                    "by --arm how far from the pivot they were read",
+                    text=text,
+                ),
+            )
         )
     if not torsional and angles and spring_arm is None:
         raise UsageError(
-            f"--stiffness: got {text!r}, but the record has angles; give a stiffness in N m/rad, "
-            "or by --spring-arm how far from the pivot the spring acts"
+            at_place(
+                "--stiffness",
+                Note(
+                    "got {text!r}, but the record has angles; give a stiffness in N m/rad, "
+                    "or by --spring-arm how far from the pivot the spring acts",
+                    text=text,
+                ),
+            )
         )
     if spring_arm is not None and not angles:
         raise UsageError(
-            "--spring-arm belongs to a record of angles; give by --arm how far from the pivot the "
-            "lengths were read, or leave it out"
+            Note(
+                "--spring-arm belongs to a record of angles; give by --arm how far from "
+                "the pivot the lengths were read, or leave it out"
+            )
         )
 
 
@@ -132,10 +158,10 @@ def _check_stiffness(text: str, torsional: bool, angles: bool, spring_arm: float
 VALUE = re.compile(r"(?:(?P<name>[^:]*[^:\s])\s*:\s+)?(?P<a_hv>.*\S)\s+for\s+(?P<duration>.*)")
 LOOKS_LIKE_A_VALUE = re.compile(r"(?:[^:]+:\s)?\s*[+-]?[0-9.]+(?: .*)?")
 OWNERS = {
-    "weighted": "a signal or a spectrum",
-    "single_axis": "a signal or a spectrum of one or two axes",
-    "bands": "a spectrum",
-    "periodic": "a signal",
+    "weighted": Note("a signal or a spectrum"),
+    "single_axis": Note("a signal or a spectrum of one or two axes"),
+    "bands": Note("a spectrum"),
+    "periodic": Note("a signal"),
 }
 """What options are of use for."""
 
@@ -156,7 +182,9 @@ ACCELERATION = f'"{EXAMPLES["acceleration"]}"'
 def _acceleration(option: str, text: str) -> float:
     value = quantity(option, text, "acceleration")
     if value < 0:
-        raise UsageError(f"{option}: got {text!r}; give an acceleration of 0 or more")
+        raise UsageError(
+            at_place(option, Note("got {text!r}; give an acceleration of 0 or more", text=text))
+        )
     return value
 
 
@@ -217,10 +245,10 @@ def exposure(
     if idle is not None and racing is not None:
         told.append(Told("idling and racing", equivalent(idle, racing)))
     if not told:
-        raise UsageError('give a value, "7.4 m/s^2 for 2.5 h", or the path of a CSV file')
+        raise UsageError(Note('give a value, "7.4 m/s^2 for 2.5 h", or the path of a CSV file'))
     _check_options(told, options)
     if gauge and not any(each.weighted for each in told):
-        raise UsageError("--gauge belongs to a response of gauges; give one, or leave it out")
+        raise UsageError(Note("--gauge belongs to a response of gauges; give one, or leave it out"))
     return _answer(_timed(told, duration or []))
 
 
@@ -265,10 +293,12 @@ def _told(text: str, options: Mapping[str, bool], gauges: Sequence[str]) -> list
             a_hv = quantity(repr(text), match["a_hv"], "acceleration")
             duration = quantity(repr(text), match["duration"], "time")
             if a_hv < 0:
-                raise UsageError(f"got {text!r}; give an acceleration of 0 or more")
+                raise UsageError(Note("got {text!r}; give an acceleration of 0 or more", text=text))
             return [Told(match["name"] or match["a_hv"], a_hv, duration)]
         if LOOKS_LIKE_A_VALUE.fullmatch(text):
-            raise UsageError(f'got {text!r}; say for how long a day, as in "7.4 m/s^2 for 2.5 h"')
+            raise UsageError(
+                Note('got {text!r}; say for how long a day, as in "7.4 m/s^2 for 2.5 h"', text=text)
+            )
     found = read_accelerations(text, gauges)
     if isinstance(found, Accelerations):
         weighted = _weighted(text, found, options)
@@ -301,7 +331,13 @@ def _check_options(told: list[Told], options: Mapping[str, bool]) -> None:
     for name, owner in OWNERS.items():
         if options[name] and not of_use[name]:
             option = name.replace("_", "-")
-            raise UsageError(f"--{option} belongs to {owner}; give one, or leave it out")
+            raise UsageError(
+                Note(
+                    "--{option} belongs to {owner}; give one, or leave it out",
+                    option=option,
+                    owner=owner,
+                )
+            )
 
 
 def _timed(told: list[Told], durations: list[str]) -> list[Told]:
@@ -310,14 +346,21 @@ def _timed(told: list[Told], durations: list[str]) -> list[Told]:
     open_ended = [each for each in told if each.duration is None]
     if times and not open_ended:
         raise UsageError(
-            "--duration belongs to a signal, a spectrum, or --idle and --racing; leave it out"
+            Note("--duration belongs to a signal, a spectrum, or --idle and --racing; leave it out")
         )
     if len(times) == 1:
         times *= len(open_ended)
     if times and len(times) != len(open_ended):
         raise UsageError(
-            f"--duration: given {len(times)} times, but inputs without a time of their own are "
-            f"{len(open_ended)}; give one for all, or one for each"
+            at_place(
+                "--duration",
+                Note(
+                    "given {count} times, but inputs without a time of their own are "
+                    "{count_2}; give one for all, or one for each",
+                    count=len(times),
+                    count_2=len(open_ended),
+                ),
+            )
         )
     rest = iter(times)
     return [
@@ -336,8 +379,13 @@ def _day(told: list[Told]) -> Exposure | None:
     for each in told:
         if each.duration is None:
             raise UsageError(
-                f"{each.name}: the time of exposure is missing; give it by --duration, as for the "
-                "other tasks"
+                at_place(
+                    each.name,
+                    Note(
+                        "the time of exposure is missing; give it by --duration, as for the "
+                        "other tasks"
+                    ),
+                )
             )
     tasks = []
     for each in known:

@@ -23,7 +23,7 @@ from equipoise.errors import (
     UsageError,
     at_place,
 )
-from equipoise.i18n import LANGUAGES
+from equipoise.i18n import LANGUAGES, Note
 
 if TYPE_CHECKING:
     from typing import TypeAlias
@@ -69,13 +69,15 @@ def read_by(
     )
 
 
-def size(dimension: str, wanted: str = "", name: str | None = None) -> Parameter:
+def size(dimension: str, wanted: Note | None = None, name: str | None = None) -> Parameter:
     """A quantity, in SI units; above zero where it is said what is `wanted` then."""
 
     def read(option: str, text: str) -> float:
         value = quantity(option, text, dimension)
         if wanted and value <= 0:
-            raise UsageError(f"{option}: got {text!r}; {wanted}")
+            raise UsageError(
+                at_place(option, Note("got {text!r}; {wanted}", text=text, wanted=wanted))
+            )
         return value
 
     return read_by(read, f'"{EXAMPLES[dimension]}"', name)
@@ -86,7 +88,17 @@ def count(least: int, most: int, name: str | None = None) -> Parameter:
 
     def read(option: str, text: str) -> int:
         if not re.fullmatch("[+-]?[0-9]{1,9}", text) or not least <= int(text) <= most:
-            raise UsageError(f"{option}: got {text!r}; give a whole number from {least} to {most}")
+            raise UsageError(
+                at_place(
+                    option,
+                    Note(
+                        "got {text!r}; give a whole number from {least} to {most}",
+                        text=text,
+                        least=least,
+                        most=most,
+                    ),
+                )
+            )
         return int(text)
 
     return read_by(read, name=name)
@@ -117,7 +129,9 @@ def crank_angles(option: str, text: str) -> int | list[float]:
     try:
         return quantities(option, text, "angle")
     except UsageError as error:
-        raise UsageError(f'{error}; give a number, or angles such as "0 deg, 45 deg"') from error
+        raise UsageError(
+            Note('{error}; give a number, or angles such as "0 deg, 45 deg"', error=error.note)
+        ) from error
 
 
 def place_in(machine: Machine, text: str) -> str | tuple[float, float]:
@@ -126,7 +140,11 @@ def place_in(machine: Machine, text: str) -> str | tuple[float, float]:
         return text
     parts = quantities("--about", text, "length")
     if len(parts) != 2:
-        raise UsageError(f'--about: got {text!r}; give a point, or x and y: "10 mm, 20 mm"')
+        raise UsageError(
+            at_place(
+                "--about", Note('got {text!r}; give a point, or x and y: "10 mm, 20 mm"', text=text)
+            )
+        )
     return parts[0], parts[1]
 
 
@@ -138,8 +156,14 @@ def tolerance(option: str, text: str) -> tuple[float, str]:
             if value > 0:
                 return value, dimension
     raise UsageError(
-        f'{option}: got {text!r}; give a length of more than 0, such as "0.5 mm", for sliders and '
-        'points, or an angle, such as "0.5 deg", for links'
+        at_place(
+            option,
+            Note(
+                'got {text!r}; give a length of more than 0, such as "0.5 mm", for '
+                'sliders and points, or an angle, such as "0.5 deg", for links',
+                text=text,
+            ),
+        )
     )
 
 
@@ -154,7 +178,11 @@ def time_a_day(option: str, text: str) -> float:
     """Time of exposure a day, s."""
     duration = quantity(option, text, "time")
     if not 0 < duration <= 86_400.0:
-        raise UsageError(f"{option}: got {text!r}; give more than 0 and at most 24 h a day")
+        raise UsageError(
+            at_place(
+                option, Note("got {text!r}; give more than 0 and at most 24 h a day", text=text)
+            )
+        )
     return duration
 
 
@@ -284,21 +312,30 @@ def blaming_by_place(options: Mapping[tuple[str, ...], str]) -> Iterator[None]:
         if known is None:
             raise
         rest = ".".join(place[len(known) :])
-        raise UsageError(": ".join(filter(None, [options[known], rest, error.what]))) from error
+        what = at_place(rest, error.what) if rest else error.what
+        raise UsageError(at_place(options[known], what)) from error
 
 
-def check_belonging(owner: str, given: object, **options: object) -> None:
+def check_belonging(owner: Note | str, given: object, **options: object) -> None:
     """An option that would do nothing is told, not passed over."""
     for name, value in options.items():
         if value is not None and not given:
-            raise UsageError(f"--{name.replace('_', '-')} belongs to {owner}; give both")
+            raise UsageError(
+                Note(
+                    "--{name} belongs to {owner}; give both",
+                    name=name.replace("_", "-"),
+                    owner=owner,
+                )
+            )
 
 
-def refuse_idle(why: str, **options: object) -> None:
+def refuse_idle(why: Note, **options: object) -> None:
     """Refuse options that would do nothing, and say `why`."""
     for name, value in options.items():
         if value is not None and value is not False:
-            raise UsageError(f"--{name.replace('_', '-')}: {why}; leave it out")
+            raise UsageError(
+                at_place(f"--{name.replace('_', '-')}", Note("{reason}; leave it out", reason=why))
+            )
 
 
 @Parameter(name="*")
@@ -314,6 +351,8 @@ class Computers:
     def __post_init__(self) -> None:
         if self.cluster is not None and self.workers is not None:
             raise UsageError(
-                "--workers belongs to this machine, and --cluster computes elsewhere; give one of "
-                "them"
+                Note(
+                    "--workers belongs to this machine, and --cluster computes elsewhere; "
+                    "give one of them"
+                )
             )

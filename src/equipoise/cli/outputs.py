@@ -19,7 +19,7 @@ from equipoise.cli.options import (
     check_belonging,
     count,
 )
-from equipoise.errors import UsageError
+from equipoise.errors import UsageError, at_place
 from equipoise.fence import hold_place, may_be_replaced
 from equipoise.i18n import Note, in_each, said, say, to_say
 
@@ -139,7 +139,15 @@ class Chosen:
         """The number has to be that of a design."""
         if self.design is not None and not least <= self.design <= most:
             raise UsageError(
-                f"--design: got {self.design}; give a whole number from {least} to {most}"
+                at_place(
+                    "--design",
+                    Note(
+                        "got {design}; give a whole number from {least} to {most}",
+                        design=self.design,
+                        least=least,
+                        most=most,
+                    ),
+                )
             )
 
 
@@ -231,7 +239,16 @@ def refuse_file_name(option: str, path: str, what: str) -> None:
     """
     ending = os.path.splitext(path.rstrip(os.sep))[1].lower()
     if ending in FILE_ENDINGS and not os.path.lexists(path):
-        raise UsageError(f"{option}: got {path!r}, the name of a file; give a folder, {what}")
+        raise UsageError(
+            at_place(
+                option,
+                Note(
+                    "got {path!r}, the name of a file; give a folder, {content}",
+                    path=path,
+                    content=what,
+                ),
+            )
+        )
 
 
 def check_folder(option: str, path: str) -> None:
@@ -241,7 +258,11 @@ def check_folder(option: str, path: str) -> None:
     while not os.path.lexists(above) and os.path.dirname(above) != above:
         above = os.path.dirname(above)
     if not path or not os.path.isdir(above):
-        raise UsageError(f"{option}: got {path!r}; give the name of a folder that can be made")
+        raise UsageError(
+            at_place(
+                option, Note("got {path!r}; give the name of a folder that can be made", path=path)
+            )
+        )
 
 
 def _check_place(option: str, path: str) -> None:
@@ -249,12 +270,14 @@ def _check_place(option: str, path: str) -> None:
     from equipoise.schema.files import printable
 
     if not path:
-        raise UsageError(f"{option}: got an empty name; give the name of a file")
+        raise UsageError(at_place(option, Note("got an empty name; give the name of a file")))
     shown = f"{option}: {printable(path)}"
     if os.path.isdir(path):
-        raise UsageError(f"{shown} is a directory; give the name of a file")
+        raise UsageError(Note("{shown} is a directory; give the name of a file", shown=shown))
     if not os.path.isdir(os.path.dirname(path) or "."):
-        raise UsageError(f"{shown}: there is no such folder; make it, or choose another")
+        raise UsageError(
+            at_place(shown, Note("there is no such folder; make it, or choose another"))
+        )
     with suppress(OSError):  # told of when the file is written
         hold_place(path)
 
@@ -264,7 +287,11 @@ def check_model_name(path: str, option: str = "--out") -> None:
     from equipoise.schema.files import printable
 
     if re.search(r"\.[A-Za-z][A-Za-z0-9]{1,4}$", path) and not path.endswith(".toml"):
-        raise UsageError(f"{option}: got {printable(path)!r}; give a name that ends in .toml")
+        raise UsageError(
+            at_place(
+                option, Note("got {given!r}; give a name that ends in .toml", given=printable(path))
+            )
+        )
 
 
 def check_new(model: Machine | Tool, path: str) -> None:
@@ -276,7 +303,9 @@ def check_new(model: Machine | Tool, path: str) -> None:
     check_model_name(path)
     for file in files_of(model, path):
         if os.path.lexists(file) and not may_be_replaced():
-            raise UsageError(f"{printable(file)}: is there already; choose another name by --out")
+            raise UsageError(
+                at_place(printable(file), Note("is there already; choose another name by --out"))
+            )
 
 
 def sources_of(model: Machine | Tool, file: str) -> list[str]:
@@ -296,11 +325,22 @@ def check_result_file(
     """
     _check_place(option, path)
     if os.path.abspath(path) in (os.path.abspath(other) for other in others if other):
-        raise UsageError(f"{option}: {path} has another part in this command; give another name")
+        raise UsageError(
+            at_place(
+                option,
+                Note("{path} has another part in this command; give another name", path=path),
+            )
+        )
     if os.path.exists(path) and any(
         os.path.exists(source) and os.path.samefile(source, path) for source in sources
     ):
-        raise UsageError(f"{option}: {path} is what is to be analysed; give another name")
+        raise UsageError(
+            at_place(option, Note("{path} is what is to be analysed; give another name", path=path))
+        )
     if path.endswith(".toml") and os.path.lexists(path):
-        what = "is there already, and may be a model"
-        raise UsageError(f"{option}: {path} {what}; give another name")
+        raise UsageError(
+            at_place(
+                option,
+                Note("{path} is there already, and may be a model; give another name", path=path),
+            )
+        )

@@ -29,7 +29,8 @@ from equipoise.cli.outputs import Pictures, write_pictures, wrote_pictures
 from equipoise.cli.plan import read_objective
 from equipoise.cli.progress import counted
 from equipoise.cli.runner import CommandResult, command
-from equipoise.errors import ModelError, UsageError
+from equipoise.errors import ModelError, UsageError, at_place
+from equipoise.i18n import Note
 from equipoise.mechanism.checks import unknown
 
 if TYPE_CHECKING:
@@ -53,7 +54,16 @@ GIVEN = re.compile(r"(?P<path>[^=]+)=(?P<value>.+)", re.DOTALL)
 def _crank_angles(option: str, text: str) -> list[float]:
     count = text.count(",") + 1
     if count > MOST_ANGLES:
-        raise UsageError(f"{option}: got {count} crank angles; give 1 to {MOST_ANGLES}")
+        raise UsageError(
+            at_place(
+                option,
+                Note(
+                    "got {count} crank angles; give 1 to {most_angles}",
+                    count=count,
+                    most_angles=MOST_ANGLES,
+                ),
+            )
+        )
     return quantities(option, text, "angle")
 
 
@@ -88,7 +98,7 @@ def plot(
     folder, kind = pictures.of(file), pictures.format
     found = find(file, speed=speed, swings=True)
     if isinstance(found, ToolFindings):
-        refuse_idle("a tool has no crank angles", at=at, output=output)
+        refuse_idle(Note("a tool has no crank angles"), at=at, output=output)
     written = list[str]()
     with pictures.showing(found.owner):
         chosen = _outputs(found, output) if output else _chosen(each(found, at), only)
@@ -128,7 +138,7 @@ def _chosen(pictures: Iterable[Picture], only: Sequence[str] | None) -> list[Pic
         if found.keys() >= {*only}:
             return [found[name] for name in dict.fromkeys(only)]
     missing = next(name for name in only if name not in found)
-    raise UsageError(f"--only: {unknown(missing, found, 'picture')}")
+    raise UsageError(at_place("--only", unknown(missing, found, "picture")))
 
 
 @app.command(name="map")
@@ -171,10 +181,12 @@ def landscape(
     objective = read_objective("OUTPUT", output)
     model = Template.load(file)
     if model.kind == "tool":
-        raise UsageError("a map is of a linkage; use `equipoise tool vary` for a tool")
+        raise UsageError(Note("a map is of a linkage; use `equipoise tool vary` for a tool"))
     both = [_range(model, *pair, points) for pair in (("FIRST", first), ("SECOND", second))]
     if both[0][0] == both[1][0]:
-        raise UsageError(f"SECOND: got {both[0][0]} twice; give two numbers")
+        raise UsageError(
+            at_place("SECOND", Note("got {both} twice; give two numbers", both=both[0][0]))
+        )
     numbers = dict(_number(model, text) for text in set or ())
     if speed is not None:
         numbers["drive.speed"] = speed
@@ -195,10 +207,21 @@ def _range(model: Model, option: str, text: str, count: int) -> tuple[str, np.nd
     path, values = _split(option, text, RANGE)
     ends = ends_of_range(values)
     if len(ends) != 2:
-        raise UsageError(f"{option}: got {text!r}; give a number and its range, such as {RANGE}")
+        raise UsageError(
+            at_place(
+                option,
+                Note(
+                    "got {text!r}; give a number and its range, such as {range}",
+                    text=text,
+                    range=RANGE,
+                ),
+            )
+        )
     low, high = (_read(model, option, path, end) for end in ends)
     if not low < high:
-        raise UsageError(f"{option}: got {text!r}; give a range, the smaller value first")
+        raise UsageError(
+            at_place(option, Note("got {text!r}; give a range, the smaller value first", text=text))
+        )
     return path, np.linspace(low, high, count)
 
 
@@ -210,7 +233,11 @@ def _number(model: Model, text: str) -> tuple[str, float]:
 def _split(option: str, text: str, example: str) -> tuple[str, str]:
     match = GIVEN.fullmatch(text)
     if match is None:
-        raise UsageError(f"{option}: got {text!r}; give such as {example}")
+        raise UsageError(
+            at_place(
+                option, Note("got {text!r}; give such as {example}", text=text, example=example)
+            )
+        )
     return match["path"].strip(), match["value"].strip()
 
 
@@ -221,10 +248,14 @@ def _read(model: Model, option: str, path: str, text: str) -> float:
     try:
         kind, _ = told_as(model, path)
     except ModelError as error:
-        raise UsageError(f"{option}: {error.what}") from error
+        raise UsageError(at_place(option, error.what)) from error
     if kind is not None:
         return quantity(option, text, kind)
     try:
         return float(text)
     except ValueError:
-        raise UsageError(f"{option}: got {text!r} for {path}; give a plain number") from None
+        raise UsageError(
+            at_place(
+                option, Note("got {text!r} for {path}; give a plain number", text=text, path=path)
+            )
+        ) from None

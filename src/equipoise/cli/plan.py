@@ -19,7 +19,8 @@ from equipoise.cli.options import (
     size,
     wants,
 )
-from equipoise.errors import UsageError
+from equipoise.errors import UsageError, at_place
+from equipoise.i18n import Note
 
 if TYPE_CHECKING:
     from equipoise.mechanism.parts.balance import Balance, GearedWeight, Objective, Weight
@@ -73,7 +74,10 @@ Shape = Literal["any", "point", "disc", "ring", "sector"]
 
 
 def _ratio(option: str, text: str) -> tuple[float, float]:
-    wrong = f'{option}: got {text!r}; give a number, or the least and the largest: "0.3, 2"'
+    wrong = at_place(
+        option,
+        Note('got {text!r}; give a number, or the least and the largest: "0.3, 2"', text=text),
+    )
     try:
         numbers = [float(part) for part in text.split(",")]
     except ValueError:
@@ -120,7 +124,7 @@ class Freed:
     def __post_init__(self) -> None:
         of_weights = ("shape", "radius", "mass", "at_most", "thickness", "material")
         weights = {name: getattr(self, name) for name in of_weights}
-        check_belonging("a counterweight", self.weights, **weights)
+        check_belonging(Note("a counterweight"), self.weights, **weights)
         gears = {"ratio": self.ratio, "pitch_radius": self.pitch_radius}
         check_belonging("--geared-counterweight", self.geared_counterweight is not None, **gears)
 
@@ -150,7 +154,7 @@ class Freed:
         ):
             for link in links or ():
                 if link is not None and link not in machine.links:
-                    raise UsageError(f"{option}: {unknown(link, machine.links, 'link')}")
+                    raise UsageError(at_place(option, unknown(link, machine.links, "link")))
         weighted = [machine.drive.link] if self.crank_counterweight else []
         weighted += self.counterweight or []
         return replace(
@@ -177,7 +181,9 @@ class Freed:
         given = {name: value for name, value in given.items() if value is not None}
         if self.material is not None:
             if self.material not in MATERIALS:
-                raise UsageError(f"--material: {unknown(self.material, MATERIALS, 'material')}")
+                raise UsageError(
+                    at_place("--material", unknown(self.material, MATERIALS, "material"))
+                )
             given["density"] = MATERIALS[self.material]
         if "radius" not in given and "mass" not in given:
             given["radius"] = reach_of(machine, link)
@@ -192,8 +198,10 @@ class Freed:
             return ()
         if self.pitch_radius is None:
             raise UsageError(
-                "--geared-counterweight needs the pitch radius of the gear on its driver; give "
-                '--pitch-radius "50 mm"'
+                Note(
+                    "--geared-counterweight needs the pitch radius of the gear on its "
+                    'driver; give --pitch-radius "50 mm"'
+                )
             )
         weight, ratio = self.weight(machine, driver), self.ratio or (0.2, 3.0)
         names = ("counterweight", *(f"counterweight-{k}" for k in range(2, len(machine.links) + 3)))
@@ -233,12 +241,21 @@ def read_objective(option: str, text: str) -> Objective:
     if words and "." in words[0]:  # such as joints.piston on frame, drives.left crank.torque
         words = [" ".join(words)]
     if len(words) != 1:
-        raise UsageError(f"{option}: got {text!r}; give such as {EXAMPLE}")
+        raise UsageError(
+            at_place(
+                option, Note("got {text!r}; give such as {example}", text=text, example=EXAMPLE)
+            )
+        )
     values: dict[str, Any] = {}
     for word, value in zip(rest[::2], rest[1::2], strict=True):
         read = _read_word(option, word, value)
         if values.keys() & read.keys():
-            raise UsageError(f"{option}: got {text!r}, with {word} twice; give it once")
+            raise UsageError(
+                at_place(
+                    option,
+                    Note("got {text!r}, with {word} twice; give it once", text=text, word=word),
+                )
+            )
         values |= read
     with blaming(option):
         return Objective(words[0], measure, **values).of_all_rows  # type: ignore[arg-type]
@@ -253,11 +270,18 @@ def _read_word(option: str, word: str, value: str) -> dict[str, Any]:
     try:
         numbers = tuple(float(part) for part in value.split(","))
     except ValueError:
-        raise UsageError(f"{option}: got {word} {value!r}; give numbers: {word} 1,2") from None
+        raise UsageError(
+            at_place(
+                option,
+                Note("got {word} {value!r}; give numbers: {word} 1,2", word=word, value=value),
+            )
+        ) from None
     if word != "weight":
         return {"orders": numbers}
     if len(numbers) > 1:
-        raise UsageError(f"{option}: got weight {value!r}; give one number: weight 2")
+        raise UsageError(
+            at_place(option, Note("got weight {value!r}; give one number: weight 2", value=value))
+        )
     return {"weight": numbers[0]}
 
 
@@ -270,8 +294,14 @@ def _limited(machine: Machine, plan: Balance, text: str) -> Balance:
     head, sign, tail = (part.strip() for part in text.partition("<="))
     if not (head and sign and tail):
         raise UsageError(
-            f'--limit: got {text!r}; give such as "peak joints.B <= 120 N", "rms drive_torque <= '
-            '90 %" or "added_mass <= 500 g"'
+            at_place(
+                "--limit",
+                Note(
+                    'got {text!r}; give such as "peak joints.B <= 120 N", "rms drive_torque '
+                    '<= 90 %" or "added_mass <= 500 g"',
+                    text=text,
+                ),
+            )
         )
     if head == "added_mass":
         return replace(plan, added_mass=quantity("--limit", tail, "mass"))
@@ -285,7 +315,13 @@ def _limited(machine: Machine, plan: Balance, text: str) -> Balance:
         limit = Limit(asked, at_most=quantity("--limit", tail, dimension))
     else:
         raise UsageError(
-            f"--limit: there is no unit for the area under {asked.output}; give a share of the "
-            'value before, such as "80 %"'
+            at_place(
+                "--limit",
+                Note(
+                    "there is no unit for the area under {output}; give a share of the value "
+                    'before, such as "80 %"',
+                    output=asked.output,
+                ),
+            )
         )
     return replace(plan, limits=(*plan.limits, limit))

@@ -17,8 +17,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 from equipoise import __version__
 from equipoise.cli.options import wants
 from equipoise.cli.worker import ToolCall, ToolReply
-from equipoise.errors import UsageError, needed
+from equipoise.errors import UsageError, at_place, needed
 from equipoise.folders import Folder
+from equipoise.i18n import Note
 
 if TYPE_CHECKING:
     from anyio import CapacityLimiter
@@ -56,7 +57,9 @@ def mcp(*, folder: Annotated[str, wants("FOLDER")] = ".") -> None:
     import anyio
 
     if not os.path.isdir(folder):
-        raise UsageError(f"--folder: got {folder!r}; give a folder that is there")
+        raise UsageError(
+            at_place("--folder", Note("got {folder!r}; give a folder that is there", folder=folder))
+        )
     os.chdir(folder)
     os.environ["EQUIPOISE_PROGRESS"] = "off"
     anyio.run(_serve, Path.cwd().resolve())

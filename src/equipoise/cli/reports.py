@@ -31,7 +31,8 @@ from equipoise.cli.outputs import (
 )
 from equipoise.cli.progress import counted
 from equipoise.cli.runner import CommandResult, command
-from equipoise.errors import UsageError
+from equipoise.errors import UsageError, at_place
+from equipoise.i18n import Note
 
 if TYPE_CHECKING:
     from equipoise.mechanism.parts.machine import Machine
@@ -100,16 +101,23 @@ def animate(
     name = default_name(file, ".svg") if out is None else out
     kind = _kind(name)
     if turns is not None and (kind != "mp4" or turns < 1):
-        raise UsageError(f"--turns: got {turns}; give 1 or more, with a name that ends in .mp4")
+        raise UsageError(
+            at_place(
+                "--turns",
+                Note("got {turns}; give 1 or more, with a name that ends in .mp4", turns=turns),
+            )
+        )
     if kind == "svg":
-        refuse_idle("an SVG follows the reader's screen", dark=dark)
+        refuse_idle(Note("an SVG follows the reader's screen"), dark=dark)
     check_seconds(seconds)
     check_width(width)
     if kind_of_text(opened(file).text) == "tool":
         if kind != "svg":
-            raise UsageError("--out: a tool is animated as SVG; give a name that ends in .svg")
+            raise UsageError(
+                at_place("--out", Note("a tool is animated as SVG; give a name that ends in .svg"))
+            )
         given = {"turns": turns, "trace": trace, "speed": speed, "exaggerate": exaggerate}
-        refuse_idle("a tool swings in a mode", **given, force=force)
+        refuse_idle(Note("a tool swings in a mode"), **given, force=force)
         write(name, _tool_in_mode(file, mode, seconds, width))
         return CommandResult(save=lambda: [wrote(name)])
     machine = linkage_of(file, speed)
@@ -159,9 +167,9 @@ def _check_support(
         raise UsageError(f"--exaggerate: got {exaggerate:g}; give 0 to {MOST_LARGER:.0e}")
     if machine.support is None:
         check_belonging("--force", force, speed=speed)
-        refuse_idle("the machine stands on solid ground", exaggerate=exaggerate, mode=mode)
+        refuse_idle(Note("the machine stands on solid ground"), exaggerate=exaggerate, mode=mode)
     if mode is not None:
-        why = "in a mode the crank stands still"
+        why = Note("in a mode the crank stands still")
         refuse_idle(why, exaggerate=exaggerate, speed=speed, force=force)
 
 
@@ -204,7 +212,11 @@ def _in_mode(machine: Machine, number: int, count: int) -> Scene:
 def _kind(out: str) -> str:
     kind = os.path.splitext(out)[1].lower().removeprefix(".")
     if kind not in FILMS:
-        raise UsageError(f"--out: got {out!r}; give a name that ends in .svg, .gif or .mp4")
+        raise UsageError(
+            at_place(
+                "--out", Note("got {out!r}; give a name that ends in .svg, .gif or .mp4", out=out)
+            )
+        )
     return kind
 
 

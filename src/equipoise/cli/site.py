@@ -9,7 +9,8 @@ from cyclopts import Parameter
 
 from equipoise.cli.options import NewFolder, wants
 from equipoise.cli.outputs import refuse_file_name, wrote
-from equipoise.errors import UsageError
+from equipoise.errors import UsageError, at_place
+from equipoise.i18n import Note
 
 InFolder = Annotated[str | None, wants("FOLDER")]
 
@@ -45,7 +46,9 @@ def site(
     try:
         written = write_site(folder, runtime or "node_modules/pyodide", wheels, docs)
     except OSError as error:
-        raise UsageError(f"{folder}: the site cannot be written ({reason(error)})") from error
+        raise UsageError(
+            at_place(folder, Note("the site cannot be written ({reason})", reason=reason(error)))
+        ) from error
     print(wrote(f"{folder}/index.html"), file=sys.stderr)
     print(f"first load: {written.first / 1e6:.1f} MB, compressed")
     if written.missing:

@@ -21,7 +21,8 @@ from equipoise.cli.options import (
 from equipoise.cli.outputs import Drawn
 from equipoise.cli.progress import Watched, swept
 from equipoise.cli.runner import CommandResult, command
-from equipoise.errors import UsageError
+from equipoise.errors import UsageError, at_place
+from equipoise.i18n import Note
 from equipoise.quantities.numbers import rate_told, time_told
 
 if TYPE_CHECKING:
@@ -50,7 +51,11 @@ def sweep(
     from equipoise.studies.run import sweep
 
     if not out:
-        raise UsageError("--out: missing; say where the store is to be, such as -o designs.zarr")
+        raise UsageError(
+            at_place(
+                "--out", Note("missing; say where the store is to be, such as -o designs.zarr")
+            )
+        )
     return _computed(partial(sweep, study, out, **vars(computers)), out, units_of(study))
 
 

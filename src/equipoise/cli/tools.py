@@ -19,8 +19,9 @@ from cyclopts import App
 from equipoise.cli import answered_by, app, check_repeated
 from equipoise.cli.models import LoadedFile
 from equipoise.cli.runner import declared_of
-from equipoise.errors import UsageError, unknown
+from equipoise.errors import UsageError, at_place, unknown
 from equipoise.fence import Fence, fenced
+from equipoise.i18n import Note
 from equipoise.mechanism.outputs.declared import declared
 from equipoise.partial import together
 from equipoise.quantities import SI
@@ -134,7 +135,7 @@ class CommandTool:
         known = schema["properties"]
         for key in schema["required"]:
             if key not in given:
-                raise UsageError(f"{key}: missing; {self.name} needs it")
+                raise UsageError(at_place(key, Note("missing; {name} needs it", name=self.name)))
         options, places = list[str](), list[str]()
         for key, value in {**self._usual(given), **given}.items():
             if key not in known:

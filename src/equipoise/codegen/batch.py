@@ -35,6 +35,7 @@ from equipoise.codegen.march import STEPS, March
 from equipoise.codegen.source import TermSource
 from equipoise.codegen.trace import FAR, Trace
 from equipoise.errors import UsageError
+from equipoise.i18n import Note
 from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.assembly import cycle, full_turn
 from equipoise.mechanism.assembly.family import linkage_of, with_columns
@@ -191,12 +192,14 @@ class Batch:
         threads: int | None = None,
     ) -> None:
         if angles is not None and angles < 1:
-            raise UsageError(f"got {angles} crank angles; give at least 1")
+            raise UsageError(Note("got {angles} crank angles; give at least 1", angles=angles))
         self.base = assemble(machine)
         if moves_shared(self.base, paths):
             raise UsageError(
-                "got lengths of a linkage whose joints hold more than its motion needs; each "
-                "design has to be looked at by itself, whether they agree"
+                Note(
+                    "got lengths of a linkage whose joints hold more than its motion needs; "
+                    "each design has to be looked at by itself, whether they agree"
+                )
             )
         self.paths, self.wanted = tuple(paths), tuple(wanted)
         self.angles, self.tolerance = angles, tolerance
@@ -237,7 +240,9 @@ class Batch:
             return np.empty(0), FIRST
         if not jumps_alike(self.base, self.paths):
             if self.angles is not None:
-                raise UsageError("got couplings whose laws jump at each design's own crank angles")
+                raise UsageError(
+                    Note("got couplings whose laws jump at each design's own crank angles")
+                )
             return np.empty(0), STEP / self.tolerance
         machine = self.base.machine
         if any(one.contact == "surface" for one in machine.couplings):

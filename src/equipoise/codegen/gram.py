@@ -17,6 +17,7 @@ import numpy as np
 from equipoise.codegen.figures import COMPUTED, MOST_ANGLES, NO_MACHINE, NOT_STILL, Figure
 from equipoise.decompositions import svd
 from equipoise.errors import UsageError
+from equipoise.i18n import Note
 from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.assembly.family import can_vary, massive_link, with_columns
 from equipoise.mechanism.assembly.linkage import assemble
@@ -80,7 +81,7 @@ class MassBatch:
         tolerance: float = 1e-4,
     ) -> None:
         if not can_use(machine, paths, wanted):
-            raise UsageError("these designs or figures need the way round the cycle")
+            raise UsageError(Note("these designs or figures need the way round the cycle"))
         self.base, self.paths, self.wanted = assemble(machine), tuple(paths), tuple(wanted)
         links = {massive_link(path) for path in paths}
         self.links = [link for link in machine.links if link in links]
@@ -197,7 +198,9 @@ def _scales(machine: Machine, links: int) -> Array:
 def _components(one: Declared, item: str, found: Found) -> Array:
     """The one or two components of an output, (1 or 2, ..., N)."""
     if item not in one.items_of(found):
-        raise UsageError(f"got {one.named(item)!r}; the machine has no such signal")
+        raise UsageError(
+            Note("got {named!r}; the machine has no such signal", named=one.named(item))
+        )
     whole = one.component(one.vector(found, item))
     return np.stack([whole.real, whole.imag] if one.is_vector else [whole.real])
 

@@ -12,6 +12,7 @@ from equipoise.codegen.source import TermSource
 from equipoise.codegen.terms import ANGLE, BOTH, DESIGN, Term, reached, substituted
 from equipoise.codegen.trace import Row
 from equipoise.errors import UsageError
+from equipoise.i18n import Note
 from equipoise.mechanism.assembly.linkage import Linkage
 
 HEAD = """\
@@ -68,6 +69,9 @@ def _of_angle(row: Row) -> Any:
     first, *others = row.values(np.linspace(0.0, 6.0, 7)).tolist()
     if others != [first] * len(others):
         raise UsageError(
-            f"{row.what} changes over the crank angle in a way that has no formula in C"
+            Note(
+                "{what} changes over the crank angle in a way that has no formula in C",
+                what=row.what,
+            )
         )
     return first

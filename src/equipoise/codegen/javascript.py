@@ -28,6 +28,7 @@ from equipoise.codegen.terms import (
 )
 from equipoise.codegen.trace import Array
 from equipoise.errors import UsageError
+from equipoise.i18n import Note
 from equipoise.mechanism.assembly.family import linkage_of, with_columns
 from equipoise.mechanism.assembly.linkage import Linkage
 
@@ -112,7 +113,9 @@ def _of_numbers(
             for k, part in enumerate((value.real, value.imag)[: 1 + slot.vector], slot.column):
                 values[graph.argument(f"d{k}", DESIGN)] = as_value(part)
     except (TypeError, AttributeError) as error:
-        raise UsageError(f"what follows from these numbers cannot be written: {error}") from None
+        raise UsageError(
+            Note("what follows from these numbers cannot be written: {error}", error=str(error))
+        ) from None
     return substituted(outputs, values)
 
 

@@ -38,14 +38,16 @@ from typing import Any, Generic, Self, TypeVar
 
 from equipoise.codegen.backends import processors
 from equipoise.errors import UsageError
+from equipoise.i18n import Note
 
 TRIES = 3
 """How often processes may die one after the other, with nothing finished in between."""
 TICK = 1.0
 """Time between looks after the pool, s."""
-DEAD = (
-    f"processes that compute died {TRIES} times in a row, perhaps for want of memory; give fewer "
-    "workers"
+DEAD = Note(
+    "processes that compute died {tries} times in a row, perhaps for want of "
+    "memory; give fewer workers",
+    tries=TRIES,
 )
 Chunk = TypeVar("Chunk")
 Result = TypeVar("Result")
@@ -165,7 +167,7 @@ class Runner(Generic[Chunk, Result]):
         self.alone, self.make, self.threads = alone, make, threads and elsewhere is None
         self.workers = processors() if workers is None else workers
         if self.workers < 1:
-            raise UsageError(f"got {self.workers} workers; give 1 or more")
+            raise UsageError(Note("got {workers} workers; give 1 or more", workers=self.workers))
         self.pool = None if elsewhere is None else elsewhere(self._task())
 
     def __enter__(self) -> Self:

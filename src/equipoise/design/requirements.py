@@ -11,7 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.errors import UsageError
+from equipoise.errors import UsageError, at_place
+from equipoise.i18n import Note
 from equipoise.keys.requirement_kinds import Asks, RequiredFigure, asks_of
 from equipoise.signals import Array
 
@@ -57,20 +58,23 @@ class Requirement(RequiredFigure):
 
     def _check(self) -> None:
         if self.target is not None and self.make:
-            raise UsageError(f"{self.figure}: give either target or make")
-        for key, wrong in self.wrong_asks():
-            raise UsageError(f"{self.figure}: {wrong.replace('got', f'got {key} =', 1)}")
+            raise UsageError(at_place(self.figure, Note("give either target or make")))
+        for key, given, right in self.wrong_asks():
+            what = Note("got {key} = {given}; {right}", key=key, given=given, right=right)
+            raise UsageError(at_place(self.figure, what))
         if None not in (self.at_least, self.at_most) and self.at_least > self.at_most:  # type: ignore[operator]
-            raise UsageError(f"{self.figure}: at_least is above at_most")
+            raise UsageError(at_place(self.figure, Note("at_least is above at_most")))
         outside = (
             self.target is not None
             and not self.turns
             and any(slack[0] < 0 for slack in self.slack(np.array([self.target])))
         )
         if outside:
-            raise UsageError(f"{self.figure}: the target lies outside the limits; change one")
+            raise UsageError(
+                at_place(self.figure, Note("the target lies outside the limits; change one"))
+            )
         if self.tolerance is not None and not self.tolerance > 0:
-            raise UsageError(f"{self.figure}: the tolerance must be more than 0")
+            raise UsageError(at_place(self.figure, Note("the tolerance must be more than 0")))
 
     @property
     def turns(self) -> bool:

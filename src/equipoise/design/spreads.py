@@ -11,6 +11,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from equipoise.errors import UsageError
+from equipoise.i18n import Note
 
 Array = np.ndarray[Any, Any]
 
@@ -37,24 +38,36 @@ class Range:
     def __post_init__(self) -> None:
         _check_finite((self.low, self.high))
         if not self.low < self.high:
-            raise UsageError("the first limit must be below the second")
+            raise UsageError(Note("the first limit must be below the second"))
         for end in (self.low, self.high) if self.whole else ():
             if not float(end).is_integer():
-                raise UsageError(f"got {end:g}; give whole numbers")
+                raise UsageError(Note("got {end:g}; give whole numbers", end=end))
         if self.steps is not None and not 2 <= self.steps <= MOST_STEPS:
-            raise UsageError(f"got {self.steps} steps; give 2 to {MOST_STEPS}")
+            raise UsageError(
+                Note(
+                    "got {steps} steps; give 2 to {most_steps}",
+                    steps=self.steps,
+                    most_steps=MOST_STEPS,
+                )
+            )
 
     @property
     def levels(self) -> Array:
         """Values on a grid, (steps,); `UsageError` where their number is not given."""
         if self.steps is None:
-            raise UsageError("a grid needs the number of steps of the range")
+            raise UsageError(Note("a grid needs the number of steps of the range"))
         levels = np.linspace(self.low, self.high, self.steps)
         if self.whole and np.any(levels != np.rint(levels)):
             count = self.high - self.low + 1
             raise UsageError(
-                f"{self.steps} steps from {self.low:g} to {self.high:g} are no whole numbers; give "
-                f"another number of steps, such as {count:g}"
+                Note(
+                    "{steps} steps from {low:g} to {high:g} are no whole numbers; give "
+                    "another number of steps, such as {count:g}",
+                    steps=self.steps,
+                    low=self.low,
+                    high=self.high,
+                    count=count,
+                )
             )
         return levels
 
@@ -91,9 +104,9 @@ class Choices:
         _check_finite(self.values)
         object.__setattr__(self, "values", tuple(map(float, self.values)))
         if not self.values:
-            raise UsageError("the list is empty; give at least one value")
+            raise UsageError(Note("the list is empty; give at least one value"))
         if len(set(self.values)) < len(self.values):
-            raise UsageError("the list has a value twice; give each once")
+            raise UsageError(Note("the list has a value twice; give each once"))
 
     @property
     def levels(self) -> Array:
@@ -132,14 +145,18 @@ class Normal:
     def __post_init__(self) -> None:
         _check_finite((self.mean, self.deviation))
         if self.deviation <= 0:
-            raise UsageError(f"got a deviation of {self.deviation:g}; give more than 0")
+            raise UsageError(
+                Note("got a deviation of {deviation:g}; give more than 0", deviation=self.deviation)
+            )
         if self.cut is not None and not 0 < self.cut < np.inf:
-            raise UsageError(f"got cut = {self.cut:g}; give deviations, more than 0, such as 3")
+            raise UsageError(
+                Note("got cut = {cut:g}; give deviations, more than 0, such as 3", cut=self.cut)
+            )
 
     @property
     def levels(self) -> Array:
         """There are none: `UsageError`."""
-        raise UsageError("a normal spread has no grid; give a range or a list")
+        raise UsageError(Note("a normal spread has no grid; give a range or a list"))
 
     def at(self, u: Array) -> Array:
         """Values (n,) at places u (n,) between 0 and 1."""
@@ -163,12 +180,17 @@ class Uniform:
     def __post_init__(self) -> None:
         _check_finite((self.centre, self.half_width))
         if self.half_width <= 0:
-            raise UsageError(f"got a half width of {self.half_width:g}; give more than 0")
+            raise UsageError(
+                Note(
+                    "got a half width of {half_width:g}; give more than 0",
+                    half_width=self.half_width,
+                )
+            )
 
     @property
     def levels(self) -> Array:
         """There are none: `UsageError`."""
-        raise UsageError("a uniform tolerance has no grid; give a range or a list")
+        raise UsageError(Note("a uniform tolerance has no grid; give a range or a list"))
 
     def at(self, u: Array) -> Array:
         """Values (n,) at places u (n,) between 0 and 1."""
@@ -190,4 +212,4 @@ KEYS = {kind: key for key, kind in SPREADS.items()}
 def _check_finite(values: Iterable[float]) -> None:
     for value in values:
         if isinstance(value, bool) or not isinstance(value, Real) or not isfinite(value):
-            raise UsageError(f"got {value!r}; give finite numbers")
+            raise UsageError(Note("got {value!r}; give finite numbers", value=value))

@@ -7,7 +7,7 @@ from importlib import import_module
 from math import isfinite
 
 from equipoise.balancing.balanced import Balanced
-from equipoise.errors import ChangePointError, RangeError, UsageError, needed, unknown
+from equipoise.errors import ChangePointError, RangeError, UsageError, at_place, needed, unknown
 from equipoise.exchange.formats import FORMATS, Angles, Format, Job
 from equipoise.i18n import Note, to_say
 from equipoise.mechanism.assembly.linkage import assemble
@@ -57,13 +57,18 @@ def export(
     one = format_of(path, format, of_store=isinstance(what, Store))
     check_kind(one, of_store=isinstance(what, Store))
     if crank_angle is not None and not isfinite(crank_angle):
-        raise UsageError(f"crank_angle: got {crank_angle}; give an angle in rad")
+        raise UsageError(
+            at_place(
+                "crank_angle",
+                Note("got {crank_angle}; give an angle in rad", crank_angle=crank_angle),
+            )
+        )
     if isinstance(what, Store):
         write_designs(what, path, kept=kept)
         return ()
     check_link_loads(one, link=link, angles=angles)
     if angles is not None and crank_angle is not None:
-        raise UsageError("crank_angle and angles were given; give one of them")
+        raise UsageError(Note("crank_angle and angles were given; give one of them"))
     job, data = made(what, one, crank_angle, link, angles)
     write(path, data)
     return tuple(job.left_out)
@@ -72,9 +77,16 @@ def export(
 def check_kind(one: Format, *, of_store: bool) -> None:
     """Refuse designs of a store in a format for machines, and the other way round."""
     if one.of_store != of_store:
-        holds = "designs of a store" if one.of_store else "machines"
+        holds = Note("designs of a store") if one.of_store else Note("machines")
         wanted = ", ".join(other.name for other in FORMATS.values() if other.of_store == of_store)
-        raise UsageError(f"{one.title} is for {holds}; give one of {wanted}")
+        raise UsageError(
+            Note(
+                "{title} is for {holds}; give one of {wanted}",
+                title=one.title,
+                holds=holds,
+                wanted=wanted,
+            )
+        )
 
 
 def check_link_loads(one: Format, *, prefix: str = "", **options: object) -> None:
@@ -83,8 +95,13 @@ def check_link_loads(one: Format, *, prefix: str = "", **options: object) -> Non
         if given is not None and not one.of_link:
             formats = ", ".join(other.name for other in FORMATS.values() if other.of_link)
             raise UsageError(
-                f"{prefix}{name}: it goes with loads along a link, in the formats {formats}; leave "
-                "it out"
+                at_place(
+                    f"{prefix}{name}",
+                    Note(
+                        "it goes with loads along a link, in the formats {formats}; leave it out",
+                        formats=formats,
+                    ),
+                )
             )
 
 
@@ -97,7 +114,7 @@ def made(
 ) -> tuple[Job, str | bytes]:
     """A file's content, and what was left out of it."""
     if one.needs:
-        needed(one.needs, f"a file of {one.title}")
+        needed(one.needs, Note("a file of {title}", title=one.title))
     machine, changes = (what.machine, what.changes) if isinstance(what, Balanced) else (what, None)
     if one.turns:
         check_turning(machine, one.title)
@@ -128,7 +145,14 @@ def _check_joints(machine: Machine, one: Format) -> None:
         for where, part in numbered(table, getattr(machine, table)):
             if part.special and part.special not in one.joints:
                 raise UsageError(
-                    f"{where}: a file of {one.title} has no {part.special}; give another format"
+                    at_place(
+                        where,
+                        Note(
+                            "a file of {title} has no {special}; give another format",
+                            title=one.title,
+                            special=part.special,
+                        ),
+                    )
                 )
 
 
@@ -174,7 +198,10 @@ def format_of(
     if not fitting:
         endings = ", ".join(dict.fromkeys(one.ending for one in FORMATS.values()))
         raise UsageError(
-            f"got {printable(path)!r}; give the name of a file that ends in one of {endings}, "
-            "or a format"
+            Note(
+                "got {given!r}; give the name of a file that ends in one of {endings}, or a format",
+                given=printable(path),
+                endings=endings,
+            )
         )
     return next((one for one in fitting if one.of_store == of_store), fitting[0])

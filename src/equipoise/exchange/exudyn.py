@@ -19,6 +19,7 @@ from equipoise.exchange.tree import (
     trees,
     weighed,
 )
+from equipoise.i18n import Note
 from equipoise.mechanism.assembly.joints import structure
 from equipoise.mechanism.kinematics.motion import move
 from equipoise.mechanism.parts.machine import FRAME, Machine
@@ -48,7 +49,9 @@ def _model(job: Job) -> Data:
     """
     machine, drawn = weighed(job.machine), trees(job)
     if not machine.drive.speed:
-        raise UsageError("the drive stands still, and a script runs for a turn; give it a speed")
+        raise UsageError(
+            Note("the drive stands still, and a script runs for a turn; give it a speed")
+        )
     job.need_every_joint(structure(machine).needed)
     job.leave_out_motor()
     job.leave_out_planes()
@@ -143,8 +146,12 @@ def _geared(tree: Tree) -> list[Data]:
         shares[one.driven] = {body: factor for body, factor in total.items() if factor}
         if len(shares[one.driven]) > 1 or tree.machine.support is not None:
             raise UsageError(
-                f"the {one.noun} {one.name} follows two bodies that move, which the file's "
-                "format has no joint for; give another format"
+                Note(
+                    "the {noun} {name} follows two bodies that move, which the file's format "
+                    "has no joint for; give another format",
+                    noun=one.noun,
+                    name=one.name,
+                )
             )
     named = ((driven, by, one) for driven, follows in shares.items() for by, one in follows.items())
     return [
@@ -165,8 +172,10 @@ def _support(machine: Machine, support: Support) -> Data:
     """
     if not support.planar:
         raise UsageError(
-            "the support moves out of the plane of the drawing, but the format's model is planar; "
-            "give mjcf, or a support with other freedoms"
+            Note(
+                "the support moves out of the plane of the drawing, but the format's "
+                "model is planar; give mjcf, or a support with other freedoms"
+            )
         )
     inertia = moment_of(support) - machine.drive.flywheel  # which turns with the crank
     pose = [*support.center_of_mass[:2], 0.0]

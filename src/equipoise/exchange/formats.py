@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from equipoise.errors import UsageError
+from equipoise.i18n import Note
 from equipoise.mechanism.assembly.joints import Structure
 from equipoise.mechanism.dynamics.forces import massless
 
@@ -219,8 +220,11 @@ class Job:
         """
         if joints.surplus:
             raise UsageError(
-                "joints hold more than the motion needs, so that the equations of this format have "
-                "no single solution; give another format, or leave cranks or guides out"
+                Note(
+                    "joints hold more than the motion needs, so that the equations of this "
+                    "format have no single solution; give another format, or leave cranks or "
+                    "guides out"
+                )
             )
 
     def leave_out_soil(self) -> None:

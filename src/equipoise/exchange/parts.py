@@ -16,6 +16,7 @@ import numpy as np
 
 from equipoise.errors import UsageError
 from equipoise.exchange.formats import Job
+from equipoise.i18n import Note
 from equipoise.mechanism.parts.bodies import Body, Points, material_of, place_of
 from equipoise.mechanism.parts.body_checks import outlines
 from equipoise.quantities import told
@@ -132,25 +133,31 @@ def parts(job: Job) -> list[Part]:
     return found
 
 
-def _refusal(job: Job) -> str:
+def _refusal(job: Job) -> Note:
     """Why there is nothing to cut, and what would give something."""
     if job.changes is None:
-        return (
-            "the model tells no outline of anything; give a link bodies such as plates, or export "
-            "it balanced, with counterweights that are discs, rings or sectors"
+        return Note(
+            "the model tells no outline of anything; give a link bodies such as "
+            "plates, or export it balanced, with counterweights that are discs, "
+            "rings or sectors"
         )
     if not job.changes:
-        return (
-            "the model tells no outline of anything, and balancing changes no masses; give a link "
-            "bodies such as plates"
+        return Note(
+            "the model tells no outline of anything, and balancing changes no "
+            "masses; give a link bodies such as plates"
         )
-    cure = "give a link bodies such as plates"
+    cure = Note("give a link bodies such as plates")
     if any(change.values.get("pieces") for change in job.changes):
-        cure += ', or a mass of the plan the shape "disc", "ring" or "sector"'
+        cure = Note(
+            '{sentence}, or a mass of the plan the shape "disc", "ring" or "sector"', sentence=cure
+        )
+
     changed = ", ".join(dict.fromkeys(change.link for change in job.changes))
-    return (
-        "the model tells no outline of anything, and balancing gives none to what it changes: "
-        f"{changed}; {cure}"
+    return Note(
+        "the model tells no outline of anything, and balancing gives none to "
+        "what it changes: {changed}; {cure}",
+        changed=changed,
+        cure=cure,
     )
 
 

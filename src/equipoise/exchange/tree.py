@@ -15,6 +15,7 @@ import numpy as np
 
 from equipoise.errors import MassError, UsageError
 from equipoise.exchange.formats import Job
+from equipoise.i18n import Note
 from equipoise.mechanism.assembly.joints import Structure, joined
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.assembly.steps import Array
@@ -260,8 +261,11 @@ def _spanned(machine: Machine) -> tuple[list[TreeJoint], tuple[LoopClosure, ...]
             loose.append(LoopClosure(edge.pin, edge.one, edge.other))
         else:
             raise UsageError(
-                f"the slider {edge.slider.name} closes a loop of sliders alone, which only pins "
-                "can do in files of this kind; give another format"
+                Note(
+                    "the slider {name} closes a loop of sliders alone, which only pins can "
+                    "do in files of this kind; give another format",
+                    name=edge.slider.name,
+                )
             )
     return held, tuple(loose)
 

@@ -16,6 +16,7 @@ from typing import Any
 from equipoise.balancing.workshop import sentences
 from equipoise.errors import UsageError, needed
 from equipoise.exchange.formats import Job
+from equipoise.i18n import Note
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.results.analysis import Analysis, analyze
 from equipoise.results.outputs import Output
@@ -59,8 +60,16 @@ def _check_size(rows: int, columns: int, turns: int) -> None:
     """Refuse more signals than a sheet takes, of which the library would leave out the rest."""
     if rows + HEADS > MOST_ROWS or columns > MOST_COLUMNS:
         raise UsageError(
-            f"a cycle of {turns} turns has {rows} crank angles and {columns} columns; a sheet of "
-            f"Excel takes {MOST_ROWS - HEADS} and {MOST_COLUMNS}: write .mat instead"
+            Note(
+                "a cycle of {turns} turns has {rows} crank angles and {columns} columns; "
+                "a sheet of Excel takes {most_rows} and {most_columns}: write .mat "
+                "instead",
+                turns=turns,
+                rows=rows,
+                columns=columns,
+                most_rows=MOST_ROWS - HEADS,
+                most_columns=MOST_COLUMNS,
+            )
         )
 
 

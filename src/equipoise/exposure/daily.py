@@ -22,8 +22,9 @@ from typing import Any, ClassVar, Literal, get_args
 
 import numpy as np
 
-from equipoise.errors import UsageError
+from equipoise.errors import UsageError, at_place
 from equipoise.exposure.weighting import not_negative
+from equipoise.i18n import Note
 from equipoise.results.declaring import Declarations, ResultOutput, values_of
 from equipoise.results.result import Result
 
@@ -193,7 +194,13 @@ class Task:
             object.__setattr__(self, key, not_negative(key, getattr(self, key), unit))
         if not 0 < self.duration <= DAY:
             raise UsageError(
-                f"duration: got {self.duration / 3600:g} h; give more than 0 and at most 24 h a day"
+                at_place(
+                    "duration",
+                    Note(
+                        "got {duration:g} h; give more than 0 and at most 24 h a day",
+                        duration=self.duration / 3600,
+                    ),
+                )
             )
 
     @property
@@ -314,11 +321,14 @@ def daily_exposure(tasks: Iterable[Task]) -> Exposure:
     """
     given = tuple(tasks)
     if not given:
-        raise UsageError("tasks: there is none; give at least one")
+        raise UsageError(at_place("tasks", Note("there is none; give at least one")))
     exposure = Exposure(given)
     if exposure.duration > DAY * (1 + ROUNDING):
         raise UsageError(
-            f"the tasks take {exposure.duration / 3600:g} h together; give at most 24 h a day"
+            Note(
+                "the tasks take {duration:g} h together; give at most 24 h a day",
+                duration=exposure.duration / 3600,
+            )
         )
     return exposure
 

@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.errors import UsageError
+from equipoise.errors import UsageError, at_place
 from equipoise.exposure.daily import SINGLE_AXIS, total_value
 from equipoise.exposure.weighting import (
     AXES,
@@ -37,6 +37,7 @@ from equipoise.exposure.weighting import (
     sizes,
     squared_factor,
 )
+from equipoise.i18n import Note
 from equipoise.signals import Array, harmonics
 
 LEAST_RATE = 2 * float(EDGES[-1])
@@ -52,7 +53,7 @@ FADE = 0.5
 """s, at each end."""
 UNEVEN = 0.25
 """Steps, by which a time may stand off: rounded in the file.  One lost sample makes it 0.5."""
-UNEVEN_STEPS = "is not where equal steps of time would have it; give a record without gaps"
+UNEVEN_STEPS = Note("is not where equal steps of time would have it; give a record without gaps")
 """What is said of such a time."""
 JUMP = 3.0
 """Largest steps of a periodic record that its end may be away from its beginning."""
@@ -131,28 +132,51 @@ def signal(time: Any, acceleration: Any, periodic: bool = False) -> Acceleration
     times = rising("time", time, "s")
     values = of_axes("acceleration", acceleration, len(times))
     if len(times) < 2:
-        raise UsageError("time: got one sample; give a record of acceleration against time")
+        raise UsageError(
+            at_place("time", Note("got one sample; give a record of acceleration against time"))
+        )
     at = uneven(times)
     if at is not None:
-        raise UsageError(f"time: sample {at + 1}, at {times[at]:.6g} s, {UNEVEN_STEPS}")
+        raise UsageError(
+            at_place(
+                "time",
+                Note(
+                    "sample {at}, at {times:.6g} s, {uneven_steps}",
+                    at=at + 1,
+                    times=times[at],
+                    uneven_steps=UNEVEN_STEPS,
+                ),
+            )
+        )
     found = AccelerationSignal(values, (len(times) - 1) / float(times[-1] - times[0]), periodic)
     if periodic:
         span = np.ptp(values, axis=1)
         if np.any(span > 0) and np.all(np.abs(values[:, -1] - values[:, 0]) <= SAME * span):
             raise UsageError(
-                "the last sample repeats the first, with which the next period begins; leave it out"
+                Note(
+                    "the last sample repeats the first, with which the next period begins; "
+                    "leave it out"
+                )
             )
         return found
     if found.rate < LEAST_RATE:
         raise UsageError(
-            f"sampled at {found.rate:.4g} Hz; give at least {LEAST_RATE:.0f} Hz, as the bands of "
-            "Wh go up to 1412 Hz, or whole periods of a steady vibration with nothing above half "
-            "the rate (periodic)"
+            Note(
+                "sampled at {rate:.4g} Hz; give at least {least_rate:.0f} Hz, as the "
+                "bands of Wh go up to 1412 Hz, or whole periods of a steady vibration "
+                "with nothing above half the rate (periodic)",
+                rate=found.rate,
+                least_rate=LEAST_RATE,
+            )
         )
     if found.duration < LEAST_DURATION * (1 - SAME):
         raise UsageError(
-            f"the record takes {found.duration:.3g} s; give at least {LEAST_DURATION:g} s, or "
-            "whole periods of a steady vibration (periodic)"
+            Note(
+                "the record takes {duration:.3g} s; give at least {least_duration:g} s, "
+                "or whole periods of a steady vibration (periodic)",
+                duration=found.duration,
+                least_duration=LEAST_DURATION,
+            )
         )
     return found
 
@@ -227,7 +251,11 @@ def weigh_spectrum(
     """
     lines = rising("frequency", frequency, "Hz")
     if lines[0] < 0:
-        raise UsageError(f"frequency: got {lines[0]:g} Hz; give frequencies of 0 or more")
+        raise UsageError(
+            at_place(
+                "frequency", Note("got {lines:g} Hz; give frequencies of 0 or more", lines=lines[0])
+            )
+        )
     squares = amplitudes("acceleration", acceleration, len(lines)) ** 2
     kind: Kind = "bands" if bands else "spectrum"
     middles = exact_middles(lines) if bands else lines
@@ -260,8 +288,12 @@ def weigh_orders(
     counts = rising("orders", orders, "orders")
     if turning == 0 or counts[0] < 0:
         raise UsageError(
-            f"got a speed of {turning:g} rad/s and orders from {counts[0]:g}; give a shaft that "
-            "turns, and orders of 0 or more"
+            Note(
+                "got a speed of {turning:g} rad/s and orders from {counts:g}; give a "
+                "shaft that turns, and orders of 0 or more",
+                turning=turning,
+                counts=counts[0],
+            )
         )
     squares = amplitudes("amplitude", sizes("amplitude", amplitude), len(counts)) ** 2 / 2
     frequency = abs(turning) * counts / (2 * pi)
@@ -281,10 +313,22 @@ def _weigh(
     count = len(squares)
     names = AXES[:count] if axes is None else tuple(axes)
     if len(names) != count or len(set(names)) != count:
-        raise UsageError(f"axes: got {', '.join(names)}; give a name to each of {count} axes")
+        raise UsageError(
+            at_place(
+                "axes",
+                Note(
+                    "got {names}; give a name to each of {count} axes",
+                    names=", ".join(names),
+                    count=count,
+                ),
+            )
+        )
     if single_axis and count == len(AXES):
         raise UsageError(
-            "single_axis: got three axes, whose total value needs no estimate; leave it out"
+            at_place(
+                "single_axis",
+                Note("got three axes, whose total value needs no estimate; leave it out"),
+            )
         )
     squares = np.where(frequency > 0, squares, 0.0)
     after = squares if weighted else squares * squared_factor(frequency**2)

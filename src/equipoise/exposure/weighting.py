@@ -21,7 +21,8 @@ from typing import Any, Literal
 
 import numpy as np
 
-from equipoise.errors import UsageError
+from equipoise.errors import UsageError, at_place
+from equipoise.i18n import Note
 from equipoise.quantities.units import HUGE, TINY
 from equipoise.results.result import Result
 from equipoise.signals import Array, highest_at
@@ -32,9 +33,20 @@ AXES = ("x", "y", "z")
 def not_negative(name: str, value: Any, unit: str = "m/s^2") -> float:
     """A finite number of 0 or more."""
     if isinstance(value, bool) or not isinstance(value, int | float | np.floating | np.integer):
-        raise UsageError(f"{name}: got {value!r}; give a number of 0 or more")
+        raise UsageError(
+            at_place(name, Note("got {value!r}; give a number of 0 or more", value=value))
+        )
     if value != 0 and not TINY <= value <= HUGE:
-        raise UsageError(f"{name}: got {value:g} {unit}; give a finite number of 0 or more")
+        raise UsageError(
+            at_place(
+                name,
+                Note(
+                    "got {value:g} {unit}; give a finite number of 0 or more",
+                    value=value,
+                    unit=unit,
+                ),
+            )
+        )
     return float(value)
 
 
@@ -42,7 +54,16 @@ def row(name: str, values: Any, unit: str) -> Array:
     """Finite numbers (N,)."""
     found = _numbers(name, values)
     if found.ndim != 1 or not found.size:
-        raise UsageError(f"{name}: got the shape {found.shape}; give a row of numbers in {unit}")
+        raise UsageError(
+            at_place(
+                name,
+                Note(
+                    "got the shape {shape}; give a row of numbers in {unit}",
+                    shape=found.shape,
+                    unit=unit,
+                ),
+            )
+        )
     return found
 
 
@@ -50,7 +71,7 @@ def rising(name: str, values: Any, unit: str) -> Array:
     """Finite numbers (N,), each larger than the one before."""
     found = row(name, values, unit)
     if not np.all(np.diff(found) > 0):
-        raise UsageError(f"{name}: the values must rise from one to the next")
+        raise UsageError(at_place(name, Note("the values must rise from one to the next")))
     return found
 
 
@@ -60,7 +81,14 @@ def of_axes(name: str, values: Any, count: int) -> Array:
     found = found[np.newaxis] if found.ndim == 1 else found
     if found.ndim != 2 or not 1 <= len(found) <= len(AXES) or found.shape[1] != count:
         raise UsageError(
-            f"{name}: got the shape {np.shape(values)}; give one to three axes of {count} values"
+            at_place(
+                name,
+                Note(
+                    "got the shape {shape}; give one to three axes of {count} values",
+                    shape=np.shape(values),
+                    count=count,
+                ),
+            )
         )
     return found
 
@@ -69,7 +97,9 @@ def amplitudes(name: str, values: Any, count: int) -> Array:
     """As `of_axes`, of 0 or more."""
     found = of_axes(name, values, count)
     if np.any(found < 0):
-        raise UsageError(f"{name}: got {np.min(found):g}; give values of 0 or more")
+        raise UsageError(
+            at_place(name, Note("got {min:g}; give values of 0 or more", min=np.min(found)))
+        )
     return found
 
 
@@ -78,7 +108,9 @@ def sizes(name: str, values: Any) -> Array:
     try:
         found: Array = np.abs(np.array(values, dtype=complex))
     except (TypeError, ValueError):
-        raise UsageError(f"{name}: got {type(values).__name__}; give rows of numbers") from None
+        raise UsageError(
+            at_place(name, Note("got {kind}; give rows of numbers", kind=type(values).__name__))
+        ) from None
     return found
 
 
@@ -86,9 +118,11 @@ def _numbers(name: str, values: Any) -> Array:
     try:
         found = np.array(values, dtype=float)
     except (TypeError, ValueError):
-        raise UsageError(f"{name}: got {type(values).__name__}; give rows of numbers") from None
+        raise UsageError(
+            at_place(name, Note("got {kind}; give rows of numbers", kind=type(values).__name__))
+        ) from None
     if not np.all(np.abs(found) <= HUGE):
-        raise UsageError(f"{name}: a value is not finite; give finite numbers")
+        raise UsageError(at_place(name, Note("a value is not finite; give finite numbers")))
     return found
 
 
@@ -146,7 +180,9 @@ def _within(frequency: Any) -> tuple[Array, Array]:
     """Frequencies that can be squared, and which of them were beyond."""
     values = np.asarray(frequency, dtype=float)
     if np.any(np.isnan(values)):
-        raise UsageError("frequency: got a value that is no number; give frequencies in Hz")
+        raise UsageError(
+            at_place("frequency", Note("got a value that is no number; give frequencies in Hz"))
+        )
     return np.clip(values, -FASTEST, FASTEST), np.abs(values) > FASTEST
 
 
@@ -184,8 +220,14 @@ def exact_middles(frequency: Array) -> Array:
     nearest = np.clip(np.nan_to_num(np.rint(number)), NUMBERS[0], NUMBERS[-1])
     for given in frequency[np.abs(number - nearest) > NEAR]:
         raise UsageError(
-            f"frequency: got {given:g} Hz; give middles of one-third-octave bands, 6.3, 8, 10, "
-            "12.5 Hz and so on to 1250 Hz"
+            at_place(
+                "frequency",
+                Note(
+                    "got {given:g} Hz; give middles of one-third-octave bands, 6.3, 8, 10, "
+                    "12.5 Hz and so on to 1250 Hz",
+                    given=given,
+                ),
+            )
         )
     middles: Array = 10 ** (nearest / 10)
     return middles

@@ -19,7 +19,7 @@ import numpy as np
 from equipoise.errors import UsageError
 from equipoise.figures.captions import Label, captions, ruler_ends
 from equipoise.figures.stage import ForceArrow, Moves, Stage, check_seconds, check_width
-from equipoise.i18n import said, say
+from equipoise.i18n import Note, said, say
 from equipoise.mechanism.parts.machine import unknown
 from equipoise.symbols.looks import DARK, LIGHT, LOOKS, Colors, pixels
 from equipoise.symbols.pieces import pieces
@@ -88,9 +88,11 @@ def laid_out(
         if name not in scene.places:
             raise UsageError(unknown(name, scene.places, "point"))
         if name in scene.frame:
-            raise UsageError(f"{name!r} is a point of the frame, which has no path; give another")
+            raise UsageError(
+                Note("{name!r} is a point of the frame, which has no path; give another", name=name)
+            )
     if len(scene.crank_angle) < 2:
-        raise UsageError("got one crank angle; an animation needs two and more")
+        raise UsageError(Note("got one crank angle; an animation needs two and more"))
     stage = Stage(scene, arrow, frames, width)
     names = tuple(dict.fromkeys(traced))
     moves: dict[Any, Moves | None] = {}

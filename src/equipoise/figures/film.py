@@ -19,6 +19,7 @@ from equipoise.errors import UsageError, needed
 from equipoise.figures.animation import Moving, Part, Stroke, laid_out
 from equipoise.figures.paint import settings
 from equipoise.figures.stage import RATES, ForceArrow, check_seconds, check_width, in_a_turn
+from equipoise.i18n import Note
 from equipoise.symbols.looks import DARK, LIGHT, LOOKS, Colors, Look
 from equipoise.symbols.shapes import Array
 
@@ -138,7 +139,12 @@ def _prepared(
     drawn = laid_out(scene, traced, frames, width, arrow)
     if round(frames * drawn.stage.turns) > (angles := len(scene.crank_angle)):
         raise UsageError(
-            f"got {angles} crank angles, too few for {frames} frames in a turn; give more of them"
+            Note(
+                "got {angles} crank angles, too few for {frames} frames in a turn; give "
+                "more of them",
+                angles=angles,
+                frames=frames,
+            )
         )
     return drawn
 
@@ -214,8 +220,13 @@ def check_frames(count: int, width: int) -> None:
     most = MOST_PIXELS // width**2
     if count > most:
         raise UsageError(
-            f"the film has {count} frames; {width} pixels wide it can have {most}: "
-            "give a shorter time, fewer turns, or a smaller width"
+            Note(
+                "the film has {count} frames; {width} pixels wide it can have {most}: "
+                "give a shorter time, fewer turns, or a smaller width",
+                count=count,
+                width=width,
+                most=most,
+            )
         )
 
 

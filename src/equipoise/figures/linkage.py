@@ -11,7 +11,7 @@ from equipoise.errors import UsageError
 from equipoise.figures.points import moving
 from equipoise.figures.stage import beyond, rows_named, rows_told
 from equipoise.figures.style import short
-from equipoise.i18n import say
+from equipoise.i18n import Note, say
 from equipoise.mechanism.checks import FRAME
 from equipoise.mechanism.kinematics.motion import move
 from equipoise.mechanism.outputs.poles import instant_center, pairs, pinned
@@ -59,7 +59,11 @@ def linkage(analysis: Analysis, at: Sequence[float] | None = None) -> Chart:
         scene = Scene.of(moved).with_rows(moved)
         which = [*range(count, len(every))]
     if not 1 <= len(which) <= MOST:
-        raise UsageError(f"got {len(which)} crank angles; a picture shows 1 to {MOST}")
+        raise UsageError(
+            Note(
+                "got {count} crank angles; a picture shows 1 to {most}", count=len(which), most=MOST
+            )
+        )
     columns = 1 if len(which) == 1 else 2 if len(which) <= 4 else MANY
     paths = tuple(_paths(motion))
     panels = tuple(_panel(scene, k, paths, columns) for k in which)

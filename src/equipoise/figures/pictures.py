@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from equipoise.errors import UsageError
+from equipoise.i18n import Note
 from equipoise.results.charts import Chart
 from equipoise.results.result import Result
 
@@ -30,7 +31,9 @@ def pictures_of(result: Any) -> Mapping[str, Chart]:
     UsageError : there are none of such a result.
     """
     if not isinstance(result, Result):
-        raise UsageError(f"there are no pictures of {type(result).__name__}; give a result")
+        raise UsageError(
+            Note("there are no pictures of {kind}; give a result", kind=type(result).__name__)
+        )
     return result.charts()
 
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from equipoise.errors import UsageError
-from equipoise.i18n import say
+from equipoise.i18n import Note, say
 from equipoise.results.charts import Axis, quantity
 from equipoise.symbols.clear import clear_angle
 from equipoise.symbols.scene import Scene
@@ -314,7 +314,11 @@ def check_seconds(seconds: float) -> None:
     """Raise `UsageError` if no turn of the crank can take so long."""
     if not 0 < seconds <= MOST_SECONDS:
         raise UsageError(
-            f"got {seconds:g} s for a turn; give more than 0 s, and at most {MOST_SECONDS} s"
+            Note(
+                "got {seconds:g} s for a turn; give more than 0 s, and at most {most_seconds} s",
+                seconds=seconds,
+                most_seconds=MOST_SECONDS,
+            )
         )
 
 
@@ -322,7 +326,14 @@ def check_width(width: int) -> None:
     """Raise `UsageError` if no picture is so wide."""
     low, high = WIDTHS
     if not low <= width <= high:
-        raise UsageError(f"got a width of {width} pixels; give {low} to {high}")
+        raise UsageError(
+            Note(
+                "got a width of {width} pixels; give {low} to {high}",
+                width=width,
+                low=low,
+                high=high,
+            )
+        )
 
 
 def smooth(frames: int) -> int:

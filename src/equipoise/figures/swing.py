@@ -11,7 +11,7 @@ import numpy as np
 
 from equipoise.errors import EquipoiseError, UsageError
 from equipoise.figures.modes import described
-from equipoise.i18n import say, to_say
+from equipoise.i18n import Note, say, to_say
 from equipoise.mechanism.kinematics.motion import move
 from equipoise.mechanism.parts.support import AXES, FREEDOMS, PLANAR
 from equipoise.results.charts import quantity, shown
@@ -123,7 +123,9 @@ def in_mode(free: FreeVibration, number: int, instants: int = INSTANTS) -> Scene
     """
     count = len(free.modes)
     if not 1 <= number <= count:
-        raise UsageError(f"got {number}; the machine has the modes 1 to {count}")
+        raise UsageError(
+            Note("got {number}; the machine has the modes 1 to {count}", number=number, count=count)
+        )
     still = Scene.of(move(free.machine, ANGLES))
     angle = still.crank_angle[clear_angle(still)]
     scene = Scene.of(move(free.machine, np.full(instants, angle)))
@@ -133,8 +135,12 @@ def in_mode(free: FreeVibration, number: int, instants: int = INSTANTS) -> Scene
     if not mode.seen:
         across = " and ".join(mode.across)
         raise UsageError(
-            f"mode {number} moves the support across the drawing alone, in {across}; "
-            f"`equipoise plot --only mode-{number}` shows it from three sides"
+            Note(
+                "mode {number} moves the support across the drawing alone, in {across}; "
+                "`equipoise plot --only mode-{number}` shows it from three sides",
+                number=number,
+                across=across,
+            )
         )
     values = (mode.amplitudes[:, None] * np.exp(1j * scene.crank_angle)).real
     return _with(scene, values, [*mode.told])

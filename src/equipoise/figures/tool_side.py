@@ -22,7 +22,7 @@ from equipoise.figures.tool_shaft import (
 )
 from equipoise.handheld.response import respond_tool
 from equipoise.handheld.side import side_of
-from equipoise.i18n import say
+from equipoise.i18n import Note, say
 from equipoise.results.charts import (
     Arrow,
     Axis,
@@ -78,7 +78,14 @@ def in_mode(modes: ToolModes, number: int, count: int) -> list[Chart]:
     frequency = modes.planes[0].frequency
     if not (1 <= number <= len(frequency) and frequency[number - 1] > 0):
         first, last = np.flatnonzero(frequency > 0)[[0, -1]] + 1
-        raise UsageError(f"got {number}; of the vertical plane there are {first} to {last}")
+        raise UsageError(
+            Note(
+                "got {number}; of the vertical plane there are {first} to {last}",
+                number=number,
+                first=first,
+                last=last,
+            )
+        )
     phases = np.cos(np.pi * (np.arange(count) + 0.5) / count)
     return [_modes_chart(modes, [panel]) for panel in _swinging(modes, number - 1, phases)]
 

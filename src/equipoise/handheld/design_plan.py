@@ -51,7 +51,9 @@ OUTPUTS: dict[str, Dimension] = {
 """What can be limited: the weighted acceleration of a hand's station and the force on the body at a
 station, root of the mean square over time, at the worst speed of the band; mass that is added."""
 
-SPEEDS = Listing(Quantity(dimension="angular speed"), (2,), 'two such as ["6000 rpm", "8000 rpm"]')
+SPEEDS = Listing(
+    Quantity(dimension="angular speed"), (2,), Note('two such as ["6000 rpm", "8000 rpm"]')
+)
 
 
 def _in_si(
@@ -68,7 +70,7 @@ def _in_si(
         try:
             sizes[field] = parse(given[field], known[given[by]])
         except UsageError as error:
-            raise ModelError(name, str(error)) from error
+            raise ModelError(name, error.note) from error
     return given | sizes
 
 
@@ -156,7 +158,7 @@ class DesignPlan(Frozen):
         default="rms",
     )
     hands: tuple[str, ...] = _key(
-        Listing(Text(), right='a list of names such as ["handle"]'),
+        Listing(Text(), right=Note('a list of names such as ["handle"]')),
         "stations that count; all that are held if left out",
         default=(),
     )
@@ -181,18 +183,20 @@ def wrong_design(
     if design.measure not in MEASURES:
         yield ModelError("design.measure", unknown(design.measure, MEASURES, "measure"))
     if not design.variables:
-        yield ModelError("design.variables", "there is nothing to change; give at least one")
+        yield ModelError("design.variables", Note("there is nothing to change; give at least one"))
     if not shaken:
-        yield ModelError("design", "nothing shakes the tool; give [[excitations]]")
+        yield ModelError("design", Note("nothing shakes the tool; give [[excitations]]"))
     if not held:
-        yield ModelError("design", "no hand holds the tool; give a station a hand")
+        yield ModelError("design", Note("no hand holds the tool; give a station a hand"))
     for number, name in enumerate(design.hands, 1):
         yield from _not_held(f"design.hands[{number}]", name, held)
     seen = set()
     for where, variable in numbered("design.variables", design.variables):
         yield from _wrong_variable(where, variable, stations, length)
         if (variable.station, variable.key) in seen:
-            yield ModelError(where, f"{variable.name!r} is given twice; give one of both")
+            yield ModelError(
+                where, Note("{name!r} is given twice; give one of both", name=variable.name)
+            )
         seen.add((variable.station, variable.key))
     for where, limit in numbered("design.limits", design.limits):
         yield from _wrong_limit(where, limit, stations, held)
@@ -213,7 +217,10 @@ def _wrong_variable(
     part, dot, _ = variable.key.partition(".")
     for station in stations:
         if dot and station.name == variable.station and getattr(station, part) is None:
-            yield ModelError(f"{where}.key", f"{station.name!r} has no {part}; give it one")
+            yield ModelError(
+                f"{where}.key",
+                Note("{name!r} has no {part}; give it one", name=station.name, part=part),
+            )
     low, high = (Measured(end, KEYS[variable.key]) for end in (variable.low, variable.high))
     if variable.low < 0:
         yield ModelError(f"{where}.from", Note("got {text}; give 0 or more", text=low))
@@ -246,9 +253,13 @@ def _wrong_limit(
         yield ModelError(f"{where}.at_most", Note("got {text}; {right}", text=given, right=least))
     if limit.output == "added_mass":
         if limit.station is not None:
-            yield ModelError(f"{where}.station", "added_mass is of the whole tool; leave it out")
+            yield ModelError(
+                f"{where}.station", Note("added_mass is of the whole tool; leave it out")
+            )
     elif limit.station is None:
-        yield ModelError(f"{where}.station", f"missing; give that of the {limit.output}")
+        yield ModelError(
+            f"{where}.station", Note("missing; give that of the {output}", output=limit.output)
+        )
     elif limit.output == "acceleration":
         yield from _not_held(f"{where}.station", limit.station, held)
     else:

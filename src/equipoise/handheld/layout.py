@@ -23,6 +23,7 @@ from equipoise.handheld.chain import (
 from equipoise.handheld.duals import Dual, value_of
 from equipoise.handheld.model import Impedance, Station, Tool
 from equipoise.handheld.shaft import Section
+from equipoise.i18n import Note
 from equipoise.signals import Array
 
 TOUCHING = 1e-9
@@ -56,9 +57,18 @@ def check_coverage(tool: Tool, lowest: float, highest: float) -> None:
                 continue
             raise ModelError(
                 f"shaft.stations[{number}].hand.impedance",
-                f"the table{f' {table.file}' if table.file else ''} reaches from {first:.4g} Hz to "
-                f"{last:.4g} Hz, but {low:.4g} Hz to {high:.4g} Hz are asked for; measure the rest "
-                "too, or ask for speeds whose orders lie within the table",
+                Note(
+                    "{table} reaches from {first:.4g} Hz to {last:.4g} Hz, but "
+                    "{low:.4g} Hz to {high:.4g} Hz are asked for; measure the rest too, or "
+                    "ask for speeds whose orders lie within the table",
+                    table=Note("the table {file}", file=table.file)
+                    if table.file
+                    else Note("the table"),
+                    first=first,
+                    last=last,
+                    low=low,
+                    high=high,
+                ),
             )
 
 
@@ -101,8 +111,13 @@ def check_waves(tool: Tool, highest: float, most: int = MOST_SHAKEN) -> None:
         wave = 4 * min(_longest(one, highest) for *_, one in pieces)
         raise ModelError(
             "shaft",
-            f"at {highest / (2 * pi):.4g} Hz its waves are some {wave:.2g} m long, too short for "
-            f"{tool.shaft.length:.4g} m; check its length, stiffness and mass, and the speeds",
+            Note(
+                "at {highest:.4g} Hz its waves are some {wave:.2g} m long, too short for "
+                "{length:.4g} m; check its length, stiffness and mass, and the speeds",
+                highest=highest / (2 * pi),
+                wave=wave,
+                length=tool.shaft.length,
+            ),
         )
 
 
@@ -315,7 +330,9 @@ class HarmonicField:
         places = np.asarray(places, dtype=float)
         length = self.layout.tool.shaft.length
         if np.any((places < 0) | (places > length)):
-            raise UsageError(f"got a place off the shaft; give places from 0 to {length:g} m")
+            raise UsageError(
+                Note("got a place off the shaft; give places from 0 to {length:g} m", length=length)
+            )
         starts = np.array([cell.start for cell in self.layout.cells])
         which = np.clip(np.searchsorted(starts, places, "right") - 1, 0, len(starts) - 1)
         over = self.layout.part(which, places - starts[which], self.s, self.kind)

@@ -207,15 +207,15 @@ def _material(given: Mapping[str, Any]) -> Material:
             if name not in given and other in given:
                 raise ModelError(name, Note("missing; give it together with {own}", own=own[0]))
         if "density" not in given:
-            sentence = 'missing; give one such as "aluminium", or youngs_modulus and density'
+            sentence = Note('missing; give one such as "aluminium", or youngs_modulus and density')
             raise ModelError("material", sentence)
         return Material(**{name: given[name] for name in own})
     if own:
         raise ModelError(own[0], Note("has no place beside material; give one of both"))
     if given["material"] not in MATERIALS:
-        sentence = unknown(given["material"], MATERIALS, "material")
         others = Note(
-            "{sentence} (youngs_modulus and density stand for any other)", sentence=sentence
+            "{sentence} (youngs_modulus and density stand for any other)",
+            sentence=unknown(given["material"], MATERIALS, "material"),
         )
         raise ModelError("material", others)
     return MATERIALS[given["material"]]
@@ -230,7 +230,9 @@ def profile_table(profile: Section | Tube) -> dict[str, Any]:
     """
     if isinstance(profile, Section):
         if profile != profile.section("euler-bernoulli"):
-            sentence = "a file cannot tell shear_stiffness and rotary_inertia; give a Tube instead"
+            sentence = Note(
+                "a file cannot tell shear_stiffness and rotary_inertia; give a Tube instead"
+            )
             raise ModelError("", sentence)
         return {name: getattr(profile, name) for name in ("mass_per_length", "bending_stiffness")}
     name, values = profile.material

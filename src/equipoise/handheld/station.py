@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from equipoise.errors import ModelError
+from equipoise.errors import ModelError, at_place
 from equipoise.i18n import Note, to_say
 from equipoise.keys import (
     PLANES,
@@ -217,25 +217,30 @@ def _wrong_hand(where: str, hand: Hand) -> Iterator[ModelError]:
     for table in hand.impedance:
         what = _wrong_rows(table)
         if what:
-            what = f"{table.file}: {what}" if table.file else what
+            what = at_place(table.file, what) if table.file else what
             yield ModelError(f"{where}.impedance", what)
 
 
-def _wrong_rows(table: Impedance) -> str:
+def _wrong_rows(table: Impedance) -> Note | None:
     rows = len(table.frequency)
     if {rows} != {len(table.resistance), len(table.reactance)}:
-        return "the columns differ in length"
+        return Note("the columns differ in length")
     if rows < 2:
-        return "the table has fewer than two rows; a curve needs two"
+        return Note("the table has fewer than two rows; a curve needs two")
     if any(b <= a for a, b in pairwise(table.frequency)):
-        return "the frequencies must rise from row to row"
+        return Note("the frequencies must rise from row to row")
     if table.frequency[0] <= 0:
-        return f"the first frequency is {table.frequency[0]:g} Hz; give more than 0"
+        return Note(
+            "the first frequency is {frequency:g} Hz; give more than 0",
+            frequency=table.frequency[0],
+        )
     least = min(table.resistance)
     if least >= 0:
-        return ""
+        return None
     at = table.frequency[table.resistance.index(least)]
-    return (
-        f"the resistance at {at:g} Hz is {least:g} N s/m; a hand only takes energy away, give 0 or "
-        "more"
+    return Note(
+        "the resistance at {at:g} Hz is {least:g} N s/m; a hand only takes "
+        "energy away, give 0 or more",
+        at=at,
+        least=least,
     )

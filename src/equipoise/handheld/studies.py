@@ -42,7 +42,13 @@ def check_key(station: Station, key: str) -> None:
     if key not in KEYS:
         raise UsageError(unknown(key, known, Note("number of {name!r}", name=station.name)))
     if key not in known:
-        raise UsageError(f"{station.name!r} has no {key.partition('.')[0]}; give it one first")
+        raise UsageError(
+            Note(
+                "{name!r} has no {key}; give it one first",
+                name=station.name,
+                key=key.partition(".")[0],
+            )
+        )
 
 
 def has(station: Station, key: str) -> bool:
@@ -116,7 +122,9 @@ class DeterminantChart:
 def determinant_chart(tool: Tool, highest: float, count: int = 800) -> DeterminantChart:
     """The chart from 0 to a highest lambda."""
     if not highest > 0:
-        raise UsageError(f"got a highest lambda of {highest:g}; give more than 0")
+        raise UsageError(
+            Note("got a highest lambda of {highest:g}; give more than 0", highest=highest)
+        )
     parameter = np.linspace(highest / count, highest, count)
     frequency = scale_of(tool) * parameter**2
     undamped = Layout(without_damping(tool), float(frequency[-1]))

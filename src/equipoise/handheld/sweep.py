@@ -153,7 +153,9 @@ def source_of(tool: Tool) -> str:
     if tool.excitations:
         return tool.excitations[0].station
     if not tool.stations:
-        raise ModelError("shaft.stations", "there is none; add what sits on the shaft and holds it")
+        raise ModelError(
+            "shaft.stations", Note("there is none; add what sits on the shaft and holds it")
+        )
     return min(tool.stations, key=lambda one: one.position).name
 
 
@@ -398,7 +400,9 @@ def sweep_tool(tool: Tool, speed: Array, further: Sequence[float] = ()) -> ToolS
     transmissions = transmit(tool, speed) if held(tool) else None
     response = respond_tool(tool, speed) if tool.excitations else None
     if transmissions is None and response is None:
-        raise ModelError("shaft", "nothing holds the tool and nothing shakes it; add a station")
+        raise ModelError(
+            "shaft", Note("nothing holds the tool and nothing shakes it; add a station")
+        )
     found = ToolSweep(tool, np.asarray(speed), transmissions, response, tuple(further))
     if further:
         found.places(further)  # a place off the shaft is told at once

@@ -186,6 +186,16 @@ def all_of(parts: Sequence[Note | str], commas: bool = False) -> Note | str:
     return Note("{first} and {last}", first=_in_halves(template, first), last=last)
 
 
+def any_of(parts: Sequence[Note | str]) -> Note | str:
+    """Parts of a sentence with "or" between all of them."""
+    return _in_halves(to_say("{first} or {last}"), parts) if parts else ""
+
+
+def series(parts: Sequence[Note | str]) -> Note | str:
+    """Parts of a sentence with commas between all of them."""
+    return _in_halves(to_say("{first}, {last}"), parts) if parts else ""
+
+
 def _in_halves(template: str, parts: Sequence[Note | str]) -> Note | str:
     """Parts joined by a template of two, half with half, so that a thousand are ten Notes deep."""
     if len(parts) == 1:

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from typing import Any, ClassVar
 
+from equipoise.i18n import Note
+
 
 class Record:
     """What a table of a file is read to, and holds by the names of its fields."""
 
-    wanted: ClassVar[str] = "such an object"
+    wanted: ClassVar[Note] = Note("such an object")
 
     @classmethod
     def checked(cls, value: Any) -> Any:
@@ -21,7 +23,7 @@ class Record:
 class Kind:
     """What a value is: `check` takes one that Python gives, `wanted` says what it has to be."""
 
-    wanted: str
+    wanted: Note
 
     def check(self, value: Any) -> Any:
         """The value as it is kept.

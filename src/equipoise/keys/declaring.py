@@ -169,7 +169,10 @@ class Frozen(Record):
             except (TypeError, ValueError, OverflowError):
                 text = repr(value)
                 shown = text if len(text) <= 60 else f"{text[:57]}..."
-                raise ModelError(one.field, f"got {shown}; give {one.kind.wanted}") from None
+                raise ModelError(
+                    one.field,
+                    Note("got {shown}; give {wanted}", shown=shown, wanted=one.kind.wanted),
+                ) from None
             except UsageError as error:
                 raise ModelError(one.field, error.note) from None
 

@@ -41,7 +41,7 @@ class Text(Kind):
     of: Literal["", "link", "body", "point", "output"] = ""
     on: str = ""
 
-    wanted = "text"
+    wanted = Note("text")
 
     def check(self, value: Any) -> str:
         if not isinstance(value, str):
@@ -65,7 +65,7 @@ class Wording(Text):
 class Number(Kind):
     """A plain number."""
 
-    wanted = "a number"
+    wanted = Note("a number")
 
     def check(self, value: Any) -> float:
         if isinstance(value, bool) or not isinstance(value, Real):
@@ -91,7 +91,7 @@ class Whole(Kind):
     most: int = MOST_WHOLE
     names: tuple[int, ...] = ()
 
-    wanted = f"a whole number of at most {MOST_WHOLE}"
+    wanted = Note("a whole number of at most {most_whole}", most_whole=MOST_WHOLE)
 
     def check(self, value: Any) -> int:
         if isinstance(value, bool) or not isinstance(value, Integral):
@@ -106,7 +106,7 @@ class Whole(Kind):
 class Flag(Kind):
     """True or false."""
 
-    wanted = "true or false"
+    wanted = Note("true or false")
 
     def check(self, value: Any) -> bool:
         if not isinstance(value, bool):
@@ -118,7 +118,7 @@ class Flag(Kind):
 class ParameterValue(Kind):
     """A quantity of any dimension, a plain number, or an expression, as it is written."""
 
-    wanted = "text such as '33.5 mm', or a number"
+    wanted = Note("text such as '33.5 mm', or a number")
 
     def check(self, value: Any) -> str | float:
         if isinstance(value, bool) or not isinstance(value, str | Real):
@@ -136,6 +136,9 @@ class Anything(Kind):
     schema: Any = None
 
 
+_IN_QUOTES = Note("give number and unit in quotes")
+
+
 @dataclass(frozen=True)
 class Told(Number):
     """A number whose dimension something else tells; `Frozen.from_table` makes it of its text.
@@ -143,7 +146,7 @@ class Told(Number):
     right : what to give where no text is given.  schema : what the JSON Schema says of it.
     """
 
-    right: str = "give number and unit in quotes"
+    right: Note = _IN_QUOTES
     schema: Any = None
 
 
@@ -164,18 +167,18 @@ class Listing(Kind):
 
     item: Kind
     sizes: tuple[int, ...] = ()
-    right: str = ""
+    right: Note | None = None
 
     @property
-    def wanted(self) -> str:  # type: ignore[override]
+    def wanted(self) -> Note:  # type: ignore[override]
         if isinstance(self.item, Text):
-            return "a list of texts"
+            return Note("a list of texts")
         if isinstance(self.item, Listing | Point):
-            return "two points of two numbers each" if self.sizes else "rows of numbers"
+            return Note("two points of two numbers each") if self.sizes else Note("rows of numbers")
         if self.sizes == (2,):
-            whole = f"two whole numbers of at most {MOST_WHOLE}"
-            return whole if isinstance(self.item, Whole) else "two numbers"
-        return "numbers"
+            whole = Note("two whole numbers of at most {most_whole}", most_whole=MOST_WHOLE)
+            return whole if isinstance(self.item, Whole) else Note("two numbers")
+        return Note("numbers")
 
     def check(self, value: Any) -> tuple[Any, ...]:
         items = tuple(map(self.item.check, items_of(value)))
@@ -199,9 +202,9 @@ class Point(Kind):
     axes: str = ""
 
     @property
-    def wanted(self) -> str:  # type: ignore[override]
-        words = "two or three numbers" if self.space else "two numbers"
-        return f"the name of a point, or {words}" if self.named else words
+    def wanted(self) -> Note:  # type: ignore[override]
+        words = Note("two or three numbers") if self.space else Note("two numbers")
+        return Note("the name of a point, or {numbers}", numbers=words) if self.named else words
 
     def check(self, value: Any) -> Any:
         if self.named and isinstance(value, str):
@@ -217,7 +220,7 @@ class Point(Kind):
 class Direction(Kind):
     """An angle in the plane of the drawing, or a vector of three plain numbers."""
 
-    wanted = "an angle, or three numbers"
+    wanted = Note("an angle, or three numbers")
 
     def check(self, value: Any) -> float | tuple[float, ...]:
         if isinstance(value, Real | str):
@@ -238,11 +241,11 @@ class OneOr(Kind):
     item: Kind
     size: int
     repeat: bool = False
-    right: str = ""
+    right: Note | None = None
 
     @property
-    def wanted(self) -> str:  # type: ignore[override]
-        return "two numbers" if self.repeat else "numbers"
+    def wanted(self) -> Note:  # type: ignore[override]
+        return Note("two numbers") if self.repeat else Note("numbers")
 
     def check(self, value: Any) -> tuple[Any, ...]:
         items = tuple(map(self.item.check, items_of(value)))
@@ -261,8 +264,12 @@ class Planes(Kind):
     item: Kind
 
     @property
-    def wanted(self) -> str:  # type: ignore[override]
-        return "two numbers" if isinstance(self.item, Quantity) else "a list of such objects"
+    def wanted(self) -> Note:  # type: ignore[override]
+        return (
+            Note("two numbers")
+            if isinstance(self.item, Quantity)
+            else Note("a list of such objects")
+        )
 
     def check(self, value: Any) -> tuple[Any, ...]:
         items = tuple(map(self.item.check, items_of(value)))
@@ -284,9 +291,10 @@ class Named(Kind):
     by: Text = Text()
 
     @property
-    def wanted(self) -> str:  # type: ignore[override]
-        of = {Point: "two numbers", Text: "text", Table: "such objects"}
-        return f"a mapping of names to {of.get(type(self.item), 'numbers')}"
+    def wanted(self) -> Note:  # type: ignore[override]
+        of = {Point: Note("two numbers"), Text: Note("text"), Table: Note("such objects")}
+        values = of.get(type(self.item), Note("numbers"))
+        return Note("a mapping of names to {values}", values=values)
 
     def check(self, value: Any) -> Any:
         if self.listed and isinstance(value, tuple | list):
@@ -313,8 +321,8 @@ class Table(Kind):
     without: tuple[str, ...] = ()
 
     @property
-    def wanted(self) -> str:  # type: ignore[override]
-        wanted: str = self.type.wanted
+    def wanted(self) -> Note:  # type: ignore[override]
+        wanted: Note = self.type.wanted
         return wanted
 
     @property
@@ -334,7 +342,7 @@ class Tables(Kind):
     """Any number of such tables."""
 
     item: Table
-    wanted = "a list of such objects"
+    wanted = Note("a list of such objects")
 
     def check(self, value: Any) -> tuple[Any, ...]:
         return tuple(map(self.item.check, value))
@@ -349,7 +357,7 @@ class File(Kind):
 
     sort: str
     named: str = ""
-    wanted = "such an object"
+    wanted = Note("such an object")
 
     def check(self, value: Any) -> Any:
         return Record.checked(value)

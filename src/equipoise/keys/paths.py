@@ -12,6 +12,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from equipoise.errors import ModelError
+from equipoise.i18n import Note
 
 LONGEST_KEY = 60
 """Letters of a key that a message prints."""
@@ -54,8 +55,11 @@ class KeyPath(tuple[str | int, ...]):
             shown = text if len(text) <= LONGEST_KEY else f"{text[:57]}..."
             raise ModelError(
                 text,
-                f"got {shown!r}; give keys with points between, and numbers in lists from 1 in "
-                "brackets, such as links.crank.points.B.x or gears[1].ratio",
+                Note(
+                    "got {shown!r}; give keys with points between, and numbers in lists from "
+                    "1 in brackets, such as links.crank.points.B.x or gears[1].ratio",
+                    shown=shown,
+                ),
             )
         return cls(steps)
 

@@ -14,6 +14,7 @@ from math import inf, isfinite
 from typing import Any, ClassVar, Literal
 
 from equipoise.errors import UsageError, unknown
+from equipoise.i18n import Note, any_of
 from equipoise.keys.base import Kind
 from equipoise.keys.declaring import REQUIRED, Key
 from equipoise.keys.kinds import Text
@@ -165,14 +166,14 @@ class RequiredFigure:
         """What is asked by each key that a table has; None where it is not."""
         return {key: dict(self.asks).get(key) for key in RequirementKeys(table, Kind())}
 
-    def wrong_asks(self) -> Iterator[tuple[str, str]]:
+    def wrong_asks(self) -> Iterator[tuple[str, str, Note]]:
         """Keys whose values cannot be used, each with what was given and what is right."""
         for key, value in self.asks:
             choices = REQUIREMENT_KINDS[key].choices
             if choices and value not in choices:
-                yield key, f"got {value!r}; give {' or '.join(choices)}"
+                yield key, repr(value), Note("give {what}", what=any_of(choices))
             if not choices and not isfinite(value):
-                yield key, f"got {value}; give a finite number"
+                yield key, str(value), Note("give a finite number")
 
 
 def split_asks(given: Mapping[str, Any], keys: Mapping[str, Key]) -> dict[str, Any]:

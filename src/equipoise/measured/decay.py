@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.errors import UsageError
-from equipoise.i18n import say, to_say
+from equipoise.errors import UsageError, at_place
+from equipoise.i18n import Note, say, to_say
 from equipoise.measured.fits import FittedValue, WholeFit, fit_whole, line_of_swings
 from equipoise.measured.record import Kind, Record, positive
 from equipoise.measured.turning import Turns, find_turns
@@ -148,7 +148,15 @@ def identify_decay(
         An argument cannot be used, or the record has no free decay with three half-swings.
     """
     if not 0 < confidence < 1:
-        raise UsageError(f"confidence: got {confidence:g}; give a number between 0 and 1, as 0.95")
+        raise UsageError(
+            at_place(
+                "confidence",
+                Note(
+                    "got {confidence:g}; give a number between 0 and 1, as 0.95",
+                    confidence=confidence,
+                ),
+            )
+        )
     if arm is not None:
         record = record.as_angle(arm)
     stiffness = _stiffness(record.kind, stiffness, spring_arm)
@@ -176,10 +184,13 @@ def _stiffness(kind: Kind, stiffness: float | None, spring_arm: float | None) ->
         return stiffness
     spring_arm = positive("spring_arm", spring_arm)
     if stiffness is None:
-        raise UsageError("spring_arm: belongs to a stiffness; give both")
+        raise UsageError(at_place("spring_arm", Note("belongs to a stiffness; give both")))
     if kind == "length":
         raise UsageError(
-            "spring_arm: belongs to a record of angles; give arm too, or leave spring_arm out"
+            at_place(
+                "spring_arm",
+                Note("belongs to a record of angles; give arm too, or leave spring_arm out"),
+            )
         )
     return stiffness * spring_arm**2
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from equipoise.decompositions import pinv
 from equipoise.errors import UsageError
+from equipoise.i18n import Note
 from equipoise.measured.record import Kind, Record, Swinging, reaches
 from equipoise.measured.turning import Turns
 from equipoise.signals import Array
@@ -277,7 +278,9 @@ def fit_whole(record: Record, turns: Turns, line: Constants, confidence: float) 
     done = min((one for one in tried if one.success), key=lambda one: one.cost, default=tried[0])
     found = motion(done.x)
     if not done.success or not found.damped > 0:
-        raise UsageError("no damped vibration fits the whole record; give a record of a free decay")
+        raise UsageError(
+            Note("no damped vibration fits the whole record; give a record of a free decay")
+        )
     residual = scale * done.fun
     correlated = _correlated(residual)
     free = len(time) / correlated - UNKNOWNS

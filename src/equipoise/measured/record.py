@@ -17,7 +17,8 @@ from typing import Any, Literal
 
 import numpy as np
 
-from equipoise.errors import UsageError
+from equipoise.errors import UsageError, at_place
+from equipoise.i18n import Note
 from equipoise.signals import Array
 
 LARGEST_SWING = 1.0
@@ -50,19 +51,31 @@ class Record:
 
     def __post_init__(self) -> None:
         if self.kind not in ("length", "angle"):
-            raise UsageError(f'kind: got {self.kind!r}; give "length" or "angle"')
+            raise UsageError(
+                at_place("kind", Note('got {kind!r}; give "length" or "angle"', kind=self.kind))
+            )
         for name in ("time", "displacement"):
             object.__setattr__(self, name, _column(name, getattr(self, name)))
         count, moved = len(self.time), len(self.displacement)
         if count != moved:
-            raise UsageError(f"got {count} times and {moved} displacements; give as many of both")
+            raise UsageError(
+                Note(
+                    "got {count} times and {moved} displacements; give as many of both",
+                    count=count,
+                    moved=moved,
+                )
+            )
         if count < LEAST_SAMPLES:
             raise UsageError(
-                f"got {count} samples; give at least {LEAST_SAMPLES}, over three half-swings or "
-                "more"
+                Note(
+                    "got {count} samples; give at least {least_samples}, over three "
+                    "half-swings or more",
+                    count=count,
+                    least_samples=LEAST_SAMPLES,
+                )
             )
         if not np.all(np.diff(self.time) > 0):
-            raise UsageError("time: the times must rise from sample to sample")
+            raise UsageError(at_place("time", Note("the times must rise from sample to sample")))
 
     @property
     def unit(self) -> str:
@@ -82,13 +95,25 @@ class Record:
         UsageError : the record is one of angles, or the arm is not positive.
         """
         if self.kind == "angle":
-            raise UsageError("arm: the record is one of angles, which need no arm; leave it out")
+            raise UsageError(
+                at_place(
+                    "arm", Note("the record is one of angles, which need no arm; leave it out")
+                )
+            )
         angle = self.displacement / positive("arm", arm)
         swing = float(np.ptp(angle)) / 2
         if swing > LARGEST_SWING:
             raise UsageError(
-                f"arm: got {arm:g} m, by which the record swings {np.degrees(swing):.3g} deg to "
-                "either side; that is no small angle, give the distance from the pivot to the gauge"
+                at_place(
+                    "arm",
+                    Note(
+                        "got {arm:g} m, by which the record swings {degrees:.3g} deg to either "
+                        "side; that is no small angle, give the distance from the pivot to the "
+                        "gauge",
+                        arm=arm,
+                        degrees=np.degrees(swing),
+                    ),
+                )
             )
         return Record(self.time, angle, "angle")
 
@@ -96,9 +121,9 @@ class Record:
 def positive(name: str, value: float) -> float:
     """The value, which has to be a finite number above 0."""
     if isinstance(value, bool) or not isinstance(value, int | float | np.number):
-        raise UsageError(f"{name}: got {value!r}; give a number above 0")
+        raise UsageError(at_place(name, Note("got {value!r}; give a number above 0", value=value)))
     if not (isfinite(value) and value > 0):
-        raise UsageError(f"{name}: got {value:g}; give a number above 0")
+        raise UsageError(at_place(name, Note("got {value:g}; give a number above 0", value=value)))
     return float(value)
 
 
@@ -106,11 +131,15 @@ def _column(name: str, values: Any) -> Array:
     try:
         column: Array = np.array(values, dtype=float)
     except (TypeError, ValueError):
-        raise UsageError(f"{name}: got {type(values).__name__}; give a row of numbers") from None
+        raise UsageError(
+            at_place(name, Note("got {kind}; give a row of numbers", kind=type(values).__name__))
+        ) from None
     if column.ndim != 1:
-        raise UsageError(f"{name}: got {column.ndim} dimensions; give one row of numbers")
+        raise UsageError(
+            at_place(name, Note("got {ndim} dimensions; give one row of numbers", ndim=column.ndim))
+        )
     if not np.all(np.isfinite(column)):
-        raise UsageError(f"{name}: a value is not finite; leave such samples out")
+        raise UsageError(at_place(name, Note("a value is not finite; leave such samples out")))
     column.flags.writeable = False
     return column
 
@@ -211,10 +240,15 @@ def simulate_decay(
     """
     positive("natural_frequency", natural_frequency)
     if not 0 <= damping_ratio < 1:
-        raise UsageError(f"damping_ratio: got {damping_ratio:g}; give 0 to below 1")
+        raise UsageError(
+            at_place(
+                "damping_ratio",
+                Note("got {damping_ratio:g}; give 0 to below 1", damping_ratio=damping_ratio),
+            )
+        )
     for name, value in (("coulomb", coulomb), ("noise", noise)):
         if not value >= 0:
-            raise UsageError(f"{name}: got {value:g}; give 0 or more")
+            raise UsageError(at_place(name, Note("got {value:g}; give 0 or more", value=value)))
     still = Record(time, np.zeros(np.shape(time)), kind)
     rate = damping_ratio * natural_frequency
     damped = natural_frequency * sqrt(1 - damping_ratio**2)

@@ -15,6 +15,7 @@ import numpy as np
 
 from equipoise.decompositions import lstsq
 from equipoise.errors import UsageError
+from equipoise.i18n import Note
 from equipoise.measured.record import Record
 from equipoise.measured.smoothing import Local, Samples, fitted, means, steepest_time, top, zigzag
 from equipoise.signals import Array
@@ -77,7 +78,7 @@ def find_turns(record: Record) -> Turns:
     """
     whole = Samples(record.time, record.displacement)
     if np.ptp(whole.values) <= 1e-9 * np.max(np.abs(whole.values)):
-        raise UsageError("the displacement does not change; give a record of a free decay")
+        raise UsageError(Note("the displacement does not change; give a record of a free decay"))
     half = _half_swing(whole)
     places = _seen([top(whole, at, half) for at in _swings(whole, half)])
     half, places = _even(whole, places)
@@ -140,8 +141,12 @@ def _first(times: Array, size: Array) -> float:
 
 def _too_few(count: int) -> UsageError:
     return UsageError(
-        f"found {max(count, 0)} of at least {NEEDED} free half-swings above the noise, each from a "
-        "peak to a valley or back; give a longer or a clearer record"
+        Note(
+            "found {count} of at least {needed} free half-swings above the noise, "
+            "each from a peak to a valley or back; give a longer or a clearer record",
+            count=max(count, 0),
+            needed=NEEDED,
+        )
     )
 
 
@@ -167,8 +172,13 @@ def _half_swing(whole: Samples) -> float:
     samples = half / float(np.median(np.diff(time)))
     if samples < PER_HALF_SWING:
         raise UsageError(
-            f"the largest swings take about {samples:.0f} samples each; take {PER_HALF_SWING} or "
-            "more in a half-swing, and swings that stand out of the noise"
+            Note(
+                "the largest swings take about {samples:.0f} samples each; take "
+                "{per_half_swing} or more in a half-swing, and swings that stand out of "
+                "the noise",
+                samples=samples,
+                per_half_swing=PER_HALF_SWING,
+            )
         )
     return half
 
@@ -214,8 +224,10 @@ def _swings(whole: Samples, half: float) -> list[float]:
     if kept < 2:
         if first >= 2 and not _uneven(rough.time[turns[1:]], half).any():
             raise UsageError(
-                "the swings grow from the first to the last; give a record of a decay, in which "
-                "they become smaller"
+                Note(
+                    "the swings grow from the first to the last; give a record of a decay, "
+                    "in which they become smaller"
+                )
             )
         raise _too_few(len(turns))
     return [float(at) for at in places[:kept]]

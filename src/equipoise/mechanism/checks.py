@@ -79,8 +79,13 @@ def check_kept(where: str, old: Iterable[str], new: Any) -> None:
     """Refuse points that leave some of the old ones out, which nobody would notice."""
     lost = [one for one in old if one not in new] if new and isinstance(new, Mapping) else ()
     if lost:
-        all_of_them = "give all points, or move one by with_point"
-        raise ModelError(where, f"{', '.join(lost)} would be lost; {all_of_them}")
+        raise ModelError(
+            where,
+            Note(
+                "{names} would be lost; give all points, or move one by with_point",
+                names=", ".join(lost),
+            ),
+        )
 
 
 def numbered(key: str, items: Sequence[Any]) -> Iterator[tuple[str, Any]]:

@@ -11,7 +11,8 @@ import numpy as np
 from equipoise.design.lifts import Lift, joined, lifts_of, usual, with_lifts
 from equipoise.design.spreads import Range
 from equipoise.design.variables import Variable
-from equipoise.errors import UsageError
+from equipoise.errors import UsageError, at_place
+from equipoise.i18n import Note
 from equipoise.mechanism.parts.machine import Machine, unknown
 from equipoise.planting.twins import kept_alike, twins_of
 from equipoise.signals import Array
@@ -39,13 +40,15 @@ class Designs:
         known = {one.name: one for one in lifts_of(machine)}
         names = [name for name in known if usual(name)] if vary is None else list(vary)
         if not names:
-            raise UsageError("vary: names nothing; name at least one number, or leave it out")
+            raise UsageError(
+                at_place("vary", Note("names nothing; name at least one number, or leave it out"))
+            )
         self.lifts: list[Lift] = []
         self.ranges: list[Range] = []
         for name in names:
             one = known.get(name) or joined(machine, name)
             if one is None:
-                raise UsageError(f"vary.{name}: {unknown(name, known, 'number to vary')}")
+                raise UsageError(at_place(f"vary.{name}", unknown(name, known, "number to vary")))
             self.lifts.append(one)
             self.ranges.append(_range(one, *((one.low, one.high) if vary is None else vary[name])))
         self.twins = [
@@ -94,8 +97,8 @@ class Designs:
 
 def _range(lift: Lift, low: float, high: float) -> Range:
     if lift.dimension == "length" and lift.name.count(".") == 0 and low <= 0 and low < high:
-        raise UsageError(f"vary.{lift.name}: a length must stay above 0")
+        raise UsageError(at_place(f"vary.{lift.name}", Note("a length must stay above 0")))
     try:
         return Range(low, high)
     except UsageError as error:
-        raise UsageError(f"vary.{lift.name}: {error}") from error
+        raise UsageError(at_place(f"vary.{lift.name}", error.note)) from error

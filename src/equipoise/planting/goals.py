@@ -41,7 +41,9 @@ LIMITS = 1e3
 def check_asks(goal: Requirement) -> None:
     """A search can do nothing with a figure that is only to be reported: `UsageError`."""
     if goal.is_fact:
-        raise UsageError(f"{goal.figure}: give at least one of target, at_least, at_most and make")
+        raise UsageError(
+            at_place(goal.figure, Note("give at least one of target, at_least, at_most and make"))
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,11 +101,11 @@ class PlantingProblem(DesignProblem):
         self.designs, self.goals = designs, tuple(goals)
         self.judged = 0
         if not self.goals:
-            raise UsageError("goals: there is none; give at least one")
+            raise UsageError(at_place("goals", Note("there is none; give at least one")))
         known, self.turns = _figures([designs.machine]), assemble(designs.machine).cycle.turns
         for goal in goals:
             if goal.figure not in known:
-                raise UsageError(f"goals: {unknown(goal.figure, known, 'figure')}")
+                raise UsageError(at_place("goals", unknown(goal.figure, known, "figure")))
             check_asks(goal)
         self.scales = [
             goal.scale(float(known[goal.figure][0]), dimension_of(goal.figure)) for goal in goals

@@ -17,6 +17,7 @@ import numpy as np
 from equipoise.design.requirements import Requirement
 from equipoise.design.solvers import DesignSolution, solve
 from equipoise.errors import EquipoiseError, UsageError
+from equipoise.i18n import Note
 from equipoise.mechanism.assembly.family import Family
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.parts.machine import Machine
@@ -201,12 +202,14 @@ def _fit(problem: PlantingProblem) -> Fit:
 def _check(machine: Machine, seed: int, generations: int, population: int) -> None:
     if Family([assemble(machine)]).steps is None:
         raise UsageError(
-            "the search varies linkages of dyads, and gears driven by the crank or the frame; this "
-            "one has gears on other links, or a group of loops"
+            Note(
+                "the search varies linkages of dyads, and gears driven by the crank or "
+                "the frame; this one has gears on other links, or a group of loops"
+            )
         )
     if seed < 0 or generations < 1 or population < SMALLEST_POPULATION:
         raise UsageError(
-            "give a seed of 0 or more, 1 generation or more and a population of 5 or more"
+            Note("give a seed of 0 or more, 1 generation or more and a population of 5 or more")
         )
 
 
@@ -347,6 +350,9 @@ def _best(problem: PlantingProblem, candidates: Array) -> tuple[Array, PlantingF
         if after is not None and all(after.get(goal.figure) is not None for goal in problem.goals):
             return candidates[k], after
     raise UsageError(
-        "no design was found that turns fully, reaches the soil and has every figure asked for; "
-        "widen the limits of [vary], or start from another machine"
+        Note(
+            "no design was found that turns fully, reaches the soil and has every "
+            "figure asked for; widen the limits of [vary], or start from another "
+            "machine"
+        )
     )

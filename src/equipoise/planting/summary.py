@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from equipoise.errors import ModelError, UsageError
+from equipoise.errors import ModelError, UsageError, at_place
 from equipoise.i18n import Note
 from equipoise.mechanism.checks import NamedItems
 from equipoise.mechanism.dynamics.forces import Forces, forces, massless
@@ -246,7 +246,7 @@ def plant(machine: Machine, speed: float | str | None = None) -> PlantingFigures
         machine = machine.with_drive(speed=speed)
     curve = TipCurve([machine])
     if machine.drive.speed == 0:
-        raise ModelError("drive.speed", "got 0; give the speed at which the crank turns")
+        raise ModelError("drive.speed", Note("got 0; give the speed at which the crank turns"))
     first, *further = map(_read_off, curve.arms)
     known = dict(first.figures)
     known |= {name: float(value[0]) for name, value in hills(curve).items() if isfinite(value[0])}
@@ -376,7 +376,16 @@ def table(figures: PlantingFigures, angles: int = 360) -> list[tuple[str, str, A
     """
     turns = figures.curve.turns
     if not 1 <= angles <= MOST_ANGLES // turns:
-        raise UsageError(f"--angles: got {angles}; give 1 to {MOST_ANGLES // turns}")
+        raise UsageError(
+            at_place(
+                "--angles",
+                Note(
+                    "got {angles}; give 1 to {most_angles}",
+                    angles=angles,
+                    most_angles=MOST_ANGLES // turns,
+                ),
+            )
+        )
     speed, forward = figures["speed"], figures["forward_speed"]
     way = np.arange(angles * turns) * (2 * pi / angles)
     motion = move(figures.machine, np.sign(speed) * way)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from equipoise.codegen.backends import engine, processors
 from equipoise.codegen.figures import COMPUTED, REASONS
 from equipoise.errors import lacking
+from equipoise.i18n import Note
 from equipoise.quantities.numbers import rate_told, time_told
 from equipoise.results.blocks import Block, Cell, Listing, Notes, Table, Text
 from equipoise.signals import Array
@@ -47,8 +48,8 @@ def study_blocks(study: Study, units: Units, file: str) -> Iterator[Block]:
     yield Text(f"computed {HOW[engine()] if compiled else SLOW}")
     yield from map(Text, _times(study, compute))
     if outcome.reason[0] != COMPUTED:
-        reason = REASONS[int(outcome.reason[0])]
-        yield Notes((f"the model itself has no figures ({reason})",))
+        reason = Note(REASONS[int(outcome.reason[0])])
+        yield Notes((Note("the model itself has no figures ({reason})", reason=reason),))
     yield Listing("", "\n".join(_ready(study, file)))
 
 

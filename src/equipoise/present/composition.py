@@ -10,7 +10,7 @@ from typing import Any
 import equipoise
 from equipoise.balancing.blocks import outcome_blocks
 from equipoise.balancing.outcome import nothing_told
-from equipoise.errors import UsageError
+from equipoise.errors import UsageError, at_place
 from equipoise.handheld import blocks as of_tools
 from equipoise.handheld.hand_blocks import design_blocks, exposure_of_tool
 from equipoise.handheld.model import Tool
@@ -307,7 +307,9 @@ def kind_of(out: str | os.PathLike[str]) -> str:
     """What a report becomes, by the end of its name: ``html`` or ``pdf``."""
     _, end = os.path.splitext(out)
     if end.lower() not in KINDS:
-        raise UsageError(f"got {os.fspath(out)!r}; give a name that ends in .html or .pdf")
+        raise UsageError(
+            Note("got {fspath!r}; give a name that ends in .html or .pdf", fspath=os.fspath(out))
+        )
     return KINDS[end.lower()]
 
 
@@ -337,7 +339,9 @@ def report(
     """
     check(outs, language)
     if not outs:
-        raise UsageError("report: no file is named; give one such as 'report.html'")
+        raise UsageError(
+            at_place("report", Note("no file is named; give one such as 'report.html'"))
+        )
     found = find(model, speed=speed)
     write_document(build(found, language, command, together=True), outs)
 
@@ -361,7 +365,16 @@ def report_page(found: Findings | ToolFindings, language: str = "en", command: s
 def check(outs: Iterable[str | os.PathLike[str]], language: str) -> None:
     """Tell what is wrong with these names, or missing, before anything is computed."""
     if language not in LANGUAGES:
-        raise UsageError(f"language: got {language!r}; give one of {', '.join(LANGUAGES)}")
+        raise UsageError(
+            at_place(
+                "language",
+                Note(
+                    "got {language!r}; give one of {names}",
+                    language=language,
+                    names=", ".join(LANGUAGES),
+                ),
+            )
+        )
     if "pdf" in {kind_of(out) for out in outs}:
         check_pdf(language)
 

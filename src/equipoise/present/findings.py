@@ -39,7 +39,7 @@ class _Found:
     told: ClassVar[tuple[str, ...]]
     """Parts that ask for all others."""
 
-    failed: dict[str, Note | str] = field(default_factory=dict, init=False, repr=False)
+    failed: dict[str, Note] = field(default_factory=dict, init=False, repr=False)
 
     @property
     def owner(self) -> Machine | Tool:
@@ -286,7 +286,9 @@ def _at_speed(tool: Tool, speed: float | None) -> Tool:
     if speed is None:
         return tool
     if tool.operation is None:
-        raise UsageError("the tool tells no speed of its engine; add the table [operation]")
+        raise UsageError(Note("the tool tells no speed of its engine; add the table [operation]"))
     if not speed > 0:
-        raise UsageError(f"got {speed:g} rad/s for the speed of the engine; give more than 0")
+        raise UsageError(
+            Note("got {speed:g} rad/s for the speed of the engine; give more than 0", speed=speed)
+        )
     return replace(tool, operation=replace(tool.operation, speed=speed))

@@ -6,7 +6,7 @@ from functools import cache
 from typing import TYPE_CHECKING
 
 from equipoise.errors import EquipoiseError, UsageError
-from equipoise.i18n import LANGUAGES
+from equipoise.i18n import LANGUAGES, Note
 
 if TYPE_CHECKING:
     import typst
@@ -21,7 +21,7 @@ MORE_EASTERN = {
     "ja": ("Meiryo", "MS Gothic", "IPAexGothic", "IPAGothic", "TakaoGothic", "VL Gothic"),
     "ko": ("NanumGothic", "Nanum Gothic", "UnDotum", "Baekmuk Dotum", "Source Han Sans K"),
 }
-NO_TYPST = 'a PDF needs Typst; install it by: pip install "equipoise[report]"'
+NO_TYPST = Note('a PDF needs Typst; install it by: pip install "equipoise[report]"')
 LAST_WESTERN = "\u2e7f"
 """Signs after it are letters of East Asia, which not every computer has."""
 
@@ -50,9 +50,13 @@ def families(language: str) -> list[str]:
     eastern = {code: [name for name in names if name in there] for code, names in wanted.items()}
     if language in eastern and not eastern[language]:
         raise UsageError(
-            f"this computer has no font with {LANGUAGES[language]} letters, so that a PDF would "
-            f"show boxes; install one, such as {EASTERN[language][0]} (fonts-noto-cjk), or write "
-            "the report as .html"
+            Note(
+                "this computer has no font with {languages} letters, so that a PDF would "
+                "show boxes; install one, such as {eastern} (fonts-noto-cjk), or write "
+                "the report as .html",
+                languages=LANGUAGES[language],
+                eastern=EASTERN[language][0],
+            )
         )
     order = sorted(eastern, key=lambda code: code != language)
     return [LATIN, *(name for code in order for name in eastern[code])]

@@ -20,7 +20,7 @@ from markupsafe import Markup
 
 import equipoise
 from equipoise.errors import EquipoiseError
-from equipoise.i18n import say, speaking, spoken
+from equipoise.i18n import Note, say, speaking, spoken
 from equipoise.present.cells import Grid, Head, Text, grid, noted, printed, sign_of
 from equipoise.present.colors import colored, colors
 from equipoise.present.fonts import boxes, check_pdf, families, installed
@@ -293,7 +293,9 @@ def pdf(document: ReportDocument) -> bytes:
             _source(document).encode(), font_paths=installed(), format="pdf", timestamp=0
         )
     except typst.TypstError as error:
-        raise EquipoiseError(f"the PDF could not be set ({error})") from error
+        raise EquipoiseError(
+            Note("the PDF could not be set ({error})", error=str(error))
+        ) from error
     assert isinstance(made, bytes)
     return made
 

@@ -9,7 +9,7 @@ from equipoise.balancing.compared import WORSE
 from equipoise.balancing.outcome import good_already, helps_told
 from equipoise.balancing.told import capital, listed, worse_told
 from equipoise.errors import UsageError
-from equipoise.i18n import say, to_say
+from equipoise.i18n import Note, say, to_say
 from equipoise.mechanism.outputs.spoken import joint_named, named
 from equipoise.planting.summary import PlantingFigures
 from equipoise.present.findings import Findings
@@ -251,7 +251,9 @@ def _parts(shares: Mapping[str, float]) -> str:
 def check_whole_cycle(found: Findings) -> None:
     """A report shows whole turns."""
     if not found.analysis.motion.whole_cycle:
-        raise UsageError("a report needs crank angles over the whole cycle; give a number of them")
+        raise UsageError(
+            Note("a report needs crank angles over the whole cycle; give a number of them")
+        )
 
 
 def vibration_told(found: Findings) -> Iterator[str]:

@@ -44,14 +44,13 @@ class Measured:
         return f"{in_unit(unit).factor * self.value:g} {unit}"
 
 
-def with_measured(sentence: Note | str, change: Callable[[Measured], Any]) -> Note | str:
-    """A sentence with other values for the quantities in it; plain English stays as it is."""
-    if not isinstance(sentence, Note):
-        return sentence
+def with_measured(sentence: Note, change: Callable[[Measured], Any]) -> Note:
+    """A sentence with other values for the quantities in it."""
+
     return sentence.with_values(lambda one: change(one) if isinstance(one, Measured) else one)
 
 
-def as_written(sentence: Note | str, texts: Iterable[str]) -> Note | str:
+def as_written(sentence: Note, texts: Iterable[str]) -> Note:
     """A sentence with each quantity as it was written, and what else is of its dimension, such as
     a limit, in the unit of the first of those.
 

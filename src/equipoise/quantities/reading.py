@@ -127,7 +127,7 @@ def _quoted(text: str) -> str:
     return repr(_shown(text))
 
 
-def too_far(text: str) -> str:
+def too_far(text: str) -> Note:
     """Complain of an impossible size."""
     return Note("got {text}, which no machine can have; give a usual size", text=_quoted(text))
 
@@ -186,7 +186,7 @@ TOPIC = "a-unit-is-missing-or-wrong"
 """What `equipoise explain` knows about quantities that cannot be read."""
 
 
-def wrong_text(text: str, dimension: Dimension) -> str:
+def wrong_text(text: str, dimension: Dimension) -> Note:
     """Complain of a text outside the grammar of its dimension."""
     return got(_quoted(text), _right(text, dimension)).about(TOPIC)
 

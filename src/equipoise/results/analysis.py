@@ -86,7 +86,9 @@ class Analysis(Result):
     def forces(self) -> Forces:
         """Forces; raises `MassError` where masses are missing."""
         if self.solved is None:
-            raise MassError(massless(self.machine))
+            missing = massless(self.machine)
+            assert missing is not None
+            raise MassError(missing)
         return self.solved
 
     @cached_property
@@ -246,12 +248,18 @@ class Analysis(Result):
         """
         _ = self.forces
         if not self.motion.whole_cycle:
-            raise UsageError("orders need crank angles over the whole cycle; give a number of them")
+            raise UsageError(
+                Note("orders need crank angles over the whole cycle; give a number of them")
+            )
         in_a_turn = len(self.crank_angle) // self.motion.turns
         if in_a_turn < LEAST_ANGLES:
             raise UsageError(
-                f"got {in_a_turn} crank angles in a turn; orders need {LEAST_ANGLES} and more, or "
-                "high ones are taken for low ones"
+                Note(
+                    "got {in_a_turn} crank angles in a turn; orders need {least_angles} and "
+                    "more, or high ones are taken for low ones",
+                    in_a_turn=in_a_turn,
+                    least_angles=LEAST_ANGLES,
+                )
             )
         return NamedItems("output", ((one.name, one.periodic) for one in self.outputs.ordered))
 

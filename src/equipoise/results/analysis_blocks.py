@@ -56,7 +56,9 @@ def analysis_blocks(analysis: Analysis) -> Iterator[Block]:
     yield from cam_blocks(analysis)
     yield from elements_tables(analysis)
     if analysis.solved is None:
-        yield Notes((massless(machine), *questions(analysis.motion.linkage)))
+        missing = massless(machine)
+        assert missing is not None
+        yield Notes((missing, *questions(analysis.motion.linkage)))
         return
     yield from force_blocks(analysis)
     yield from joint_blocks(analysis)

@@ -12,6 +12,7 @@ import numpy as np
 
 from equipoise.displays import Displayed, room
 from equipoise.errors import UsageError
+from equipoise.i18n import Note
 from equipoise.quantities import column_heading
 from equipoise.results.declaring import Declarations, columns_of, figures_of, values_of
 from equipoise.results.own_words import in_own_words
@@ -183,7 +184,9 @@ class Result(Displayed):
         UsageError : a result of its kind has no pictures.
         """
         if not self.pictures_in:
-            raise UsageError(f"there are no pictures of {type(self).__name__}; show its blocks")
+            raise UsageError(
+                Note("there are no pictures of {kind}; show its blocks", kind=type(self).__name__)
+            )
         drawn: Mapping[str, Chart] = _function(self.pictures_in)(self)
         return drawn
 

@@ -11,7 +11,8 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from equipoise.errors import UsageError
+from equipoise.errors import UsageError, at_place
+from equipoise.i18n import Note
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.run_plans import MOST_TURNS, RunPlan
 from equipoise.quantities import Dimension, in_si
@@ -245,6 +246,21 @@ class Run(Result):
         }
 
 
+def _positive(name: str, value: float | str | None) -> float:
+    """The size of a limit of a run, in SI units; endless where none is given."""
+    dimensions: dict[str, Dimension] = {"duration": "time", "off": "time"}
+    number = in_si(value, dimensions[name], name) if name in dimensions else value
+    if number is not None and not 0 < float(number) < inf:
+        raise UsageError(
+            Note(
+                "got {value!r} for {name}; give a finite number of more than 0",
+                value=value,
+                name=name,
+            )
+        )
+    return inf if number is None else float(number)
+
+
 def run(
     machine: Machine,
     duration: float | str | None = None,
@@ -293,25 +309,33 @@ def run(
     speed = plan.speed if speed is None else speed
     angle = plan.angle if angle is None else angle
     positive = {"duration": duration, "turns": turns, "off": off, "off_turns": off_turns}
-    dimensions: dict[str, Dimension] = {"duration": "time", "off": "time"}
-    sizes = {}
-    for name, value in positive.items():
-        number = in_si(value, dimensions[name], name) if name in dimensions else value
-        if number is not None and not 0 < float(number) < inf:
-            raise UsageError(f"got {value!r} for {name}; give a finite number of more than 0")
-        sizes[name] = inf if number is None else float(number)
+    sizes = {name: _positive(name, value) for name, value in positive.items()}
     if turns is not None and turns > MOST_TURNS:
-        raise UsageError(f"got {turns!r} for turns; give at most {MOST_TURNS}")
+        raise UsageError(
+            Note(
+                "got {turns!r} for turns; give at most {most_turns}",
+                turns=turns,
+                most_turns=MOST_TURNS,
+            )
+        )
     switched_off = off is not None or off_turns is not None
     if switched_off and machine.drive.motor is None:
-        raise UsageError("drive.motor: missing; without a motor there is nothing to switch off")
+        raise UsageError(
+            at_place("drive.motor", Note("missing; without a motor there is nothing to switch off"))
+        )
     first = 0.0 if machine.drive.motor is not None else machine.drive.speed
     start = [
         first if speed is None else in_si(speed, "angular speed", "speed"),
         in_si(angle, "angle", "angle"),
     ]
     if not np.all(np.isfinite(start)):
-        raise UsageError(f"got {speed!r} and {angle!r} for speed and angle; give finite numbers")
+        raise UsageError(
+            Note(
+                "got {speed!r} and {angle!r} for speed and angle; give finite numbers",
+                speed=speed,
+                angle=angle,
+            )
+        )
     free = min(sizes["duration"], sizes["turns"]) == inf
     limits = Limits(
         sizes["duration"],

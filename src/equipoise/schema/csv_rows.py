@@ -13,23 +13,34 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
 
-from equipoise.errors import ModelError
+from equipoise.errors import ModelError, at_place
+from equipoise.i18n import Note, all_of
 from equipoise.quantities.reading import DECIMAL_COMMA, readings
 
 Row = tuple[int, list[str]]
 """The number of a line, and the cells of its row."""
 
 COMMENTS = ("#", "%", "//")
-SEPARATORS = {"\t": "tabs", ";": "semicolons", ",": "commas"}
+SEPARATORS = {"\t": Note("tabs"), ";": Note("semicolons"), ",": Note("commas")}
 _ASIDE = re.compile(r'\[[^\]]*\]|"[^"]*"')
 """Units and quoted texts of a header, whose signs separate nothing."""
 _BEGINS = re.compile(r"[+-]?[.,]?[0-9]")
 _NUMBER = re.compile(r"[-+0-9.,eE]+")
 
 
-def wrong(line: int, what: str, column: str = "") -> ModelError:
+def line_of(line: int, column: str = "") -> Note:
+    """The place of a line, or of one of its columns."""
+    if column:
+        return Note("line {line}, column {column}", line=line, column=column)
+    return Note("line {line}", line=line)
+
+
+def wrong(line: int, what: Note, column: str = "") -> ModelError:
     """The error of a line, or of one of its columns."""
-    return ModelError("", f"line {line}{column and f', column {column}'}: {what}")
+    return ModelError(
+        "",
+        at_place(line_of(line, column), what),
+    )
 
 
 def rows_of(text: str, columns: Mapping[str, str] | None = None) -> Iterator[Row]:
@@ -80,8 +91,10 @@ def _separator(line: int, header: str) -> str:
     bare = _ASIDE.sub("", header)
     found = [separator for separator in SEPARATORS if separator in bare]
     if len(found) > 1:
-        both = " and ".join(SEPARATORS[separator] for separator in found)
-        raise wrong(line, f"the header has {both} between its columns; keep to one of them")
+        both = all_of([SEPARATORS[separator] for separator in found])
+        raise wrong(
+            line, Note("the header has {both} between its columns; keep to one of them", both=both)
+        )
     return found[0] if found else ","
 
 
@@ -98,7 +111,11 @@ def _separated(text: str, at: int, header: str, separator: str) -> Iterator[Row]
             if any(cells):
                 yield reader.line_num, cells
     except csv.Error as error:
-        what = f"this is no table of values with {SEPARATORS[separator]} between them ({error})"
+        what = Note(
+            "this is no table of values with {separators} between them ({error})",
+            separators=SEPARATORS[separator],
+            error=str(error),
+        )
         raise wrong(reader.line_num, what) from error
 
 
@@ -122,12 +139,14 @@ def _pointed(cell: str) -> str:
 def check_width(line: int, row: list[str], columns: int) -> None:
     """A row has as many values as the header."""
     if len(row) != columns:
-        hint = "; decimal commas need semicolons between values"
-        raise wrong(
-            line,
-            f"got {len(row)} values; the header has {columns} columns"
-            f"{hint if columns < len(row) <= 2 * columns else ''}",
+        what = Note(
+            "got {count} values; the header has {columns} columns",
+            count=len(row),
+            columns=columns,
         )
+        if columns < len(row) <= 2 * columns:
+            what = Note("{sentence}; decimal commas need semicolons between values", sentence=what)
+        raise wrong(line, what)
 
 
 _quotes = ContextVar("_quotes", default=True)

@@ -188,7 +188,11 @@ def _set(above: Any, place: KeyPath, entry: Content, name: str | None) -> None:
     if isinstance(above, list):
         assert isinstance(step, int)
         if step > len(above):
-            number = f"there are {len(above)} entries; the next has the number {len(above) + 1}"
+            number = Note(
+                "there are {count} entries; the next has the number {following}",
+                count=len(above),
+                following=len(above) + 1,
+            )
             raise ModelError(place.shown, number)
         above[step : step + 1] = [entry]
         return

@@ -12,8 +12,9 @@ from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from equipoise.errors import UsageError
+from equipoise.errors import UsageError, at_place
 from equipoise.fence import OutsideError, holding, may_be_replaced, open_file
+from equipoise.i18n import Note
 from equipoise.partial import made, replaced
 from equipoise.quantities import column_heading
 
@@ -25,7 +26,11 @@ LARGEST = 2_000_000
 
 
 class FileError(Exception):
-    """A file cannot be read or written; `str(problem)` says why and what would be right."""
+    """A file cannot be read or written; `note` says why and what would be right."""
+
+    def __init__(self, note: Note) -> None:
+        super().__init__(note)
+        self.note = note
 
 
 Name = str | os.PathLike[str]
@@ -48,7 +53,7 @@ def read_text(path: Name, largest: int = LARGEST, *, within: Name | None = None)
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
         raise FileError(
-            f"line {line} is not text in UTF-8; give a text file saved as UTF-8"
+            Note("line {line} is not text in UTF-8; give a text file saved as UTF-8", line=line)
         ) from error
 
 
@@ -57,27 +62,33 @@ def read_bytes(path: Name, largest: int = LARGEST, *, within: Name | None = None
     try:
         return _bytes(open_file(path, within), largest)
     except OutsideError as error:
-        raise FileError(str(error)) from error
+        raise FileError(error.note) from error
     except FileNotFoundError as error:
-        raise FileError("there is no such file") from error
+        raise FileError(Note("there is no such file")) from error
     except PermissionError as error:
-        raise FileError("the file may not be read; change its permissions") from error
+        raise FileError(Note("the file may not be read; change its permissions")) from error
     except (OSError, ValueError) as error:  # ValueError: a path with a null character
-        raise FileError(f"the file cannot be read ({reason(error)})") from error
+        raise FileError(Note("the file cannot be read ({reason})", reason=reason(error))) from error
 
 
 def _bytes(descriptor: int, largest: int) -> bytes:
     if stat.S_ISDIR(os.fstat(descriptor).st_mode):  # Python would refuse it, and leave it open
         os.close(descriptor)
-        raise FileError("this is a directory; give a file")
+        raise FileError(Note("this is a directory; give a file"))
     with open(descriptor, "rb") as file:
         status = os.fstat(file.fileno())
         if not stat.S_ISREG(status.st_mode):
-            raise FileError("this is no regular file; give a file on disk")
+            raise FileError(Note("this is no regular file; give a file on disk"))
         data = b"" if status.st_size > largest else file.read(largest + 1)
         if max(status.st_size, len(data)) > largest:
             size = max(status.st_size, len(data)) / 1e6
-            raise FileError(f"the file has {size:.0f} MB; at most {largest / 1e6:.0f} MB are read")
+            raise FileError(
+                Note(
+                    "the file has {size:.0f} MB; at most {largest:.0f} MB are read",
+                    size=size,
+                    largest=largest / 1e6,
+                )
+            )
     return data
 
 
@@ -92,18 +103,27 @@ def write(path: Name, text: str | bytes, *, replace: bool = True, links: bool = 
     """
     shown = printable(path) or "''"
     if not (replace or may_be_replaced()) and os.path.lexists(path):
-        raise UsageError(f"{shown}: is there already; choose another name")
+        raise UsageError(at_place(shown, Note("is there already; choose another name")))
     data = text if isinstance(text, bytes) else text.encode("utf-8")
     try:
         target = Path(path)
         if target.exists() and not target.is_file():  # the file would take the place of a device
-            kind = "a directory" if target.is_dir() else "no regular file"
-            raise UsageError(f"{shown}: this is {kind}; give the name of a file")
+            kind = Note("a directory") if target.is_dir() else Note("no regular file")
+            raise UsageError(
+                at_place(shown, Note("this is {kind}; give the name of a file", kind=kind))
+            )
         with replaced(path, links=links) as file:
             file.write(data)
     except (OSError, ValueError) as error:
-        what = f"the file cannot be written ({reason(error)})"
-        raise UsageError(f"{shown}: {what}; choose another place or name") from error
+        raise UsageError(
+            at_place(
+                shown,
+                Note(
+                    "the file cannot be written ({reason}); choose another place or name",
+                    reason=reason(error),
+                ),
+            )
+        ) from error
 
 
 def write_all(folder: Name, files: Mapping[str, bytes]) -> None:
@@ -126,10 +146,16 @@ def _make(folder: Name) -> None:
         made(folder)
     except FileExistsError as error:
         shown = printable(folder)
-        raise UsageError(f"{shown}: this is a file; give the name of a folder") from error
+        raise UsageError(
+            at_place(shown, Note("this is a file; give the name of a folder"))
+        ) from error
     except (OSError, ValueError) as error:
-        what = f"the folder cannot be made ({reason(error)})"
-        raise UsageError(f"{printable(folder)}: {what}; choose another place or name") from error
+        what = Note("the folder cannot be made ({reason})", reason=reason(error))
+        raise UsageError(
+            at_place(
+                printable(folder), Note("{sentence}; choose another place or name", sentence=what)
+            )
+        ) from error
 
 
 def printable(path: Name) -> str:
@@ -172,8 +198,13 @@ def json_text(values: dict[str, Any]) -> str:
     except ValueError as error:
         where = next(_endless(values, ""), "a figure")
         raise UsageError(
-            f"{where}: is beyond all numbers; sizes in the file are too far apart to be computed "
-            "with, check its lengths, masses, stiffnesses and speeds"
+            at_place(
+                where,
+                Note(
+                    "is beyond all numbers; sizes in the file are too far apart to be "
+                    "computed with, check its lengths, masses, stiffnesses and speeds"
+                ),
+            )
         ) from error
 
 

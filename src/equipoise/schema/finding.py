@@ -9,7 +9,7 @@ from numbers import Real
 from typing import Any
 
 from equipoise.errors import ModelError
-from equipoise.i18n import Note
+from equipoise.i18n import Note, all_of
 from equipoise.keys import PLANES, Key, Listing, Named, OneOr, Table, Tables, Whole, all_keys
 from equipoise.keys import Kind as KeyKind
 from equipoise.keys.paths import KeyPath, with_values
@@ -140,7 +140,11 @@ def _below(content: Content, kind: Kind, path: str, place: KeyPath, here: Any) -
         if one is not None:
             missing = place.shown
             raise ModelError(
-                path, f"{missing} is not written in the model; add it there to vary it"
+                path,
+                Note(
+                    "{missing} is not written in the model; add it there to vary it",
+                    missing=missing,
+                ),
             )
     if expression := _expression_in_point(here, step):
         raise ModelError(path, _worked_out(path, expression))
@@ -168,15 +172,20 @@ def _worked_out(path: str, expression: str) -> Note:
     )
 
 
-def _no_number(path: str, here: Any) -> Note | str:
+def _no_number(path: str, here: Any) -> Note:
     if _is_expression(here):
         return _worked_out(path, here)
     vector = vector_of(here)
     if vector is not None:
         parts = [f"{path}.{part}" for part in vector.numbers]
-        return f"{path} is more than one number; give {', '.join(parts[:-1])} or {parts[-1]}"
+        return Note(
+            "{path} is more than one number; give {names} or {parts}",
+            path=path,
+            names=", ".join(parts[:-1]),
+            parts=parts[-1],
+        )
     what = described(here)
-    return f"{path} is {what}; give the path of one number"
+    return Note("{path} is {what}; give the path of one number", path=path, what=what)
 
 
 Given = tuple[str, NumberLocation, float]
@@ -195,7 +204,7 @@ def replaced(content: Content, given: Iterable[Given]) -> dict[str, Any]:
     wholes: dict[KeyPath, Vector | Planes] = {}
     for path, found, value in given:
         if isinstance(value, bool) or not isinstance(value, Real):
-            raise ModelError(path, f"got {value!r}; give a number")
+            raise ModelError(path, Note("got {value!r}; give a number", value=value))
         beside = parts.setdefault(found.place, {})
         _check_company(path, found, beside, found.place in changes)
         if found.whole is not None:
@@ -212,14 +221,22 @@ def _check_company(
 ) -> None:
     """Refuse a number that others have changed already."""
     if taken or found.part in beside or (beside and not found.part):
-        raise ModelError(path, f"{path} is a number that varies already; leave one of them out")
+        raise ModelError(
+            path, Note("{path} is a number that varies already; leave one of them out", path=path)
+        )
     forms = {key in POLAR for key in (found.part, *beside)}
     if isinstance(found.whole, Vector) and len(forms) == 2:
         above = path.rpartition(".")[0]
         raise ModelError(
             path,
-            f"{path} cannot vary beside {above}.{next(iter(beside))}; let either "
-            f"{' and '.join(XYZ[:2])} or {' and '.join(POLAR)} of a point vary",
+            Note(
+                "{path} cannot vary beside {other}; let either {cartesian} or {polar} of "
+                "a point vary",
+                path=path,
+                other=f"{above}.{next(iter(beside))}",
+                cartesian=all_of(XYZ[:2]),
+                polar=all_of(POLAR),
+            ),
         )
 
 

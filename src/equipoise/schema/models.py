@@ -114,7 +114,7 @@ def _limit(machine: Machine, given: dict[str, Any]) -> Any:
             assert quantity is not None
             asks[key] = parse(text, quantity)
         except UsageError as error:
-            raise ModelError(key, str(error)) from error
+            raise ModelError(key, error.note) from error
     return Limit(objective, **asks)
 
 
@@ -135,7 +135,12 @@ class Beside:
         if sort == "linkage":
             return self.linkage(file)
         if self.folder is None:
-            raise ModelError("", f"got {printable(file)!r}; a table can only be read beside a file")
+            raise ModelError(
+                "",
+                Note(
+                    "got {given!r}; a table can only be read beside a file", given=printable(file)
+                ),
+            )
         from equipoise.schema.tables import read_beside
 
         return read_beside(sort, file, self.folder)
@@ -155,7 +160,7 @@ class Beside:
         except EquipoiseError as error:
             raise ModelError("", at_place(printable(file), error.note)) from error
         if lacking := massless(machine):
-            raise ModelError("", f"{printable(file)}: {lacking}")
+            raise ModelError("", at_place(printable(file), lacking))
         return machine
 
     def _opened(self, file: str) -> Opened:
@@ -166,13 +171,16 @@ class Beside:
         if self.folder is None:
             raise ModelError(
                 "",
-                f"got {printable(file)!r}; without a file beside which to look, give the name of "
-                "an example",
+                Note(
+                    "got {given!r}; without a file beside which to look, give the name of an "
+                    "example",
+                    given=printable(file),
+                ),
             )
         try:
             return opened(self.folder / file, within=self.folder)
         except ModelError as error:
-            raise ModelError("", f"{printable(file)}: {error.what}") from error
+            raise ModelError("", at_place(printable(file), error.what)) from error
 
 
 class Held(Beside):
@@ -252,15 +260,22 @@ def dumped(model: Machine | Tool) -> str:
     ModelError : something has no file name, or a section has what no file can tell.
     """
     parts = parts_of(model)
-    noun = "machine" if isinstance(model, Machine) else "tool"
+    of_tool = not isinstance(model, Machine)
     for part in parts:
         if not part.file:
-            table = "the table has" if noun == "machine" else "has"
-            raise ModelError(part.where, f"{table} no file; save the {noun} instead")
+            raise ModelError(
+                part.where,
+                Note("has no file; save the tool instead")
+                if of_tool
+                else Note("the table has no file; save the machine instead"),
+            )
         if not part.kept and part.sort == "linkage" and part.file in bundled():
             raise ModelError(
                 part.where,
-                f"is not that of the example {part.file!r} any more; save the tool instead",
+                Note(
+                    "is not that of the example {file!r} any more; save the tool instead",
+                    file=part.file,
+                ),
             )
     return text_of(model, {part.where: part.file for part in parts})
 

@@ -12,6 +12,7 @@ from types import MappingProxyType
 from typing import Any
 
 from equipoise.errors import ModelError, UsageError
+from equipoise.i18n import Note
 from equipoise.keys import PLANES, Frozen, declared, key
 from equipoise.quantities import (
     HUGE,
@@ -43,7 +44,9 @@ def parse_share(text: str) -> float | None:
     match = re.fullmatch(SHARE, text)
     if match is None:
         shown = text if len(text) <= 60 else f"{text[:57]}..."
-        raise UsageError(f'got {shown!r}; give a number, a space and %, such as "80 %"')
+        raise UsageError(
+            Note('got {shown!r}; give a number, a space and %, such as "80 %"', shown=shown)
+        )
     with localcontext() as context:
         context.prec = _DIGITS
         share = float(Decimal(match[1]) / 100)
@@ -182,12 +185,14 @@ def si_value(where: str, given: Any, dimension: str | None) -> float:
     if dimension is None:
         number = read_number(given)
         if number is None or number.dimension is not None:
-            raise ModelError(where, f"got {described(given)}; give a plain number, such as 2")
+            raise ModelError(
+                where, Note("got {given}; give a plain number, such as 2", given=described(given))
+            )
         return number.value
     try:
         return parse(given, dimension)  # type: ignore[arg-type]
     except UsageError as error:
-        raise ModelError(where, str(error)) from error
+        raise ModelError(where, error.note) from error
 
 
 @dataclass(frozen=True)

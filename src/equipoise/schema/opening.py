@@ -75,16 +75,21 @@ def opened(path_or_name: str | os.PathLike[str], *, within: Folder = None) -> Op
     try:
         name = os.fspath(path_or_name)
     except TypeError:
-        raise UsageError(f"got {path_or_name!r}; give a path, or the name of an example") from None
+        raise UsageError(
+            Note(
+                "got {path_or_name!r}; give a path, or the name of an example",
+                path_or_name=path_or_name,
+            )
+        ) from None
     if not os.path.isfile(name) and name in bundled():
         return opened_example(name)
     source = printable(name) or "''"
     try:
         text = read_text(name, within=within)
     except FileError as problem:
-        what = str(problem)
+        what = problem.note
         if not os.path.lexists(name) and isinstance(problem.__cause__, FileNotFoundError):
-            what = f"{what}; {_known_examples(name)}"
+            what = Note("{sentence}; {hint}", sentence=what, hint=_known_examples(name))
         raise ModelError("", what, source) from problem
     return Opened(text, source, Path(name).parent)
 
@@ -105,27 +110,27 @@ def bundled() -> dict[str, Traversable]:
     return {file.name.removesuffix(".toml"): file for file in sorted(found, key=lambda f: f.name)}
 
 
-def _known_examples(name: str) -> str:
+def _known_examples(name: str) -> Note:
     if near := _file_meant(name):
         return near
     bare = os.path.basename(name).removesuffix(".toml")
+    right = Note("give a path, or the name of an example: run `equipoise examples`")
     hint = meant(printable(bare), [*bundled()])
-    near = f"{hint} or " if hint else ""
-    return f"{near}give a path, or the name of an example: run `equipoise examples`"
+    return Note("{hint} or {right}", hint=hint, right=right) if hint else right
 
 
-def _file_meant(name: str) -> str:
+def _file_meant(name: str) -> Note | None:
     """Ask whether a file beside is meant whose name is spelt alike, or lacks its ending here."""
     folder, base = os.path.split(name)
     try:
         beside = [one for one in os.listdir(folder or ".") if one.endswith(".toml")]
     except OSError:
-        return ""
+        return None
     if f"{base}.toml" in beside:
         return Note("did you mean {name!r}?", name=os.path.join(folder, f"{base}.toml"))
     near = meant(base, sorted(beside))  # folders are not compared, which would be alike
     if not isinstance(near, Note):
-        return ""
+        return None
     path = printable(os.path.join(folder, near.values["name"]))
     return Note("did you mean {name!r}?", name=path)
 
@@ -191,7 +196,7 @@ def content_of(text: str, wanted: FileKind) -> dict[str, Any]:
     content = toml_content(text)
     found = kind_of(content)
     if found not in {None, wanted}:
-        raise ModelError("", f"this is {OTHERS[found]}")
+        raise ModelError("", Note("this is {others}", others=OTHERS[found]))
     return content
 
 
@@ -199,7 +204,7 @@ def model_content(text: str) -> dict[str, Any]:
     """Content of a model file of either kind; errors as `content_of`."""
     content = toml_content(text)
     if kind_of(content) == "study":
-        raise ModelError("", "this is a study; name the file of a linkage or a tool")
+        raise ModelError("", Note("this is a study; name the file of a linkage or a tool"))
     return content
 
 
@@ -213,30 +218,50 @@ def toml_content(text: str) -> dict[str, Any]:
     content = _toml(text)
     if "schema" not in content:
         raise ModelError(
-            "schema", f"missing; begin the file with schema = {SCHEMA_VERSION} (all tables after)"
+            "schema",
+            Note(
+                "missing; begin the file with schema = {schema_version} (all tables after)",
+                schema_version=SCHEMA_VERSION,
+            ),
         )
     given = content["schema"]
     while type(given) is int and given in MIGRATIONS:
         content, given = MIGRATIONS[given](content), given + 1
     if type(given) is not int or given != SCHEMA_VERSION:
-        what = f"got {described(given)}; this program reads schema = {SCHEMA_VERSION}"
+        what = Note(
+            "got {given}; this program reads schema = {schema_version}",
+            given=described(given),
+            schema_version=SCHEMA_VERSION,
+        )
         if type(given) is int and given > SCHEMA_VERSION:
-            what += ", and the file is for a newer one; run pip install --upgrade equipoise"
+            what = Note(
+                "{sentence}, and the file is for a newer one; run pip install --upgrade equipoise",
+                sentence=what,
+            )
         raise ModelError("schema", what)
     return {**content, "schema": given}
 
 
 def _toml(text: str) -> dict[str, Any]:
     if len(text) > LARGEST:
-        raise ModelError("", f"the text is longer than {LARGEST / 1e6:.0f} MB; give a model file")
+        raise ModelError(
+            "",
+            Note(
+                "the text is longer than {largest:.0f} MB; give a model file", largest=LARGEST / 1e6
+            ),
+        )
     if endless := _ENDLESS_KEY.search(text):
         line = text.count("\n", 0, endless.start()) + 1
-        raise ModelError("", f"line {line}: a key has more than 50 parts; model files need five")
+        raise ModelError(
+            "", Note("line {line}: a key has more than 50 parts; model files need five", line=line)
+        )
     try:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise ModelError("", syntax_error(str(error), text)) from error
     except RecursionError as error:
-        raise ModelError("", "lists or tables are nested too deeply for a model file") from error
+        raise ModelError(
+            "", Note("lists or tables are nested too deeply for a model file")
+        ) from error
     except ValueError as error:  # an integer of thousands of digits
-        raise ModelError("", "a number has thousands of digits; give a usual one") from error
+        raise ModelError("", Note("a number has thousands of digits; give a usual one")) from error

@@ -9,6 +9,7 @@ from typing import Any
 
 from equipoise import keys
 from equipoise.errors import ModelError
+from equipoise.i18n import Note
 from equipoise.keys.paths import KeyPath
 from equipoise.quantities import as_written, described
 from equipoise.quantities.expressions import Names
@@ -46,7 +47,7 @@ class Context:
         default_factory=dict
     )
     names: Names = field(default_factory=dict)
-    problems: list[tuple[KeyPath, str]] = field(default_factory=list)
+    problems: list[tuple[KeyPath, Note]] = field(default_factory=list)
     expressions: dict[KeyPath, str] = field(default_factory=dict)
     written: list[tuple[KeyPath, str]] = field(default_factory=list)
 
@@ -66,11 +67,11 @@ class Context:
             what = as_written(error.what, [text for _, text in texts])
             raise ModelError(where, what, source).like(error) from error
 
-    def wrong(self, place: KeyPath, given: Any, right: str) -> Any:
+    def wrong(self, place: KeyPath, given: Any, right: Note) -> Any:
         """Note that a value is none that can be read."""
         self.problems.append((place, got(described(given), right)))
         return WRONG
 
-    def say(self, place: KeyPath, sentence: str) -> Any:
+    def say(self, place: KeyPath, sentence: Note) -> Any:
         self.problems.append((place, sentence))
         return WRONG

@@ -137,13 +137,17 @@ def _example(one: keys.Key) -> str:
 def _tables(kind: keys.Tables, given: Any, place: KeyPath, context: Context) -> Any:
     if not isinstance(given, list):
         header = KeyPath(step for step in place if isinstance(step, str)).shown
-        return context.wrong(place, given, f"write each as a table under [[{header}]]")
+        return context.wrong(
+            place, given, Note("write each as a table under [[{header}]]", header=header)
+        )
     return tuple(_table(kind.item, one, place / n, context) for n, one in enumerate(given))
 
 
 def _named(kind: keys.Named, given: Any, place: KeyPath, context: Context) -> Any:
     if kind.listed and isinstance(given, list):
-        return _listing(keys.Listing(keys.Text(), right="names in quotes"), given, place, context)
+        return _listing(
+            keys.Listing(keys.Text(), right=Note("names in quotes")), given, place, context
+        )
     if not isinstance(given, dict):
         return context.wrong(
             place,
@@ -220,7 +224,7 @@ def _worked_out(dimension: Dimension | None, given: str, place: KeyPath, context
 
 def _text(kind: keys.Text, given: Any, place: KeyPath, context: Context) -> Any:
     if kind.names:
-        right: Note | str = Note("give {what}", what=keys.choice(kind.names))
+        right = Note("give {what}", what=keys.choice(kind.names))
         if isinstance(given, str):
             right = meant(given, kind.names) or right
         return given if given in kind.names else context.wrong(place, given, right)
@@ -298,7 +302,7 @@ def _listing(kind: keys.Listing, given: Any, place: KeyPath, context: Context) -
     if kind.right:
         counts = kind.sizes or range(1, len(given) + 1) if isinstance(given, list) else ()
         if not isinstance(given, list) or len(given) not in counts:
-            return context.wrong(place, given, f"give {kind.right}")
+            return context.wrong(place, given, Note("give {what}", what=kind.right))
     elif not isinstance(given, list):
         return context.wrong(place, given, _two_of(kind.item))
     read, item = READERS[type(kind.item)], kind.item
@@ -321,8 +325,11 @@ def _two_of(item: keys.Kind) -> Note:
 
 _LENGTH = keys.Quantity(dimension="length")
 _PAIR = keys.Listing(_LENGTH, (2,))
-_PLACE = '["0 mm", "300 mm"], or with z ["0 mm", "300 mm", "0 mm"]'
-_POINT = 'give ["33.5 mm", "0 mm"] or { distance = "88 mm", direction = "-83 deg" }'
+_PLACE = Note('["0 mm", "300 mm"], or with z ["0 mm", "300 mm", "0 mm"]')
+_EXAMPLE = '["33.5 mm", "0 mm"] or { distance = "88 mm", direction = "-83 deg" }'
+
+_POINT = Note("give {example}", example=_EXAMPLE)
+_OR_NAME = Note("give {example}, or the name of a point", example=_EXAMPLE)
 
 
 def _point(kind: keys.Point, given: Any, place: KeyPath, context: Context) -> Any:
@@ -337,20 +344,20 @@ def _point(kind: keys.Point, given: Any, place: KeyPath, context: Context) -> An
         return (x, y, 0.0) if kind.space else (x, y)
     if not kind.space:
         if not isinstance(given, list):
-            return context.wrong(place, given, _POINT + ", or the name of a point" * kind.named)
+            return context.wrong(place, given, _OR_NAME if kind.named else _POINT)
         return _listing(_PAIR, given, place, context)
     values = _listing(keys.Listing(_LENGTH, (2, 3), _PLACE), given, place, context)
     return (*values, 0.0) if isinstance(values, tuple) and len(values) == 2 else values
 
 
-_VECTOR = 'an angle such as "90 deg", or three plain numbers such as [0, 1, 0]'
+_VECTOR = Note('an angle such as "90 deg", or three plain numbers such as [0, 1, 0]')
 
 
 def _direction(kind: keys.Direction, given: Any, place: KeyPath, context: Context) -> Any:
     if isinstance(given, list):
         return _listing(keys.Listing(keys.Number(), (3,), _VECTOR), given, place, context)
     if not isinstance(given, str):
-        return context.wrong(place, given, f"give {_VECTOR}")
+        return context.wrong(place, given, Note("give {what}", what=_VECTOR))
     return _quantity(keys.Quantity(dimension="angle"), given, place, context)
 
 
@@ -360,7 +367,7 @@ def _one_or(kind: keys.OneOr, given: Any, place: KeyPath, context: Context) -> A
     plain = isinstance(given, int | float) and not isinstance(given, bool)
     plain = plain or (isinstance(given, str) and given.startswith(SIGN))
     if not isinstance(kind.item, keys.Quantity) and not plain:
-        return context.wrong(place, given, f"give {kind.right}")
+        return context.wrong(place, given, Note("give {what}", what=kind.right))
     value = READERS[type(kind.item)](kind.item, given, place, context)
     return value if value is WRONG else (value,) * (kind.size if kind.repeat else 1)
 
@@ -371,7 +378,11 @@ def _planes(kind: keys.Planes, given: Any, place: KeyPath, context: Context) -> 
     example = example_of(item)
     if isinstance(given, list):
         table = ", ".join(f'{plane} = "{example}"' for plane in keys.PLANES)
-        return context.wrong(place, given, f'give "{example}", or {{ {table} }}')
+        return context.wrong(
+            place,
+            given,
+            Note("give {example}, or {table}", example=f'"{example}"', table=f"{{ {table} }}"),
+        )
     if not isinstance(given, dict):
         value = read(item, given, place, context)
         return value if value is WRONG else (value,) * (2 if isinstance(item, keys.Quantity) else 1)

@@ -22,6 +22,7 @@ from equipoise.errors import ModelError, UsageError, unknown
 from equipoise.exposure.daily import Task
 from equipoise.exposure.spectra import UNEVEN_STEPS, uneven
 from equipoise.exposure.weighting import AXES
+from equipoise.i18n import Note
 from equipoise.measured.record import Record
 from equipoise.mechanism.parts.support import TIME_IN_PERIOD
 from equipoise.schema.csv_rows import check_width, rows_of, shortened, wrong
@@ -32,8 +33,10 @@ from equipoise.schema.tables import (
     Taken,
     arrays_of,
     header_of,
+    headers_of,
+    headers_wanted,
     in_table,
-    told_forms,
+    one_header_of,
     value_of,
 )
 
@@ -45,9 +48,9 @@ _RECORD: Forms = (("time", "displacement"), ("time", "angle"))
 ACCELERATION = "m/s^2"
 _GAUGE = re.compile(rf"gauges\.(?P<name>.+)\.acceleration \[{re.escape(ACCELERATION)}\]")
 """The column of a gauge's acceleration in a response over time."""
-SWEPT = (
-    "there are gauges, but none with accelerations over time, which `equipoise respond FILE "
-    "--csv` writes at one speed"
+SWEPT = Note(
+    "there are gauges, but none with accelerations over time, which "
+    "`equipoise respond FILE --csv` writes at one speed"
 )
 _TASKS: Forms = (("acceleration", "duration"),)
 _SIGNAL: Forms = (("time", *AXES),)
@@ -121,9 +124,9 @@ def parse_accelerations(text: str, gauges: Sequence[str] = ()) -> Accelerations 
         return _spectrum(text, names)
     if {"task", "acceleration", "duration"} & set(names):
         return _tasks(text)
-    given = f"the column {shortened(header[0])}" if header else "no column"
-    right = told_forms((*_SIGNAL, *_SPECTRUM, *_TASKS)).replace(" or acc", " or task,acc")
-    raise wrong(number, f"got {given}; {right}")
+    given = Note("the column {name}", name=shortened(header[0])) if header else Note("no column")
+    right = one_header_of([*headers_of((*_SIGNAL, *_SPECTRUM)), *headers_of(_TASKS, "task,")])
+    raise wrong(number, Note("got {given}; {right}", given=given, right=right))
 
 
 def _of_gauges(text: str, line: int, header: list[str], gauges: Sequence[str]) -> Accelerations:
@@ -135,11 +138,17 @@ def _of_gauges(text: str, line: int, header: list[str], gauges: Sequence[str]) -
     chosen = [*dict.fromkeys(gauges or known)]
     if len(chosen) > (len(AXES) if gauges else 1):
         names = ", ".join(map(repr, known))
-        raise wrong(line, f"there are the gauges {names}; name that of the hand, or up to three of "
-                          "one place, along x, y and z (gauge)")  # fmt: skip
+        raise wrong(
+            line,
+            Note(
+                "there are the gauges {names}; name that of the hand, or up to three of "
+                "one place, along x, y and z (gauge)",
+                names=names,
+            ),
+        )
     times = [cell for cell in header if cell.split("[")[0].strip() in TIMES]
     if not times:
-        raise wrong(line, "a column such as time [s] is missing")
+        raise wrong(line, Note("a column such as time [s] is missing"))
     heads = {
         known[name]: f"{axis} [{ACCELERATION}]" for name, axis in zip(chosen, AXES, strict=False)
     }
@@ -153,7 +162,11 @@ def _signal(text: str, names: list[str], taken: Taken = None) -> Accelerations:
     time = columns[first]
     worst = uneven(time) if len(time) > 1 else None
     if worst is not None:
-        raise wrong(_line(text, worst), f"{time[worst]:.6g} s {UNEVEN_STEPS}", first)
+        raise wrong(
+            _line(text, worst),
+            Note("{time:.6g} s {uneven_steps}", time=time[worst], uneven_steps=UNEVEN_STEPS),
+            first,
+        )
     values = np.array([columns[axis] for axis in axes])
     return Accelerations("time", time, axes, values, first == TIME_IN_PERIOD)
 
@@ -163,7 +176,9 @@ def _spectrum(text: str, names: list[str]) -> Accelerations:
     for name, column in columns.items():
         if np.any(column < 0):
             first = int(np.argmax(column < 0))
-            what = f"got {column[first]:g}; give RMS values and frequencies of 0 or more"
+            what = Note(
+                "got {column:g}; give RMS values and frequencies of 0 or more", column=column[first]
+            )
             raise wrong(_line(text, first), what, name)
     values = np.array([columns[axis] for axis in axes])
     return Accelerations("frequency", columns["frequency"], axes, values)
@@ -198,15 +213,19 @@ def _tasks(text: str) -> tuple[Task, ...]:
         try:
             tasks.append(Task(name, **values))
         except UsageError as error:
-            raise ModelError("", f"line {number}, column {error}") from error
+            raise ModelError(
+                "", Note("line {line}, column {sentence}", line=number, sentence=error.note)
+            ) from error
     if not tasks:
-        raise wrong(line, "there are no rows below the header; give at least one")
+        raise wrong(line, Note("there are no rows below the header; give at least one"))
     return tuple(tasks)
 
 
 def _tasks_header(line: int, header: list[str]) -> tuple[list[str], list[str]]:
     """Names and units of the columns that are no text."""
-    right = told_forms(_TASKS, "task,")
+    right = headers_wanted(_TASKS, "task,")
     if header.count("task") != 1:
-        raise wrong(line, f"got {header.count('task')} columns task; {right}")
+        raise wrong(
+            line, Note("got {count} columns task; {right}", count=header.count("task"), right=right)
+        )
     return header_of(line, [cell for cell in header if cell != "task"], _TASKS, right)

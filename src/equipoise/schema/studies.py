@@ -11,6 +11,7 @@ from typing import Any
 from equipoise.design.spreads import Choices, Normal, Range, Spread, Uniform
 from equipoise.design.variables import Variable
 from equipoise.errors import EquipoiseError, ModelError, UsageError
+from equipoise.i18n import Note, all_of
 from equipoise.keys.requirement_kinds import REQUIREMENT_KINDS
 from equipoise.quantities import KINDS, format_exact
 from equipoise.quantities.reading import described
@@ -85,8 +86,12 @@ def restore(texts: Mapping[str, str]) -> Study:
         return from_plain(json.loads(texts["study"]), model, texts.get("file", ""))
     except (EquipoiseError, KeyError, TypeError, ValueError) as error:
         raise UsageError(
-            f"what is kept of the study cannot be read ({type(error).__name__}: {error}); it was "
-            "written by another version, or changed"
+            Note(
+                "what is kept of the study cannot be read ({kind}: {error}); it was "
+                "written by another version, or changed",
+                kind=type(error).__name__,
+                error=str(error),
+            )
         ) from error
 
 
@@ -97,11 +102,11 @@ def _study(text: str, folder: Path) -> Study:
     content = toml_content(text)
     if kind_of(content) in {"linkage", "tool"}:
         raise ModelError(
-            "", "this is a model file; give a study file, which names it by a key model"
+            "", Note("this is a model file; give a study file, which names it by a key model")
         )
     for name, least in (("vary", "[[vary]]"), ("outputs", "[[outputs]]")):
         if name not in content and "model" in content:
-            raise ModelError(name, f"missing; add at least one table {least}")
+            raise ModelError(name, Note("missing; add at least one table {least}", least=least))
     document = read_table(StudyTable, content, Context())
     template = _template(document.model, folder)
     numbered = enumerate(document.vary, 1)
@@ -142,11 +147,15 @@ def _template(name: str, folder: Path) -> Template:
 def _vary(where: str, given: VaryTable, template: Template) -> Variable:
     forms = [key for key in SPREADS if getattr(given, key) is not None]
     if len(forms) != 1:
-        got = " and ".join(forms) or "none"
-        raise ModelError(where, f"got {got}; give one of range, list, normal and uniform")
+        got = all_of(forms) or Note("none")
+        raise ModelError(
+            where, Note("got {got}; give one of range, list, normal and uniform", got=got)
+        )
     form = forms[0]
     if given.steps is not None and form != "range":
-        raise ModelError(f"{where}.steps", f"has no place beside {form}; leave it out")
+        raise ModelError(
+            f"{where}.steps", Note("has no place beside {form}; leave it out", form=form)
+        )
     try:
         value, dimension = template.number(given.path)
     except ModelError as error:
@@ -154,7 +163,7 @@ def _vary(where: str, given: VaryTable, template: Template) -> Variable:
     try:
         spread = _spread(f"{where}.{form}", given, value, dimension)
     except UsageError as error:
-        raise ModelError(f"{where}.{form}", str(error)) from error
+        raise ModelError(f"{where}.{form}", error.note) from error
     return Variable(given.path, spread, dimension)
 
 
@@ -181,7 +190,7 @@ def _spread(where: str, given: VaryTable, value: float, dimension: str | None) -
 
 def _sampling(given: SamplingTable) -> Sampling:
     if given.method == "grid" and given.seed is not None:
-        raise ModelError("sampling.seed", "a grid has no random numbers; leave it out")
+        raise ModelError("sampling.seed", Note("a grid has no random numbers; leave it out"))
     seed = Sampling.seed if given.seed is None else given.seed
     return Sampling(given.method, given.designs, seed)  # type: ignore[arg-type]
 
@@ -190,7 +199,7 @@ def _accuracy(given: AccuracyTable | None) -> tuple[int | None, float]:
     angles = None if given is None else given.angles
     tolerance = None if given is None else given.tolerance
     if angles is not None and tolerance is not None:
-        raise ModelError("accuracy", "got angles and tolerance; give one of both")
+        raise ModelError("accuracy", Note("got angles and tolerance; give one of both"))
     return angles, Study.tolerance if tolerance is None else tolerance
 
 
@@ -212,7 +221,11 @@ def _limit(where: str, given: Any, dimension: str | None) -> float:
     number = read_number(given)
     if number is None or number.share:
         raise ModelError(
-            where, f"got {described(given)}; give a number in SI units, or one with its unit"
+            where,
+            Note(
+                "got {given}; give a number in SI units, or one with its unit",
+                given=described(given),
+            ),
         )
     return number.value
 
@@ -232,7 +245,7 @@ def study_text(study: Study) -> str:
     source = getattr(study.model, "source", "")
     name = source.removesuffix(".toml")
     if name not in bundled() and not source.endswith(".toml"):
-        raise ModelError("model", "has no file; save the model, and load it from there")
+        raise ModelError("model", Note("has no file; save the model, and load it from there"))
     table = StudyTable(
         title=study.title,
         model=name if name in bundled() else source,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any, ClassVar
 
+from equipoise.i18n import Note
 from equipoise.keys import (
     SCHEMA_VERSION,
     VERSION,
@@ -34,9 +35,9 @@ VALUE = Anything(
     }
 )
 """Number and unit in quotes, or a plain number: which, is told by what it is a value of."""
-LIMITS = Listing(VALUE, (2,), 'two limits, such as ["60 mm", "80 mm"]')
+LIMITS = Listing(VALUE, (2,), Note('two limits, such as ["60 mm", "80 mm"]'))
 ANY_WHOLE = Whole(most=10**18)
-PATHS = Listing(Text(), (2,), "a list of two paths")
+PATHS = Listing(Text(), (2,), Note("a list of two paths"))
 
 
 @declared
@@ -69,7 +70,7 @@ class VaryTable(Frozen):
     range: Any = key(LIMITS, "lowest and highest", default=None)
     steps: int | None = key(ANY_WHOLE, "of a range on a grid", default=None)
     list: Any = key(
-        Listing(VALUE, right='a list such as ["100 g", "200 g"]'),
+        Listing(VALUE, right=Note('a list such as ["100 g", "200 g"]')),
         "all that it can be",
         default=None,
     )

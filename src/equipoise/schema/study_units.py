@@ -10,7 +10,8 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from equipoise.codegen.figures import COMPUTED, REASONS
-from equipoise.errors import UsageError
+from equipoise.errors import UsageError, at_place
+from equipoise.i18n import Note
 from equipoise.quantities import KINDS, chosen_unit
 from equipoise.quantities.units import FACTORS
 from equipoise.results.outputs import figure_named
@@ -77,13 +78,20 @@ def machine_of(store: Store, design: int) -> Machine | Tool:
     """
     if not 0 <= design < store.size:
         raise UsageError(
-            f"got design {design}; {printable(store.path)} has {store.size} designs, from 0"
+            Note(
+                "got design {design}; {given} has {size} designs, from 0",
+                design=design,
+                given=printable(store.path),
+                size=store.size,
+            )
         )
     block = store.read(range(design, design + 1))
     reason = int(block.outcome.reason[0])
     if reason != COMPUTED:
         why = REASONS.get(reason, "not computed yet")
-        raise UsageError(f"design {design} has no figures ({why}); choose another")
+        raise UsageError(
+            Note("design {design} has no figures ({why}); choose another", design=design, why=why)
+        )
     study = study_of(store)
     return study.model.machine(dict(zip(store.numbers, block.values[0].tolist(), strict=True)))
 
@@ -92,7 +100,7 @@ def _restored(texts: Mapping[str, str], path: str | os.PathLike[str]) -> Study:
     try:
         return restore(texts)
     except UsageError as error:
-        raise UsageError(f"{printable(path)}: {error}") from error
+        raise UsageError(at_place(printable(path), error.note)) from error
 
 
 LIMITS = ("at_most", "at_least")

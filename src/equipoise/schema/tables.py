@@ -18,8 +18,9 @@ from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from equipoise.errors import ModelError, UsageError
+from equipoise.errors import ModelError, UsageError, at_place
 from equipoise.handheld.model import Impedance
+from equipoise.i18n import Note, any_of
 from equipoise.keys.csv_tables import CsvTable
 from equipoise.mechanism.parts.machine import LoadTable
 from equipoise.mechanism.parts.support import TIME_IN_PERIOD
@@ -91,17 +92,27 @@ def in_table(path: str | os.PathLike[str]) -> Iterator[None]:
     try:
         yield
     except (FileError, UsageError) as error:
-        raise ModelError("", f"{shown}: {error}") from error
+        raise ModelError("", at_place(shown, error.note)) from error
     except ModelError as error:
-        raise ModelError("", f"{shown}, {error.what}") from error
+        raise ModelError("", Note("{shown}, {what}", shown=shown, what=error.what)) from error
 
 
-def told_forms(forms: Forms, first: str = "") -> str:
+def headers_wanted(forms: Forms, first: str = "") -> Note:
     """Say which headers would be right; `first` begins each."""
+    return one_header_of(headers_of(forms, first))
+
+
+def one_header_of(headers: Sequence[str]) -> Note:
+    """Say which headers would be right."""
+    return Note("the header is {headers}", headers=any_of(headers))
+
+
+def headers_of(forms: Forms, first: str = "") -> list[str]:
+    """Headers that would be right; `first` begins each."""
+
     whole = [form for form in forms if not any(set(form) < set(other) for other in forms)]
     columns = ([f"{name} [{_column(name, forms)[1]}]" for name in form] for form in whole)
-    headers = [first + ",".join(form) for form in columns]
-    return f"the header is {' or '.join(headers)}"
+    return [first + ",".join(form) for form in columns]
 
 
 # -- reading ---------------------------------------------------------------------------------------
@@ -120,14 +131,14 @@ def columns_of(text: str, forms: Forms, taken: Taken = None) -> Columns:
             column.append(value_of(number, name, unit, cell, forms))
         lines.append(number)
     if not lines:
-        raise wrong(number, "there are no rows below the header; give at least one")
+        raise wrong(number, Note("there are no rows below the header; give at least one"))
     by_name = dict(zip(names, map(tuple, columns), strict=True))
     first = forms[0][0]
     for line, before, after in zip(lines[1:], by_name[first], by_name[first][1:], strict=False):
         if after <= before and CsvTable.like(first).rises:
             plural = {"angle": "angles", "frequency": "frequencies"}
             what = plural.get(COLUMNS[first][0], f"{first}s")
-            raise wrong(line, f"the {what} must rise from row to row", first)
+            raise wrong(line, Note("the {what} must rise from row to row", what=what), first)
     return by_name
 
 
@@ -169,33 +180,42 @@ def _whole(lines: Iterator[Row], forms: Forms) -> dict[str, Array] | None:
 
 
 def header_of(
-    line: int, cells: list[str], forms: Forms, right: str = ""
+    line: int, cells: list[str], forms: Forms, right: Note | None = None
 ) -> tuple[list[str], list[str]]:
     """Names and units of the columns; a wrong one is refused with its line.
 
     right : says which headers would be right, where more than those of the forms stands in them.
     """
-    right = right or told_forms(forms)
+    right = right or headers_wanted(forms)
     names: list[str] = []
     unit_of: list[str] = []
     for cell in cells:
         match = re.fullmatch(r"(\w+)\s*\[([^\]]*)\]", cell)
         name = match[1] if match else cell
         if name in TIMES and forms == LoadTable.forms:
-            raise wrong(line, f"got the column {name}; {OF_TIME}", name)
+            raise wrong(
+                line, Note("got the column {name}; {of_time}", name=name, of_time=OF_TIME), name
+            )
         if not any(name in form for form in forms):
-            raise wrong(line, f"got the column {shortened(cell)}; {right}")
+            raise wrong(
+                line, Note("got the column {given}; {right}", given=shortened(cell), right=right)
+            )
         if match is None:
             unit = KINDS[_column(name, forms)[0]].si
-            raise wrong(line, f"the unit is missing; {name} [{unit}]", name)
+            raise wrong(
+                line, Note("the unit is missing; {name} [{unit}]", name=name, unit=unit), name
+            )
         if name in names:
-            raise wrong(line, f"given twice; {right}", name)
+            raise wrong(line, Note("given twice; {right}", right=right), name)
         unit = usual_unit(match[2], _column(name, forms)[0])
         value_of(line, name, unit, "0", forms)  # a wrong unit is the header's fault
         names.append(name)
         unit_of.append(unit)
     if not any(sorted(names) == sorted(form) for form in forms):
-        raise wrong(line, f"got {', '.join(names) or 'no column'}; {right}")
+        raise wrong(
+            line,
+            Note("got {names}; {right}", names=", ".join(names) or Note("no column"), right=right),
+        )
     return names, unit_of
 
 
@@ -205,9 +225,9 @@ def value_of(line: int, name: str, unit: str, cell: str, forms: Forms = ()) -> f
         return parse(f"{cell} {unit}", _column(name, forms)[0])
     except UsageError as error:
         if _is_number(cell):
-            raise wrong(line, str(error), name) from error
-        right = separators_told(cell) or "give a finite number with a decimal point"
-        what = f"got {shortened(cell)}; {right}"
+            raise wrong(line, error.note, name) from error
+        right = separators_told(cell) or Note("give a finite number with a decimal point")
+        what = Note("got {given}; {right}", given=shortened(cell), right=right)
         raise wrong(line, what, name) from error
 
 

@@ -13,6 +13,7 @@ from typing import Any, ClassVar, get_args
 from equipoise.design.lifts import dimension_of_lift
 from equipoise.design.requirements import Requirement
 from equipoise.errors import ModelError, UsageError
+from equipoise.i18n import Note
 from equipoise.keys import (
     VERSION,
     Anything,
@@ -112,13 +113,13 @@ def read_targets(path: str | os.PathLike[str], figures: Collection[str]) -> Targ
         try:
             text = read_text(path)
         except FileError as problem:
-            raise ModelError("", str(problem)) from problem
+            raise ModelError("", problem.note) from problem
         content = toml_content(text)
         if "goals" not in content:
-            raise ModelError("goals", "missing; add at least one table [[goals]]")
+            raise ModelError("goals", Note("missing; add at least one table [[goals]]"))
         table: TargetTable = read_table(TargetTable, content, Context())
         if not table.goals:
-            raise ModelError("goals", "there is none; give at least one [[goals]]")
+            raise ModelError("goals", Note("there is none; give at least one [[goals]]"))
         goals = tuple(_goal(f"goals[{n}]", one, figures) for n, one in enumerate(table.goals, 1))
         vary = None if table.vary is None else dict(_limits(table.vary))
         return Targets(goals, vary, table.search)
@@ -127,7 +128,8 @@ def read_targets(path: str | os.PathLike[str], figures: Collection[str]) -> Targ
 def _goal(where: str, goal: GoalTable, figures: Collection[str]) -> Requirement:
     if goal.figure.startswith("pick_up.") and goal.figure not in figures:
         raise ModelError(
-            f"{where}.figure", f"got {goal.figure!r}; the machine has no planting.tray"
+            f"{where}.figure",
+            Note("got {figure!r}; the machine has no planting.tray", figure=goal.figure),
         )
     if goal.figure not in figures:
         raise ModelError(f"{where}.figure", unknown(goal.figure, figures, "figure"))
@@ -141,7 +143,7 @@ def _goal(where: str, goal: GoalTable, figures: Collection[str]) -> Requirement:
         asked = Requirement(goal.figure, **given)
         check_asks(asked)
     except UsageError as error:
-        raise ModelError(where, str(error)) from error
+        raise ModelError(where, error.note) from error
     return asked
 
 
@@ -155,7 +157,7 @@ def _limits(
             yield from _limits(value, f"{name}.")
             continue
         if not isinstance(value, list) or len(value) != 2:
-            raise ModelError(f"vary.{name}", 'give two limits, such as ["20 mm", "60 mm"]')
+            raise ModelError(f"vary.{name}", Note('give two limits, such as ["20 mm", "60 mm"]'))
         dimension = dimension_of_lift(name)
         low, high = (si_value(f"vary.{name}", limit, dimension) for limit in value)
         yield name, (low, high)

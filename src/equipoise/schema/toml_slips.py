@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import re
 
+from equipoise.errors import at_place
+from equipoise.i18n import Note
 from equipoise.keys.paths import quoted, written_key
 from equipoise.quantities.reading import NUMBER, readings
 
@@ -34,7 +36,7 @@ _COLUMN = re.compile(r'\s*"?\w[\w. ]*(?:\[[^\]]*\]"?\s*(?:[,;\t]|$)|"?\s*[,;\t])
 """The first column in the header of a CSV file, with its unit or with another column behind it."""
 
 
-def syntax_error(message: str, text: str) -> str:
+def syntax_error(message: str, text: str) -> Note:
     """The sentence for a text of which `tomllib` complains: its place and what would be right."""
     if other := _other_file(text):
         return other
@@ -43,38 +45,40 @@ def syntax_error(message: str, text: str) -> str:
     if place := re.fullmatch(r"line ([0-9]+), column ([0-9]+)", where):
         line = text.replace("\r\n", "\n").split("\n")[int(place[1]) - 1]
         if len(line) <= LONGEST_LINE and (hint := _slip(line, int(place[2]) - 1, what)):
-            return f"{where}: {hint}"
+            return at_place(where, hint)
     what = "".join(sign if sign.isprintable() else ascii(sign)[1:-1] for sign in what)
     what = what if len(what) <= 200 else f"{what[:197]}..."
     what = f"{what[:1].lower()}{what[1:]}"
     if what.startswith("cannot declare"):
-        what = "a table of this name is there already; put all its keys below one [name]"
+        note = Note("a table of this name is there already; put all its keys below one [name]")
     elif what.startswith(("cannot overwrite", "cannot mutate")):
-        what = f"{what}, a key or table is given twice; leave one of both out"
+        note = Note(
+            "{complaint}, a key or table is given twice; leave one of both out", complaint=what
+        )
     elif what == "unclosed array":
-        what = "a comma is missing before this, or ] at the end of the list"
+        note = Note("a comma is missing before this, or ] at the end of the list")
     else:
-        what = f"{what}; give valid TOML"
-    return f"{where}: {what}".removeprefix(": ")
+        note = Note("{complaint}; give valid TOML", complaint=what)
+    return at_place(where, note) if where else note
 
 
-def _other_file(text: str) -> str:
+def _other_file(text: str) -> Note | None:
     """Say that a text is of another kind of file altogether; empty where it may be TOML."""
     lines = (line.strip() for line in text[:100_000].splitlines())
     first = next((line for line in lines if line and not line.startswith("#")), "")
     if _COLUMN.match(first) and "=" not in first:
-        return (
-            "this is a table of values (CSV), not a model file; `equipoise exposure` and "
-            "`equipoise decay` read recorded ones"
+        return Note(
+            "this is a table of values (CSV), not a model file; `equipoise exposure` "
+            "and `equipoise decay` read recorded ones"
         )
     if first.startswith("<"):
-        return "this is XML, not a model file; `equipoise import` reads drawings and models"
+        return Note("this is XML, not a model file; `equipoise import` reads drawings and models")
     if first.startswith("{"):
-        return "this is JSON, not a model file; those are TOML: run `equipoise new` for one"
-    return ""
+        return Note("this is JSON, not a model file; those are TOML: run `equipoise new` for one")
+    return None
 
 
-def _slip(line: str, column: int, what: str) -> str:
+def _slip(line: str, column: int, what: str) -> Note | None:
     """Say what is wrong about a column of a line; empty where nothing usual is."""
     masked = _TEXT.sub(lambda quote: " " * len(quote[0]), line)
     return (
@@ -82,26 +86,26 @@ def _slip(line: str, column: int, what: str) -> str:
         or _unquoted(line, column)
         or _bare_quantity(masked)
         or _open_quotes(line)
-        or (_unassigned(line) if what.startswith(("Expected '='", "Expected ']'")) else "")
+        or (_unassigned(line) if what.startswith(("Expected '='", "Expected ']'")) else None)
     )
 
 
-def _decimal_comma(masked: str) -> str:
+def _decimal_comma(masked: str) -> Note | None:
     for match in _COMMA.finditer(masked):
         number, unit = match["number"], (match["unit"] or "").strip()
         decimal, whole = readings(number)
         pointed = decimal or whole
         if unit:
-            return (
-                "the decimal sign is a point, and what has a unit stands in quotes: "
-                f"{quoted(f'{pointed} {unit}')}"
+            return Note(
+                "the decimal sign is a point, and what has a unit stands in quotes: {quoted}",
+                quoted=quoted(f"{pointed} {unit}"),
             )
         if match["equals"]:
-            return f"the decimal sign is a point, not a comma: {pointed}"
-    return ""
+            return Note("the decimal sign is a point, not a comma: {pointed}", pointed=pointed)
+    return None
 
 
-def _unquoted(line: str, column: int) -> str:
+def _unquoted(line: str, column: int) -> Note | None:
     """Say what lacks quotes about a column of a line; empty where nothing does."""
     for match in _KEYS.finditer(line):
         key, opening, table = match.groups()
@@ -109,38 +113,52 @@ def _unquoted(line: str, column: int) -> str:
         mended = ".".join(one if one[:1] in "\"'" else written_key(one) for one in parts)
         if match.start() <= column <= match.end() and mended.count('"') > (key or table).count('"'):
             shown = f"{opening}{mended}{']' * len(opening)}" if opening else f"{mended} ="
-            return (
-                f"put the name in quotes: {shown}; without them it has letters A to Z, digits, "
-                "- and _ only"
+            return Note(
+                "put the name in quotes: {shown}; without them it has letters A to Z, "
+                "digits, - and _ only",
+                shown=shown,
             )
     value = _VALUE.search(line)
     if value is None or _PLAIN.fullmatch(value[1].replace(" ", "")) or column < value.start():
-        return ""
+        return None
     bare = value[1].strip("“”„‟«»‘’‚＂")
-    return f"put text in quotes: {line[: value.start()].strip()} = {quoted(bare)}"
+    return Note(
+        "put text in quotes: {line} = {quoted}",
+        line=line[: value.start()].strip(),
+        quoted=quoted(bare),
+    )
 
 
-def _bare_quantity(masked: str) -> str:
+def _bare_quantity(masked: str) -> Note | None:
     match = _QUANTITY.search(masked)
-    return f"put number and unit in quotes: {quoted(match['text'])}" if match else ""
+    return (
+        Note("put number and unit in quotes: {quoted}", quoted=quoted(match["text"]))
+        if match
+        else None
+    )
 
 
-def _open_quotes(line: str) -> str:
+def _open_quotes(line: str) -> Note | None:
     rest = _TEXT.sub("", line)
     if not rest.count('"') % 2 or '"""' in line:
-        return ""
-    return f"the quotes are opened, but not closed: {line.strip()}"
+        return None
+    return Note("the quotes are opened, but not closed: {line}", line=line.strip())
 
 
-def _unassigned(line: str) -> str:
+def _unassigned(line: str) -> Note | None:
     """Say how a key goes with its value, or the name of a table with its brackets."""
     bare = line.partition("#")[0].strip()
     if match := _HEADER.fullmatch(bare):
         count = max(len(match["open"] or ""), len(match["close"] or ""))
         if count:
-            return f"put the name of a table in brackets: {'[' * count}{match['name']}{']' * count}"
+            return Note(
+                "put the name of a table in brackets: {shown}",
+                shown=f"{'[' * count}{match['name']}{']' * count}",
+            )
     elif (match := _ASSIGNED.fullmatch(bare)) and not bare.startswith("["):
         value = match["value"]
         plain = value[:1] in "\"'[{" or _PLAIN.fullmatch(value)
-        return f"write {match['key']} = {value if plain else quoted(value)}"
-    return ""
+        return Note(
+            "write {key} = {value}", key=match["key"], value=value if plain else quoted(value)
+        )
+    return None

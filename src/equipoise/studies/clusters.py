@@ -16,6 +16,7 @@ from typing import Any
 
 from equipoise.design.processes import DEAD, Pool, StoppedError, Task
 from equipoise.errors import UsageError, needed
+from equipoise.i18n import Note
 from equipoise.studies.store import brief, versions
 
 ANSWER = 5.0
@@ -69,8 +70,12 @@ class Cluster(Pool):
                 found = aside.submit(asyncio.run, self._identity()).result()
         except Exception as error:  # whatever may listen there
             raise SilentError(
-                f"no Dask scheduler answers at {self.address} ({brief(error)}); see whether it "
-                "runs, and whether a firewall is between"
+                Note(
+                    "no Dask scheduler answers at {address} ({brief}); see whether it runs, "
+                    "and whether a firewall is between",
+                    address=self.address,
+                    brief=brief(error),
+                )
             ) from error
         threads: int = found["total_threads"]
         self.room = max(1, 2 * threads)
@@ -78,8 +83,11 @@ class Cluster(Pool):
             self.seen = monotonic()
         elif monotonic() - self.seen > JOIN:
             raise StoppedError(
-                f"the Dask scheduler at {self.address} has no workers; start some by: dask worker "
-                f"{self.address}"
+                Note(
+                    "the Dask scheduler at {address} has no workers; start some by: dask "
+                    "worker {address}",
+                    address=self.address,
+                )
             )
         return threads
 
@@ -97,10 +105,15 @@ class Cluster(Pool):
     def explained(self, error: Exception) -> StoppedError | None:
         if isinstance(error, ModuleNotFoundError):
             return StoppedError(
-                f"a worker of the cluster has no {error.name}; install the same on all hosts"
+                Note(
+                    "a worker of the cluster has no {name}; install the same on all hosts",
+                    name=error.name,
+                )
             )
         if isinstance(error, CancelledError):
-            return StoppedError(f"the Dask scheduler at {self.address} has gone")
+            return StoppedError(
+                Note("the Dask scheduler at {address} has gone", address=self.address)
+            )
         killed = needed("distributed", "a cluster").KilledWorker
         return StoppedError(DEAD) if isinstance(error, killed) else None
 
@@ -115,7 +128,7 @@ def elsewhere(address: str | None, workers: int | None) -> Callable[[Task], Pool
     if address is None:
         return None
     if workers is not None:
-        raise UsageError("workers are those of this machine; leave them out with a cluster")
+        raise UsageError(Note("workers are those of this machine; leave them out with a cluster"))
     return lambda task: Cluster(task, address)
 
 
@@ -141,8 +154,14 @@ def _compute(
     for name, found in versions().items():
         if found != wanted.get(name):
             raise StoppedError(
-                f"the worker on {gethostname()} has {name} {found}, and whoever asks it has "
-                f"{wanted.get(name)}; install the same on all hosts"
+                Note(
+                    "the worker on {host} has {name} {given}, and whoever asks it has "
+                    "{wanted}; install the same on all hosts",
+                    host=gethostname(),
+                    name=name,
+                    given=found,
+                    wanted=wanted.get(name),
+                )
             )
     return function(study, chunk)
 

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from equipoise.errors import EquipoiseError, ModelError, UsageError
+from equipoise.i18n import Note
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.assembly.steps import Call
 from equipoise.results.declaring import ALONG, PLACES
@@ -122,7 +123,7 @@ def _answer(tool: Tool, name: str, wanted: Wanted) -> Values:
     if wanted is None or not over_speeds.isdisjoint(wanted):
         return expose_tool(tool, _speeds(tool)).to_dict()
     if tool.operation is None:
-        raise ModelError("operation", "missing; add the table [operation]")
+        raise ModelError("operation", Note("missing; add the table [operation]"))
     values = expose_tool(tool, np.array([tool.operation.speed])).to_dict()
     return {key: value for key, value in values.items() if key not in over_speeds}
 
@@ -202,7 +203,9 @@ def _of_command(study: Study, numbers: Sequence[int], command: str) -> list[Requ
             return _parted(study, model, Request(command, columns, steps))
     where = f"outputs[{min(asked)}].of"
     assert first is not None
-    refusal = f"equipoise {command} cannot compute the model: {first.note}"
+    refusal = Note(
+        "equipoise {command} cannot compute the model: {note}", command=command, note=first.note
+    )
     raise ModelError(where, refusal).like(first) from first
 
 
@@ -262,8 +265,12 @@ def _steps(
             found.append(_resolved(study, values, output))
         except UsageError as error:
             missing = values.get("missing")
-            told = f"got {output.value!r}; there are no forces, {missing}" if missing else error
-            return ModelError(f"outputs[{number}].value", str(told))
+            if not missing:
+                return ModelError(f"outputs[{number}].value", error.note)
+            what = Note(
+                "got {given!r}; there are no forces, {why}", given=output.value, why=missing
+            )
+            return ModelError(f"outputs[{number}].value", what)
     return tuple(found)
 
 
@@ -282,7 +289,11 @@ def _resolved(study: Study, values: Mapping[str, Any], output: Output) -> tuple[
     steps = resolve(values, output.value, short="summary")
     if study.angles is None and steps[0] != "by_order" and any(isinstance(s, int) for s in steps):
         raise UsageError(
-            f"got {output.value!r}, one of a list that runs over crank angles, whose number is not "
-            "fixed; give a figure of the list, such as .max, or angles in [accuracy]"
+            Note(
+                "got {value!r}, one of a list that runs over crank angles, whose number "
+                "is not fixed; give a figure of the list, such as .max, or angles in "
+                "[accuracy]",
+                value=output.value,
+            )
         )
     return steps

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from equipoise.errors import UsageError
+from equipoise.i18n import Note
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.kinematics.stroke_figures import dimension_of as of_stroke
 from equipoise.mechanism.outputs.declared import declared
@@ -79,7 +80,7 @@ def resolve(values: Values, path: str, short: str | None = None) -> tuple[Step, 
     for steps in finder.ways(values, path):
         return steps
     told = min(reversed(finder.stuck), key=lambda failure: failure[0])[1]
-    raise UsageError(f"got {path!r}; {told}")
+    raise UsageError(Note("got {path!r}; {sentence}", path=path, sentence=told))
 
 
 def read(values: Values, steps: Sequence[Step]) -> float:

@@ -29,7 +29,7 @@ from equipoise.balancing.problem import Problem
 from equipoise.balancing.room import pin_of
 from equipoise.design.evaluator import PooledEvaluator
 from equipoise.design.processes import Pool, Task
-from equipoise.errors import EquipoiseError, MassError, ModelError, UsageError
+from equipoise.errors import EquipoiseError, MassError, ModelError, UsageError, at_place
 from equipoise.i18n import Note, to_say
 from equipoise.mechanism.assembly.family import with_columns
 from equipoise.mechanism.assembly.linkage import assemble
@@ -84,7 +84,9 @@ def told_as(model: Model, path: str, others: Collection[str] = ()) -> tuple[str 
 
 def linkage_of(model: Any) -> Machine:
     if not isinstance(model, Machine):
-        raise UsageError("a map is of a linkage, and this is a tool; use `equipoise tool vary`")
+        raise UsageError(
+            Note("a map is of a linkage, and this is a tool; use `equipoise tool vary`")
+        )
     return model
 
 
@@ -368,7 +370,9 @@ def landscape(
     MassError : a link has no mass given.
     """
     if isinstance(model, Machine):
-        raise UsageError("got a machine; give the model whose numbers vary, Template.of(machine)")
+        raise UsageError(
+            Note("got a machine; give the model whose numbers vary, Template.of(machine)")
+        )
     linkage_of(model.base())
     given = dict(given or {})
     paths, drawn = _checked(over, given)
@@ -391,7 +395,13 @@ def landscape(
     value = linear or SingleValues(maker, of, paths)
     found = _computed(value, points, progress, workers, elsewhere(cluster, workers))
     if np.all(np.isnan(found)):
-        raise UsageError(f"no linkage turns with {paths[0]} and {paths[1]} in these ranges")
+        raise UsageError(
+            Note(
+                "no linkage turns with {paths} and {paths_2} in these ranges",
+                paths=paths[0],
+                paths_2=paths[1],
+            )
+        )
     lowest = int(highest_at(np.where(np.isnan(found), -np.inf, -found), smooth=False))
     best, least = _refined(value, points[lowest], x, y)
     start, before = None, nan
@@ -437,14 +447,18 @@ def _checked(
     over: Mapping[str, Sequence[float] | Array], given: Mapping[str, float]
 ) -> tuple[tuple[str, str], list[Array]]:
     if len(over) != 2:
-        raise UsageError(f"got {len(over)} numbers to vary; a map is over two, give two paths")
+        raise UsageError(
+            Note("got {count} numbers to vary; a map is over two, give two paths", count=len(over))
+        )
     if both := [path for path in over if path in given]:
-        raise UsageError(f"{both[0]} is to vary and is set too; give one of both")
+        raise UsageError(Note("{both} is to vary and is set too; give one of both", both=both[0]))
     values = [np.asarray(one, float) for one in over.values()]
     for path, one in zip(over, values, strict=True):
         rising = one.ndim == 1 and bool(np.all(np.isfinite(one)) and np.all(np.diff(one) > 0))
         if not rising or not 2 <= len(one) <= MOST:
-            raise UsageError(f"{path}: give 2 to {MOST} rising values in SI units")
+            raise UsageError(
+                at_place(path, Note("give 2 to {most} rising values in SI units", most=MOST))
+            )
     first, second = over
     return (first, second), values
 
@@ -459,10 +473,15 @@ def _check_weights(lowest: Mapping[str, float], largest: Mapping[str, float]) ->
         if weight is None:
             continue
         if weight["key"] != "direction" and low < 0:
-            raise UsageError(f"{path}: got less than 0; give 0 or more")
+            raise UsageError(at_place(path, Note("got less than 0; give 0 or more")))
         mass = f"counterweights.{weight['link']}.mass"
         if not largest.get(mass):
-            raise UsageError(f'{path}: the counterweight has no mass; set {mass}, such as "1 kg"')
+            raise UsageError(
+                at_place(
+                    path,
+                    Note('the counterweight has no mass; set {mass}, such as "1 kg"', mass=mass),
+                )
+            )
 
 
 def _refined(values: Values, start: Array, x: Array, y: Array) -> tuple[tuple[float, float], float]:

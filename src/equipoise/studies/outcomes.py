@@ -12,6 +12,7 @@ import numpy as np
 
 from equipoise.codegen.figures import COMPUTED, REASONS
 from equipoise.errors import needed
+from equipoise.i18n import Note
 
 if TYPE_CHECKING:
     from equipoise.keys.requirement_kinds import Make
@@ -136,7 +137,7 @@ def far_apart(costs: Array, count: int) -> Array:
 
 def why_none(
     outputs: Sequence[Output], reasons: Array, limits: Array, units: Sequence[str] = ()
-) -> str:
+) -> Note:
     """Say why no design keeps every limit.
 
     reasons : number of designs by reason, (256,).  limits : those that keep each output's, (m,).
@@ -144,15 +145,17 @@ def why_none(
     computed = int(reasons[COMPUTED])
     if not computed:
         failed = [f"{what}: {reasons[k]}" for k, what in REASONS.items() if reasons[k]]
-        return (
-            f"no design has figures ({', '.join(failed)}); let the numbers vary closer to those "
-            "of the model"
+        return Note(
+            "no design has figures ({names}); let the numbers vary closer to those of the model",
+            names=", ".join(failed),
         )
     named = zip(outputs, units or [""] * len(outputs), limits, strict=True)
     told = [f"{_limit(one, unit)} by {n}" for one, unit, n in named if one.limited]
-    return (
-        f"none of {computed} designs keeps every limit; kept is {', '.join(told)}; loosen a limit, "
-        "or let more vary"
+    return Note(
+        "none of {computed} designs keeps every limit; kept is {names}; loosen a "
+        "limit, or let more vary",
+        computed=computed,
+        names=", ".join(told),
     )
 
 

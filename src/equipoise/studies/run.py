@@ -15,9 +15,10 @@ from typing import TYPE_CHECKING, Any, cast
 from equipoise.codegen.figures import REASONS
 from equipoise.design.processes import Runner, StoppedError
 from equipoise.design.spreads import Choices
-from equipoise.errors import UsageError, needed
+from equipoise.errors import UsageError, at_place, needed
 from equipoise.fence import place_of
 from equipoise.folders import Folder
+from equipoise.i18n import Note
 from equipoise.partial import beside, made
 from equipoise.quantities import SI
 from equipoise.studies.clusters import elsewhere
@@ -111,8 +112,15 @@ def resume(
     study = restore(store.texts)
     if study.size != store.size:  # of a grid, which only the study itself can count
         raise UsageError(
-            f"{store.path}: has places for {store.size} designs, and its study has {study.size}; "
-            "it was changed, sweep anew"
+            at_place(
+                store.path,
+                Note(
+                    "has places for {size} designs, and its study has {size_2}; it was "
+                    "changed, sweep anew",
+                    size=store.size,
+                    size_2=study.size,
+                ),
+            )
         )
     tally, missing = _counted(store, study)
     if not missing:
@@ -143,8 +151,17 @@ def _fill(
                 tell(tally.progress())
         except StoppedError as error:
             raise UsageError(
-                f"{store.path}: {error}; {tally.done} of {store.size} designs are stored, go on "
-                f"with the others by: equipoise resume {store.path}"
+                at_place(
+                    store.path,
+                    Note(
+                        "{error}; {done} of {size} designs are stored, go on with the others by: "
+                        "equipoise resume {path}",
+                        error=error.note,
+                        done=tally.done,
+                        size=store.size,
+                        path=store.path,
+                    ),
+                )
             ) from error
 
 
@@ -154,10 +171,12 @@ def _store(store: Store, designs: range, block: Block) -> None:
     except OSError as error:
         if not os.path.lexists(store.path):
             raise UsageError(
-                f"{store.path}: the folder has gone, and what was stored with it; sweep anew"
+                at_place(
+                    store.path, Note("the folder has gone, and what was stored with it; sweep anew")
+                )
             ) from error
         raise StoppedError(
-            f"designs cannot be written ({brief(error)}); make room or mend that"
+            Note("designs cannot be written ({brief}); make room or mend that", brief=brief(error))
         ) from error
 
 
@@ -179,8 +198,17 @@ def _check_same(store: Store, engine: str) -> None:
         found = here.get(name, "none")
         if found != wanted:
             raise UsageError(
-                f"{store.path}: was begun with {name} {wanted}, and here is {name} {found}, with "
-                "which the last digits may differ; install what it was begun with, or sweep anew"
+                at_place(
+                    store.path,
+                    Note(
+                        "was begun with {name} {wanted}, and here is {name} {given}, with which "
+                        "the last digits may differ; install what it was begun with, or sweep "
+                        "anew",
+                        name=name,
+                        wanted=wanted,
+                        given=found,
+                    ),
+                )
             )
 
 
@@ -233,11 +261,19 @@ def create_store(path: str | os.PathLike[str], study: Study, chunk: int, engine:
     target = Path(path)
     if os.path.lexists(target):
         raise UsageError(
-            f"{target}: is there already; choose another name, or go on with a store by: "
-            f"equipoise resume {target}"
+            at_place(
+                target,
+                Note(
+                    "is there already; choose another name, or go on with a store by: "
+                    "equipoise resume {target}",
+                    target=target,
+                ),
+            )
         )
     # Made beside its place, so that a store is a whole one from the moment it is there.
-    with as_usage_error(target, "the store cannot be made", "choose another place or name"):
+    with as_usage_error(
+        target, Note("the store cannot be made"), Note("choose another place or name")
+    ):
         made(target.parent)
         above, name = place_of(target)
         with beside(above, name) as begun:

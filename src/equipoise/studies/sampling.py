@@ -17,6 +17,7 @@ import numpy as np
 
 from equipoise.design.spreads import LEAST, MOST
 from equipoise.errors import UsageError
+from equipoise.i18n import Note
 from equipoise.sequences import sobol
 from equipoise.studies.study import correlation_matrix
 
@@ -56,7 +57,12 @@ def unit_samples(study: Study, start: int, count: int) -> Array:
     """
     if start < 0 or count < 0 or start + count > study.size:
         raise UsageError(
-            f"got designs {start} to {start + count}; the study has {study.size}, from 0"
+            Note(
+                "got designs {start} to {start_2}; the study has {size}, from 0",
+                start=start,
+                start_2=start + count,
+                size=study.size,
+            )
         )
     method = study.sampling.method
     if method == "grid":

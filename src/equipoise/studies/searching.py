@@ -162,9 +162,17 @@ def search(
     population, generations = search_size(study, population, generations)
     if not LEAST_POPULATION <= population <= MOST_POPULATION:
         most = f"{LEAST_POPULATION} to {MOST_POPULATION}"
-        raise UsageError(f"got a population of {population}; give {most}")
+        raise UsageError(
+            Note("got a population of {population}; give {most}", population=population, most=most)
+        )
     if not 1 <= generations <= MOST_GENERATIONS:
-        raise UsageError(f"got {generations} generations; give 1 to {MOST_GENERATIONS}")
+        raise UsageError(
+            Note(
+                "got {generations} generations; give 1 to {most_generations}",
+                generations=generations,
+                most_generations=MOST_GENERATIONS,
+            )
+        )
     seed = study.sampling.seed if seed is None else seed
     with ExitStack() as held:
         evaluate = compute or held.enter_context(pooled(study, workers, cluster))
@@ -250,7 +258,11 @@ def search_size(
     """
     if population is None and generations is None and study.size < LEAST_POPULATION:
         where = "vary" if study.sampling.method == "grid" else "sampling.designs"
-        told = f"got {study.size} designs; give {LEAST_POPULATION} or more for a search"
+        told = Note(
+            "got {size} designs; give {least_population} or more for a search",
+            size=study.size,
+            least_population=LEAST_POPULATION,
+        )
         raise ModelError(where, told)
     if population is None:
         few = study.size // FEWEST_GENERATIONS if generations is None else POPULATION
@@ -280,12 +292,16 @@ def breeding_time(study: Study, population: int) -> float:
 def _check(study: Study) -> None:
     for number, one in enumerate(study.vary, 1):
         if not isinstance(one.spread, Range | Choices):
-            told = f"{one.path} has a tolerance, which cannot be chosen; a search takes a range or "
-            raise ModelError(f"vary[{number}]", told + "a list, and equipoise tolerance takes this")
+            told = Note(
+                "{path} has a tolerance, which cannot be chosen; a search takes a range or a list, "
+                "and equipoise tolerance takes this",
+                path=one.path,
+            )
+            raise ModelError(f"vary[{number}]", told)
     if study.correlations:
-        raise ModelError("correlations", "have no place in a search; leave them out")
+        raise ModelError("correlations", Note("have no place in a search; leave them out"))
     if not study.objectives:
-        told = 'none is to become small or large; give one of them make = "smallest"'
+        told = Note('none is to become small or large; give one of them make = "smallest"')
         raise ModelError("outputs", told)
 
 

@@ -18,7 +18,8 @@ from typing import Any, BinaryIO, ClassVar
 import numpy as np
 
 from equipoise.codegen.figures import COMPUTED, REASONS
-from equipoise.errors import UsageError, needed
+from equipoise.errors import UsageError, at_place, needed
+from equipoise.i18n import Note
 from equipoise.keys.requirement_kinds import Make
 from equipoise.mechanism.checks import unknown
 from equipoise.partial import replaced
@@ -47,8 +48,8 @@ class NothingBestError(UsageError):
     store : its path.  reason : the sentence without that path.
     """
 
-    def __init__(self, store: Path | str, reason: str) -> None:
-        super().__init__(f"{store}: {reason}")
+    def __init__(self, store: Path | str, reason: Note) -> None:
+        super().__init__(at_place(store, reason))
         self.store, self.reason = store, reason
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -123,7 +124,7 @@ def best(
         with `nearest`, none has figures.
     """
     if count < 1:
-        raise UsageError(f"got {count} designs; give 1 or more")
+        raise UsageError(Note("got {count} designs; give 1 or more", count=count))
     outputs = store.wishes
     choice = _Choice(store, outputs, _ways(store, outputs, by), count)
     for start, block in store.in_blocks():
@@ -138,8 +139,10 @@ def _ways(
     if not by:
         if not makes:
             raise UsageError(
-                "no output of the study is to become small or large; name one to go by, or give it "
-                'make = "smallest" in the study'
+                Note(
+                    "no output of the study is to become small or large; name one to go by, "
+                    'or give it make = "smallest" in the study'
+                )
             )
         return makes
     known = [*store.outputs, *store.numbers]
@@ -200,7 +203,9 @@ class _Choice:
         """The best of all, else the nearest; `UsageError` says why there is none."""
         where, stored = self.store.path, int(np.sum(self.reasons[list(REASONS)]))
         if not stored:
-            reason = f"nothing is computed yet; go on with: equipoise resume {where}"
+            reason = Note(
+                "nothing is computed yet; go on with: equipoise resume {path}", path=where
+            )
             raise NothingBestError(where, reason)
         note = ""
         if not self.kept:
@@ -266,12 +271,16 @@ def write_designs(store: Store, path: str | os.PathLike[str], *, kept: bool = Fa
     target = Path(path)
     writers = {".csv": _csv, ".parquet": _parquet}
     if target.suffix.lower() not in writers:
-        raise UsageError(f"{target}: give the name of a file that ends in .csv or .parquet")
+        raise UsageError(
+            at_place(target, Note("give the name of a file that ends in .csv or .parquet"))
+        )
     schema = _schema(store)
     outputs = store.wishes
     rows = 0
     with (
-        as_usage_error(target, "the file cannot be written", "choose another place or name"),
+        as_usage_error(
+            target, Note("the file cannot be written"), Note("choose another place or name")
+        ),
         replaced(target) as file,
         writers[target.suffix.lower()](file, schema, store) as write,
     ):

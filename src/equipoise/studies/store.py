@@ -29,10 +29,10 @@ import numpy as np
 
 import equipoise
 from equipoise.codegen.figures import COMPUTED
-from equipoise.errors import UsageError, needed
+from equipoise.errors import UsageError, at_place, needed
 from equipoise.fence import OutsideError, open_folder
 from equipoise.folders import Folder, LinkError
-from equipoise.i18n import worded
+from equipoise.i18n import Note, worded
 from equipoise.partial import locked
 from equipoise.results.result import Result
 from equipoise.studies.design_space import Output
@@ -53,7 +53,7 @@ CODEC = "crc32c"
 """Zarr's name of what puts a checksum behind each chunk, and looks at it when that is read."""
 REASON, UNKNOWN = "reason", 255
 NO_LINKS = "which no store has"
-DAMAGED = "see whether the disk is there, or sweep anew"
+DAMAGED = Note("see whether the disk is there, or sweep anew")
 BLOCK, NUMBERS = 65_536, 2**22
 """Designs that are read at once, or fewer where each has many numbers."""
 ZSTD = 1
@@ -105,7 +105,7 @@ class Store(Result):
 
     def missing(self) -> list[int]:
         """Chunks that are not stored, in order."""
-        with as_usage_error(self.path, "cannot be read", DAMAGED):
+        with as_usage_error(self.path, Note("cannot be read"), DAMAGED):
             done = set.intersection(*(_files(self.folder, name) for name in self.arrays))
         return [chunk for chunk in range(self.chunks) if chunk not in done]
 
@@ -144,7 +144,7 @@ class Store(Result):
                 raise DamagedError(self, name, part)
 
     def _column(self, name: str, designs: range) -> Array:
-        with as_usage_error(self.path, "cannot be read", DAMAGED):
+        with as_usage_error(self.path, Note("cannot be read"), DAMAGED):
             try:
                 return np.asarray(self.arrays[name][designs.start : designs.stop])
             except (OSError, MemoryError):
@@ -174,7 +174,7 @@ class Store(Result):
         UsageError : another process is writing, or nobody can.
         """
         with ExitStack() as held:
-            with as_usage_error(self.path, "cannot be written", "make it writable"):
+            with as_usage_error(self.path, Note("cannot be written"), Note("make it writable")):
                 held.enter_context(locked(self.folder))
                 for name in self.arrays:
                     chunks = _chunks_of(self.folder, name)
@@ -201,8 +201,17 @@ class DamagedError(UsageError):
 
     def __init__(self, store: Store, name: str, designs: range) -> None:
         super().__init__(
-            f"{store.path}: {name} of designs {designs.start} to {designs.stop - 1} was damaged; "
-            f"compute again what was by: equipoise resume {store.path}"
+            at_place(
+                store.path,
+                Note(
+                    "{name} of designs {start} to {stop} was damaged; compute again what was "
+                    "by: equipoise resume {path}",
+                    name=name,
+                    start=designs.start,
+                    stop=designs.stop - 1,
+                    path=store.path,
+                ),
+            )
         )
 
 
@@ -280,10 +289,14 @@ def open_store(path: str | os.PathLike[str]) -> Store:
     zarr = needed("zarr", "a store")
     path = Path(path)
     if not os.path.lexists(path):
-        raise UsageError(f"{path}: there is no such store; make it by: equipoise sweep")
+        raise UsageError(
+            at_place(path, Note("there is no such store; make it by: equipoise sweep"))
+        )
     if path.is_file():
         raise UsageError(
-            f"{path}: a store is a folder; of a study file it is made by: equipoise sweep"
+            at_place(
+                path, Note("a store is a folder; of a study file it is made by: equipoise sweep")
+            )
         )
     try:
         folder = open_folder(path)
@@ -292,15 +305,29 @@ def open_store(path: str | os.PathLike[str]) -> Store:
         if layout in (WITHOUT_CHECKSUMS, LAYOUT):
             return _opened(path, folder, group)
     except OutsideError as error:
-        raise UsageError(f"{path}: {error}") from error
+        raise UsageError(at_place(path, error.note)) from error
     except Exception as error:  # Zarr and its codecs raise anything where a file is damaged
         raise UsageError(
-            f"{path}: is no store of Equipoise, or one that was damaged ({brief(error)}); give "
-            "the folder that equipoise sweep has made, or sweep anew"
+            at_place(
+                path,
+                Note(
+                    "is no store of Equipoise, or one that was damaged ({brief}); give the "
+                    "folder that equipoise sweep has made, or sweep anew",
+                    brief=brief(error),
+                ),
+            )
         ) from error
     raise UsageError(
-        f"{path}: was made by another version of Equipoise, with layout {layout!r:.40}, and "
-        f"this one reads layout {LAYOUT}; install the version that made it, or sweep anew"
+        at_place(
+            path,
+            Note(
+                "was made by another version of Equipoise, with layout {layout}, "
+                "and this one reads layout {own}; install the version that made it, "
+                "or sweep anew",
+                layout=f"{layout!r:.40}",
+                own=LAYOUT,
+            ),
+        )
     )
 
 
@@ -380,17 +407,32 @@ def _texts(packed: str) -> dict[str, str]:
 
 @contextmanager
 def as_usage_error(
-    path: Path, what: str, advice: str, caught: tuple[type[Exception], ...] = (OSError, ValueError)
+    path: Path,
+    what: Note,
+    advice: Note,
+    caught: tuple[type[Exception], ...] = (OSError, ValueError),
 ) -> Iterator[None]:
     """Make one sentence of what the system says."""
     try:
         yield
     except LinkError as error:
         raise UsageError(
-            f"{path}: {what} ({brief(error)}); put what it leads to in its place, if you trust it"
+            at_place(
+                path,
+                Note(
+                    "{what} ({brief}); put what it leads to in its place, if you trust it",
+                    what=what,
+                    brief=brief(error),
+                ),
+            )
         ) from error
     except caught as error:
-        raise UsageError(f"{path}: {what} ({brief(error)}); {advice}") from error
+        raise UsageError(
+            at_place(
+                path,
+                Note("{what} ({brief}); {advice}", what=what, brief=brief(error), advice=advice),
+            )
+        ) from error
 
 
 LONGEST = 200

@@ -12,8 +12,8 @@ import numpy as np
 
 from equipoise.design.spreads import KEYS, SPREADS, Choices, Range
 from equipoise.design.variables import Variable
-from equipoise.errors import ModelError, UsageError
-from equipoise.i18n import worded
+from equipoise.errors import ModelError, UsageError, at_place
+from equipoise.i18n import Note, any_of, worded
 from equipoise.mechanism.checks import unknown, wrong_text
 from equipoise.studies.design_space import COMMANDS, METHODS, Correlation, Model, Output, Sampling
 
@@ -146,18 +146,29 @@ def from_plain(plain: Mapping[str, Any], model: Model, file: str = "") -> Study:
 def _numbers(model: Model, vary: Sequence[Variable]) -> list[tuple[float, str | None]]:
     """Number and dimension of everything that varies, as the model has it."""
     if not vary:
-        raise ModelError("vary", "there is none; give at least one [[vary]]")
+        raise ModelError("vary", Note("there is none; give at least one [[vary]]"))
     if len(vary) > MOST_VARIED:
-        raise ModelError("vary", f"got {len(vary)}; at most {MOST_VARIED} numbers may vary")
+        raise ModelError(
+            "vary",
+            Note(
+                "got {count}; at most {most_varied} numbers may vary",
+                count=len(vary),
+                most_varied=MOST_VARIED,
+            ),
+        )
     places: dict[str, str] = {}
     numbers = []
     for number, one in enumerate(vary, 1):
         where, path = f"vary[{number}]", one.path
         if path in places:
-            told = f"{path} varies in {places[path]} already; leave one of them out"
+            told = Note(
+                "{path} varies in {places} already; leave one of them out",
+                path=path,
+                places=places[path],
+            )
             raise ModelError(f"{where}.path", told)
         if "/" in path:
-            told = f"got {path!r}; no column can have / in its name, rename it"
+            told = Note("got {path!r}; no column can have / in its name, rename it", path=path)
             raise ModelError(f"{where}.path", told)
         try:
             numbers.append(model.number(path))
@@ -169,7 +180,7 @@ def _numbers(model: Model, vary: Sequence[Variable]) -> list[tuple[float, str | 
     except ModelError as error:
         if error.where in places:
             raise ModelError(f"{places[error.where]}.path", error.what) from error
-        raise ModelError("model", f"{error.where}: {error.what}") from error
+        raise ModelError("model", at_place(error.where, error.what)) from error
     return numbers
 
 
@@ -189,17 +200,19 @@ def _problems(study: Study) -> Iterator[ModelError]:
     yield from _wrong_sampling(study)
     yield from _wrong_correlations(study)
     yield from _wrong_outputs(study)
-    yield from _beyond("accuracy.angles", study.angles, *ANGLES, " in a turn")
+    yield from _beyond("accuracy.angles", study.angles, *ANGLES, Note("in a turn"))
     yield from _beyond("accuracy.tolerance", study.tolerance, *TOLERANCE)
-    yield from _beyond("chunk", study.chunk or None, 1, MOST_CHUNK, " designs")
+    yield from _beyond("chunk", study.chunk or None, 1, MOST_CHUNK, Note("designs"))
 
 
 def _beyond(
-    where: str, given: float | None, least: float, most: float, of: str = ""
+    where: str, given: float | None, least: float, most: float, unit: Note | None = None
 ) -> Iterator[ModelError]:
     if given is not None and not least <= given <= most:
         got, low, high = (n if isinstance(n, int) else f"{n:g}" for n in (given, least, most))
-        yield ModelError(where, f"got {got}; give {low} to {high}{of}")
+        what = Note("got {given}; give {low} to {high}", given=got, low=low, high=high)
+        what = what if unit is None else Note("{sentence} {unit}", sentence=what, unit=unit)
+        yield ModelError(where, what)
 
 
 def _wrong_spread(where: str, one: Variable, study: Study) -> Iterator[ModelError]:
@@ -207,19 +220,23 @@ def _wrong_spread(where: str, one: Variable, study: Study) -> Iterator[ModelErro
     key = f"{where}.{KEYS[type(spread)]}"
     if isinstance(study.model.number(one.path)[0], int):
         if spread.tolerance:
-            yield ModelError(key, f"{one.path} is a whole number; give a range or a list")
+            yield ModelError(
+                key, Note("{path} is a whole number; give a range or a list", path=one.path)
+            )
         if isinstance(spread, Choices) and not all(map(float.is_integer, spread.values)):
-            yield ModelError(key, f"{one.path} is a whole number; give whole numbers")
+            yield ModelError(
+                key, Note("{path} is a whole number; give whole numbers", path=one.path)
+            )
     grid = method == "grid"
     if isinstance(spread, Range) and grid != (spread.steps is not None):
-        missing = "missing; a grid needs the number of values"
-        other = f"goes with a grid, not with {method}; leave it out"
+        missing = Note("missing; a grid needs the number of values")
+        other = Note("goes with a grid, not with {method}; leave it out", method=method)
         yield ModelError(f"{where}.steps", missing if grid else other)
     elif grid:
         try:
             _ = spread.levels
         except UsageError as error:
-            yield ModelError(key, str(error))
+            yield ModelError(key, error.note)
 
 
 def _wrong_sampling(study: Study) -> Iterator[ModelError]:
@@ -228,16 +245,22 @@ def _wrong_sampling(study: Study) -> Iterator[ModelError]:
         yield ModelError("sampling.method", unknown(sampling.method, METHODS, "method"))
     if sampling.method == "grid":
         if sampling.designs is not None:
-            told = f"a grid has as many as its steps make, here {study.size}; leave it out"
+            told = Note(
+                "a grid has as many as its steps make, here {size}; leave it out", size=study.size
+            )
             yield ModelError("sampling.designs", told)
         if study.size > MOST_DESIGNS:
             yield ModelError(
                 "sampling.method",
-                f"the grid has {study.size:.3g} designs; at most {MOST_DESIGNS:.0e} are computed, "
-                "give fewer steps, or another method",
+                Note(
+                    "the grid has {size:.3g} designs; at most {most_designs:.0e} are "
+                    "computed, give fewer steps, or another method",
+                    size=study.size,
+                    most_designs=MOST_DESIGNS,
+                ),
             )
     elif sampling.designs is None:
-        yield ModelError("sampling.designs", "missing; give how many, such as 65536")
+        yield ModelError("sampling.designs", Note("missing; give how many, such as 65536"))
     else:
         yield from _beyond("sampling.designs", sampling.designs, 1, MOST_DESIGNS)
         yield from _beyond("sampling.seed", sampling.seed, 0, MOST_SEED)
@@ -249,33 +272,47 @@ def _wrong_correlations(study: Study) -> Iterator[ModelError]:
     for number, one in enumerate(study.correlations, 1):
         where = f"correlations[{number}]"
         if study.sampling.method == "grid":
-            yield ModelError(where, "a grid has no correlations; leave them out, or take sobol")
+            yield ModelError(
+                where, Note("a grid has no correlations; leave them out, or take sobol")
+            )
         for end, path in enumerate((one.first, one.second), 1):
             if path not in spreads:
                 yield ModelError(f"{where}.between[{end}]", unknown(path, spreads, "[[vary]]"))
             elif isinstance(spreads[path], Choices):
                 yield ModelError(
                     f"{where}.between[{end}]",
-                    f"{path} is chosen from a list, which cannot be correlated; give it a range or "
-                    "a tolerance",
+                    Note(
+                        "{path} is chosen from a list, which cannot be correlated; give it a "
+                        "range or a tolerance",
+                        path=path,
+                    ),
                 )
         pair = frozenset((one.first, one.second))
         if len(pair) == 1:
-            yield ModelError(f"{where}.between", "got one number twice; give two different ones")
+            yield ModelError(
+                f"{where}.between", Note("got one number twice; give two different ones")
+            )
         if pair in given:
-            told = f"is given in correlations[{given[pair]}] already; leave one out"
+            told = Note(
+                "is given in correlations[{given}] already; leave one out", given=given[pair]
+            )
             yield ModelError(f"{where}.between", told)
         given[pair] = number
         if not -1 < one.coefficient < 1:
-            told = f"got {one.coefficient:g}; give a number between -1 and 1, without these"
+            told = Note(
+                "got {coefficient:g}; give a number between -1 and 1, without these",
+                coefficient=one.coefficient,
+            )
             yield ModelError(f"{where}.coefficient", told)
     try:
         np.linalg.cholesky(correlation_matrix(study.paths, study.correlations)[1])
     except np.linalg.LinAlgError:
         yield ModelError(
             "correlations",
-            "the coefficients contradict each other, no numbers can have them all at once (their "
-            "matrix is not positive definite); make some of them smaller",
+            Note(
+                "the coefficients contradict each other, no numbers can have them all at "
+                "once (their matrix is not positive definite); make some of them smaller"
+            ),
         )
 
 
@@ -299,35 +336,57 @@ def correlation_matrix(
 def _wrong_outputs(study: Study) -> Iterator[ModelError]:
     outputs = study.outputs
     if not outputs:
-        yield ModelError("outputs", "there is none; give at least one [[outputs]]")
+        yield ModelError("outputs", Note("there is none; give at least one [[outputs]]"))
     if len(outputs) > MOST_OUTPUTS:
-        yield ModelError("outputs", f"got {len(outputs)}; at most {MOST_OUTPUTS} are computed")
-    taken = {path: f"the path of vary[{n}]" for n, path in enumerate(study.paths, 1)}
-    taken |= dict.fromkeys(RESERVED, "what every store of designs has")
+        yield ModelError(
+            "outputs",
+            Note(
+                "got {count}; at most {most_outputs} are computed",
+                count=len(outputs),
+                most_outputs=MOST_OUTPUTS,
+            ),
+        )
+    taken = {
+        path: Note("the path of {place}", place=f"vary[{n}]")
+        for n, path in enumerate(study.paths, 1)
+    }
+    taken |= dict.fromkeys(RESERVED, Note("what every store of designs has"))
     for number, output in enumerate(outputs, 1):
         where = f"outputs[{number}]"
         yield from _wrong_output(where, output, study.model.kind)
         if output.name in taken:
-            told = f"got {output.name!r}, which is {taken[output.name]}; give another name"
+            told = Note(
+                "got {name!r}, which is {taken}; give another name",
+                name=output.name,
+                taken=taken[output.name],
+            )
             yield ModelError(f"{where}.name", told)
-        taken[output.name] = f"the name of {where}"
+        taken[output.name] = Note("the name of {place}", place=where)
 
 
 def _wrong_output(where: str, output: Output, kind: str) -> Iterator[ModelError]:
     if not output.value.strip():
-        yield ModelError(f"{where}.value", "is empty; give the place of a figure")
+        yield ModelError(f"{where}.value", Note("is empty; give the place of a figure"))
     yield from wrong_text(f"{where}.value", output.value)
     yield from wrong_text(f"{where}.name", output.name)
     if not output.name.strip() or not {"/", "\\"}.isdisjoint(output.name) or output.name[0] == ".":
-        told = f"got {output.name!r}; give a name without / and without a point in front"
+        told = Note(
+            "got {name!r}; give a name without / and without a point in front", name=output.name
+        )
         yield ModelError(f"{where}.name", told)
     if output.of not in COMMANDS:
         yield ModelError(f"{where}.of", unknown(output.of, COMMANDS, "command"))
     elif (output.of == "tool") != (kind == "tool"):
-        right = "tool" if kind == "tool" else "analyze, plant, respond or balance"
-        told = f"got {output.of!r}, but the model is a {kind}; give {right}"
+        names = ["tool"] if kind == "tool" else ["analyze", "plant", "respond", "balance"]
+        told = Note(
+            "got {of!r}, but the model is a tool; give {right}"
+            if kind == "tool"
+            else "got {of!r}, but the model is a linkage; give {right}",
+            of=output.of,
+            right=any_of(names),
+        )
         yield ModelError(f"{where}.of", told)
-    for key, wrong in output.wrong_asks():
-        yield ModelError(f"{where}.{key}", wrong)
+    for key, given, right in output.wrong_asks():
+        yield ModelError(f"{where}.{key}", Note("got {given}; {right}", given=given, right=right))
     if None not in (output.at_least, output.at_most) and output.at_least > output.at_most:  # type: ignore[operator]
-        yield ModelError(where, "at_least is above at_most")
+        yield ModelError(where, Note("at_least is above at_most"))

@@ -17,6 +17,7 @@ import numpy as np
 
 from equipoise.codegen.figures import COMPUTED
 from equipoise.errors import ModelError, UsageError
+from equipoise.i18n import Note
 from equipoise.results.result import Result
 from equipoise.studies.evaluate import pooled
 from equipoise.studies.outcomes import Evaluator, Outcome, failures, kept, why_none
@@ -197,16 +198,24 @@ def _check(study: Study) -> None:
         if not one.spread.tolerance:
             raise ModelError(
                 f"vary[{number}]",
-                f"{one.path} has a range or a list, which is no tolerance; give normal = "
-                "{ deviation = ... } or uniform = { half_width = ... }",
+                Note(
+                    "{path} has a range or a list, which is no tolerance; give normal = {{ "
+                    "deviation = ... }} or uniform = {{ half_width = ... }}",
+                    path=one.path,
+                ),
             )
     causes = len(causes_of(study))
     if rows_of(study.size, causes) < LEAST_ROWS:
         raise ModelError(
             "sampling.designs",
-            f"got {study.size}; "
-            + (f"to tell {causes} tolerances apart" if causes > 1 else "for one tolerance")
-            + f" give {LEAST_ROWS * (2 + 3 * causes)} or more",
+            Note(
+                "got {size}; for {count} tolerances give {least} or more"
+                if causes > 1
+                else "got {size}; for one tolerance give {least} or more",
+                size=study.size,
+                count=causes,
+                least=LEAST_ROWS * (2 + 3 * causes),
+            ),
         )
 
 

@@ -11,6 +11,7 @@ from typing import ClassVar
 import numpy as np
 
 from equipoise.errors import MassError, ResponseError, UsageError
+from equipoise.i18n import Note
 from equipoise.mechanism.dynamics.forces import massless
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.quantities import Dimension, in_si
@@ -109,12 +110,24 @@ def simulate(
         raise MassError(missing)
     speed = steady_speed(machine, speed, drive)
     if samples is not None and not 2 <= samples <= MOST_SAMPLES:
-        raise UsageError(f"got {samples!r} for samples; give 2 to {MOST_SAMPLES}")
+        raise UsageError(
+            Note(
+                "got {samples!r} for samples; give 2 to {most_samples}",
+                samples=samples,
+                most_samples=MOST_SAMPLES,
+            )
+        )
     turns = abs(speed) * duration / (2 * pi)
     if not 0 < turns <= MOST_TURNS:
         raise UsageError(
-            f"got {duration:g} s, in which the crank makes {turns:.4g} turns; give a time of more "
-            f"than 0 and at most {MOST_TURNS} turns, {MOST_TURNS * 2 * pi / abs(speed):.4g} s"
+            Note(
+                "got {duration:g} s, in which the crank makes {turns:.4g} turns; give a "
+                "time of more than 0 and at most {most_turns} turns, {longest:.4g} s",
+                duration=duration,
+                turns=turns,
+                most_turns=MOST_TURNS,
+                longest=MOST_TURNS * 2 * pi / abs(speed),
+            )
         )
     system, _ = equations(machine, speed, drive)
     shift = _shift(machine, speed) if drive else 0.0

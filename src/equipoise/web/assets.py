@@ -5,12 +5,13 @@ from __future__ import annotations
 from importlib.resources import files
 
 from equipoise.errors import UsageError
+from equipoise.i18n import Note
 
 TYPES = {"equipoise.js": "text/javascript", "equipoise.css": "text/css"}
 """Everything that there is, with its type."""
-MAKE = (
-    "the page has not been built; run `make page`, or `pip install -e .` where Node or a network "
-    "is at hand"
+MAKE = Note(
+    "the page has not been built; run `make page`, or `pip install -e .` "
+    "where Node or a network is at hand"
 )
 
 

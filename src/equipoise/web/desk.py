@@ -140,7 +140,7 @@ class Desk:
             if self.tool is not None and not self.studied:
                 replies = [*self.tool.receive(message)]
             elif self.store is None or message.kind not in OF_STORE:
-                raise UsageError("a study is open; choose one of its designs first")
+                raise UsageError(Note("a study is open; choose one of its designs first"))
             else:
                 replies = [self.store.told(message.seq)]
         yield from replies

@@ -125,7 +125,13 @@ def held(places: Mapping[str, complex], change: Drag) -> complex:
         return change.to
     now = places[change.name]
     if len(others) > 2:
-        raise UsageError(f"{len(others)} lengths that end in {change.name} are locked; unlock one")
+        raise UsageError(
+            Note(
+                "{count} lengths that end in {name} are locked; unlock one",
+                count=len(others),
+                name=change.name,
+            )
+        )
     centers = [places[name] for name in others]
     radii = [abs(now - center) for center in centers]
     if len(centers) == 1:

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from math import isfinite
 from typing import Any, NoReturn
 
-from equipoise.errors import UsageError
+from equipoise.errors import UsageError, at_place
+from equipoise.i18n import Note
 from equipoise.keys import MOST_WHOLE
 from equipoise.keys.paths import KeyPath
 from equipoise.quantities.reading import described
@@ -122,14 +123,14 @@ class Message:
         """A text of the message."""
         value = self.values.get(key, usual)
         if not isinstance(value, str):
-            _wrong(f"{self.kind}: {key}", value, "a text")
+            _wrong(f"{self.kind}: {key}", value, Note("a text"))
         return value
 
     def flag(self, key: str, usual: bool) -> bool:
         """A yes or no of the message."""
         value = self.values.get(key, usual)
         if not isinstance(value, bool):
-            _wrong(f"{self.kind}: {key}", value, "true or false")
+            _wrong(f"{self.kind}: {key}", value, Note("true or false"))
         return value
 
     def optional(self, key: str) -> str | None:
@@ -140,13 +141,17 @@ class Message:
         """A whole number of the message."""
         value = self.values.get(key, usual)
         if isinstance(value, bool) or not isinstance(value, int) or abs(value) > MOST_WHOLE:
-            _wrong(f"{self.kind}: {key}", value, "a whole number")
+            _wrong(f"{self.kind}: {key}", value, Note("a whole number"))
         return value
 
     def spot(self, key: str) -> Spot:
         """Where something is put: ``{"point": "B"}``, or ``{"place": [x, y], "on": "frame"}``."""
         value = self.values.get(key)
-        wanted = 'a point such as {"point": "B"}, or a place such as {"place": [0.1, 0]}'
+        wanted = Note(
+            "a point such as {point}, or a place such as {place}",
+            point='{"point": "B"}',
+            place='{"place": [0.1, 0]}',
+        )
         if not isinstance(value, dict):
             _wrong(f"{self.kind}: {key}", value, wanted)
         point, on = value.get("point"), value.get("on")
@@ -159,7 +164,7 @@ class Message:
         names = self.values.get(key)
         good = isinstance(names, list) and all(isinstance(name, str) for name in names)
         if not isinstance(names, list) or not good or len(names) > most:
-            _wrong(f"{self.kind}: {key}", names, f"a list of at most {most} names")
+            _wrong(f"{self.kind}: {key}", names, Note("a list of at most {most} names", most=most))
         return tuple(dict.fromkeys(names))
 
     @property
@@ -177,7 +182,11 @@ class Message:
         """
         edits = self.values.get("edits")
         if not isinstance(edits, list) or not 0 < len(edits) <= MOST_EDITS:
-            _wrong("edit: edits", edits, f"a list of 1 to {MOST_EDITS} edits")
+            _wrong(
+                "edit: edits",
+                edits,
+                Note("a list of 1 to {most_edits} edits", most_edits=MOST_EDITS),
+            )
         return [_change(edit) for edit in edits]
 
     def entry(self) -> Entry:
@@ -190,11 +199,11 @@ class Message:
         place, values = self.values.get("place"), self.values.get("values")
         name = self.values.get("name")
         if not isinstance(place, list) or not all(map(_is_step, place)) or len(place) > DEEPEST:
-            _wrong("entry: place", place, 'a list of keys and numbers such as ["springs", 0]')
+            _wrong("entry: place", place, Note('a list of keys and numbers such as ["springs", 0]'))
         if values is not None and not (isinstance(values, dict) and _is_plain(values, DEEPEST)):
-            _wrong("entry: values", values, "a table of values as in a file")
+            _wrong("entry: values", values, Note("a table of values as in a file"))
         if name is not None and not isinstance(name, str):
-            _wrong("entry: name", name, "a text")
+            _wrong("entry: name", name, Note("a text"))
         return Entry(KeyPath(place), values, name, self.files)
 
     @property
@@ -202,7 +211,7 @@ class Message:
         """Texts of CSV files by their names."""
         files = self.values.get("files", {})
         if not isinstance(files, dict) or not all(isinstance(one, str) for one in files.values()):
-            _wrong(f"{self.kind}: files", files, "texts of files by their names")
+            _wrong(f"{self.kind}: files", files, Note("texts of files by their names"))
         return files
 
     @property
@@ -219,12 +228,17 @@ def read(text: str) -> Message:
     UsageError : it is no message.
     """
     if len(text) > LARGEST_MESSAGE:
-        size = f"{len(text) / 1e6:.0f} MB; at most {LARGEST / 1e6:.0f} MB"
-        raise UsageError(f"the message has {size} are read: give a model file")
+        raise UsageError(
+            Note(
+                "the message has {size:.0f} MB; at most {most:.0f} MB are read: give a model file",
+                size=len(text) / 1e6,
+                most=LARGEST / 1e6,
+            )
+        )
     try:
         return message_of(json.loads(text))
     except (ValueError, RecursionError) as error:  # ValueError: no JSON, or endless digits
-        raise UsageError("the message is no JSON that a page would send") from error
+        raise UsageError(Note("the message is no JSON that a page would send")) from error
 
 
 def message_of(values: object) -> Message:
@@ -235,12 +249,14 @@ def message_of(values: object) -> Message:
     UsageError : it is no message.
     """
     if not isinstance(values, dict):
-        _wrong("the message", values, 'an object such as {"type": "undo"}')
+        _wrong(
+            "the message", values, Note("an object such as {example}", example='{"type": "undo"}')
+        )
     kind, seq = values.get("type"), values.get("seq")
     if seq is not None and (isinstance(seq, bool) or not isinstance(seq, int) or abs(seq) > HUGE):
-        _wrong("seq", seq, "a whole number")
+        _wrong("seq", seq, Note("a whole number"))
     if kind not in KINDS:
-        _wrong("type", kind, f"one of {', '.join(KINDS)}")
+        _wrong("type", kind, Note("one of {names}", names=", ".join(KINDS)))
     return Message(kind, seq, values)
 
 
@@ -267,19 +283,25 @@ def makes_way(older: Message | UsageError, newer: Message | UsageError) -> bool:
 
 def _change(edit: object) -> Change:
     if not isinstance(edit, dict):
-        _wrong("an edit", edit, 'an object such as {"set": "drive.speed", "text": "193 rpm"}')
+        _wrong(
+            "an edit",
+            edit,
+            Note(
+                "an object such as {example}", example='{"set": "drive.speed", "text": "193 rpm"}'
+            ),
+        )
     given = [kind for kind in ("set", "move", "move_mass") if kind in edit]
     if len(given) != 1 or not isinstance(edit[given[0]], str):
-        _wrong("an edit", edit, "one of set, move and move_mass, with a name")
+        _wrong("an edit", edit, Note("one of set, move and move_mass, with a name"))
     kind, name = given[0], edit[given[0]]
     keep = edit.get("keep", [])
     if not isinstance(keep, list) or not all(isinstance(one, str) for one in keep):
-        _wrong("keep", keep, "a list of points")
+        _wrong("keep", keep, Note("a list of points"))
     if kind == "set":
         return Setting(name, _typed(edit), tuple(keep))
     at = edit.get("at", 0)
     if isinstance(at, bool) or not isinstance(at, int):
-        _wrong("at", at, "the number of a crank angle")
+        _wrong("at", at, Note("the number of a crank angle"))
     return Drag(name, kind == "move_mass", _place("to", edit.get("to")), at, tuple(keep))
 
 
@@ -293,17 +315,19 @@ def _typed(edit: Mapping[str, Any]) -> str | float:
 
 def _place(what: str, value: object) -> complex:
     if not isinstance(value, list) or len(value) != 2:
-        _wrong(what, value, "x and y in m")
+        _wrong(what, value, Note("x and y in m"))
     return complex(_number(what, value[0]), _number(what, value[1]))
 
 
 def _number(what: str, value: object) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float):
-        _wrong(what, value, "a number in SI units")
+        _wrong(what, value, Note("a number in SI units"))
     if not abs(value) <= HUGE or not isfinite(value):
-        _wrong(what, value, "a number of usual size in SI units")
+        _wrong(what, value, Note("a number of usual size in SI units"))
     return float(value)
 
 
-def _wrong(what: str, value: object, wanted: str) -> NoReturn:
-    raise UsageError(f"{what}: got {described(value)}; give {wanted}")
+def _wrong(what: str, value: object, wanted: Note) -> NoReturn:
+    raise UsageError(
+        at_place(what, Note("got {given}; give {wanted}", given=described(value), wanted=wanted))
+    )

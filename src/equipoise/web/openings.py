@@ -16,7 +16,9 @@ from equipoise.web.design import Design
 
 NO_FILES: Mapping[str, str] = MappingProxyType({})
 NO_TABLES: Mapping[tuple[str, str], Any] = MappingProxyType({})
-TOOLS = "this is the file of a hand-held tool; give that of a linkage, or `equipoise serve` it"
+TOOLS = Note(
+    "this is the file of a hand-held tool; give that of a linkage, or `equipoise serve` it"
+)
 
 
 def titles() -> dict[str, str]:

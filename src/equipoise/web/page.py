@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 from starlette.websockets import WebSocketDisconnect
 
 from equipoise.errors import UsageError
+from equipoise.i18n import Note
 from equipoise.web.desk import Desk
 from equipoise.web.lanes import MOMENT, Lanes, Work, give_back
 from equipoise.web.messages import SLOW, Message, makes_way, read
@@ -31,7 +32,7 @@ NEXT = 0.1
 """s in which a drag that goes on has its next move here; else what follows a state is told too."""
 SELDOM = 0.2
 """s after which that is told of a drag that never pauses."""
-BUSY = "questions that take long are still being answered; wait for them"
+BUSY = Note("questions that take long are still being answered; wait for them")
 FLOODED = "too many messages at once; load the page again"
 POLICY_VIOLATION, TRY_LATER = 1008, 1013
 
@@ -182,7 +183,7 @@ class Page:
             self.come.set()
 
 
-async def turn_away(socket: WebSocket, why: str) -> None:
+async def turn_away(socket: WebSocket, why: Note) -> None:
     """Tell a page that it cannot be served."""
     await socket.accept()
     await socket.send_bytes(packed(refused(None, UsageError(why))))
@@ -191,7 +192,7 @@ async def turn_away(socket: WebSocket, why: str) -> None:
 
 def _message(text: str | None) -> Message | UsageError:
     if text is None:
-        return UsageError("the message is no text; give JSON")
+        return UsageError(Note("the message is no text; give JSON"))
     try:
         return read(text)
     except UsageError as error:

@@ -7,6 +7,7 @@ from dataclasses import replace
 from threading import Lock
 
 from equipoise.errors import UsageError
+from equipoise.i18n import Note
 from equipoise.mechanism.checks import unknown
 from equipoise.results.charts import Chart
 from equipoise.web.edits import Computed
@@ -90,7 +91,13 @@ def linkage_at(found: Computed, sample: int) -> Chart:
 
     angles = found.motion.crank_angle
     if not 0 <= sample < len(angles):
-        raise UsageError(f"got {sample} as sample of the crank angle; give 0 to {len(angles) - 1}")
+        raise UsageError(
+            Note(
+                "got {sample} as sample of the crank angle; give 0 to {last}",
+                sample=sample,
+                last=len(angles) - 1,
+            )
+        )
     return linkage(found.analysis, [float(angles[sample])])
 
 

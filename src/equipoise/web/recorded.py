@@ -18,8 +18,8 @@ from typing import Literal
 
 import numpy as np
 
-from equipoise.errors import ModelError, UsageError
-from equipoise.i18n import say
+from equipoise.errors import ModelError, UsageError, at_place
+from equipoise.i18n import Note, say
 from equipoise.mechanism.outputs.declared import DECLARED
 from equipoise.quantities import FACTORS, KINDS, Dimension, plain_unit, told, typeset
 from equipoise.quantities.units import OF_UNIT
@@ -31,7 +31,9 @@ from equipoise.web.block import Array
 
 HEAD = re.compile(r"(?P<name>[^\[\]]+?)\s*\[(?P<unit>[^\[\]]*)\]")
 FIRST: dict[str, Dimension] = {"crank_angle": "angle", **dict.fromkeys(TIMES, "time")}
-RIGHT = "the header is crank_angle [deg] or time [s], then outputs, such as shaking_force.x [N]"
+RIGHT = Note(
+    "the header is crank_angle [deg] or time [s], then outputs, such as shaking_force.x [N]"
+)
 LEAST, MOST_ROWS, FAR = 8, 500_000, 36
 """Rows; a gap over so many parts of a cycle is drawn as one."""
 
@@ -69,7 +71,7 @@ def record_of_text(name: str, text: str) -> Record:
     try:
         return _record(shown, text)
     except ModelError as error:
-        raise ModelError("", f"{shown}, {error.what}") from error
+        raise ModelError("", Note("{shown}, {what}", shown=shown, what=error.what)) from error
 
 
 def _record(name: str, text: str) -> Record:
@@ -78,15 +80,27 @@ def _record(name: str, text: str) -> Record:
     heads = [_head(line, cell) for cell in header]
     if len(heads) < 2 or heads[0][0] not in FIRST or heads[0][1] != FIRST[heads[0][0]]:
         given = shortened(header[0]) if header else "no column"
-        raise wrong(line, f"got {given}; {RIGHT}")
+        raise wrong(line, Note("got {given}; {right}", given=given, right=RIGHT))
     table = []
     for line, row in rows:
         check_width(line, row, len(heads))
         table.append([_number(line, head[0], cell) for head, cell in zip(heads, row, strict=True)])
         if len(table) > MOST_ROWS:
-            raise wrong(line, f"there are more than {MOST_ROWS} rows; thin the record out")
+            raise wrong(
+                line,
+                Note(
+                    "there are more than {most_rows} rows; thin the record out", most_rows=MOST_ROWS
+                ),
+            )
     if len(table) < LEAST:
-        raise wrong(line, f"there are {len(table)} rows below the header; give at least {LEAST}")
+        raise wrong(
+            line,
+            Note(
+                "there are {count} rows below the header; give at least {least}",
+                count=len(table),
+                least=LEAST,
+            ),
+        )
     values = np.array(table).T * np.array([[factor] for *_, factor in heads])
     columns = tuple(
         RecordColumn(head[0], head[1], row) for head, row in zip(heads[1:], values[1:], strict=True)
@@ -102,7 +116,10 @@ def _head(line: int, cell: str) -> tuple[str, Dimension | None, float]:
         return cell.strip(), None, 1.0
     unit = plain_unit(match["unit"].strip())
     if unit not in OF_UNIT:
-        raise wrong(line, f"got the unit {shortened(match['unit'])}; give one such as N or mm")
+        raise wrong(
+            line,
+            Note("got the unit {given}; give one such as N or mm", given=shortened(match["unit"])),
+        )
     return match["name"].strip(), OF_UNIT[unit], float(FACTORS[unit])
 
 
@@ -110,9 +127,13 @@ def _number(line: int, name: str, cell: str) -> float:
     try:
         value = float(cell)
     except ValueError:
-        raise wrong(line, f"got {shortened(cell)}; give a number", name) from None
+        raise wrong(line, Note("got {given}; give a number", given=shortened(cell)), name) from None
     if not np.isfinite(value):
-        raise wrong(line, f"got {shortened(cell)}; give a number, or leave the row out", name)
+        raise wrong(
+            line,
+            Note("got {given}; give a number, or leave the row out", given=shortened(cell)),
+            name,
+        )
     return value
 
 
@@ -153,11 +174,20 @@ def compared_with(record: Record, analysis: Analysis, gauges: Sequence[str] = ()
         if column.dimension != dimension:
             unit = KINDS[dimension].printed[0] if dimension else "none"
             raise UsageError(
-                f"{record.name}, column {column.name}: got another unit; give one such as {unit}"
+                Note(
+                    "{name}, column {name_2}: got another unit; give one such as {unit}",
+                    name=record.name,
+                    name_2=column.name,
+                    unit=unit,
+                )
             )
         found[name] = column.values
     if not found:
-        raise UsageError(f"{record.name}: no column is an output of this machine; {RIGHT}")
+        raise UsageError(
+            at_place(
+                record.name, Note("no column is an output of this machine; {right}", right=RIGHT)
+            )
+        )
     angle = _angles(record, analysis)
     cycle = analysis.crank_angle, analysis.motion.turns, analysis.motion.speed
     signals = {name: _over(angle, values, *cycle) for name, values in found.items()}
@@ -191,8 +221,13 @@ def _angles(record: Record, analysis: Analysis) -> Array:
         return record.at
     if not analysis.motion.speed:
         raise UsageError(
-            f"{record.name}: the record is over time, but the machine stands still; "
-            "give it a speed, or a record over crank_angle"
+            at_place(
+                record.name,
+                Note(
+                    "the record is over time, but the machine stands still; give it a speed, "
+                    "or a record over crank_angle"
+                ),
+            )
         )
     return np.asarray(analysis.motion.speed * (record.at - record.at[0]))
 

@@ -9,14 +9,14 @@ from dataclasses import dataclass
 from typing import Any
 
 from equipoise.errors import EquipoiseError, ModelError, UsageError
-from equipoise.i18n import key_words
+from equipoise.i18n import Note, key_words
 from equipoise.limits import out_of_memory
 from equipoise.schema.topics import errors, known_topic, plain_page
 from equipoise.web.forms import word_in_forms
 
 LONGEST = 800
 """Signs of a sentence."""
-MISTAKE = "this went wrong inside the program, and nothing was changed; please report it"
+MISTAKE = Note("this went wrong inside the program, and nothing was changed; please report it")
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,14 @@ def unexpected(error: Exception) -> UsageError:
     """
     if isinstance(error, MemoryError):
         return out_of_memory(error)
-    return UsageError(f"{MISTAKE} ({type(error).__name__}: {error})")
+    return UsageError(
+        Note(
+            "{mistake} ({kind}: {error})",
+            mistake=MISTAKE,
+            kind=type(error).__name__,
+            error=str(error),
+        )
+    )
 
 
 def told(seq: int | None) -> Reply:

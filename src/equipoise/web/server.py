@@ -17,6 +17,7 @@ from secrets import compare_digest, token_urlsafe
 from typing import TYPE_CHECKING
 
 from equipoise.errors import UsageError
+from equipoise.i18n import Note
 from equipoise.interrupts import answered
 from equipoise.schema.files import reason
 from equipoise.web.assets import TYPES, assets
@@ -115,7 +116,7 @@ SWITCH = 1e-3
 that a short answer does not wait for long ones.
 """
 MOST_PAGES = 20
-FULL = f"{MOST_PAGES} pages are open already; close one of them"
+FULL = Note("{most_pages} pages are open already; close one of them", most_pages=MOST_PAGES)
 NOTHING = "equipoise: there is nothing here; open the address that was printed\n"
 HEAD = '<link rel="stylesheet" href="/equipoise.css?token={token}">'
 BODY = """<main id="equipoise-live" data-live="/live?token={token}"></main>
@@ -237,6 +238,10 @@ def _listening(port: int | None) -> socket.socket:
     except OSError as error:
         listener.close()
         raise UsageError(
-            f"the port {port} cannot be used ({reason(error)}); give another by --port, or none"
+            Note(
+                "the port {port} cannot be used ({reason}); give another by --port, or none",
+                port=port,
+                reason=reason(error),
+            )
         ) from error
     return listener

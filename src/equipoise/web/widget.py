@@ -6,6 +6,7 @@ import os
 from typing import TYPE_CHECKING
 
 from equipoise.errors import UsageError
+from equipoise.i18n import Note
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.web.design import Design
 from equipoise.web.openings import opened_file
@@ -14,7 +15,7 @@ from equipoise.web.session import Session
 if TYPE_CHECKING:
     from equipoise.web.notebook import NotebookView
 
-MISSING = 'a widget needs anywidget; install it by: pip install "equipoise[notebook]"'
+MISSING = Note('a widget needs anywidget; install it by: pip install "equipoise[notebook]"')
 
 
 def view(machine: Machine | str | os.PathLike[str]) -> NotebookView:

@@ -52,9 +52,11 @@ def said() -> set[str]:
                     assert isinstance(first, ast.Constant), f"{path}:{node.lineno}"
                 if node.func.id == "unknown" and len(node.args) > 2:  # what kind of name it is
                     first = node.args[2]
-                says = node.func.id in ("say", "to_say", "Note", "unknown")
-                if says and isinstance(first, ast.Constant):
-                    found.add(first.value)
+                if node.func.id == "needed" and len(node.args) > 1:  # what it is needed for
+                    first = node.args[1]
+                either = [first.body, first.orelse] if isinstance(first, ast.IfExp) else [first]
+                if node.func.id in ("say", "to_say", "Note", "unknown", "needed", "lacking"):
+                    found.update(one.value for one in either if isinstance(one, ast.Constant))
     return found
 
 

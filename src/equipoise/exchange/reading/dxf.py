@@ -23,7 +23,7 @@ MILLIMETRE = 1e-3
 COLOURS = {1: "red", 2: "yellow", 3: "green", 4: "cyan", 5: "blue", 6: "magenta", 7: "white"}
 DEEPEST, MOST = 6, 20_000
 """Blocks in blocks, and entities in all."""
-NONE = "this is no DXF drawing that can be read; save it anew"
+NONE = Note("this is no DXF drawing that can be read; save it anew")
 DAMAGED = "recovered invalid floating"
 """How ezdxf begins to tell that it has read a number otherwise than it is written."""
 SKEW = 1e-6
@@ -55,7 +55,9 @@ def read(data: bytes, marks: Marks, unit: float | None) -> Read:
         raise ModelError("", NONE) from error
     if damaged := next((one for one in warnings if one.startswith(DAMAGED)), ""):
         line = damaged.partition(" near line ")[2].partition(" ")[0]
-        raise ModelError("", f"near line {line} of the drawing a number is damaged; save it anew")
+        raise ModelError(
+            "", Note("near line {line} of the drawing a number is damaged; save it anew", line=line)
+        )
     return skeleton(drawing, marks)
 
 
@@ -97,14 +99,21 @@ def _entities(document: Any, entities: Iterable[Any]) -> Iterator[Any]:
         entity, deep = left.popleft()
         inserted = entity.dxftype() == "INSERT"
         if count > MOST or (inserted and entity.mcount > MOST):
-            raise ModelError("", f"the drawing has more than {MOST:,} entities; give a skeleton")
+            raise ModelError(
+                "", Note("the drawing has more than {most:,} entities; give a skeleton", most=MOST)
+            )
         if entity.dxf.layer.casefold() in hidden or entity.dxf.get("invisible", 0):
             continue
         if not inserted:
             yield entity
         elif deep == DEEPEST:
-            what = f"its blocks lie more than {DEEPEST} deep in each other"
-            raise ModelError("", f"{what}; take them apart")
+            raise ModelError(
+                "",
+                Note(
+                    "its blocks are nested more than {levels} levels; take them apart",
+                    levels=DEEPEST,
+                ),
+            )
         else:
             single = entity.multi_insert() if entity.mcount > 1 else (entity,)
             parts = [(one, deep + 1) for part in single for one in part.virtual_entities()]
@@ -156,8 +165,16 @@ def _check_flat(path: Any, layer: str) -> None:
     heights = [float(one.z) for one in path.control_vertices()]
     low, high = min(heights), max(heights)
     if high - low > SKEW * max(map(abs, path.control_vertices())):
-        what = f"a line of the layer {layer!r} leaves the plane xy: its z goes from {low:g} to"
-        raise ModelError("", f"{what} {high:g}; draw the machine flat, seen along its axes")
+        raise ModelError(
+            "",
+            Note(
+                "a line of the layer {layer!r} leaves the plane xy: its z goes from "
+                "{low:g} to {high:g}; draw the machine flat, seen along its axes",
+                layer=layer,
+                low=low,
+                high=high,
+            ),
+        )
 
 
 def _corners(path: Any, scale: float) -> Iterator[complex]:
@@ -169,5 +186,7 @@ def _corners(path: Any, scale: float) -> Iterator[complex]:
 def _place(x: float, y: float, scale: float) -> complex:
     place = complex(x, y) * scale
     if not abs(place) < 1e9:
-        raise ModelError("", "a line lies beyond all machines; check the drawing's coordinates")
+        raise ModelError(
+            "", Note("a line lies beyond all machines; check the drawing's coordinates")
+        )
     return place

@@ -10,12 +10,13 @@ from pathlib import Path
 from typing import Any
 from xml.etree.ElementTree import Element
 
-from equipoise.errors import ModelError, UsageError
+from equipoise.errors import ModelError, UsageError, at_place
 from equipoise.exchange.reading import dxf, linkage2, mjcf, pmks, svg, urdf
 from equipoise.exchange.reading.found import Imported, Read, finished
 from equipoise.exchange.reading.markup import tree_of
 from equipoise.exchange.reading.spatial import Told as Bodies
 from equipoise.exchange.reading.strokes import Marks
+from equipoise.i18n import Note
 from equipoise.quantities import in_si
 from equipoise.schema.files import FileError, printable, read_bytes, read_text
 
@@ -122,7 +123,11 @@ def import_machine(
     speed = in_si(speed, "angular speed", "speed")
     tolerance, unit = in_si(tolerance, "length", "tolerance"), in_si(unit, "length", "unit")
     if speed == 0:
-        raise UsageError("--speed: a crank that stands still moves nothing; give such as 250 rpm")
+        raise UsageError(
+            at_place(
+                "--speed", Note("a crank that stands still moves nothing; give such as 250 rpm")
+            )
+        )
     bodies = Bodies(tuple(frame), tuple(pin))
     told = Told(Marks(tuple(frame), tuple(guide), tuple(link), tolerance), bodies, unit)
     try:
@@ -130,7 +135,7 @@ def import_machine(
         _check(kind, told)
         read = kind.read(content, told)
     except FileError as problem:
-        raise ModelError("", str(problem), source) from problem
+        raise ModelError("", problem.note, source) from problem
     except ModelError as error:
         raise error.in_file(source) from error
     try:
@@ -156,7 +161,14 @@ def _check(kind: Format, told: Told) -> None:
     for option, value in given.items():
         if value and option not in kind.takes:
             known = ", ".join(f"--{one}" for one in ("crank", "speed", *kind.takes))
-            raise UsageError(f"--{option} does nothing to {kind.title}; it takes {known}")
+            raise UsageError(
+                Note(
+                    "--{option} does nothing to {title}; it takes {known}",
+                    option=option,
+                    title=kind.title,
+                    known=known,
+                )
+            )
 
 
 def _opened(path: str | os.PathLike[str]) -> tuple[Format, Any]:
@@ -171,12 +183,19 @@ def _opened(path: str | os.PathLike[str]) -> tuple[Format, Any]:
         return FORMATS["pmks"], text
     if not by_ending and not text.lstrip().startswith("<"):
         known = ", ".join(one for kind in FORMATS.values() for one in kind.endings)
-        raise ModelError("", f"it is of no kind that is read; give one of {known}")
+        raise ModelError(
+            "", Note("it is of no kind that is read; give one of {known}", known=known)
+        )
     root: Element = tree_of(text)
     kind = next((one for one in FORMATS.values() if one.root and one.root == root.tag), None)
     if kind is None:
         known = ", ".join(f"<{one.root}>" for one in FORMATS.values() if one.root)
         raise ModelError(
-            "", f"its XML begins with <{root.tag[:40]}>; what is read begins with {known}"
+            "",
+            Note(
+                "its XML begins with <{tag}>; what is read begins with {known}",
+                tag=root.tag[:40],
+                known=known,
+            ),
         )
     return kind, root

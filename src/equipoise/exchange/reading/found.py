@@ -6,7 +6,8 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from math import pi, remainder
 
-from equipoise.errors import EquipoiseError, ModelError, UsageError, unknown
+from equipoise.errors import EquipoiseError, ModelError, UsageError, at_place, unknown
+from equipoise.i18n import Note, series
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.kinematics.motion import move
 from equipoise.mechanism.kinematics.outline import MachineDraft
@@ -177,9 +178,9 @@ def _meshed(outline: MachineDraft) -> Machine:
 
 def _check(outline: MachineDraft) -> None:
     if not outline.links:
-        raise ModelError("", "there is no link in it; give a file with at least one")
+        raise ModelError("", Note("there is no link in it; give a file with at least one"))
     if not outline.frame:
-        raise ModelError("", "nothing in it is the frame; name what stands still by --frame")
+        raise ModelError("", Note("nothing in it is the frame; name what stands still by --frame"))
     outline.machine()
 
 
@@ -189,10 +190,18 @@ def _crank(outline: MachineDraft, wanted: str, told: str) -> tuple[str, str]:
                if sum(point in outline.frame for point in link.points) == 1]  # fmt: skip
     if wanted:
         if wanted not in outline.links:
-            raise UsageError(f"--crank: {unknown(wanted, outline.links, 'link')}")
+            raise UsageError(at_place("--crank", unknown(wanted, outline.links, "link")))
         if wanted not in turning:
-            raise UsageError(f"--crank: {wanted!r} is not pinned to the frame at one point; "
-                             f"there is {', '.join(turning) or 'no such link'}")  # fmt: skip
+            raise UsageError(
+                at_place(
+                    "--crank",
+                    Note(
+                        "{wanted!r} is not pinned to the frame at one point; there is {names}",
+                        wanted=wanted,
+                        names=series(turning) or Note("no such link"),
+                    ),
+                )
+            )
         return wanted, ""
     if told in turning:
         return told, ""

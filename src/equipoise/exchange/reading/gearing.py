@@ -10,6 +10,7 @@ import numpy as np
 from equipoise.decompositions import lstsq
 from equipoise.errors import ModelError
 from equipoise.exchange.reading.spatial import Array, Space
+from equipoise.i18n import Note
 from equipoise.mechanism.kinematics.outline import MachineDraft
 from equipoise.mechanism.parts.machine import FRAME, Gear
 
@@ -37,8 +38,13 @@ def gears(
                   for joint, factor in factors.items()}  # fmt: skip
         able = [one for one in _fitting(around, chains, wanted) if one.driven not in moved]
         if not able:
-            what = "it ties joints together otherwise than a pair of gears on a common carrier does"
-            raise ModelError(name, f"{what}; leave it out")
+            raise ModelError(
+                name,
+                Note(
+                    "it ties joints together otherwise than a pair of gears on a common "
+                    "carrier does; leave it out"
+                ),
+            )
         gear = min(able, key=lambda one: (one.driver not in moved, _joints(outline, one.driven)))
         moved.add(gear.driven)
         yield gear

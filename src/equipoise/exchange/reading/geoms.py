@@ -7,9 +7,10 @@ from xml.etree.ElementTree import Element
 
 import numpy as np
 
-from equipoise.errors import ModelError
+from equipoise.errors import ModelError, at_place
 from equipoise.exchange.reading.markup import called, number, numbers
 from equipoise.exchange.reading.spatial import Array, Frame3, Lump, direction
+from equipoise.i18n import Note
 
 WATER = "1000"
 """kg/m3, where a shape tells neither mass nor density."""
@@ -35,7 +36,12 @@ def lumps(geom: Element, axes: Frame3) -> list[Lump | None]:
     else:
         sizes = numbers(geom, "size")[: SIZES[kind]]
     if len(sizes) < SIZES[kind] or min(sizes) < LEAST:
-        raise ModelError(called(geom), f"size: a {kind} needs {SIZES[kind]} numbers above 0")
+        raise ModelError(
+            called(geom),
+            at_place(
+                "size", Note("a {kind} needs {sizes} numbers above 0", kind=kind, sizes=SIZES[kind])
+            ),
+        )
     volume, squares = _solid(kind, sizes)
     mass = number(geom, "mass") if geom.get("mass") else volume * number(geom, "density", WATER)
     return [Lump(mass, np.zeros(3), mass * np.diag(squares)).placed(axes)]

@@ -15,6 +15,7 @@ from equipoise.errors import ModelError
 from equipoise.exchange.reading.found import Read
 from equipoise.exchange.reading.joined import SlotLine, free, outline_of
 from equipoise.exchange.reading.markup import called, number
+from equipoise.i18n import Note
 from equipoise.mechanism.parts.machine import FRAME
 
 UNIT = 0.0254 / 96
@@ -50,7 +51,9 @@ class _File:
         self.root, self.notes = root, list[str]()
         self.connectors: dict[str, _Connector] = {}
         if len(root) > MOST:
-            raise ModelError("", f"it has more than {MOST} connectors and links; give a linkage")
+            raise ModelError(
+                "", Note("it has more than {most} connectors and links; give a linkage", most=MOST)
+            )
         for one in root.findall("connector"):
             if _layer(one) == DRAWN:
                 continue
@@ -86,8 +89,10 @@ class _File:
             if _layer(one) == DRAWN:
                 continue
             if one.get("gear") == "true" or one.get("actuator") == "true":
-                raise ModelError(called(one), "gears and linear actuators are not read; leave them "
-                                 "out in Linkage")  # fmt: skip
+                raise ModelError(
+                    called(one),
+                    Note("gears and linear actuators are not read; leave them out in Linkage"),
+                )
             ids = [_id(part) for part in one.findall("connector") if _id(part) in self.connectors]
             if len(ids) < 2 or all(self.connectors[part].still for part in ids):
                 continue
@@ -106,16 +111,20 @@ class _File:
         if me is None or len(limits) < 2:
             return None
         if number(one, "slideradius", "0"):
-            raise ModelError(called(one), "it slides along an arc, which is not read; give a link")
+            raise ModelError(
+                called(one), Note("it slides along an arc, which is not read; give a link")
+            )
         if any(end not in self.connectors for end in limits[:2]):
-            raise ModelError(called(one), "it slides between connectors that the file has not")
+            raise ModelError(
+                called(one), Note("it slides between connectors that the file has not")
+            )
         start, end = (self.connectors[end] for end in limits[:2])
         on = next((name for name, ids in links.items() if {*limits[:2]} <= {*ids}), "")
         if start.still and end.still:
             on = FRAME
         if not on:
             raise ModelError(
-                called(one), "it slides between connectors of two links; put both on one"
+                called(one), Note("it slides between connectors of two links; put both on one")
             )
         return SlotLine(me.name, on, start.name, phase(end.place - start.place))
 
@@ -133,7 +142,9 @@ class _File:
 def _id(element: Element) -> str:
     found = element.get("id", "")
     if not found.strip().lstrip("-").isdecimal():
-        raise ModelError(called(element), f"its id is {found[:40]!r}; give a whole number")
+        raise ModelError(
+            called(element), Note("its id is {given!r}; give a whole number", given=found[:40])
+        )
     return found.strip()
 
 

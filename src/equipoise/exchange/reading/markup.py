@@ -7,7 +7,8 @@ from math import isfinite
 from xml.etree.ElementTree import Element, TreeBuilder
 from xml.parsers import expat
 
-from equipoise.errors import ModelError
+from equipoise.errors import ModelError, at_place
+from equipoise.i18n import Note
 
 DEEPEST, MOST = 100, 200_000
 """Elements inside of each other, and in all; no file of a linkage comes near."""
@@ -28,8 +29,15 @@ def tree_of(text: str) -> Element:
         nonlocal open_now, count
         open_now, count = open_now + 1, count + 1
         if open_now > DEEPEST or count > MOST:
-            raise ModelError("", f"the XML has more than {DEEPEST} elements inside of each other, "
-                             f"or more than {MOST:,} in all")  # fmt: skip
+            raise ModelError(
+                "",
+                Note(
+                    "the XML has more than {deepest} elements inside of each other, or more "
+                    "than {most:,} in all",
+                    deepest=DEEPEST,
+                    most=MOST,
+                ),
+            )
         builder.start(bare(name), {bare(key): value for key, value in attributes.items()})
 
     def end(name: str) -> None:
@@ -44,13 +52,20 @@ def tree_of(text: str) -> Element:
     try:
         parser.Parse(text.encode("utf-8"), True)
     except expat.ExpatError as error:
-        what = expat.ErrorString(error.code) or "it cannot be read"
-        raise ModelError("", f"line {error.lineno}: no XML ({what}); give a whole file") from error
+        what = expat.ErrorString(error.code) or Note("it cannot be read")
+        raise ModelError(
+            "",
+            Note(
+                "line {lineno}: no XML ({what}); give a whole file", lineno=error.lineno, what=what
+            ),
+        ) from error
     return builder.close()
 
 
 def _no_entities(*_: object) -> None:
-    raise ModelError("", "the XML declares entities, which are not read; give a file without them")
+    raise ModelError(
+        "", Note("the XML declares entities, which are not read; give a file without them")
+    )
 
 
 def bare(name: str) -> str:
@@ -77,13 +92,16 @@ def numbers(
     """
     text = element.get(key, default)
     if text is None:
-        raise ModelError(called(element), f"missing; give {key}")
+        raise ModelError(called(element), Note("missing; give {key}", key=key))
     found = [*_floats(text.replace(",", " "))]
     wanted = " or ".join(map(str, count))
     if None in found or (count and len(found) not in count):
         shown = text if len(text) <= 60 else f"{text[:57]}..."
-        what = f"{wanted} numbers" if count else "numbers"
-        raise ModelError(called(element), f"{key}: got {shown!r}; give {what}")
+        what = Note("{count} numbers", count=wanted) if count else Note("numbers")
+        raise ModelError(
+            called(element),
+            at_place(key, Note("got {shown!r}; give {what}", shown=shown, what=what)),
+        )
     return tuple(one for one in found if one is not None)
 
 

@@ -10,7 +10,7 @@ from xml.etree.ElementTree import Element
 
 import numpy as np
 
-from equipoise.errors import ModelError
+from equipoise.errors import ModelError, at_place
 from equipoise.exchange.reading import geoms
 from equipoise.exchange.reading.found import Read
 from equipoise.exchange.reading.markup import called, number, numbers
@@ -32,6 +32,7 @@ from equipoise.exchange.reading.spatial import (
     together,
     turned,
 )
+from equipoise.i18n import Note
 
 UNREAD = {"include", "replicate", "composite", "flexcomp", "attach", "deformable"}
 """Elements that stand for others, which only MuJoCo makes of them."""
@@ -51,8 +52,13 @@ def read(root: Element, told: Told) -> Read:
     """
     for element in root.iter():
         if element.tag in UNREAD:
-            what = f"<{element.tag}> is not read; save the whole model by mj_saveLastXML, and"
-            raise ModelError("", f"{what} give that")
+            raise ModelError(
+                "",
+                Note(
+                    "<{tag}> is not read; save the whole model by mj_saveLastXML, and give that",
+                    tag=element.tag,
+                ),
+            )
     return planar(_Model(root).space, told)
 
 
@@ -70,12 +76,22 @@ class _Model:
         self.root = root
         compiler = _first(root, "compiler")
         if compiler.get("coordinate", "local") != "local":
-            raise ModelError("compiler", "coordinate: got 'global', which MuJoCo has given up; "
-                             "give places and axes in those of the body around them")  # fmt: skip
+            raise ModelError(
+                "compiler",
+                at_place(
+                    "coordinate",
+                    Note(
+                        "got 'global', which MuJoCo has given up; give places and axes in those "
+                        "of the body around them"
+                    ),
+                ),
+            )
         self.degrees = compiler.get("angle", "degree") != "radian"
         self.order = compiler.get("eulerseq", "xyz")
         if len(self.order) != 3 or not set(self.order) <= set("xyzXYZ"):
-            raise ModelError("compiler", "eulerseq: give three letters such as xyz")
+            raise ModelError(
+                "compiler", at_place("eulerseq", Note("give three letters such as xyz"))
+            )
         self.from_geoms = compiler.get("inertiafromgeom", "auto")
         self.defaults = dict(_defaults(root))
         gravity = numbers(_first(root, "option"), "gravity", GRAVITY, (3,))
@@ -114,7 +130,9 @@ class _Model:
         at = self._of_class(element, _Within(name, solid.axes, outside.kind))
         joints = [self._with_defaults(one, at.kind) for one in element.findall("joint")]
         if element.find("freejoint") is not None:
-            raise ModelError(called(element), "it moves freely in space; give a planar machine")
+            raise ModelError(
+                called(element), Note("it moves freely in space; give a planar machine")
+            )
         self._hang(element, joints, outside.body, solid)
         shapes = self._inside(element, at)
         lumps = [one for one in shapes if one is not None]
@@ -152,7 +170,9 @@ class _Model:
         name = one.get("name") or f"{body.get('name') or solid.name}{suffix}"
         kind = one.get("type", "hinge")
         if kind not in ("hinge", "slide"):
-            raise ModelError(f"joint {name!r}", f"it is of type {kind}; give hinge or slide")
+            raise ModelError(
+                f"joint {name!r}", Note("it is of type {kind}; give hinge or slide", kind=kind)
+            )
         for key, what in LOST.items():
             if any(numbers(one, key, "0")):
                 self.space.note(f"{what} of joints are left out")
@@ -208,7 +228,9 @@ class _Model:
         kind = element.get("class", kind)
         known = self.defaults.get(kind)
         if known is None and kind != "main":
-            raise ModelError(called(element), f"there is no class {kind!r} of defaults")
+            raise ModelError(
+                called(element), Note("there is no class {kind!r} of defaults", kind=kind)
+            )
         return Element(element.tag, {**(known or {}).get(element.tag, {}), **element.attrib})
 
     # -- what holds and drives -----------------------------------------------------------------
@@ -223,12 +245,16 @@ class _Model:
                 self._connect(one, name)
             elif one.tag == "weld":
                 if any(numbers(one, "relpose", "0")[:7]):
-                    raise ModelError(name, "its relpose is not read; weld bodies as they are drawn")
+                    raise ModelError(
+                        name, Note("its relpose is not read; weld bodies as they are drawn")
+                    )
                 self.space.rigid.append(self._bodies(one, name))
             elif one.tag in ("joint", "tendon"):
                 self._sum(one, name)
             else:
-                raise ModelError(name, f"<{one.tag}> is not read; give connect, weld or joint")
+                raise ModelError(
+                    name, Note("<{tag}> is not read; give connect, weld or joint", tag=one.tag)
+                )
 
     def _connect(self, one: Element, name: str) -> None:
         if one.get("site1"):
@@ -252,7 +278,9 @@ class _Model:
 
     def _known(self, among: Mapping[Any, Any], name: str | None, where: str) -> Any:
         if name not in among:
-            raise ModelError(where, f"there is no {name!r} in the file that it could hold")
+            raise ModelError(
+                where, Note("there is no {name!r} in the file that it could hold", name=name)
+            )
         return among[name]
 
     def _sum(self, one: Element, name: str) -> None:
@@ -269,8 +297,9 @@ class _Model:
             straight = one.get("tendon2") is None
         hinges = {key: joint for key, joint in self.space.joints.items() if joint.kind == "hinge"}
         if not straight or not factors.keys() <= hinges.keys():
-            raise ModelError(name, "only angles of hinges in a straight line can be gears; leave "
-                             "it out")  # fmt: skip
+            raise ModelError(
+                name, Note("only angles of hinges in a straight line can be gears; leave it out")
+            )
         self.space.sums.append((name, {key: one for key, one in factors.items() if key}))
 
     def _springs(self) -> None:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from itertools import chain, count
 
 from equipoise.errors import ModelError
+from equipoise.i18n import Note
 from equipoise.mechanism.kinematics.outline import STILL, Pose
 from equipoise.mechanism.parts.machine import FRAME, Vector
 
@@ -66,8 +67,13 @@ class Pinning:
             return
         if any({kept, gone} <= points.keys() for points in self.points.values()):
             links = f"{one[0]!r} and {other[0]!r}"
-            raise ModelError(f"joint {name!r}", f"{links} are pinned at another place already; a "
-                             "second pin leaves no motion")  # fmt: skip
+            raise ModelError(
+                f"joint {name!r}",
+                Note(
+                    "{links} are pinned at another place already; a second pin leaves no motion",
+                    links=links,
+                ),
+            )
         self.wishes[kept] += self.wishes.pop(gone)
         self.wishes[gone] = []
         for points in self.points.values():

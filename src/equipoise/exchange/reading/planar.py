@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.errors import ModelError, UsageError, unknown
+from equipoise.errors import ModelError, UsageError, at_place, unknown
 from equipoise.exchange.reading.found import Read
 from equipoise.exchange.reading.gearing import gears
 from equipoise.exchange.reading.pinning import Pinning
@@ -23,6 +23,7 @@ from equipoise.exchange.reading.spatial import (
     Told,
     together,
 )
+from equipoise.i18n import Note
 from equipoise.mechanism.kinematics.outline import MachineDraft, Pose
 from equipoise.mechanism.parts.machine import FRAME, Link, Slider, Spring
 
@@ -39,7 +40,7 @@ def planar(space: Space, told: Told) -> Read:
     """
     for body in told.still:
         if body not in space.solids:
-            raise UsageError(f"--frame: {unknown(body, space.solids, 'body')}")
+            raise UsageError(at_place("--frame", unknown(body, space.solids, "body")))
         space.hold(body)
     for pair in told.pins:
         space.loops.append(_closed(space, pair))
@@ -73,11 +74,16 @@ def _closed(space: Space, pair: str) -> Loop3:
     ends = [part.strip() for part in pair.split("=")]
     if len(ends) != 2:
         raise UsageError(
-            f"--pin: got {pair!r}; give two bodies or sites such as 'rod = rocker_end'"
+            at_place(
+                "--pin",
+                Note(
+                    "got {pair!r}; give two bodies or sites such as 'rod = rocker_end'", pair=pair
+                ),
+            )
         )
     for end in ends:
         if end not in known:
-            raise UsageError(f"--pin: {unknown(end, known, 'body or site')}")
+            raise UsageError(at_place("--pin", unknown(end, known, "body or site")))
     (one, place), (other, there) = (known[end] for end in ends)
     return Loop3(pair, (one, other), (place, there))
 
@@ -86,16 +92,28 @@ def _plane(space: Space) -> Array:
     """Directions x and y of the plane (2, 3), in space."""
     hinges = [one for one in space.joints.values() if one.kind == "hinge"]
     if not hinges:
-        raise ModelError("", "no body turns about a joint; give a linkage with hinges")
+        raise ModelError("", Note("no body turns about a joint; give a linkage with hinges"))
     normal, first = hinges[0].axis, hinges[0].name
     for joint in space.joints.values():
         skew = float(np.linalg.norm(np.cross(joint.axis, normal)))
         if joint.kind == "hinge" and skew > SKEW:
-            what = f"its axis is not parallel to that of {first!r}, so the machine does not move in"
-            raise ModelError(f"joint {joint.name!r}", f"{what} one plane; give a planar one")
+            raise ModelError(
+                f"joint {joint.name!r}",
+                Note(
+                    "its axis is not parallel to that of {first!r}, so the machine does not "
+                    "move in one plane; give a planar one",
+                    first=first,
+                ),
+            )
         if joint.kind == "slide" and abs(float(joint.axis @ normal)) > SKEW:
-            what = f"it slides out of the plane that is across the axis of {first!r}"
-            raise ModelError(f"joint {joint.name!r}", f"{what}; give a planar machine")
+            raise ModelError(
+                f"joint {joint.name!r}",
+                Note(
+                    "it slides out of the plane that is across the axis of {first!r}; give a "
+                    "planar machine",
+                    first=first,
+                ),
+            )
     return _axes(normal)
 
 
@@ -124,7 +142,7 @@ def _merged(space: Space) -> dict[str, str]:
         root[second] = first
     found = {name: FRAME if top(name) == WORLD else top(name) for name in root}
     if FRAME in found and top(FRAME) != WORLD:
-        raise ModelError(f"body {FRAME!r}", "it moves; give it another name")
+        raise ModelError(f"body {FRAME!r}", Note("it moves; give it another name"))
     return found
 
 
@@ -190,7 +208,7 @@ class _Flat:
         """The links of two bodies that are joined."""
         one, other = (self.link_of[body] for body in bodies)
         if one == other:
-            raise ModelError(where, "both of its bodies are one link; leave it out")
+            raise ModelError(where, Note("both of its bodies are one link; leave it out"))
         return one, other
 
     def mass(self, link: str) -> dict[str, Any]:
@@ -203,7 +221,9 @@ class _Flat:
         local = self.pins.pose(link).into(self.flat(whole.center))
         inertia = float(self.normal @ whole.inertia @ self.normal) if whole.mass else 0.0
         if whole.mass < 0 or inertia < 0:
-            raise ModelError(f"body {link!r}", "its mass or its inertia is below 0; give 0 or more")
+            raise ModelError(
+                f"body {link!r}", Note("its mass or its inertia is below 0; give 0 or more")
+            )
         return {"mass": whole.mass, "center_of_mass": (local.real, local.imag), "inertia": inertia}
 
     def springs(self, names: Mapping[int, str]) -> Iterator[Spring]:

@@ -16,6 +16,7 @@ from urllib.parse import unquote
 from equipoise.errors import ModelError
 from equipoise.exchange.reading.found import Read
 from equipoise.exchange.reading.joined import SlotLine, free, outline_of
+from equipoise.i18n import Note
 from equipoise.mechanism.parts.machine import FRAME
 
 PLAIN = digits + ascii_uppercase + ascii_lowercase
@@ -40,8 +41,13 @@ def read(text: str, unit: float | None) -> Read:
     query = unquote(text.strip().rpartition("?")[2])
     body, sign = query[:-1], query[-1:]
     if not sign or PLAIN[len(body) % len(PLAIN)] != sign:
-        what = "its last sign does not tell its length, as PMKS+ of 2024 writes it"
-        raise ModelError("", f"it is not whole: {what}; export it anew")
+        raise ModelError(
+            "",
+            Note(
+                "it is not whole: its last sign does not tell its length, as PMKS+ of "
+                "2024 writes it; export it anew"
+            ),
+        )
     settings, _, integers, choices, *others = (*body.split("."), "", "", "", "")
     joints, rest = _until_empty(others)
     links, rest = _until_empty(rest)
@@ -82,7 +88,8 @@ def _machine(
         name, keys = _link(text)
         if unknown := [key for key in keys if key not in by_key]:
             raise ModelError(
-                f"link {name!r}", f"it has a joint {unknown[0]!r} that the file has not"
+                f"link {name!r}",
+                Note("it has a joint {unknown!r} that the file has not", unknown=unknown[0]),
             )
         own = [by_key[key] for key in keys]
         slide = next((one for one in own if one.flags & SLIDING), None)
@@ -106,7 +113,7 @@ def _slots(
     """A block that slides on the frame, with the pin that it carries."""
     if not slide.flags & STILL:
         raise ModelError(
-            f"joint {slide.name!r}", "it slides on a link that moves, which is not read"
+            f"joint {slide.name!r}", Note("it slides on a link that moves, which is not read")
         )
     for one in own:
         if one is not slide:
@@ -118,7 +125,9 @@ def _slots(
 def _joint(text: str, scale: float) -> _Joint:
     fields = text.split(",")
     if len(fields) != 5 or not fields[0][1:]:
-        raise ModelError("", f"the joint {text[:40]!r} is not written as by PMKS+ of 2024")
+        raise ModelError(
+            "", Note("the joint {text!r} is not written as by PMKS+ of 2024", text=text[:40])
+        )
     key, name, x, y, angle = fields
     place = complex(_thousandths(x), _thousandths(y)) * scale
     return _Joint(key[1:], name, _whole(key[0], signed=False), place, _thousandths(angle))
@@ -128,7 +137,9 @@ def _link(text: str) -> tuple[str, list[str]]:
     """Name of a link, and the joints that it has."""
     fields = text.split(",")
     if len(fields) < 8 or text[:2] not in ("YR", "YP", "NR", "NP"):
-        raise ModelError("", f"the link {text[:40]!r} is not written as by PMKS+ of 2024")
+        raise ModelError(
+            "", Note("the link {text!r} is not written as by PMKS+ of 2024", text=text[:40])
+        )
     _, name, _, _, _, _, _, *keys = fields
     end = keys.index("") if "" in keys else len(keys)
     return name or fields[0][2:], keys[:end]
@@ -143,7 +154,7 @@ def _until_empty(parts: Sequence[str]) -> tuple[list[str], Sequence[str]]:
 def _whole(text: str, signed: bool = True) -> int:
     """A whole number to the base of 64; 0 of nothing."""
     if len(text) > 12 or not {*text} <= {*DIGITS}:
-        raise ModelError("", f"{text[:40]!r} is no number as PMKS+ writes it")
+        raise ModelError("", Note("{text!r} is no number as PMKS+ writes it", text=text[:40]))
     value = 0
     for sign in text:
         value = 64 * value + DIGITS.index(sign)

@@ -9,6 +9,7 @@ from typing import Any, Literal
 import numpy as np
 
 from equipoise.errors import ModelError
+from equipoise.i18n import Note
 
 Array = np.ndarray[Any, Any]
 WORLD = "world"
@@ -146,15 +147,21 @@ class Space:
     def add(self, solid: Solid) -> None:
         """Refuses a name that is there already, and more bodies than a machine has."""
         if len(self.solids) > MOST:
-            raise ModelError("", f"there are more than {MOST} bodies; give a linkage")
+            raise ModelError(
+                "", Note("there are more than {most} bodies; give a linkage", most=MOST)
+            )
         if solid.name in self.solids:
-            raise ModelError("", f"two bodies are called {solid.name!r}; rename one")
+            raise ModelError(
+                "", Note("two bodies are called {name!r}; rename one", name=solid.name)
+            )
         self.solids[solid.name] = solid
 
     def join(self, joint: Joint3) -> None:
         """Refuses a name that is there already."""
         if joint.name in self.joints:
-            raise ModelError("", f"two joints are called {joint.name!r}; rename one")
+            raise ModelError(
+                "", Note("two joints are called {name!r}; rename one", name=joint.name)
+            )
         self.joints[joint.name] = joint
 
     def hold(self, body: str) -> None:
@@ -204,7 +211,7 @@ def direction(where: str, given: tuple[float, ...]) -> Array:
     vector = np.array(given)
     length = float(np.linalg.norm(vector))
     if length < 1e-12:
-        raise ModelError(where, "its axis has no length; give one such as 0 0 1")
+        raise ModelError(where, Note("its axis has no length; give one such as 0 0 1"))
     found: Array = vector / length
     return found
 
@@ -232,7 +239,7 @@ def by_quaternion(where: str, given: tuple[float, ...]) -> Array:
     """Rotation of w, x, y, z, of any length but 0."""
     length = float(np.linalg.norm(given))
     if length < 1e-12:
-        raise ModelError(where, "its quat has no length; give one such as 1 0 0 0")
+        raise ModelError(where, Note("its quat has no length; give one such as 1 0 0 0"))
     w, *rest = (one / length for one in given)
     vector = np.array(rest)
     sine = float(np.linalg.norm(vector))

@@ -9,9 +9,10 @@ from dataclasses import dataclass, field
 from itertools import chain, combinations, pairwise
 from string import ascii_uppercase
 
-from equipoise.errors import ModelError, unknown
+from equipoise.errors import ModelError, at_place, unknown
 from equipoise.exchange.reading.found import Read
 from equipoise.exchange.reading.joined import SlotLine, free, outline_of
+from equipoise.i18n import Note
 from equipoise.mechanism.parts.machine import FRAME
 
 MOST = 1000
@@ -118,7 +119,7 @@ def skeleton(drawing: Drawing, marks: Marks) -> Read:
     ModelError : there is no line, or a name that is told is in none of them.
     """
     if not drawing.strokes:
-        raise ModelError("", "there is no line in it that could be a link")
+        raise ModelError("", Note("there is no line in it that could be a link"))
     _check(drawing, marks)
     return _Skeleton(drawing, marks).read()
 
@@ -130,7 +131,11 @@ def _check(drawing: Drawing, marks: Marks) -> None:
         for name in getattr(marks, option):
             if name.casefold() not in {one.casefold() for one in known}:
                 raise ModelError(
-                    "", f"--{option}: {unknown(name, known, 'layer, colour or group')}"
+                    "",
+                    at_place(
+                        f"--{option}",
+                        unknown(name, known, "layer, colour or group"),
+                    ),
                 )
 
 
@@ -169,8 +174,13 @@ class _Skeleton:
         corners = sum(len(one.places) for one in (*lines, *self.grounds, *self.guides)
                       if isinstance(one, Stroke))  # fmt: skip
         if max(corners, len(rings)) > MOST:
-            what = f"it has more than {MOST} corners of lines, or circles"
-            raise ModelError("", f"{what}; give a skeleton")
+            raise ModelError(
+                "",
+                Note(
+                    "it has more than {most} corners of lines, or circles; give a skeleton",
+                    most=MOST,
+                ),
+            )
         places = [place for one in drawing.strokes for place in one.places]
         xs, ys = zip(*((place.real, place.imag) for place in places), strict=True)
         self.size = max(max(xs) - min(xs), max(ys) - min(ys))
@@ -182,7 +192,7 @@ class _Skeleton:
     def read(self) -> Read:
         if not self.bodies:
             raise ModelError(
-                "", "all its lines are of the frame or guides; none is left for a link"
+                "", Note("all its lines are of the frame or guides; none is left for a link")
             )
         points = self._points()
         names = self._names([strokes for strokes, _ in self.bodies])

@@ -7,10 +7,11 @@ from collections.abc import Iterator
 from typing import Any
 from xml.etree.ElementTree import Element
 
-from equipoise.errors import ModelError, needed
+from equipoise.errors import ModelError, at_place, needed
 from equipoise.exchange.reading.found import Read
 from equipoise.exchange.reading.markup import called, number, numbers
 from equipoise.exchange.reading.strokes import Drawing, Marks, Ring, Stroke, skeleton
+from equipoise.i18n import Note
 
 METRES = {"": 0.0254 / 96, "px": 0.0254 / 96, "mm": 1e-3, "cm": 1e-2, "in": 0.0254,
           "pt": 0.0254 / 72, "pc": 0.0254 / 6}  # fmt: skip
@@ -51,8 +52,13 @@ def _scale(root: Element, drawing: Drawing) -> float:
         return across
     aspect = root.get("preserveAspectRatio", "")
     if aspect.strip() == "none":
-        raise ModelError("svg", "it is stretched: width and height over those of its view box are "
-                         "not the same; tell its unit by --unit")  # fmt: skip
+        raise ModelError(
+            "svg",
+            Note(
+                "it is stretched: width and height over those of its view box are not "
+                "the same; tell its unit by --unit"
+            ),
+        )
     return max(across, up) if "slice" in aspect else min(across, up)
 
 
@@ -64,11 +70,13 @@ def _side(root: Element, key: str, units: float) -> float | None:
     try:
         length = float(size[1])
     except ValueError:
-        raise ModelError("svg", f"{key}: got {size[0]!r}; give a length such as 200mm") from None
+        raise ModelError(
+            "svg", at_place(key, Note("got {size!r}; give a length such as 200mm", size=size[0]))
+        ) from None
     if units <= 0:
         return METRES[size[2]]
     if not length > 0:
-        raise ModelError("svg", f"{key}: got {size[0]!r}; give more than 0")
+        raise ModelError("svg", at_place(key, Note("got {size!r}; give more than 0", size=size[0])))
     return METRES[size[2]] * length / units
 
 
@@ -100,11 +108,15 @@ class _Reader:
 
     def _library(self, element: Element, make: Any, text: str) -> Any:
         if len(text) > LONGEST:
-            raise ModelError(called(element), f"it has more than {LONGEST:,} signs")
+            raise ModelError(
+                called(element), Note("it has more than {longest:,} signs", longest=LONGEST)
+            )
         try:
             return make(text)
         except Exception as error:  # of many kinds
-            raise ModelError(called(element), f"{text[:40]!r} cannot be read") from error
+            raise ModelError(
+                called(element), Note("{text!r} cannot be read", text=text[:40])
+            ) from error
 
     def _names(self, element: Element) -> Iterator[str]:
         """Name, layer, classes and colour."""
@@ -116,7 +128,9 @@ class _Reader:
     def _place(self, x: float, y: float, at: Any) -> complex:
         place = complex(at.a * x + at.c * y + at.e, -(at.b * x + at.d * y + at.f)) * self.scale
         if not abs(place) < 1e9:
-            raise ModelError("", "a line lies beyond all machines; check the drawing's coordinates")
+            raise ModelError(
+                "", Note("a line lies beyond all machines; check the drawing's coordinates")
+            )
         return place
 
     def _circle(self, element: Element, at: Any, names: tuple[str, ...]) -> None:

@@ -25,6 +25,7 @@ from equipoise.exchange.reading.spatial import (
     by_euler,
     direction,
 )
+from equipoise.i18n import Note
 
 KINDS: dict[str | None, Literal["hinge", "slide"]] = {
     "revolute": "hinge",
@@ -65,7 +66,7 @@ def read(root: Element, told: Told) -> Read:
 def _named(element: Element) -> str:
     name = element.get("name")
     if not name:
-        raise ModelError(element.tag, "it has no name; give name")
+        raise ModelError(element.tag, Note("it has no name; give name"))
     return name
 
 
@@ -74,25 +75,30 @@ def _end(joint: Element, tag: str, links: dict[str, Element]) -> str:
     found = joint.find(tag)
     name = "" if found is None else found.get("link", "")
     if name not in links:
-        raise ModelError(called(joint), f"its {tag} {name!r} is no link of the file")
+        raise ModelError(
+            called(joint), Note("its {tag} {name!r} is no link of the file", tag=tag, name=name)
+        )
     return name
 
 
 def _check_tree(links: dict[str, Element], ends: dict[str, tuple[str, str]]) -> None:
     if len(links) > MOST:
-        raise ModelError("", f"there are more than {MOST} links; give a linkage")
+        raise ModelError("", Note("there are more than {most} links; give a linkage", most=MOST))
     if not links:
-        raise ModelError("", "there is no link in it; give a robot with links")
+        raise ModelError("", Note("there is no link in it; give a robot with links"))
     for child, count in Counter(child for _, child in ends.values()).items():
         if count > 1:
-            raise ModelError(f"link {child!r}", f"it hangs on {count} joints; URDF has trees only")
+            raise ModelError(
+                f"link {child!r}",
+                Note("it hangs on {count} joints; URDF has trees only", count=count),
+            )
     roots = [*(links.keys() - {child for _, child in ends.values()})]
     known = {*roots[:1]}
     for _ in ends:
         known |= {child for parent, child in ends.values() if parent in known}
     if len(roots) != 1 or known != links.keys():
         lost = next(iter(sorted(links.keys() - known)), "")
-        raise ModelError(f"link {lost!r}", "it does not hang on the others; give one tree")
+        raise ModelError(f"link {lost!r}", Note("it does not hang on the others; give one tree"))
 
 
 def _add(space: Space, link: Element, axes: Frame3) -> None:
@@ -110,7 +116,7 @@ def _mass(link: Element, axes: Frame3) -> Lump | None:
         return Lump(0.0, axes.origin, np.zeros((3, 3))) if still else None
     mass, inertia = inertial.find("mass"), inertial.find("inertia")
     if mass is None or inertia is None:
-        raise ModelError(called(link), "its inertial lacks mass or inertia; give both")
+        raise ModelError(called(link), Note("its inertial lacks mass or inertia; give both"))
     xx, xy, xz, yy, yz, zz = (number(inertia, f"i{key}", "0")
                               for key in ("xx", "xy", "xz", "yy", "yz", "zz"))  # fmt: skip
     moments = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
@@ -143,7 +149,9 @@ def _hang(space: Space, joint: Element, parent: str, link: Element) -> None:
         space.loose.append(child)
     else:
         known = ", ".join([*map(str, KINDS), "fixed", "planar"])
-        raise ModelError(called(joint), f"it is of type {kind!r}; give {known}")
+        raise ModelError(
+            called(joint), Note("it is of type {kind!r}; give {known}", kind=kind, known=known)
+        )
 
 
 def _axis(joint: Element, axes: Frame3) -> Array:
@@ -162,5 +170,5 @@ def _mimics(space: Space, joints: dict[str, Element]) -> None:
         hinges = [one for one in (name, other)
                   if one in space.joints and space.joints[one].kind == "hinge"]  # fmt: skip
         if len(hinges) < 2:
-            raise ModelError(called(joint), "it mimics what is no hinge; leave it out")
+            raise ModelError(called(joint), Note("it mimics what is no hinge; leave it out"))
         space.sums.append((called(joint), {name: 1.0, other: -number(mimic, "multiplier", "1")}))

@@ -19,6 +19,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from equipoise.errors import ModelError, UsageError
+from equipoise.i18n import Note
 from equipoise.keys import (
     Frozen,
     Quantity,
@@ -282,7 +283,9 @@ def _path(text: str) -> KeyPath:
 
 
 def _no_column(paths: str) -> UsageError:
-    return UsageError(f"got {paths}; the machine has no such number that can be a column")
+    return UsageError(
+        Note("got {paths}; the machine has no such number that can be a column", paths=paths)
+    )
 
 
 def _filled(parts: Mapping[Part, Array], held: Any) -> Any:

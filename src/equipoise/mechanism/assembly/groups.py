@@ -210,8 +210,12 @@ def rpp(builder: Builder, pinned: Outer, sliding: Outer, slider: Slider) -> Grou
         sliders = builder.machine.sliders
         raise ModelError(
             f"sliders[{sliders.index(slider) + 1}]" if slider in sliders else slider.name,
-            f"its line is parallel to that of {guide.name!r}, which leaves {other!r} free to "
-            "slide; turn one of them",
+            Note(
+                "its line is parallel to that of {name!r}, which leaves {other!r} free "
+                "to slide; turn one of them",
+                name=guide.name,
+                other=other,
+            ),
         )
     turn = line * inner.turn
     shift = turn * builder.arm(link, pinned.point, inner.point) - guide.turn * builder.arm(

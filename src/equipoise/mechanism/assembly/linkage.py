@@ -23,7 +23,7 @@ import numpy as np
 
 from equipoise.displays import Brief
 from equipoise.errors import ChangePointError, ModelError, RangeError
-from equipoise.i18n import Note
+from equipoise.i18n import Note, series
 from equipoise.keys.kinds import choice
 from equipoise.mechanism.assembly import sides
 from equipoise.mechanism.assembly.builder import Builder, Group
@@ -192,8 +192,11 @@ def assemble(machine: Machine, near: Cycle | None = None) -> Linkage:
             if names.count(name) > 1:  # outputs go by the names of joints
                 raise ModelError(
                     "links",
-                    f"two joints would be called {name!r} in the output; rename one, or give a "
-                    "second guide a label",
+                    Note(
+                        "two joints would be called {name!r} in the output; rename one, or give "
+                        "a second guide a label",
+                        name=name,
+                    ),
                 )
         decided = not (kept.shared and kept.shared.count)
         slots = machine.pins_in_slots
@@ -251,8 +254,9 @@ def _check_sides(machine: Machine, joints: Structure, grouping: Grouping) -> Non
     for joint in idle:
         if joint == MODE and machine.assembly[joint] in MODES:
             raise ModelError(f"assembly.{joint}", NO_PARALLELS)
-        dyads = ", ".join(sorted(builder.sides - {MODE})) or "no point"
-        hint = meant(joint, [*builder.sides]) or f"the dyads of this linkage meet at {dyads}"
+        dyads = series(sorted(builder.sides - {MODE})) or Note("no point")
+        meeting = Note("the dyads of this linkage meet at {dyads}", dyads=dyads)
+        hint = meant(joint, [*builder.sides]) or meeting
         raise ModelError(
             f"assembly.{joint}",
             Note(

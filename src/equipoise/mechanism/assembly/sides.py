@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.errors import EquipoiseError, ModelError, Paste
-from equipoise.i18n import to_say
+from equipoise.i18n import Note, series, to_say
 from equipoise.mechanism.assembly.builder import Builder, Group
 from equipoise.mechanism.assembly.steps import Call, State, initial_state, run
 from equipoise.mechanism.checks import meant
@@ -71,8 +71,15 @@ class Choice:
         return self.group.joint
 
     @property
-    def wrong(self) -> str:
-        return "missing" if self.given is None else f"got {self.given!r}"
+    def wrong(self) -> Note:
+        return Note("missing") if self.given is None else Note("got {given!r}", given=self.given)
+
+    @property
+    def wrong_at_joint(self) -> Note:
+        """What is wrong, with the joint where it is."""
+        if self.given is None:
+            return Note("{joint} is missing", joint=self.joint)
+        return Note("{joint} got {given!r}", joint=self.joint, given=self.given)
 
     def lines(self, taken: str) -> Iterator[str]:
         """For the table of sides; both of them where nothing tells which.
@@ -227,14 +234,22 @@ def missing(machine: Machine, choices: Sequence[Choice], idle: Iterable[str] = (
     first = choices[0]
     if len(choices) == 1:
         where = f"assembly.{first.joint}"
-        what = f'{first.wrong}; give "{first.words[0]}" or "{first.words[1]}": {first.meaning}'
+        what = Note(
+            '{sentence}; give "{first}" or "{second}": {meaning}',
+            sentence=first.wrong,
+            first=first.words[0],
+            second=first.words[1],
+            meaning=first.meaning,
+        )
     else:
-        given = [f"{one.joint} {one.wrong.replace('missing', 'is missing')}" for one in choices]
-        where, what = "assembly", f"{', '.join(given)}; give each its side in [assembly]"
+        where, parts = "assembly", series([one.wrong_at_joint for one in choices])
+        what = Note("{parts}; give each its side in [assembly]", parts=parts)
     joints = [one.joint for one in choices]
     for name in idle:
-        hint = "; ".join(filter(None, ("is no inner joint of a dyad", meant(name, joints))))
-        what += f" ({name!r} {hint})"
+        hint = meant(name, joints)
+        entry = Note("{name!r} is no inner joint of a dyad", name=name)
+        entry = Note("{sentence}; {hint}", sentence=entry, hint=hint) if hint else entry
+        what = Note("{sentence} ({entry})", sentence=what, entry=entry)
     table = [] if machine.assembly else ["[assembly]"]
     taken: list[str] = []
     for one in choices:

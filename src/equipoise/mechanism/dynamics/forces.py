@@ -304,11 +304,11 @@ def _needed(
     return (forces[0], moments[0]) if len(rates) == 1 else (sum(forces), sum(moments))
 
 
-def massless(machine: Machine) -> Note | str:
+def massless(machine: Machine) -> Note | None:
     """Say which links lack masses; empty where none does."""
     missing = [name for name, link in machine.links.items() if not link.has_mass]
     if not missing:
-        return ""
+        return None
     return Note(
         "forces need mass, {center_of_mass} and inertia of every link; missing for {links} (a link "
         "to be neglected has mass 0)",
@@ -317,11 +317,11 @@ def massless(machine: Machine) -> Note | str:
     )
 
 
-def assumed_masses(machine: Machine) -> Note | str:
+def assumed_masses(machine: Machine) -> Note | None:
     """Say the masses of which links are assumed; empty where all are given."""
     assumed = [name for name, link in machine.links.items() if any(b.assumed for b in link.bodies)]
     if not assumed:
-        return ""
+        return None
     return Note(
         "the masses of {links} are assumed, and with them all forces; give masses or bodies of "
         "these links, or their sections",

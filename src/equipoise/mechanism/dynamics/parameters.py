@@ -22,6 +22,7 @@ import numpy as np
 from equipoise.decompositions import lstsq
 from equipoise.displays import Brief
 from equipoise.errors import MassError, UsageError
+from equipoise.i18n import Note
 from equipoise.mechanism.assembly.steps import Array, planar
 from equipoise.mechanism.dynamics.across import Across, exerted_in, needed_by_inertia
 from equipoise.mechanism.dynamics.acting import spring_direction, spring_vector
@@ -216,7 +217,7 @@ def base_parameters(
     if isinstance(outputs, str):
         outputs = [outputs]
     if not outputs:
-        raise UsageError("give at least one output, such as drive_torque")
+        raise UsageError(Note("give at least one output, such as drive_torque"))
     names = parameter_names(machine)
     bodies = (link.points.values() for link in machine.links.values())
     size = max(abs(complex(*place)) for places in bodies for place in places) or 1.0

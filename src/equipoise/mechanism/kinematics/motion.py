@@ -420,7 +420,9 @@ def move(
     """
     linkage = assemble(machine)
     if isinstance(angles, bool):
-        raise UsageError(f"got {angles}; give a number of crank angles, or angles")
+        raise UsageError(
+            Note("got {angles}; give a number of crank angles, or angles", angles=angles)
+        )
     if isinstance(angles, int | np.integer):
         find = _poses if angles * linkage.cycle.turns > MOST_KEPT else _kept_poses
         theta, state = find(_CycleGrid(linkage, int(angles)))
@@ -485,12 +487,16 @@ _kept_poses = lru_cache(8)(_poses)
 
 def _cycle_angles(linkage: Linkage, count: int) -> Array:
     if count < 1:
-        raise UsageError(f"got {count} crank angles; give at least 1")
+        raise UsageError(Note("got {count} crank angles; give at least 1", count=count))
     turns = linkage.cycle.turns
     if count * turns > MOST_ANGLES:
         raise UsageError(
-            f"got {count} crank angles in each of {turns} turns; give at most "
-            f"{MOST_ANGLES // turns}"
+            Note(
+                "got {count} crank angles in each of {turns} turns; give at most {most_angles}",
+                count=count,
+                turns=turns,
+                most_angles=MOST_ANGLES // turns,
+            )
         )
     return np.arange(count * turns) * (2 * pi / count)
 
@@ -499,9 +505,11 @@ def _given_angles(angles: Any) -> Array:
     try:
         theta = np.atleast_1d(np.asarray(angles, dtype=float))
     except (TypeError, ValueError, OverflowError):
-        raise UsageError(f"got {angles!r}; give a number of crank angles, or angles") from None
+        raise UsageError(
+            Note("got {angles!r}; give a number of crank angles, or angles", angles=angles)
+        ) from None
     if theta.ndim != 1 or theta.size == 0 or not np.all(np.isfinite(theta)):
-        raise UsageError("the crank angles must be one or more finite numbers, in a row")
+        raise UsageError(Note("the crank angles must be one or more finite numbers, in a row"))
     return theta
 
 
@@ -514,6 +522,12 @@ def _rates(usual: Drive | Motion, *given: float | str | None) -> tuple[float, fl
     for (name, dimension), value in zip(RATES.items(), given, strict=True):
         rate = getattr(usual, name) if value is None else in_si(value, dimension, name)
         if not isinstance(rate, float | Real) or not abs(rate) < HUGE:  # type: ignore[operator]
-            raise UsageError(f"got {rate!r} for {name}; give a finite number in SI units")
+            raise UsageError(
+                Note(
+                    "got {rate!r} for {name}; give a finite number in SI units",
+                    rate=rate,
+                    name=name,
+                )
+            )
         rates.append(float(rate))
     return rates[0], rates[1]

@@ -13,6 +13,7 @@ from math import isfinite, pi
 import numpy as np
 
 from equipoise.errors import ChangePointError, RangeError, UsageError
+from equipoise.i18n import Note
 from equipoise.mechanism.assembly.cycle import FEWER_POINTS, MANY_TURNS, POINTS_PER_TURN
 from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.assembly.steps import Array
@@ -248,7 +249,12 @@ def dwell(linkage: Linkage, name: str, tolerance: float | None = None) -> Dwell:
     UsageError : nothing goes by that name, or the tolerance is none.
     """
     if tolerance is not None and not (isfinite(tolerance) and tolerance > 0):
-        raise UsageError(f"got {tolerance:g} for the tolerance of a dwell; give more than 0")
+        raise UsageError(
+            Note(
+                "got {tolerance:g} for the tolerance of a dwell; give more than 0",
+                tolerance=tolerance,
+            )
+        )
     motion, period = _motion(linkage, _grid(linkage)), 2 * pi * linkage.cycle.turns
     if tolerance is None and name in (known := strokes(linkage)):
         tolerance = SHARE * known[name].stroke

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.errors import ModelError
+from equipoise.i18n import Note
 from equipoise.mechanism.assembly.family import Family, Triple, column
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.assembly.steps import Array, State
@@ -300,8 +301,10 @@ def planting_of(machine: Machine) -> Planting:
     if machine.planting is None:
         raise ModelError(
             "planting",
-            'missing; add a table [planting] with at least tip = "P", forward_speed = "0.6 m/s" '
-            'and depth = "40 mm"',
+            Note(
+                'missing; add a table [planting] with at least tip = "P", forward_speed '
+                '= "0.6 m/s" and depth = "40 mm"'
+            ),
         )
     return machine.planting
 

@@ -175,7 +175,7 @@ of_weight = alike(
     "",
     _force,
     linear=True,
-    reason="{what} shakes nothing; take the force or moment on the frame instead",
+    reason=to_say("{what} shakes nothing; take the force or moment on the frame instead"),
     summed=False,
 )
 of_weight("weight", "force", to_say("weight"), XY, sized=False)
@@ -183,7 +183,7 @@ of_weight("weight_moment", "torque", to_say("moment of the weight"), about=True)
 of_center = alike(
     "mass_center.",
     lambda _, found: -found.forces.shaking_force.value / found.machine.mass,
-    reason="{what} is the shaking force over the mass; take the shaking force instead",
+    reason=to_say("{what} is the shaking force over the mass; take the shaking force instead"),
     items=lambda found: ("",) if found.machine.mass else (),
     ordered=True,
     summed=False,

@@ -199,7 +199,9 @@ class Balance(Frozen):
         for place, link in enumerate(moved):
             if link in moved[:place]:
                 where = f"balance.moves[{place + 1}].link"
-                yield ModelError(where, f"{link!r} is given twice; give one of both")
+                yield ModelError(
+                    where, Note("{link!r} is given twice; give one of both", link=link)
+                )
         yield from _wrong_names(self, machine.bodies)
         if self.phases is not None:
             yield from _wrong_phases(self.phases.step, len(machine.rows))
@@ -217,11 +219,13 @@ def _wrong_names(balance: Balance, bodies: Bodies) -> Iterator[ModelError]:
     for place, name in new:
         where = f"{place}.name"
         if not name.strip() or not name.isprintable() or len(name) > LONGEST_NAME:
-            yield ModelError(where, f"got {name[:60]!r}; give another name")
+            yield ModelError(where, Note("got {name!r}; give another name", name=name[:60]))
         elif name in bodies:
-            yield ModelError(where, f"{name!r} is taken already; give another name")
+            yield ModelError(where, Note("{name!r} is taken already; give another name", name=name))
         elif name in seen:
-            yield ModelError(where, f"{name!r} is given twice; give each its own name")
+            yield ModelError(
+                where, Note("{name!r} is given twice; give each its own name", name=name)
+            )
         seen.add(name)
 
 
@@ -231,7 +235,9 @@ def _wrong_phases(step: float, rows: int) -> Iterator[ModelError]:
         what = Note("got {given}; give more than 0 deg and at most 90 deg", given=given)
         yield ModelError("balance.phases.step", what)
     if rows < 2:
-        sentence = f"got {rows} rows, which leaves no phase to choose; give two at least"
+        sentence = Note(
+            "got {rows} rows, which leaves no phase to choose; give two at least", rows=rows
+        )
         yield ModelError("balance.phases", sentence)
 
 

@@ -83,7 +83,7 @@ def with_density(given: dict[str, Any], prefix: str = "") -> dict[str, Any]:
     if material is None:
         return given
     if f"{prefix}density" in given:
-        raise ModelError("", f"give either {prefix}material or {prefix}density")
+        raise ModelError("", Note("give either {prefix}material or {prefix}density", prefix=prefix))
     if material not in MATERIALS:
         shown = material if len(material) <= 60 else f"{material[:57]}..."
         sentence = unknown(shown, MATERIALS, "material")
@@ -163,7 +163,7 @@ class Body(Frozen):
         example="bar",
     )
     between: tuple[Spot, ...] = key(
-        Listing(Point(named=True), (2,), "both ends, points of the link by name or places"),
+        Listing(Point(named=True), (2,), Note("both ends, points of the link by name or places")),
         "both ends of a bar: points of the link, or places",
         default=(),
         example=["B", "C"],
@@ -187,7 +187,7 @@ class Body(Frozen):
     )
     inner_diameter: float = key("length", "of a tube; 0 for a rod", default=0.0, at_least=0)
     corners: tuple[Spot, ...] = key(
-        Listing(Point(named=True), (), "three corners or more, points of the link or places"),
+        Listing(Point(named=True), (), Note("three corners or more, points of the link or places")),
         "of a plate, in order around it: points of the link, or places",
         default=(),
         example=["B", "C", ["20 mm", "-30 mm"]],

@@ -96,7 +96,7 @@ def wrong_bodies(bodies: Sequence[Body], points: Points) -> Iterator[ModelError]
                 yield ModelError(f"{where}.{name}", what)
 
 
-Wrong = Iterator[tuple[str, Note | str]]
+Wrong = Iterator[tuple[str, Note]]
 """Keys, and what is wrong with each."""
 
 
@@ -105,12 +105,19 @@ def _wrong_keys(body: Body, _: Points) -> Wrong:
     given = body.to_table(body)
     for name in NEEDS[body.shape]:
         if name not in given:
-            yield name, f"missing; a {body.shape} needs it"
+            yield name, Note("missing; a {shape} needs it", shape=body.shape)
     for name in given:
         if name not in ("shape", *known):
-            yield name, f"a {body.shape} has none; it can have {', '.join(known)}"
+            yield (
+                name,
+                Note(
+                    "a {shape} has none; it can have {names}",
+                    shape=body.shape,
+                    names=", ".join(known),
+                ),
+            )
     if body.shape == "plate" and len(body.corners) < 3:
-        yield "corners", f"got {len(body.corners)}; give three or more"
+        yield "corners", Note("got {count}; give three or more", count=len(body.corners))
 
 
 def _wrong_spots(body: Body, points: Points) -> Wrong:
@@ -126,26 +133,26 @@ def _wrong_mass(body: Body, _: Points) -> Wrong:
     """What tells the mass has to be given once, and a density needs the body's measures."""
     given = [name for name in MASSES if getattr(body, name, None) is not None]
     if len(given) > 1:
-        yield given[1], f"given beside {given[0]}; give one of both"
+        yield given[1], Note("given beside {given}; give one of both", given=given[0])
     if not given:
-        yield "material", 'missing; give a material such as "steel", a density, or the mass'
+        yield "material", Note('missing; give a material such as "steel", a density, or the mass')
     bar = body.shape == "bar"
     if body.density is None or (bar and body.outer_diameter is not None):
         return
     if bar and body.width is None:
         yield "width", NO_SECTION
     elif body.thickness is None:
-        yield "thickness", "missing; with a material give it, or give the mass instead"
+        yield "thickness", Note("missing; with a material give it, or give the mass instead")
 
 
 def _wrong_numbers(body: Body, points: Points) -> Wrong:
     flat = body.shape != "bar" or (body.width is not None and body.wall is None)
     if body.holes and not flat:
-        yield "holes", "of a bar need its width, and no wall; leave them out"
+        yield "holes", Note("of a bar need its width, and no wall; leave them out")
     if body.width is not None and body.outer_diameter is not None:
-        yield "outer_diameter", "given beside width; give one of both"
+        yield "outer_diameter", Note("given beside width; give one of both")
     if body.wall is not None and None in (body.width, body.thickness):
-        yield "wall", "goes with width and thickness of a bar"
+        yield "wall", Note("goes with width and thickness of a bar")
     elif body.inner_diameter and body.outer_diameter is None:
         yield "inner_diameter", GOES_WITH_DIAMETER
     else:
@@ -154,21 +161,25 @@ def _wrong_numbers(body: Body, points: Points) -> Wrong:
                 yield name, what
 
 
-def _rules(body: Body, points: Points) -> Iterator[tuple[str, Any, str]]:
+def _rules(body: Body, points: Points) -> Iterator[tuple[str, Any, Note]]:
     """What has to be true of numbers, each with its key and what is said where it is not; of
     columns, columns of it.
     """
     if body.shape == "bar":
         first, last = (place_of(end, points) for end in body.between)
-        yield "between", abs(last - first) > 0, "both ends lie at the same place; set them apart"
+        yield (
+            "between",
+            abs(last - first) > 0,
+            Note("both ends lie at the same place; set them apart"),
+        )
     if body.inner_radius is not None and body.radius is not None:
-        yield "inner_radius", body.inner_radius < body.radius, "give less than the radius"
+        yield "inner_radius", body.inner_radius < body.radius, Note("give less than the radius")
     if body.outer_diameter is not None:
         right = body.inner_diameter < body.outer_diameter
         yield "inner_diameter", right, LESS_THAN_DIAMETER
     if body.wall is not None and body.width is not None and body.thickness is not None:
         right = (2 * body.wall < body.width) & (2 * body.wall < body.thickness)
-        yield "wall", right, "give less than half of width and thickness"
+        yield "wall", right, Note("give less than half of width and thickness")
 
 
 def demands(body: Body, points: Points) -> Iterator[Any]:
@@ -195,10 +206,15 @@ def _wrong_outline(body: Body, points: Points) -> Wrong:
         edges = [*edges_of(corners)]
         if crossing := next((pair for pair, crosses in _crossings(edges) if crosses), None):
             ends = (end for edge in crossing for end in (edge + 1, (edge + 1) % len(edges) + 1))
-            crossed = "the edge from corner {} to {} crosses that from {} to {}".format(*ends)
-            yield "corners", f"{crossed}; give the corners in order around the plate"
+            names = ("start", "end", "other_start", "other_end")
+            crossed = Note(
+                "the edge from corner {start} to {end} crosses that from {other_start} to "
+                "{other_end}; give the corners in order around the plate",
+                **dict(zip(names, ends, strict=True)),
+            )
+            yield "corners", crossed
         elif not _has_area(edges):
-            yield "corners", "they lie in one line; a plate has an area"
+            yield "corners", Note("they lie in one line; a plate has an area")
     yield from _wrong_holes(body, points)
 
 
@@ -238,14 +254,16 @@ def _wrong_holes(body: Body, points: Points) -> Wrong:
         if any(not fits(center, radius * (1 - ROUNDING), one) for one in outline):
             yield (
                 f"holes[{number}]",
-                f"does not lie within the {body.shape}; move it, or make it smaller",
+                Note(
+                    "does not lie within the {shape}; move it, or make it smaller", shape=body.shape
+                ),
             )
     for (i, one), (j, other) in combinations(enumerate(holes, 1), 2):
         if abs(one[0] - other[0]) < (one[1] + other[1]) * (1 - ROUNDING):
-            yield f"holes[{j}]", f"cuts into holes[{i}]; set them apart"
+            yield f"holes[{j}]", Note("cuts into holes[{i}]; set them apart", i=i)
     area = gross(body, points)[0] * (1.0 if body.width is None else body.width)
     if sum(pi * radius**2 for _, radius in holes) >= area * (1 - ROUNDING):
-        yield "holes", f"leave nothing of the {body.shape}; make them smaller"
+        yield "holes", Note("leave nothing of the {shape}; make them smaller", shape=body.shape)
 
 
 def fits(center: complex, radius: float, outline: Outline) -> bool:

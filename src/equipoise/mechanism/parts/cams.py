@@ -164,9 +164,13 @@ class Cam(Coupling):
     def declare_outputs(cls, table: str) -> None:
         declare, of_contact = of_coupling(table), of_contacts(table)
         declare("", "force", to_say("contact force {name}"), FORCES, **CONTACT)
-        declare(".normal", "force", to_say("contact force along the normal {name}"),
-                loop=part_in_loops("normal"),
-                reason="{what} is only read; take the whole contact force instead")  # fmt: skip
+        declare(
+            ".normal",
+            "force",
+            to_say("contact force along the normal {name}"),
+            loop=part_in_loops("normal"),
+            reason=to_say("{what} is only read; take the whole contact force instead"),
+        )
         of_contact("pressure_angle", "angle", to_say("pressure angle {name}"), loop=True,
                    yardstick="pressure")  # fmt: skip
         of_contact("curvature", "per length", to_say("curvature of the cam {name}"))

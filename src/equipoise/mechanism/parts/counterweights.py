@@ -88,7 +88,7 @@ class GearedWeight(Frozen):
             Number(),
             2,
             repeat=True,
-            right="a plain number, or the least and the most such as [0.3, 2]",
+            right=Note("a plain number, or the least and the most such as [0.3, 2]"),
         ),
         "size of the speed of the shaft over that of the driver: a number, or the least and the "
         "most",
@@ -133,7 +133,7 @@ class GearedWeight(Frozen):
         "density", "of both gears, instead of `gear_material`", default=None, above=0
     )
     clear_of: tuple[str, ...] = key(
-        Listing(Text(of="link"), right='a list of names such as ["coupler"]'),
+        Listing(Text(of="link"), right=Note('a list of names such as ["coupler"]')),
         "links that the counterweight must not touch",
         default=(),
         example=["coupler"],
@@ -191,7 +191,11 @@ def wrong_geared(where: str, geared: GearedWeight, machine: Mechanism) -> Iterat
         return
     if driver not in turning:
         known = ", ".join(map(repr, turning)) or "none"
-        sentence = f"{driver!r} does not turn about a pin in the frame; those that do are {known}"
+        sentence = Note(
+            "{driver!r} does not turn about a pin in the frame; those that do are {known}",
+            driver=driver,
+            known=known,
+        )
         yield ModelError(f"{where}.driver", sentence)
         return
     yield from _wrong_sizes(where, geared)
@@ -211,43 +215,55 @@ def wrong_geared(where: str, geared: GearedWeight, machine: Mechanism) -> Iterat
 def _wrong_sizes(where: str, geared: GearedWeight) -> Iterator[ModelError]:
     """Ratio or teeth, and what goes with each."""
     if (geared.ratio is None) == (geared.teeth is None):
-        yield ModelError(where, "give either ratio or teeth")
+        yield ModelError(where, Note("give either ratio or teeth"))
     elif geared.teeth is not None:
         yield from _wrong_teeth(where, geared, geared.teeth)
     elif geared.ratio is not None and min(geared.ratio) <= 0:
         yield ModelError(
             f"{where}.ratio",
-            f"got {min(geared.ratio):g}; give a size above 0, the shaft turns against its driver "
-            "in any case",
+            Note(
+                "got {ratio:g}; give a size above 0, the shaft turns against its driver "
+                "in any case",
+                ratio=min(geared.ratio),
+            ),
         )
     elif geared.ratio is not None and max(geared.ratio) > LARGEST_RATIO:
         yield ModelError(
             f"{where}.ratio",
-            f"got {max(geared.ratio):g}; a pair of gears has at most {LARGEST_RATIO:g}",
+            Note(
+                "got {ratio:g}; a pair of gears has at most {largest_ratio:g}",
+                ratio=max(geared.ratio),
+                largest_ratio=LARGEST_RATIO,
+            ),
         )
     elif geared.module is not None:
-        yield ModelError(f"{where}.module", "goes with teeth; leave it out")
+        yield ModelError(f"{where}.module", Note("goes with teeth; leave it out"))
     elif geared.pitch_radius is None and geared.axis is None:
         yield ModelError(
-            f"{where}.pitch_radius", "missing; give that of the driver's gear, or the shaft's axis"
+            f"{where}.pitch_radius",
+            Note("missing; give that of the driver's gear, or the shaft's axis"),
         )
     elif geared.pitch_radius is not None and geared.axis is not None:
         yield ModelError(
-            f"{where}.pitch_radius", "axis and ratio determine it already; leave it out"
+            f"{where}.pitch_radius", Note("axis and ratio determine it already; leave it out")
         )
     yield from wrong_range(f"{where}.ratio", geared.ratio)
 
 
 def _wrong_teeth(where: str, geared: GearedWeight, teeth: tuple[int, int]) -> Iterator[ModelError]:
     if min(teeth) < LEAST_TEETH:
-        sentence = f"got {min(teeth)}; no gear has less than {LEAST_TEETH} teeth"
+        sentence = Note(
+            "got {teeth}; no gear has less than {least_teeth} teeth",
+            teeth=min(teeth),
+            least_teeth=LEAST_TEETH,
+        )
         yield ModelError(f"{where}.teeth", sentence)
     yield from wrong_range(f"{where}.teeth", teeth)
     if geared.module is None:
-        yield ModelError(f"{where}.module", 'missing; with teeth give it, such as "2 mm"')
+        yield ModelError(f"{where}.module", Note('missing; with teeth give it, such as "2 mm"'))
     if geared.pitch_radius is not None:
         yield ModelError(
-            f"{where}.pitch_radius", "module and teeth determine it already; leave it out"
+            f"{where}.pitch_radius", Note("module and teeth determine it already; leave it out")
         )
 
 
@@ -260,33 +276,45 @@ def _wrong_axis(
         if geared.direction is None and pin in machine.links[drive].points:
             yield ModelError(
                 f"{where}.direction",
-                f"missing; {geared.driver!r} turns about the drive's own pivot, from which there "
-                "is no line to it",
+                Note(
+                    "missing; {driver!r} turns about the drive's own pivot, from which there "
+                    "is no line to it",
+                    driver=geared.driver,
+                ),
             )
         yield from wrong_range(f"{where}.direction", geared.direction, "angle")
         return
     if geared.direction is not None:
-        yield ModelError(f"{where}.direction", "the axis determines it already; leave it out")
+        yield ModelError(f"{where}.direction", Note("the axis determines it already; leave it out"))
     x, y = (a - b for a, b in zip(geared.axis, machine.frame[pin], strict=True))
     distance = hypot(x, y)
     if distance == 0:
-        yield ModelError(f"{where}.axis", f"lies on the driver's pin {pin!r}; set it apart")
+        yield ModelError(
+            f"{where}.axis", Note("lies on the driver's pin {pin!r}; set it apart", pin=pin)
+        )
     elif geared.teeth is not None and geared.module is not None:
         nearest, farthest = (geared.module * number for number in geared.teeth)
         if not nearest * (1 - 1e-9) <= distance <= farthest * (1 + 1e-9):
             yield ModelError(
                 f"{where}.axis",
-                f"lies {1e3 * distance:.5g} mm from the driver's pin {pin!r}; two gears with these "
-                f"teeth are {1e3 * nearest:.5g} mm to {1e3 * farthest:.5g} mm apart",
+                Note(
+                    "lies {distance:.5g} mm from the driver's pin {pin!r}; two gears with "
+                    "these teeth are {nearest:.5g} mm to {farthest:.5g} mm apart",
+                    distance=1e3 * distance,
+                    pin=pin,
+                    nearest=1e3 * nearest,
+                    farthest=1e3 * farthest,
+                ),
             )
 
 
 def wrong_shafts(where: str, shafts: BalanceShafts, _: Mechanism) -> Iterator[ModelError]:
     """Everything that is wrong with a pair of balance shafts."""
     if shafts.axes[0] == shafts.axes[1]:
-        yield ModelError(f"{where}.axes", "both lie at the same place; set them apart")
+        yield ModelError(f"{where}.axes", Note("both lie at the same place; set them apart"))
     if shafts.weight.shape == "ring":
         yield ModelError(
-            f"{where}.shape", "a ring has no unbalance; give one of any, point, disc and sector"
+            f"{where}.shape",
+            Note("a ring has no unbalance; give one of any, point, disc and sector"),
         )
     yield from wrong_weight(where, shafts.weight)

@@ -99,7 +99,9 @@ class CurvedSlot(JointKind):
         example="S", word=to_say("origin of the curve"),
     )  # fmt: skip
     points_given: tuple[tuple[float, float], ...] = key(
-        Listing(Point(), (), 'a list of points such as [["0 mm", "0 mm"], ["40 mm", "25 mm"]]'),
+        Listing(
+            Point(), (), Note('a list of points such as [["0 mm", "0 mm"], ["40 mm", "25 mm"]]')
+        ),
         "through which the middle line of the slot goes, in this order, from `origin` in axes "
         "turned by `direction`; a quintic spline",
         name="points",

@@ -6,7 +6,7 @@ from functools import cached_property
 from math import copysign
 from typing import Any, ClassVar, Literal
 
-from equipoise.i18n import to_say
+from equipoise.i18n import Note, to_say
 from equipoise.keys import (
     NO_INERTIA,
     Conditions,
@@ -125,7 +125,7 @@ class Drive(Pushing, Frozen):
     )
     motor: Motor | None = key(Table(Motor, headed=True), "what drives it", default=None)
     speeds: tuple[float, ...] = key(
-        Listing(Quantity("angular speed"), (2,), 'a list such as ["150 rpm", "240 rpm"]'),
+        Listing(Quantity("angular speed"), (2,), Note('a list such as ["150 rpm", "240 rpm"]')),
         "the slowest and the fastest at which the machine runs, in the direction of `speed`; over "
         "these it is judged, swept and balanced",
         default=(),

@@ -33,7 +33,7 @@ KINDS: Mapping[str, tuple[str, ...]] = {
 """Kinds of shape with the keys that go with each, beside those that go with all."""
 OWN = ("eccentricity", "angle", "ratio", "radius", "cosines", "sines")
 TABLED = ("angle", "ratio", "radius")
-NUMBERS = "a list such as [0.3, 0.05]"
+NUMBERS = Note("a list such as [0.3, 0.05]")
 LEAST_ROWS, MOST_ROWS, MOST_WAVES = 3, 720, 50
 
 
@@ -84,7 +84,7 @@ class GearShape(Frozen):
         default=0.0,
     )
     angle: tuple[float, ...] = key(
-        Listing(Quantity("angle"), right='a list such as ["0 deg", "120 deg", "240 deg"]'),
+        Listing(Quantity("angle"), right=Note('a list such as ["0 deg", "120 deg", "240 deg"]')),
         "rising, of the rows of a table over one lobe: how far the driver has turned (`ratio`), "
         "or the direction from 0 of its curve (`radius`)",
         default=(),
@@ -98,7 +98,7 @@ class GearShape(Frozen):
         above=0,
     )
     radius: tuple[float, ...] = key(
-        Listing(Quantity("length"), right='a list such as ["30 mm", "24 mm", "24 mm"]'),
+        Listing(Quantity("length"), right=Note('a list such as ["30 mm", "24 mm", "24 mm"]')),
         "pitch radius of the driver at these angles",
         default=(),
         example=["30 mm", "24 mm", "24 mm"],

@@ -174,7 +174,9 @@ class Gear(Turning):
 
         if np.all(seat.centres == 0):
             pin = seat.pins[0]
-            raise ModelError(seat.where, f"both gears turn about {pin}; set their centres apart")
+            raise ModelError(
+                seat.where, Note("both gears turn about {pin}; set their centres apart", pin=pin)
+            )
         ratio = self.speed_ratio
         ring_driven = 0 < ratio < 1
         radial = np.tan(self.pressure_angle) * (1 if ring_driven else -1)

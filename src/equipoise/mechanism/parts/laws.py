@@ -13,7 +13,7 @@ from itertools import pairwise
 from math import pi
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
-from equipoise.i18n import to_say
+from equipoise.i18n import Note, to_say
 from equipoise.keys import (
     ROW,
     Conditions,
@@ -41,8 +41,8 @@ MOST_ROWS, MOST_TURNS = 720, 100
 CLOSED = 1e-9
 """Of the largest value, or of the cycle, by which rounding may miss what has to agree."""
 BESIDE = "CSV file beside this one, instead of `crank_angles` and `values`: "
-ANGLES = 'a list such as ["0 deg", "90 deg", "210 deg"]'
-LENGTHS = 'a list such as ["0 mm", "5 mm", "20 mm"]'
+ANGLES = Note('a list such as ["0 deg", "90 deg", "210 deg"]')
+LENGTHS = Note('a list such as ["0 mm", "5 mm", "20 mm"]')
 
 
 @declared
@@ -231,7 +231,7 @@ def _segments(kind: type[Segment]) -> Any:
     return key(Tables(Table(kind)), "parts of the motion, one after the other", default=())
 
 
-def _values(dimension: Any, right: str) -> Any:
+def _values(dimension: Any, right: Note) -> Any:
     kind = Listing(Quantity(dimension=dimension), right=right)
     return key(kind, "through which a spline goes", default=())
 

@@ -243,12 +243,17 @@ def placed(
     """
     if length is not None and sides:
         raise ModelError("sides", Note("given beside length; give one of both"))
-    count, words = (2, "length goes") if sides is None or length is not None else (3, "sides go")
+    of_length = sides is None or length is not None
+    count = 2 if of_length else 3
     if len({*names}) != count or len(names) != count:
-        several = {2: "two", 3: "three"}[count]
         raise ModelError(
             "points",
-            f"got {len(names)}; {words} with {several} names, each once",
+            Note(
+                "got {count}; length goes with two names, each once"
+                if of_length
+                else "got {count}; sides go with three names, each once",
+                count=len(names),
+            ),
         )
     first, second, *third = names
     if length is not None:
@@ -285,8 +290,17 @@ def _sides_of(names: Sequence[str], sides: Mapping[str, Any]) -> Iterator[Any]:
         either = [name for name in (f"{one}-{other}", f"{other}-{one}") if name in left]
         if not either:
             more = [f"{one}-{other}" for one, other in ends]
-            wrong = next((f"; {unknown(name, more, 'side')}" for name in left), "")
-            raise ModelError(f"sides.{one}-{other}", f"missing; give that length{wrong}")
+            lost = Note("missing; give that length")
+            raise ModelError(
+                f"sides.{one}-{other}",
+                next(
+                    (
+                        Note("{sentence}; {hint}", sentence=lost, hint=unknown(name, more, "side"))
+                        for name in left
+                    ),
+                    lost,
+                ),
+            )
         yield left.pop(either[0])
     for name in left:
         raise ModelError(f"sides.{name}", Note("given beside three others; leave it out"))

@@ -7,7 +7,7 @@ from dataclasses import replace
 from math import pi
 from typing import Any, ClassVar, Self
 
-from equipoise.errors import ModelError
+from equipoise.errors import ModelError, at_place
 from equipoise.i18n import Note, key_names, to_say
 from equipoise.keys import (
     Frozen,
@@ -77,7 +77,7 @@ class Objective(Frozen):
         default="rms",
     )
     orders: tuple[float, ...] = key(
-        Listing(Number(), right="a list of numbers such as [1, 2]"),
+        Listing(Number(), right=Note("a list of numbers such as [1, 2]")),
         "those that count: events in one turn of the crank, 0 for the mean; all if left out",
         default=(),
         example=[1, 2],
@@ -97,7 +97,7 @@ class Objective(Frozen):
         word=to_say("weighting"),
     )
     speeds: tuple[float, ...] = key(
-        Listing(Quantity("angular speed"), right='a list such as ["150 rpm", "240 rpm"]'),
+        Listing(Quantity("angular speed"), right=Note('a list such as ["150 rpm", "240 rpm"]')),
         "of the crank, at which a gauge is read; the loudest counts; the drive's if left out",
         default=(),
         example=["150 rpm", "240 rpm"],
@@ -180,9 +180,9 @@ def output_of(name: str, machine: Mechanism) -> Declared:
     one, item = found[0]
     names, kind = list(one.members(machine)), one.group.removesuffix("s")
     if kind == "gauge" and not names:
-        raise ModelError("", "there is no gauge; give a support with gauges")
+        raise ModelError("", Note("there is no gauge; give a support with gauges"))
     if not names and one.reason:
-        raise ModelError("", one.reason.format(what=name))
+        raise ModelError("", Note(one.reason, what=name))
     if not one.is_family:
         raise ModelError("", unknown(name, balanced_names(machine), "output"))
     raise ModelError("", unknown(item, names, kind))
@@ -194,11 +194,14 @@ def _balanced(one: Declared, item: str, machine: Mechanism) -> Declared:
     if one.needs == "rows" and not machine.rows:
         raise ModelError(
             "",
-            f"{name} comes from linkages side by side; give [[rows]], or ask for rocking_moment of "
-            "links in planes",
+            Note(
+                "{name} comes from linkages side by side; give [[rows]], or ask for "
+                "rocking_moment of links in planes",
+                name=name,
+            ),
         )
     if one.reason:
-        raise ModelError("", one.reason.format(what=name))
+        raise ModelError("", Note(one.reason, what=name))
     if one.needs == "support" and machine.support.gauges[item].axis is not None:  # type: ignore[union-attr]
         return replace(one, dimension="angle")
     return one
@@ -245,39 +248,52 @@ def wrong_objective(where: str, objective: Objective, machine: Mechanism) -> Ite
     elif output.is_vector and objective.measure in OF_NUMBERS:
         yield ModelError(
             f"{where}.output",
-            f"{objective.output} is a vector, which has no {objective.measure}; give .x or .y",
+            Note(
+                "{output} is a vector, which has no {measure}; give .x or .y",
+                output=objective.output,
+                measure=objective.measure,
+            ),
         )
     for name in ("orders", "speeds"):
         count = len(getattr(objective, name))
         if count > MOST_NUMBERS:
-            sentence = f"got {count}; at most {MOST_NUMBERS} are computed with"
+            sentence = Note(
+                "got {count}; at most {most_numbers} are computed with",
+                count=count,
+                most_numbers=MOST_NUMBERS,
+            )
             yield ModelError(f"{where}.{name}", sentence)
     for k, (place, order) in enumerate(numbered(f"{where}.orders", objective.orders)):
         if order < 0:
-            yield ModelError(place, f"got {order:g}; give 0 or more")
+            yield ModelError(place, Note("got {order:g}; give 0 or more", order=order))
         elif order in objective.orders[:k]:
-            yield ModelError(place, f"{order:g} is given twice")
+            yield ModelError(place, Note("{order:g} is given twice", order=order))
     if objective.about is not None and not output.about:
         names = [one.name for one in DECLARED.values() if one.about and not one.reason]
-        yield ModelError(f"{where}.about", f"goes with {' and '.join(names)}; leave it out")
+        yield ModelError(
+            f"{where}.about", Note("goes with {names}; leave it out", names=" and ".join(names))
+        )
     elif objective.about is not None and objective.about not in machine.frame:
         sentence = unknown(objective.about, machine.frame, "point of the frame")
         yield ModelError(f"{where}.about", sentence)
     yield from _wrong_speeds(where, objective)
     if objective.weight <= 0:
-        yield ModelError(f"{where}.weight", f"got {objective.weight:g}; give more than 0")
+        yield ModelError(
+            f"{where}.weight", Note("got {weight:g}; give more than 0", weight=objective.weight)
+        )
 
 
 def _wrong_speeds(where: str, objective: Objective) -> Iterator[ModelError]:
     if objective.speeds and not objective.output.startswith(GAUGES):
         yield ModelError(
-            f"{where}.speeds", "goes with gauges; other outputs are taken at the speed of the drive"
+            f"{where}.speeds",
+            Note("goes with gauges; other outputs are taken at the speed of the drive"),
         )
     for k, (place, speed) in enumerate(numbered(f"{where}.speeds", objective.speeds)):
         if speed == 0:
-            yield ModelError(place, "the crank stands still there; give another speed")
+            yield ModelError(place, Note("the crank stands still there; give another speed"))
         elif speed in objective.speeds[:k]:
-            yield ModelError(place, "the same speed is given twice")
+            yield ModelError(place, Note("the same speed is given twice"))
 
 
 def wrong_limit(where: str, limit: Limit, machine: Mechanism) -> Iterator[ModelError]:
@@ -293,16 +309,21 @@ def wrong_limit(where: str, limit: Limit, machine: Mechanism) -> Iterator[ModelE
             ),
         )
     elif limit.asks and limit.at_most is None:
-        what = f"{limit.asks[0][0]}: balancing needs an upper limit; give at_most"
+        what = at_place(limit.asks[0][0], Note("balancing needs an upper limit; give at_most"))
         yield ModelError(where, what)
     elif values and quantity_of(limit.objective, machine) is None:
         yield ModelError(
             f"{where}.{next(iter(values))}",
-            f"there is no unit for the area under {limit.objective.output}; give a share of the "
-            'value before, such as "80 %"',
+            Note(
+                "there is no unit for the area under {output}; give a share of the value "
+                'before, such as "80 %"',
+                output=limit.objective.output,
+            ),
         )
     else:
         for name, value in values.items():
             yield from positive(f"{where}.{name}", value, quantity_of(limit.objective, machine))
     if limit.ratio is not None and limit.ratio <= 0:
-        yield ModelError(f"{where}.at_most", f"got {100 * limit.ratio:g} %; give more than 0")
+        yield ModelError(
+            f"{where}.at_most", Note("got {ratio:g} %; give more than 0", ratio=100 * limit.ratio)
+        )

@@ -32,7 +32,7 @@ class Frame(Frozen):
     """The part that stands still; a machine has its points by name."""
 
     called = to_say("{what} of the frame")
-    wanted = "a mapping of names to two numbers"
+    wanted = Note("a mapping of names to two numbers")
 
     points: Mapping[str, Vector] = key(
         Named(Point()),

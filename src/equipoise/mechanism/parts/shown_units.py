@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any, ClassVar, cast
 
 from equipoise.errors import ModelError, UsageError
+from equipoise.i18n import Note
 from equipoise.keys import Frozen, Key, Text, declared, key, keys_of
 from equipoise.mechanism.checks import unknown
 from equipoise.quantities import KINDS, Dimension
@@ -20,7 +21,7 @@ def _unit_of(dimension: Dimension) -> Any:
 class ShownUnits(Frozen):
     """Units by what they are of; None where the one is shown that suits the sizes."""
 
-    wanted: ClassVar[str] = "such as ShownUnits(length='in')"
+    wanted: ClassVar[Note] = Note("such as ShownUnits(length='in')")
 
     length: str | None = _unit_of("length")
     mass: str | None = _unit_of("mass")
@@ -44,7 +45,10 @@ class ShownUnits(Frozen):
         super().__post_init__()
         for name, unit in self._given().items():
             if unit not in _units(name):
-                raise ModelError(name, f"got {described(unit)}; {_right(name, unit)}")
+                raise ModelError(
+                    name,
+                    Note("got {given}; {right}", given=described(unit), right=_right(name, unit)),
+                )
 
     def _given(self) -> dict[str, str]:
         return {name: unit for name in _keys() if (unit := getattr(self, name)) is not None}
@@ -67,10 +71,14 @@ def _units(name: str) -> tuple[str, ...]:
     return cast(Text, _keys()[name].kind).names
 
 
-def _right(name: str, unit: str) -> str:
+def _right(name: str, unit: str) -> Note:
     meant = unit_meant(unit, _dimension(name))
-    hint = f'did you mean "{meant}"? ' if meant else ""
-    return f"{hint}{_dimension(name)} is shown in one of {', '.join(_units(name))}"
+    right = Note(
+        "{dimension} is shown in one of {units}",
+        dimension=_dimension(name),
+        units=", ".join(_units(name)),
+    )
+    return Note('did you mean "{meant}"? {right}', meant=meant, right=right) if meant else right
 
 
 def units_of(model: Any) -> dict[Dimension, str]:
@@ -97,10 +105,23 @@ def read_units(text: str) -> dict[Dimension, str]:
         if name not in _keys():
             raise UsageError(unknown(name, _keys(), "dimension of units"))
         if unit not in _units(name):
-            raise UsageError(f"got {unit!r} for {_dimension(name)}; {_right(name, unit)}")
+            raise UsageError(
+                Note(
+                    "got {unit!r} for {dimension}; {right}",
+                    unit=unit,
+                    dimension=_dimension(name),
+                    right=_right(name, unit),
+                )
+            )
         if given.setdefault(name, unit) != unit:
-            both = f"got {given[name]!r} and {unit!r}"
-            raise UsageError(f"{both}, both units of {_dimension(name)}; give one")
+            raise UsageError(
+                Note(
+                    "got {first!r} and {second!r}, both units of {dimension}; give one",
+                    first=given[name],
+                    second=unit,
+                    dimension=_dimension(name),
+                )
+            )
     return {_dimension(name): unit for name, unit in given.items()}
 
 
@@ -111,9 +132,15 @@ def _named(unit: str) -> tuple[str, str]:
         if plain in _units(name):
             return name, plain
     if unit.replace(" ", "_") in _keys():
-        raise UsageError(f'got {unit!r} without a unit; give such as "{unit}={_units(unit)[0]}"')
+        raise UsageError(
+            Note(
+                'got {unit!r} without a unit; give such as "{unit}={units}"',
+                unit=unit,
+                units=_units(unit)[0],
+            )
+        )
     for name in _keys():
         if meant := unit_meant(unit, _dimension(name)):
-            raise UsageError(f"got {unit!r}; did you mean {meant!r}?")
+            raise UsageError(Note("got {unit!r}; did you mean {meant!r}?", unit=unit, meant=meant))
     known = "; ".join(f"{_dimension(name)}: {', '.join(_units(name))}" for name in _keys())
-    raise UsageError(f"got {unit!r}; choose among {known}")
+    raise UsageError(Note("got {unit!r}; choose among {known}", unit=unit, known=known))

@@ -125,7 +125,7 @@ class Support(Frozen):
         OneOr(
             Quantity("inertia"),
             3,
-            right="one moment of inertia, or a list of three, about x, y and z",
+            right=Note("one moment of inertia, or a list of three, about x, y and z"),
         ),
         "about the centre of mass and an axis along z; or a list of three, about axes along x, y "
         "and z (roll, yaw, pitch)",
@@ -134,7 +134,7 @@ class Support(Frozen):
         above=0,
     )
     products: tuple[float, ...] = key(
-        Listing(Quantity("inertia"), (3,), "a list of three, of x y, y z and z x"),
+        Listing(Quantity("inertia"), (3,), Note("a list of three, of x y, y z and z x")),
         "integrals of x y, y z and z x over the mass, about its centre; they go with three moments "
         "of inertia",
         default=(),
@@ -148,7 +148,7 @@ class Support(Frozen):
     freedoms: tuple[str, ...] = key(
         Listing(
             Text(FREEDOMS),
-            right='a list such as ["heave", "pitch"]; leave it out for the usual ones',
+            right=Note('a list such as ["heave", "pitch"]; leave it out for the usual ones'),
         ),
         "how it can move: along x, y, z or about x, y, z; if left out pitch with a pivot, and "
         "surge, heave and pitch without",

@@ -91,13 +91,13 @@ class TorsionSpring(ForceElement):
     )
     preload: float = key("torque", "on the link at `angle`, positive counterclockwise", default=0.0)
     angles: tuple[float, ...] = key(
-        Listing(Quantity("angle"), right='a list such as ["-30 deg", "0 deg", "40 deg"]'),
+        Listing(Quantity("angle"), right=Note('a list such as ["-30 deg", "0 deg", "40 deg"]')),
         "of the link from the x axis of `on`, rising, instead of a stiffness",
         default=(),
         example=["-30 deg", "0 deg", "40 deg"],
     )
     torques: tuple[float, ...] = key(
-        Listing(Quantity("torque"), right='a list such as ["3 N m", "0 N m", "-2 N m"]'),
+        Listing(Quantity("torque"), right=Note('a list such as ["3 N m", "0 N m", "-2 N m"]')),
         "on the link at these angles; linear between them, and beyond them as between the last two",
         default=(),
         example=["3 N m", "0 N m", "-2 N m"],

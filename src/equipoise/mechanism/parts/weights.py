@@ -197,7 +197,9 @@ def wrong_weight(where: str, weight: Weight) -> Iterator[ModelError]:
     yield from _wrong_plate(where, weight)
     inner, key = weight.inner_radius, f"{where}.inner_radius"
     if inner and weight.shape not in HOLLOW:
-        yield ModelError(key, f"goes with a ring or sector, got shape {weight.shape!r}")
+        yield ModelError(
+            key, Note("goes with a ring or sector, got shape {shape!r}", shape=weight.shape)
+        )
     elif inner < 0:
         given = Measured(inner, "length")
         yield ModelError(key, Note("got {text}; give 0 or more", text=given))
@@ -213,7 +215,7 @@ def wrong_weight(where: str, weight: Weight) -> Iterator[ModelError]:
     if weight.mass is not None and weight.at_most is not None:
         yield ModelError(where, Note("give either mass or {at_most}", **key_names("at_most")))
     if weight.mass is None and not isfinite(weight.radius):
-        yield ModelError(where, "nothing limits it; give the radius of its room, or its mass")
+        yield ModelError(where, Note("nothing limits it; give the radius of its room, or its mass"))
     cut = weight.shape in CUT and None not in (weight.thickness, weight.density)
     if cut and weight.mass is not None and weight.mass > largest_mass(weight) * ROUNDING:
         yield ModelError(f"{where}.mass", _too_large(weight, weight.mass))
@@ -225,18 +227,27 @@ def _wrong_plate(where: str, weight: Weight) -> Iterator[ModelError]:
     if weight.shape not in CUT:
         for key in ("thickness", "density"):
             if getattr(weight, key) is not None:
-                yield ModelError(f"{where}.{key}", "goes with a disc, ring or sector; leave it out")
+                yield ModelError(
+                    f"{where}.{key}", Note("goes with a disc, ring or sector; leave it out")
+                )
         return
     if not isfinite(weight.radius):
-        yield ModelError(f"{where}.radius", f"missing; {shape} needs a room, give its radius")
+        yield ModelError(
+            f"{where}.radius", Note("missing; {shape} needs a room, give its radius", shape=shape)
+        )
     if weight.thickness is None:
         yield ModelError(
-            f"{where}.thickness", f"missing; {shape} is cut from a plate, give its thickness"
+            f"{where}.thickness",
+            Note("missing; {shape} is cut from a plate, give its thickness", shape=shape),
         )
     if weight.density is None:
         yield ModelError(
             f"{where}.material",
-            f'missing; {shape} is cut from a plate, give a material such as "steel", or a density',
+            Note(
+                'missing; {shape} is cut from a plate, give a material such as "steel", '
+                "or a density",
+                shape=shape,
+            ),
         )
 
 
@@ -273,20 +284,26 @@ def wrong_move(where: str, move: CenterMove, machine: Mechanism) -> Iterator[Mod
     elif not links[move.link].mass:
         yield ModelError(
             f"{where}.link",
-            f"{move.link!r} has no mass whose centre could be moved; give it one, or another link",
+            Note(
+                "{link!r} has no mass whose centre could be moved; give it one, or another link",
+                link=move.link,
+            ),
         )
     elif any(body.plane is not None for body in links[move.link].bodies):
         yield ModelError(
             f"{where}.link",
-            f"{move.link!r} has bodies in planes of their own, which have no one centre to move; "
-            "give another link",
+            Note(
+                "{link!r} has bodies in planes of their own, which have no one centre to "
+                "move; give another link",
+                link=move.link,
+            ),
         )
     yield from wrong_range(f"{where}.x", move.x, "length", "mm")
     yield from wrong_range(f"{where}.y", move.y, "length", "mm")
     if (move.center is None) != (move.radius is None):
-        yield ModelError(where, "give both center and radius of a circle, or neither")
+        yield ModelError(where, Note("give both center and radius of a circle, or neither"))
     elif move.center is not None and (move.x is not None or move.y is not None):
-        yield ModelError(where, "give either x and y, or center and radius")
+        yield ModelError(where, Note("give either x and y, or center and radius"))
 
 
 def wrong_added(where: str, added: AddedMass, machine: Mechanism) -> Iterator[ModelError]:

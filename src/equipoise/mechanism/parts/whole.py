@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 from equipoise.errors import ModelError
+from equipoise.i18n import Note
 from equipoise.keys import wrong_values
 from equipoise.mechanism.checks import Bodies, numbered, too_many, unknown_link, wrong_text
 from equipoise.mechanism.parts.couplings import coupling_kinds
@@ -38,7 +39,7 @@ def problems_of(machine: Any) -> Iterator[ModelError]:
     yield from wrong_values("", machine)
     yield from wrong_points("frame", machine.frame)
     if not machine.links:
-        yield ModelError("links", "there is no link; give at least the drive's")
+        yield ModelError("links", Note("there is no link; give at least the drive's"))
     for name, link in machine.links.items():
         yield from wrong_link(f"links.{name}", name, link)
     yield from unknown_link("drive.link", machine.drive.link, bodies)

@@ -1,0 +1,180 @@
+"""Every sentence for a reader is a template with its values, so that each language has it whole."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+import equipoise
+from equipoise import errors
+from equipoise.errors import CallError, EquipoiseError, UsageError
+
+SOURCES = Path(equipoise.__file__).parent
+FILES = sorted(SOURCES.rglob("*.py"))
+SAID_BY = {"Notes", "at_place", "FileError", "StoppedError"}
+"""What else takes sentences."""
+FOR_PROGRAMMERS = {CallError.__name__}
+"""Errors that no file and no command can cause, which are in English alone."""
+TWO_WORDS = re.compile(r"[A-Za-z]{2,},? [a-z]{2,}")
+THREE_WORDS = re.compile(r"[A-Za-z]{2,},? [a-z]{2,},? [a-z]{2,}")
+
+
+@cache
+def tree(file: Path) -> ast.Module:
+    return ast.parse(file.read_text(encoding="utf-8"))
+
+
+@cache
+def error_classes() -> frozenset[str]:
+    """Names of all classes below `EquipoiseError`."""
+    bases = {
+        node.name: {getattr(base, "id", getattr(base, "attr", "")) for base in node.bases}
+        for file in FILES
+        for node in ast.walk(tree(file))
+        if isinstance(node, ast.ClassDef)
+    }
+    known = {EquipoiseError.__name__}
+    while more := {name for name, above in bases.items() if above & known} - known:
+        known |= more
+    return frozenset(known)
+
+
+def name_of(function: ast.expr) -> str:
+    return getattr(function, "id", getattr(function, "attr", ""))
+
+
+def literals(node: ast.expr) -> Iterator[str]:
+    """Texts that stand in an expression as they are, but for those that a call gets."""
+    if isinstance(node, ast.Constant):
+        yield from [node.value] if isinstance(node.value, str) else []
+    elif isinstance(node, ast.Call):
+        if isinstance(node.func, ast.Attribute) and node.func.attr in ("format", "join"):
+            yield from literals(node.func.value)
+    elif isinstance(node, ast.JoinedStr):
+        yield "".join(part.value if isinstance(part, ast.Constant) else "0" for part in node.values)
+    else:
+        for inner in ast.iter_child_nodes(node):
+            if isinstance(inner, ast.expr):
+                yield from literals(inner)
+
+
+def assigned(within: ast.AST, name: str) -> Iterator[ast.expr]:
+    for node in ast.walk(within):
+        if isinstance(node, ast.Assign):
+            for target in node.targets:
+                if isinstance(target, ast.Name) and target.id == name:
+                    yield node.value
+
+
+def plain(node: ast.expr, scope: ast.AST, words: re.Pattern[str]) -> bool:
+    """Whether an expression is plain English, also by way of a variable of its function."""
+    if any(words.search(text) for text in literals(node)):
+        return True
+    if not isinstance(node, ast.Name):
+        return False
+    return any(words.search(text) for value in assigned(scope, node.id) for text in literals(value))
+
+
+def calls(module: ast.Module) -> Iterator[tuple[ast.AST, ast.Call]]:
+    """Calls with the function around them, the innermost."""
+
+    def visit(node: ast.AST, scope: ast.AST) -> Iterator[tuple[ast.AST, ast.Call]]:
+        for inner in ast.iter_child_nodes(node):
+            if isinstance(inner, ast.Call):
+                yield scope, inner
+            own = isinstance(inner, ast.FunctionDef | ast.Lambda)
+            yield from visit(inner, inner if own else scope)
+
+    return visit(module, module)
+
+
+def sentences(call: ast.Call, refusing: frozenset[str]) -> list[ast.expr]:
+    """What a call says to a reader; the place of an error in a file is none of it."""
+    name = name_of(call.func)
+    given = [*call.args, *(one.value for one in call.keywords)]
+    if name in ("ModelError", "at_place"):
+        return given[1:2]
+    return given if name in refusing else []
+
+
+def found_in(module: ast.Module) -> list[int]:
+    """Lines on which a refusal or a note is made of plain English."""
+    refusing = (error_classes() | SAID_BY) - FOR_PROGRAMMERS
+    lines = []
+    for scope, call in calls(module):
+        if any(plain(one, scope, TWO_WORDS) for one in sentences(call, refusing)):
+            lines.append(call.lineno)
+        if name_of(call.func) == "Note" and any(
+            plain(one.value, scope, THREE_WORDS) for one in call.keywords
+        ):
+            lines.append(call.lineno)
+    return lines
+
+
+def test_no_refusal_and_no_note_is_plain_english() -> None:
+    found = {
+        f"{file.relative_to(SOURCES)}:{line}" for file in FILES for line in found_in(tree(file))
+    }
+    assert found == set()
+
+
+@pytest.mark.parametrize(
+    "made",
+    [
+        'raise UsageError("the list is empty")',
+        'raise UsageError(f"got {count}; give at least one")',
+        'raise ModelError("links", "got %d; give more than one" % count)',
+        'raise ModelError(where, "got " + text + "; give another name")',
+        'raise UsageError("got {}; give another name".format(text))',
+        'def f():\n what = f"got {count}; give more than one"\n raise UsageError(what)',
+        'yield Notes(("one sentence of plain English",))',
+        'Note("got {text}; {right}", text=text, right="give one or more names")',
+        'def f():\n right = "give one or more"\n raise UsageError(Note("x {right}", right=right))',
+    ],
+)
+def test_plain_english_is_found(made: str) -> None:
+    assert found_in(ast.parse(made)) != []
+
+
+@pytest.mark.parametrize(
+    "made",
+    [
+        'raise UsageError(Note("got {count}; give at least one", count=count))',
+        'raise ModelError("the place", Note("got {count}; give at least one", count=count))',
+        'raise UsageError(at_place(option, unknown(name, known, "layer of it")))',
+        'raise CallError(f"{name} takes a machine and a speed")',
+        'raise ValueError("which is what the caller finds")',
+    ],
+)
+def test_templates_are_let_be(made: str) -> None:
+    assert found_in(ast.parse(made)) == []
+
+
+def test_errors_take_no_plain_text() -> None:
+    """By their types, so that a function that makes its sentence elsewhere is found too."""
+    declared = [
+        node
+        for node in ast.walk(ast.parse(Path(errors.__file__).read_text(encoding="utf-8")))
+        if isinstance(node, ast.ClassDef) and node.name in error_classes() - FOR_PROGRAMMERS
+    ]
+    said = [
+        ast.unparse(parameter.annotation)
+        for node in declared
+        for function in node.body
+        if isinstance(function, ast.FunctionDef) and function.name == "__init__"
+        for parameter in (*function.args.args, *function.args.kwonlyargs)
+        if parameter.arg in ("message", "what", "reason") and parameter.annotation is not None
+    ]
+    assert len(said) > 5
+    assert {*said} == {"Note", "Note | None"}
+
+
+def test_what_is_wrong_with_a_call_is_told_as_other_refusals_are() -> None:
+    error = CallError("balance: got 3 for machine")
+    assert isinstance(error, UsageError)
+    assert error.told("ja") == "英語のまま：balance: got 3 for machine"
