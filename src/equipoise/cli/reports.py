@@ -100,13 +100,7 @@ def animate(
 
     name = default_name(file, ".svg") if out is None else out
     kind = _kind(name)
-    if turns is not None and (kind != "mp4" or turns < 1):
-        raise UsageError(
-            at_place(
-                "--turns",
-                Note("got {turns}; give 1 or more, with a name that ends in .mp4", turns=turns),
-            )
-        )
+    _check_turns(kind, turns)
     if kind == "svg":
         refuse_idle(Note("an SVG follows the reader's screen"), dark=dark)
     check_seconds(seconds)
@@ -144,6 +138,17 @@ def animate(
     return CommandResult(save=lambda: [*notes, wrote(name)])
 
 
+def _check_turns(kind: str, turns: int | None) -> None:
+    """Refuse turns of what is no film."""
+    if turns is not None and (kind != "mp4" or turns < 1):
+        raise UsageError(
+            at_place(
+                "--turns",
+                Note("got {turns}; give 1 or more, with a name that ends in .mp4", turns=turns),
+            )
+        )
+
+
 def _check_film(machine: Machine, kind: str, seconds: float, turns: int | None, width: int) -> None:
     """Refuse a film of a cycle of too many turns before all of it is computed."""
     from equipoise.figures.film import check_frames
@@ -164,7 +169,16 @@ def _check_support(
 ) -> None:
     """Refuse options that do nothing."""
     if exaggerate is not None and not 0 <= exaggerate < MOST_LARGER:
-        raise UsageError(f"--exaggerate: got {exaggerate:g}; give 0 to {MOST_LARGER:.0e}")
+        raise UsageError(
+            at_place(
+                "--exaggerate",
+                Note(
+                    "got {exaggerate:g}; give 0 to {most_larger:.0e}",
+                    exaggerate=exaggerate,
+                    most_larger=MOST_LARGER,
+                ),
+            )
+        )
     if machine.support is None:
         check_belonging("--force", force, speed=speed)
         refuse_idle(Note("the machine stands on solid ground"), exaggerate=exaggerate, mode=mode)

@@ -246,6 +246,17 @@ class Run(Result):
         }
 
 
+def _check_turns(turns: float | None) -> None:
+    if turns is not None and turns > MOST_TURNS:
+        raise UsageError(
+            Note(
+                "got {turns!r} for turns; give at most {most_turns}",
+                turns=turns,
+                most_turns=MOST_TURNS,
+            )
+        )
+
+
 def _positive(name: str, value: float | str | None) -> float:
     """The size of a limit of a run, in SI units; endless where none is given."""
     dimensions: dict[str, Dimension] = {"duration": "time", "off": "time"}
@@ -310,14 +321,7 @@ def run(
     angle = plan.angle if angle is None else angle
     positive = {"duration": duration, "turns": turns, "off": off, "off_turns": off_turns}
     sizes = {name: _positive(name, value) for name, value in positive.items()}
-    if turns is not None and turns > MOST_TURNS:
-        raise UsageError(
-            Note(
-                "got {turns!r} for turns; give at most {most_turns}",
-                turns=turns,
-                most_turns=MOST_TURNS,
-            )
-        )
+    _check_turns(turns)
     switched_off = off is not None or off_turns is not None
     if switched_off and machine.drive.motor is None:
         raise UsageError(

@@ -20,7 +20,9 @@ SAID_BY = {"Notes", "at_place", "FileError", "StoppedError"}
 """What else takes sentences."""
 FOR_PROGRAMMERS = {CallError.__name__}
 """Errors that no file and no command can cause, which are in English alone."""
-TWO_WORDS = re.compile(r"[A-Za-z]{2,},? [a-z]{2,}")
+WORD = r"(?<![\w.\-/\[])[A-Za-z]{2,}(?![\w.\-/=(\[])"
+TWO_WORDS = re.compile(rf"{WORD}.*\s{WORD}", re.DOTALL)
+"""Not those of options, paths and keys."""
 THREE_WORDS = re.compile(r"[A-Za-z]{2,},? [a-z]{2,},? [a-z]{2,}")
 
 
@@ -127,6 +129,7 @@ def test_no_refusal_and_no_note_is_plain_english() -> None:
     "made",
     [
         'raise UsageError("the list is empty")',
+        'raise UsageError(f"--turns: got {turns:g}; give {least}")',
         'raise UsageError(f"got {count}; give at least one")',
         'raise ModelError("links", "got %d; give more than one" % count)',
         'raise ModelError(where, "got " + text + "; give another name")',

@@ -135,8 +135,10 @@ class Limit(Frozen, RequiredFigure):
     beside: ClassVar[Keys] = RequirementKeys(
         "limits",
         Told(
-            right='give number and unit in quotes, such as "120 N", or a share of the value '
-            'before, such as "80 %"',
+            right=Note(
+                'give number and unit in quotes, such as "120 N", or a share of the value '
+                'before, such as "80 %"'
+            ),
             schema={"pattern": "|".join([rf"^{NUMBER} +%$", *map(pattern, MEASURED_IN)])},
         ),
         needed=True,
