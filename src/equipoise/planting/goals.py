@@ -14,7 +14,8 @@ from equipoise.design.evaluator import PooledEvaluator
 from equipoise.design.requirements import Requirement
 from equipoise.design.solvers import DesignProblem
 from equipoise.design.spreads import Range
-from equipoise.errors import EquipoiseError, UsageError
+from equipoise.errors import EquipoiseError, UsageError, at_place
+from equipoise.i18n import Note
 from equipoise.mechanism.assembly.family import Family
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.kinematics.tip import TipCurve
