@@ -236,7 +236,11 @@ class MotionError(EquipoiseError):
 
 
 class RangeError(MotionError):
-    """The crank cannot turn fully; `ranges` holds the intervals (rad) in which it can."""
+    """The crank cannot turn fully; `ranges` holds the intervals (rad) in which it can.
+
+    lengths : how far apart two pins are over the turn, and may be for the links between them; None
+        where it is not known.
+    """
 
     def __init__(
         self,
@@ -244,9 +248,10 @@ class RangeError(MotionError):
         ranges: tuple[tuple[float, float], ...] = (),
         *,
         reason: Note | None = None,
+        lengths: Note | None = None,
     ) -> None:
         super().__init__(message, reason=reason)
-        self.ranges = ranges
+        self.ranges, self.lengths = ranges, lengths
 
 
 class ChangePointError(MotionError):

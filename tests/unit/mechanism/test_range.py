@@ -135,7 +135,9 @@ def test_the_message_tells_links_and_angles() -> None:
     limit = degrees(opposite(1.0, 0.9, 0.5 + 0.55))
     message = (
         f"the crank cannot turn fully: it stops at {-limit:.2f} deg and at {limit:.2f} deg, where "
-        "'coupler' and 'rocker' lie in line; change a length or direction, or let it swing by a "
+        "'coupler' and 'rocker' lie in line; B and D are 100.0 mm to 1900 mm apart; with 500.0 mm "
+        "from B to C in links.coupler.points and 550.0 mm from D to C in links.rocker.points they "
+        "have to be 50.00 mm to 1050 mm apart; change a length or direction, or let it swing by a "
         "motion in [drive]; the motion below stays a tenth of the range away from both ends, near "
         'which forces grow without bound\n\nmotion = { between = ["-53.5 deg", "53.5 deg"] }'
     )
@@ -144,8 +146,20 @@ def test_the_message_tells_links_and_angles() -> None:
     assert str(caught.value) == message
 
 
+def test_a_crank_that_stops_turns_fully_within_the_lengths_that_are_said() -> None:
+    """A crank of 330 mm on a frame of 300 mm: its pin is 30 to 630 mm from the rocker's."""
+    with pytest.raises(RangeError) as caught:
+        eq.move(four_bar(0.33, 0.3, 0.33, 0.09))
+    apart, wanted = re.findall(r"(\d\S*) mm to (\d\S*) mm apart", str(caught.value))
+    assert (apart, wanted) == (("30.00", "630.0"), ("240.0", "420.0"))
+    assert eq.move(four_bar(0.08, 0.33, 0.33, 0.09)).turns == 1  # 250 to 410 mm
+    for crank, frame in ((0.1, 0.33), (0.1, 0.33 + 0.02)):  # 230 to 430, and 250 to 450 mm
+        with pytest.raises(RangeError, match=r"have to be 240\.0 mm to 420\.0 mm apart"):
+            eq.move(four_bar(crank, frame, 0.33, 0.09))
+
+
 def test_of_two_ranges_it_is_told_that_there_is_another() -> None:
-    with pytest.raises(RangeError, match=r"lie in line; there are other such ranges; change a "):
+    with pytest.raises(RangeError, match=r"lie in line; there are other such ranges; B and D "):
         eq.move(four_bar(1.0, 0.8, 0.3, 0.9))
 
 
@@ -191,8 +205,10 @@ def test_a_narrow_gap(gap: float, lean: float) -> None:
 def test_the_second_dyad_may_be_the_one_that_stops() -> None:
     given = eq.load("watt-six-bar")
     points = {"G": ORIGIN, "F": (0.03, 0.0)}
-    with pytest.raises(RangeError, match="where 'link' and 'output' lie in line"):
+    with pytest.raises(RangeError, match="where 'link' and 'output' lie in line") as caught:
         eq.move(given.with_link("output", points=points))
+    assert "in links.link.points" in str(caught.value)
+    assert "30.00 mm from G to F in links.output.points" in str(caught.value)
 
 
 # -- within the range ------------------------------------------------------------------------------

@@ -21,7 +21,7 @@ from equipoise.mechanism.assembly.steps import (
     planar,
     run,
 )
-from equipoise.mechanism.parts.machine import FRAME, Machine
+from equipoise.mechanism.parts.machine import Machine
 from equipoise.quantities import told
 from equipoise.signals import EQUAL, highest_at
 
@@ -130,56 +130,63 @@ class FullTurn:
             ranges.append((begin, min(later)) if later else (begin - period, min(stops)))
         if not self.machine.crank_turns:
             return RangeError(self.beyond(dip, names), tuple(ranges))
-        return RangeError(_only_between(ranges, names), tuple(ranges))
+        between = _only_between(ranges, names)
+        return RangeError(between, tuple(ranges), lengths=self.lengths(group))
 
     def never_joined(self, group: Group, names: Note | str) -> Note:
-        """Tell that a dyad can be closed at no crank angle: of two links with a pin at each end,
-        how long these are, and how far apart their other pins are.
-        """
-        spans = [*self._spans(group)]
-        if len(spans) != 2:
+        """Tell that a dyad can be closed at no crank angle, and which lengths would do."""
+        lengths = self.lengths(group)
+        if lengths is None:
             return Note(
                 "{names} cannot be joined at any crank angle; check their lengths and "
                 "where their pins are",
                 names=names,
             )
+        return Note(
+            "{names} cannot be joined at any crank angle: {lengths}", names=names, lengths=lengths
+        )
+
+    def lengths(self, group: Group) -> Note | None:
+        """Tell how far apart the outer pins of a dyad are as the crank turns, and how far they may
+        be; None of a dyad with another joint than pins.
+        """
+        if [reaction.kind for reaction in group.reactions] != ["pin"] * 3:
+            return None
+        spans = [*self._spans(group)]
+        if len(spans) != 2:  # where one of the links is none of the file
+            return None
         (one, first, own), (other, second, its) = spans
         state = self.state(self.theta)
         apart = np.abs(state[f"p({first})"] - state[f"p({second})"])
         return Note(
-            "{names} cannot be joined at any crank angle: "
             "{first} and {second} are {least} to {most} apart; "
             "with {own} from {first} to {joint} in links.{one}.points and "
             "{its} from {second} to {joint} in links.{other}.points they have to be "
             "{low} to {high} apart",
-            names=names,
             first=first,
             second=second,
-            joint=group.joint,
+            joint=group.reactions[-1].at,
             one=key_text(one),
             other=key_text(other),
-            least=told(float(np.min(apart)), "length"),
-            most=told(float(np.max(apart)), "length"),
-            own=told(own, "length"),
-            its=told(its, "length"),
-            low=told(abs(own - its), "length"),
-            high=told(own + its, "length"),
+            least=_length(float(np.min(apart))),
+            most=_length(float(np.max(apart))),
+            own=_length(own),
+            its=_length(its),
+            low=_length(abs(own - its)),
+            high=_length(own + its),
         )
 
     def _spans(self, group: Group) -> Iterator[tuple[str, str, float]]:
-        """Of each link of a dyad that a pin joins to a link before and another to the second link:
-        its name, the first pin, and the length between both, m.
+        """Of each link of a dyad of pins its name, its outer pin, and the length from that to the
+        inner one, m.
         """
-        machine = self.machine
-        before = {FRAME, *machine.moved(np.zeros(1))}
-        before.update(link for one in self.done if one is not group for link in one.links)
-        places = {point for body in before for point in machine.points_of(body)}
-        for link in group.links:
-            points = machine.links[link].points
-            if group.joint in points and len(shared := places & {*points} - {group.joint}) == 1:
-                (pin,) = shared
-                length = abs(planar(points[group.joint]) - planar(points[pin]))
-                yield link, pin, float(length)
+        *outer, inner = group.reactions
+        for pin in outer:
+            link = next((body for body in (pin.on, pin.by) if body in group.links), "")
+            points = self.machine.points_of(link) if link in self.machine.links else {}
+            if {pin.at, inner.at} <= points.keys():  # as of no rider in a slot
+                length = abs(planar(points[inner.at]) - planar(points[pin.at]))
+                yield link, pin.at, float(length)
 
     def beyond(self, dip: float, names: Note | str) -> Note:
         """Tell that the drive's own motion leads where a dyad cannot be closed."""
@@ -246,6 +253,11 @@ def jam(angle: float, dead: Note | str) -> Note:
         angle=_in_degrees(angle),
         dead=dead,
     )
+
+
+def _length(size: float) -> str:
+    """A length, m, as readers see it; 99.99999999999999 mm, which is rounding, as 100.0 mm."""
+    return told(float(f"{size:.9g}"), "length")
 
 
 def _in_degrees(angle: float) -> str:

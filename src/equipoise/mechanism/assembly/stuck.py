@@ -67,6 +67,9 @@ def with_cures(linkage: Assembled, error: MotionError) -> MotionError:
     if not isinstance(error, ChangePointError):
         message = Note(WITH_CURE, reason=found.note, cure=cure)
         if isinstance(error, RangeError):
+            if error.lengths is not None:
+                lengths = Note(WITH_CURE, reason=found.note, cure=error.lengths)
+                message = Note(WITH_CURE, reason=lengths, cure=cure)
             stuck: MotionError = RangeError(message, error.ranges, reason=found.note)
         else:
             stuck = type(error)(message, reason=found.note)
