@@ -77,9 +77,10 @@ def schema(*, tool: bool = False, study: bool = False) -> CommandResult:
     return CommandResult(lines=lambda: json.dumps(json_schema(kind), indent=2).splitlines())
 
 
+@command(tool=False)
 def completion(
     shell: Annotated[Literal["bash", "zsh", "fish", "powershell"], Parameter(name="SHELL")], /
-) -> None:
+) -> CommandResult:
     """Print what lets a shell complete commands, options and their values.
 
     Parameters
@@ -90,7 +91,8 @@ def completion(
     """
     from equipoise.cli import app
 
-    print(app.generate_completion(shell=shell))
+    script = app.generate_completion(shell=shell)
+    return CommandResult(lines=lambda: script.split("\n"))
 
 
 @command()

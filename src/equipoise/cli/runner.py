@@ -205,12 +205,13 @@ class Command:
 
     function : what it computes.  groups : options that it has besides, of how much is printed and
     of where results go; it takes those that it has to know, by their name in small letters.
-    long : whether it may take minutes.
+    long : whether it may take minutes.  tool : whether programs may call it.
     """
 
     function: Callable[..., CommandResult | Result]
     groups: tuple[type[Shown | Length], ...]
     long: bool
+    tool: bool
 
     @cached_property
     def signature(self) -> Signature:
@@ -256,18 +257,18 @@ class Command:
 
 
 def command(
-    *groups: type[Shown | Length], long: bool = False
+    *groups: type[Shown | Length], long: bool = False, tool: bool = True
 ) -> Callable[[Callable[..., CommandResult | Result]], Callable[..., FinishedCommand]]:
     """Declare a command: a function of what it takes, which returns its result.
 
     groups : options that it has besides, the last of which says where results go.  long : whether
-    it may take minutes.
+    it may take minutes.  tool : whether programs may call it, and not only people at a terminal.
     """
 
     def declare(
         function: Callable[..., CommandResult | Result],
     ) -> Callable[..., FinishedCommand]:
-        declared = Command(function, groups, long)
+        declared = Command(function, groups, long, tool)
 
         def run(*arguments: Any, **options: Any) -> FinishedCommand:
             return declared.run(get_type_hints(run, include_extras=True), *arguments, **options)
@@ -298,7 +299,7 @@ def _line(text: str) -> str:
 
 
 def declared_of(function: object) -> Command | None:
-    """What is declared of a command; None of one that no program calls."""
+    """What is declared of a command; None of one that serves until it is stopped."""
     return getattr(function, "declared", None)
 
 

@@ -2,26 +2,27 @@
 
 from __future__ import annotations
 
-import sys
 from typing import Annotated
 
 from cyclopts import Parameter
 
 from equipoise.cli.options import NewFolder, wants
 from equipoise.cli.outputs import refuse_file_name, wrote
+from equipoise.cli.runner import CommandResult, command
 from equipoise.errors import UsageError, at_place
 from equipoise.i18n import Note
 
 InFolder = Annotated[str | None, wants("FOLDER")]
 
 
+@command(tool=False)
 def site(
     *,
     out: Annotated[NewFolder, Parameter(name=["--out", "-o"])] = None,
     runtime: InFolder = None,
     wheels: InFolder = None,
     docs: InFolder = None,
-) -> None:
+) -> CommandResult:
     """Write the live page as a folder that any web host can serve; it computes in the browser.
 
     To try it: python -m http.server --directory FOLDER
@@ -49,7 +50,7 @@ def site(
         raise UsageError(
             at_place(folder, Note("the site cannot be written ({reason})", reason=reason(error)))
         ) from error
-    print(wrote(f"{folder}/index.html"), file=sys.stderr)
-    print(f"first load: {written.first / 1e6:.1f} MB, compressed")
+    lines = [f"first load: {written.first / 1e6:.1f} MB, compressed"]
     if written.missing:
-        print("loaded from elsewhere when needed:", ", ".join(written.missing))
+        lines += [f"loaded from elsewhere when needed: {', '.join(written.missing)}"]
+    return CommandResult(lines=lambda: lines, save=lambda: [wrote(f"{folder}/index.html")])

@@ -162,9 +162,10 @@ class CommandTool:
 
 
 def tools() -> dict[str, CommandTool]:
-    """Every command that returns something, by its tool's name; others are for people."""
+    """Every command that is of use to a program, by its tool's name."""
     found = (one for name in sorted(app.resolved_commands()) for one in _below((name,), app[name]))
-    return {one.name: one for one in found if declared_of(one.command.default_command) is not None}
+    declared = ((one, declared_of(one.command.default_command)) for one in found)
+    return {one.name: one for one, what in declared if what is not None and what.tool}
 
 
 def _below(words: tuple[str, ...], command: App) -> Iterator[CommandTool]:
