@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
-from equipoise.cli.models import NamedFile, linkage_of
+from equipoise.cli.models import NamedFile
 from equipoise.cli.options import (
     Angle,
     Out,
@@ -69,6 +69,7 @@ def export(
     """
     from equipoise.exchange.export import check_kind, check_link_loads, format_of
     from equipoise.exchange.export import export as write
+    from equipoise.schema.models import load_linkage
     from equipoise.schema.opening import bundled
 
     if out is None:
@@ -89,7 +90,7 @@ def export(
     if not one.posed:
         why = Note("a file of {title} is the same at every crank angle", title=one.title)
         refuse_idle(why, at=at or None)
-    machine = linkage_of(file)
+    machine = load_linkage(file)
     check_result_file("--out", out, sources_of(machine, file))
     what = _balanced(machine) if balanced else machine
     parts = write(what, out, one.name, crank_angle=at, link=link, angles=angles)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
+from pkgutil import resolve_name
 from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
@@ -25,50 +25,32 @@ if TYPE_CHECKING:
 class LoadedFile:
     """What stands for the name of a file: the command gets what is loaded from it.
 
-    load : from its name.  reads : all files from which that was read, of it and its name.
-    owner : of it, in whose units and words the command speaks.  example : a bundled file of which
-    such commands have something to tell.
+    load : name of the function that loads it, in the package, which is imported late; where it is
+        empty the command gets the name.
+    owner : of the one that gives in whose units and words the command speaks; if empty, what is
+        loaded.
+    example : a bundled file of which such commands have something to tell.
+    in_parts : whether other files are read with it, such as tables of loads.
     """
 
-    load: Callable[[str], Any]
-    reads: Callable[[Any, str], list[str]] = lambda _, file: [file]
-    owner: Callable[[Any], Any] = lambda loaded: loaded
+    load: str = ""
+    owner: str = ""
     example: str = ""
+    in_parts: bool = False
 
+    def loaded(self, file: str) -> Any:
+        """What the command gets."""
+        return resolve_name(f"equipoise.{self.load}")(file) if self.load else file
 
-def linkage_of(file: str, speed: float | None = None) -> Machine:
-    """The machine of a file, whose crank turns at another speed where one is given, rad/s."""
-    from equipoise.schema.models import load_linkage
+    def owner_of(self, loaded: Any) -> Any:
+        """In whose units and words it speaks; None where it has to load that itself."""
+        if self.owner:
+            return resolve_name(f"equipoise.{self.owner}")(loaded)
+        return loaded if self.load else None
 
-    return at_speed(load_linkage(file), speed)
-
-
-def tool_of(file: str) -> Tool:
-    """The tool of a file."""
-    from equipoise.schema.models import load_tool
-
-    return load_tool(file)
-
-
-def study_of(file: str) -> Study:
-    """The study of a file."""
-    from equipoise.schema.studies import load_study
-
-    return load_study(file)
-
-
-def store_of(path: str) -> Store:
-    """An open store."""
-    from equipoise.studies.store import open_store
-
-    return open_store(path)
-
-
-def owner_of(store: Store) -> Study | None:
-    """The study of a store, in whose units and words it is told; None where it cannot be read."""
-    from equipoise.schema import study_units
-
-    return study_units.owner_of(store)
+    def reads(self, loaded: Any, file: str) -> list[str]:
+        """All files from which it was read."""
+        return sources_of(loaded, file) if self.in_parts else [file]
 
 
 def at_speed(machine: Machine, speed: float | None) -> Machine:
@@ -98,34 +80,27 @@ if TYPE_CHECKING:
     ModelFile: TypeAlias = str
     NamedFile: TypeAlias = str
 else:
-    LINKAGE = LoadedFile(linkage_of, sources_of, example="yamashita-1")
-    TOOL = LoadedFile(tool_of, sources_of, example="brush-cutter")
-    STUDY = LoadedFile(study_of, example="study-of-lengths")
-    NAMED = LoadedFile(str, owner=lambda _: None)
-    NAMED_MODEL = replace(NAMED, example="yamashita-1")
-    LinkageFile = Annotated[str, file_named("Path of a model file"), LINKAGE]
-    PlantingFile = Annotated[
-        str,
-        file_named("Path of a model file with a table [planting]"),
-        replace(LINKAGE, example="transplanter"),
-    ]
-    SupportFile = Annotated[
-        str,
-        file_named("Path of a model file with a table [support]"),
-        replace(LINKAGE, example="yamashita-rig"),
-    ]
+    LINKAGE = LoadedFile("schema.models.load_linkage", example="yamashita-1", in_parts=True)
+    PLANTING, SUPPORT = (replace(LINKAGE, example=one) for one in ("transplanter", "yamashita-rig"))
+    TOOL = LoadedFile("schema.models.load_tool", example="brush-cutter", in_parts=True)
+    STUDY = LoadedFile("schema.studies.load_study", example="study-of-lengths")
+    STORE = LoadedFile("studies.store.open_store", "schema.study_units.owner_of")
+    NAMED, NAMED_MODEL = LoadedFile(), LoadedFile(example="yamashita-1")
+
+    def _file(text: str, loaded: LoadedFile, name: str = "FILE") -> Any:
+        return Annotated[str, file_named(text, name), loaded]
+
+    LinkageFile = _file("Path of a model file", LINKAGE)
+    PlantingFile = _file("Path of a model file with a table [planting]", PLANTING)
+    SupportFile = _file("Path of a model file with a table [support]", SUPPORT)
     PlannedFile = Annotated[str, Parameter(name="FILE"), LINKAGE]
-    ToolFile = Annotated[str, file_named("Path of a tool's file, with a table [shaft]"), TOOL]
-    DesignFile = Annotated[str, file_named("Path of a tool's file, with a table [design]"), TOOL]
-    StudyFile = Annotated[str, file_named("Path of a study file", "STUDY"), STUDY]
-    TolerancedFile = Annotated[
-        str, file_named("Path of a study file whose numbers have tolerances", "STUDY"), STUDY
-    ]
+    ToolFile = _file("Path of a tool's file, with a table [shaft]", TOOL)
+    DesignFile = _file("Path of a tool's file, with a table [design]", TOOL)
+    StudyFile = _file("Path of a study file", STUDY, "STUDY")
+    TolerancedFile = _file("Path of a study file whose numbers have tolerances", STUDY, "STUDY")
     OpenedStore = Annotated[
-        str,
-        Parameter(name="STORE", help='Path of a store, as "equipoise sweep" makes it.'),
-        LoadedFile(store_of, lambda *_: [], owner_of),
+        str, Parameter(name="STORE", help='Path of a store, as "equipoise sweep" makes it.'), STORE
     ]
     NamedFile = Annotated[str, NAMED]
-    ModelFile = Annotated[str, file_named("Path of a model file"), NAMED_MODEL]
-    AnyFile = Annotated[str, file_named("Path of a model file or a study file"), NAMED_MODEL]
+    ModelFile = _file("Path of a model file", NAMED_MODEL)
+    AnyFile = _file("Path of a model file or a study file", NAMED_MODEL)

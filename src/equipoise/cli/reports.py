@@ -7,7 +7,7 @@ import shlex
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Annotated, Any
 
-from equipoise.cli.models import ModelFile, linkage_of
+from equipoise.cli.models import ModelFile, at_speed
 from equipoise.cli.options import (
     SIGNED,
     Language,
@@ -96,6 +96,7 @@ def animate(
     from equipoise.figures.stage import ForceArrow, check_seconds, check_width
     from equipoise.results.analysis import analyze
     from equipoise.schema.files import write
+    from equipoise.schema.models import load_linkage
     from equipoise.schema.opening import kind_of_text, opened
 
     name = default_name(file, ".svg") if out is None else out
@@ -114,7 +115,7 @@ def animate(
         refuse_idle(Note("a tool swings in a mode"), **given, force=force)
         write(name, _tool_in_mode(file, mode, seconds, width))
         return CommandResult(save=lambda: [wrote(name)])
-    machine = linkage_of(file, speed)
+    machine = at_speed(load_linkage(file), speed)
     _check_support(machine, force, speed, exaggerate, mode)
     check_result_file("--out", name, sources_of(machine, file))
     options: dict[str, Any] = {"seconds": seconds, "width": width, "traced": trace}

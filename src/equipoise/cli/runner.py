@@ -239,12 +239,12 @@ class Command:
         _check_belonging({**vars(outputs), **given}, marks)
         owner, file, read = None, "", list[str]()
         for name, source in _marked(marks, LoadedFile):
-            named, given[name] = given[name], source.load(given[name])
-            owner, file = source.owner(given[name]), named
-            read = source.reads(given[name], named)
+            file, given[name] = given[name], source.loaded(given[name])
+            owner = source.owner_of(given[name])
+            read = source.reads(given[name], file)
             for other, mark in _marked(marks, OtherFile):
                 if mark.ending and given[other] is None:
-                    given[other] = f"{Path(named).stem}{mark.ending}"
+                    given[other] = f"{Path(file).stem}{mark.ending}"
         _check_places(given, marks, outputs, read)
         for name in {*map(_name, self.groups)} - self._own.keys():
             del given[name]
