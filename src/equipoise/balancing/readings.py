@@ -114,8 +114,10 @@ def reading(machine: Machine, row: Array, signed: bool = False) -> Reading:
         term = Term("-" if sign * value < 0 else "+", link, quantity)
         return Reading((term,), sign / abs(value), UNITS[quantity])
     factor = sign / _divisor(machine, terms)
-    sized = ((link, quantity, factor * value) for link, quantity, value in terms)
-    parts = tuple(Term("-" if size < 0 else "+", *named, abs(size)) for *named, size in sized)
+    parts = tuple(
+        Term("-" if factor * value < 0 else "+", link, quantity, abs(factor * value))
+        for link, quantity, value in terms
+    )
     return Reading(parts, factor, "kg")
 
 
