@@ -7,7 +7,7 @@ b_n = -Im Y_n multiplies sin n theta; Y_0 is the mean.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from math import pi, sqrt
 from typing import Any
 
@@ -210,7 +210,7 @@ class JumpSampling:
         ]
         begins = np.concatenate([panel[:-1] for panel in panels])
         widths = np.concatenate([np.diff(panel) for panel in panels])
-        nodes, weights = np.polynomial.legendre.leggauss(GAUSS_POINTS)
+        nodes, weights = _gauss_points()
         inside = (begins[:, None] + widths[:, None] * (1 + nodes) / 2).ravel()
         shares = (widths[:, None] * weights / (2 * period)).ravel()
         at_zero = np.any(within_period(jumps, period) < beside)
@@ -253,6 +253,14 @@ class JumpSampling:
         """The amplitude (...) of one order of `periodic`, by its place."""
         wave = np.exp(-1j * place / self.turns * self.crank_angle)
         return np.asarray((samples * self.shares) @ wave * (2 if place else 1))
+
+
+@cache
+def _gauss_points() -> tuple[Array, Array]:
+    """Nodes from -1 to 1 and weights, which take longer than all else of a sampling."""
+    nodes, weights = np.polynomial.legendre.leggauss(GAUSS_POINTS)
+    nodes.flags.writeable = weights.flags.writeable = False
+    return nodes, weights
 
 
 def _ends_of_pieces(angles: Array, period: float, least: float) -> Array:

@@ -176,6 +176,12 @@ class Analysis(Result):
             found.update(zip((one.name for one in part), told, strict=True))
         return found
 
+    @property
+    def has_together(self) -> bool:
+        """Whether there are figures of all rows together: see `together`."""
+        several = len(self.machine.rows) > 1
+        return several and self.motion.whole_cycle and self.solved is not None
+
     @cached_property
     def together(self) -> Mapping[str, Array]:
         """Shaking force (complex), shaking, roll and yaw moment, and what drives (N,) of all rows.
@@ -185,7 +191,7 @@ class Analysis(Result):
         there is one row, or the crank angles are not those of a whole cycle.
         """
         rows = self.machine.rows
-        if len(rows) < 2 or not self.motion.whole_cycle or self.solved is None:
+        if not self.has_together or self.solved is None:
             return {}
         count, effort = len(self.crank_angle), self.machine.drive.effort
         whole = {"shaking_force": np.zeros(count, complex)}
@@ -214,10 +220,14 @@ class Analysis(Result):
         """
         motion, rows = self.motion, self.machine.rows
         if len(jumps_of(motion.linkage)):
-            for row in rows:
-                theta = self.crank_angle + row.phase
-                turned = move(self.machine, theta, motion.speed, motion.acceleration)
-                yield _of_one_row(forces(turned, found.about))
+            of_phase: dict[float, Array] = {}
+            for phase in (row.phase for row in rows):
+                if phase not in of_phase:
+                    theta = self.crank_angle + phase
+                    turned = move(self.machine, theta, motion.speed, motion.acceleration)
+                    own = forces(turned, found.about) if phase else found
+                    of_phase[phase] = _of_one_row(own)
+                yield of_phase[phase]
             return
         one = Periodic.of(_of_one_row(found), motion.turns)
         for row in rows:
@@ -528,7 +538,7 @@ def analyze(
         in_frame(machine.frame, about)  # a wrong point is told of a model without masses too
     if massless(machine):
         return Analysis(motion, None)
-    found = forces(motion, about)
-    if machine.rubs:
-        _ = found.solved  # where friction locks it, there are no forces
-    return Analysis(motion, found)
+    analysis = Analysis(motion, forces(motion, about))
+    if machine.rubs:  # where friction locks it, there are no forces, and no figures
+        _ = analysis.resolved.forces.solved
+    return analysis

@@ -114,6 +114,8 @@ class Outputs:
     def __init__(self, analysis: Any) -> None:
         had = [one for one in DECLARED.values() if one.read and _can_be_had(one, analysis)]
         members: dict[Any, dict[str, None]] = {}  # those of several declarations are the same
+        # with friction that is solved already, and names are the same
+        named = analysis.resolved if analysis.machine.rubs else analysis
         self._linkage = analysis.motion.linkage
         self._found: dict[str, Output] = {}
         for _, group in groupby(had, key=lambda one: one.group):
@@ -121,7 +123,7 @@ class Outputs:
             for one in group:
                 who = one.items or one.members
                 if who not in members:
-                    members[who] = dict.fromkeys(one.items_of(analysis))
+                    members[who] = dict.fromkeys(one.items_of(named))
                 own.append((one, members[who]))
             for item in dict.fromkeys(item for _, items in own for item in items):
                 for one, items in own:
@@ -186,7 +188,7 @@ class Outputs:
 def _can_be_had(one: Declared, analysis: Any) -> bool:
     if one.needs == "motion":
         return True
-    return analysis.solved is not None and (one.is_of_row or bool(analysis.together))
+    return analysis.solved is not None and (one.is_of_row or analysis.has_together)
 
 
 def unit_of(name: str) -> str:

@@ -96,28 +96,49 @@ class FrictionLaw:
             rows.append((1.0, 1.0 if joint.slider is None else 2 / length if length else 0.0))
         return np.array(rows)
 
+    @cached_property
+    def pins(self) -> Array:
+        """(J,) whether a joint is a pin, whose force presses whatever its direction."""
+        return np.array([joint.slider is None for joint in self.joints])
+
     def pressing(self, parts: Array) -> tuple[Array, Array]:
         """What presses (J, N), N, by parts (J, 2, N), and its derivatives (J, 2, N) by them."""
         scaled = parts * self.levers[..., None]
-        is_pin = np.array([joint.slider is None for joint in self.joints])[:, None]
-        first, second = np.abs(scaled[:, 0]), np.abs(scaled[:, 1])
-        size = np.where(is_pin, np.hypot(first, second), np.maximum(first, second))
-        slopes = np.sign(scaled)
-        round_pin = scaled / np.where(size > 0, size, 1.0)[:, None]
-        larger = np.stack([first >= second, second > first], axis=1)
-        slopes = np.where(is_pin[:, None], round_pin, slopes * larger)
+        size, slopes = np.empty(parts[:, 0].shape), np.empty_like(scaled)
+        if len(pins := np.flatnonzero(self.pins)):
+            own = scaled[pins]
+            size[pins] = length = np.hypot(own[:, 0], own[:, 1])
+            slopes[pins] = own / np.where(length > 0, length, 1.0)[:, None]
+        if len(sliders := np.flatnonzero(~self.pins)):
+            own = scaled[sliders]
+            first, second = np.abs(own[:, 0]), np.abs(own[:, 1])
+            size[sliders] = np.maximum(first, second)
+            larger = np.stack([first >= second, second > first], axis=1)
+            slopes[sliders] = np.sign(own) * larger
         return size, slopes * self.levers[..., None]
 
     def missed(self, efforts: Array, share: Array, press: Press) -> tuple[Array, Array]:
-        """By how much efforts (J, N) miss the law, and its derivatives (N, J, J) by them.
+        """By how much efforts (J, N) miss the law, and its derivatives (J, J, N) by them.
 
         share : (N,) of the coefficients.
         """
         size, slopes = self.pressing(press.parts(efforts))
         grip = share * self.grip
         missed = efforts + grip * size + self.given
-        slope = np.einsum("jn,jcn,jckn->njk", grip, slopes, press.response)
-        return missed, slope + np.eye(len(self.joints))
+        slopes = grip[:, None] * slopes
+        slope = slopes[:, 0, None] * press.response[:, 0]
+        slope += slopes[:, 1, None] * press.response[:, 1]
+        own = np.arange(len(self.joints))
+        slope[own, own] += 1.0
+        return missed, slope
+
+    def contracts(self, press: Press) -> bool:
+        """Whether friction changes what presses by less than itself, whatever presses: then rows
+        of the derivatives have more on their diagonal than beside it.
+        """
+        reach = np.abs(self.grip)[:, None] * np.abs(self.levers)[..., None]
+        beside = np.einsum("jcn,jckn->jn", reach, np.abs(press.response))
+        return bool(np.max(beside, initial=0.0) < 1)
 
     def at(self, some: Array) -> FrictionLaw:
         """At some of the N crank angles."""
@@ -165,19 +186,38 @@ def balanced(law: FrictionLaw, press: Press, start: Array | None = None) -> tupl
 
 def _newton(law: FrictionLaw, press: Press, efforts: Array, share: Array) -> tuple[Array, Array]:
     """Efforts (J, N), and where they obey the law and are those that grow from none (N,)."""
+    contracts = law.contracts(press)
+    step_of = _eliminated if contracts else _step
     for _ in range(MOST_ROUNDS):
         missed, slopes = law.missed(efforts, share, press)
         size = np.max(np.abs(efforts), axis=0, initial=0.0) + np.max(np.abs(law.given), axis=0)
         good = np.max(np.abs(missed), axis=0) <= CLOSE * size
         if np.all(good):
             break
-        step = _step(slopes, missed)
+        step = step_of(slopes, missed)
         efforts = efforts - np.where(np.isfinite(step), step, 0.0)
-    return efforts, good & _grows_from_none(slopes)
+    return efforts, good if contracts else good & _grows_from_none(slopes)
+
+
+def _eliminated(slopes: Array, missed: Array) -> Array:
+    """A step (J, N) of Newton's method by elimination of all crank angles at once, without a
+    search for pivots, of which rows with more on the diagonal than beside it have no need.
+    """
+    left, right = slopes.copy(), missed.copy()
+    count = len(right)
+    for k in range(count - 1):
+        share = left[k + 1 :, k] / left[k, k]
+        left[k + 1 :, k + 1 :] -= share[:, None] * left[k, None, k + 1 :]
+        right[k + 1 :] -= share * right[k]
+    for k in reversed(range(count)):
+        right[k] -= np.sum(left[k, k + 1 :] * right[k + 1 :], axis=0)
+        right[k] /= left[k, k]
+    return np.asarray(right)
 
 
 def _step(slopes: Array, missed: Array) -> Array:
-    """A step (J, N) of Newton's method; NaN where its matrix is singular."""
+    """A step (J, N) of Newton's method; NaN where its matrix (J, J, N) is singular."""
+    slopes = np.moveaxis(slopes, -1, 0)
     with np.errstate(all="ignore"):
         try:
             return np.asarray(np.linalg.solve(slopes, missed.T[..., None])[..., 0].T)
@@ -189,12 +229,12 @@ def _step(slopes: Array, missed: Array) -> Array:
 
 def _grows_from_none(slopes: Array) -> Array:
     """Whether determinants (N,) are above 0, as they are without friction; which they are, too,
-    where friction's part of the matrix has row sums below 1.
+    where friction's part of the matrix (J, J, N) has row sums below 1.
     """
-    own = np.eye(slopes.shape[-1])
-    if np.max(np.sum(np.abs(slopes - own), axis=-1), initial=0.0) < 1:
-        return np.ones(len(slopes), bool)
-    return np.asarray(np.linalg.det(slopes) > 0)
+    own = np.eye(len(slopes))[..., None]
+    if np.max(np.sum(np.abs(slopes - own), axis=1), initial=0.0) < 1:
+        return np.ones(slopes.shape[-1], bool)
+    return np.asarray(np.linalg.det(np.moveaxis(slopes, -1, 0)) > 0)
 
 
 def _grown(law: FrictionLaw, press: Press) -> tuple[Array, Array]:
@@ -282,7 +322,13 @@ def with_friction(motion: Motion, demands: Demands, like: Pass | None = None) ->
     size, _ = law.pressing(press.parts(efforts))
     frictions = [
         JointFriction(
-            joint.on, joint.by, joint.slider is None, efforts[k], size[k], law.rates[k], joint.reach
+            joint.on,
+            joint.by,
+            joint.slider is None,
+            efforts[k],
+            size[k],
+            law.rates[k],
+            joint.reach,
         )
         for k, joint in enumerate(law.joints)
     ]
@@ -342,7 +388,7 @@ def _locked(
     worst = int(np.argmin(share))
     at = np.array([worst])
     _, slopes = law.at(at).missed(efforts[:, at], share[at], press.at(at))
-    _, _, ways = svd(slopes[0])
+    _, _, ways = svd(slopes[..., 0])
     power = np.abs(ways[-1] * law.rates[:, worst])
     leading = power >= LEADING * np.max(power)
     names = [joint.name for joint, leads in zip(law.joints, leading, strict=True) if leads]
