@@ -71,6 +71,8 @@ def given_properties(
     ModelError : there is no such joint, it is named twice, or it has no such property.
     """
     named, seen = named_joints(joints, reactions), dict[str, str]()
+    varying = {(coupling.table, coupling.name) for coupling in machine.couplings
+               if coupling.special}  # fmt: skip
     for where, one in numbered("joints", machine.joints):
         if one.joint not in named:
             raise ModelError(f"{where}.joint", unknown(one.joint, named, "joint"))
@@ -83,6 +85,7 @@ def given_properties(
                 )
                 raise ModelError(f"{where}.joint", told)
             in_slot = joint.name in joints.riders
-            for problem in wrong_of_kind(where, one, joint.kind, in_slot):
+            varies = (joint.kind, joint.name) in varying
+            for problem in wrong_of_kind(where, one, joint.kind, in_slot, varies):
                 raise problem
             yield where, joint, one

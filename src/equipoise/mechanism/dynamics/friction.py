@@ -7,6 +7,8 @@ A joint that turns or slides at the speed v, rad/s or m/s, resists with the torq
 where s is the sliding speed, D the drag and c the damping.  P presses the surfaces on each other:
 the force of a pin, at its radius; of a slider its normal force N or, with a guide of length l and a
 moment M about the slider's point, the sum max(|N|, 2 |M| / l) of the forces at both its ends.
+Gears and belts lose a share mu of what they pass on: P is their tangential force, at the pitch
+radius of the driven one, and v how fast that turns on its carrier.
 
 The pass over the joints is linear in what acts on links, friction too.  So what presses in each
 joint is known, by one stack of passes, as a sum of what it is without friction and of what a unit
@@ -76,7 +78,7 @@ class FrictionLaw:
         grip, given = np.zeros((2, *rates.shape))
         for k, joint in enumerate(joints):
             one, reach = joint.given, joint.reach
-            mu = np.full(rates.shape[1:], one.friction or 0.0)
+            mu = np.full(rates.shape[1:], joint.coefficient)
             if one.static_friction is not None and one.stribeck_speed is not None:
                 slides = reach * rates[k] / one.stribeck_speed
                 mu = mu + (one.static_friction - mu) * np.exp(-(slides**2))
@@ -285,6 +287,10 @@ def pressing_parts(solved: Pass, joints: Sequence[RubbingJoint], shape: tuple[in
     motion, found = solved.motion, []
     for joint in joints:
         reaction, state = joint.reaction, solved.state
+        if joint.mesh is not None:
+            push = np.broadcast_to(state[f"T({reaction.name})"], shape).real
+            found.append((push, np.zeros(shape)))
+            continue
         force = np.broadcast_to(state[reaction.force], shape)
         if joint.slider is None:
             found.append((force.real, force.imag))
@@ -329,6 +335,7 @@ def with_friction(motion: Motion, demands: Demands, like: Pass | None = None) ->
             size[k],
             law.rates[k],
             joint.reach,
+            "" if joint.mesh is None else joint.mesh.table,
         )
         for k, joint in enumerate(law.joints)
     ]
@@ -391,12 +398,16 @@ def _locked(
     _, _, ways = svd(slopes[..., 0])
     power = np.abs(ways[-1] * law.rates[:, worst])
     leading = power >= LEADING * np.max(power)
-    names = [joint.name for joint, leads in zip(law.joints, leading, strict=True) if leads]
+    names = [
+        f"{'joints' if joint.mesh is None else joint.mesh.table}.{joint.name}"
+        for joint, leads in zip(law.joints, leading, strict=True)
+        if leads
+    ]
     return LockError(
         Note(
             "friction in {joints} locks the machine at crank angle {angle:.4g} deg, however large "
             "the drive torque; it moves with less than {share:.3g} of the coefficients given",
-            joints=all_of([f"joints.{name}" for name in names], commas=True),
+            joints=all_of(names, commas=True),
             angle=degrees(motion.crank_angle[worst]),
             share=max(float(share[worst]), LAST_STEP),
         )

@@ -111,6 +111,7 @@ class JointFriction(Brief):
     pressing : what presses the surfaces on each other, N.
     rate : of the first body against the other, rad/s or m/s.
     reach : from the rate to the sliding speed: the radius of a pin, m; 1 of a slider.
+    table : list of the file that has it, of gears and belts; empty of a joint.
     """
 
     on: str
@@ -120,6 +121,7 @@ class JointFriction(Brief):
     pressing: Array
     rate: Array
     reach: float
+    table: str = ""
 
     @property
     def loss(self) -> Array:

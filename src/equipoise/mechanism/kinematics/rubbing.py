@@ -8,9 +8,10 @@ import numpy as np
 
 from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.assembly.named_joints import given_properties
-from equipoise.mechanism.assembly.steps import Array, Reaction, size_of_links
+from equipoise.mechanism.assembly.steps import Array, Reaction, planar, size_of_links
 from equipoise.mechanism.kinematics.motion import Motion
-from equipoise.mechanism.parts.joint_properties import JointProperties
+from equipoise.mechanism.parts.couplings import Coupling
+from equipoise.mechanism.parts.joint_properties import JOINTS, JointProperties
 from equipoise.mechanism.parts.machine import Slider
 
 STILL = 1e-10
@@ -25,6 +26,8 @@ class RubbingJoint:
     name : in outputs.  reaction : its force.  given : what the file says of it.
     slider : the sliding joint that it is; None of a pin.
     still : rad or m by rad of the crank, below which it is at rest.
+    mesh : the gears or the belt that lose in passing their force on; None of a joint.
+    pitch_radius : of the driven one of these, m.
     """
 
     name: str
@@ -32,27 +35,42 @@ class RubbingJoint:
     given: JointProperties
     slider: Slider | None
     still: float
+    mesh: Coupling | None = None
+    pitch_radius: float = 0.0
 
     @property
     def on(self) -> str:
         """The body whose motion against `by` counts, and on which friction is given."""
+        if self.mesh is not None:
+            return self.mesh.driven
         return self.reaction.on if self.slider is None else self.slider.link
 
     @property
     def by(self) -> str:
-        """The other body."""
+        """The other body: of gears and belts their carrier."""
+        if self.mesh is not None:
+            return self.mesh.carrier
         return self.reaction.by if self.slider is None else self.slider.on
 
     @property
     def reach(self) -> float:
-        """From its turning to its sliding: the radius of a pin, m; 1 of a slider."""
+        """From its turning to its sliding: the radius of a pin, or of the driven gear's pitch
+        circle, m; 1 of a slider.
+        """
+        if self.mesh is not None:
+            return self.pitch_radius
         return 1.0 if self.slider is not None else self.given.radius or 0.0
+
+    @property
+    def coefficient(self) -> float:
+        """Of friction while it moves; of gears and belts the share of their force that is lost."""
+        return self.given.mesh_loss or self.given.friction or 0.0
 
     @property
     def jumps(self) -> bool:
         """Whether its friction changes suddenly where it turns back."""
         given = self.given
-        return bool(given.friction or given.static_friction or given.drag_force
+        return bool(self.coefficient or given.static_friction or given.drag_force
                     or given.drag_torque)  # fmt: skip
 
     def rate(self, motion: Motion) -> Array:
@@ -80,10 +98,24 @@ def _rubbing(linkage: Linkage) -> list[RubbingJoint]:
     machine = linkage.machine
     names = {one.force: name for name, one in linkage.named_reactions}
     sliders = {one.name: one for one in machine.sliders}
+    couplings = {(one.table, one.name): one for one in machine.couplings}
     size, found = size_of_links(machine), []
     for _, reaction, one in given_properties(machine, linkage.joints, linkage.reactions):
         if one.rubs:
             slider = sliders[reaction.name] if reaction.kind == "slider" else None
             still = STILL * (1.0 if slider is None else size)
-            found.append(RubbingJoint(names[reaction.force], reaction, one, slider, still))
+            if reaction.kind in JOINTS:
+                found.append(RubbingJoint(names[reaction.force], reaction, one, slider, still))
+                continue
+            mesh = couplings[reaction.kind, reaction.name]
+            radius = _pitch_radius(linkage, mesh)
+            found.append(RubbingJoint(mesh.name, reaction, one, None, still, mesh, radius))
     return found
+
+
+def _pitch_radius(linkage: Linkage, mesh: Coupling) -> float:
+    """Radius of the pitch circle of the driven gear or pulley, m."""
+    points = linkage.machine.bodies[mesh.carrier]
+    pins = [linkage.joints.pins_between(body, mesh.carrier)[0] for body in mesh.bodies[:2]]
+    driver, driven = (planar(points[pin]) for pin in pins)
+    return float(dict(mesh.circles(lambda: abs(driven - driver)))[mesh.driven])

@@ -333,7 +333,8 @@ def _rubbing(*kinds: str) -> dict[str, Any]:
 
     def items(found: Any) -> list[str]:
         frictions = found.forces.frictions.items()
-        return [name for name, one in frictions if ("pin" if one.is_pin else "slider") in kinds]
+        return [name for name, one in frictions
+                if not one.table and ("pin" if one.is_pin else "slider") in kinds]  # fmt: skip
 
     return {"members": members, "items": items, "spoken": joint_named}
 
@@ -381,6 +382,21 @@ def _members_of(table: str) -> dict[str, Any]:
         "members": lambda machine: [one.name for one in getattr(machine, table)],
         "spoken": lambda name: name.replace(" to ", " → "),
     }
+
+
+def of_mesh(table: str) -> None:
+    """Declare what gears or belts of a list of the file lose in passing their force on."""
+
+    def members(machine: Any) -> list[str]:
+        given = {one.joint for one in machine.joints if one.mesh_loss}
+        return [one.name for one in getattr(machine, table) if f"{table}.{one.name}" in given]
+
+    def items(found: Any) -> list[str]:
+        return [name for name, one in found.forces.frictions.items() if one.table == table]
+
+    label = to_say("power lost in passing on the force {name}")
+    own = {**_members_of(table), "members": members, "items": items}
+    alike(table + ".{}.", _of_friction, **own)("friction_loss", "power", label, had="loss")
 
 
 def part_in_loops(part: str) -> Callable[[Callable[..., Any]], Any]:

@@ -20,7 +20,7 @@ from equipoise.keys import (
 )
 from equipoise.mechanism.checks import Bodies
 from equipoise.mechanism.formulas import kernels
-from equipoise.mechanism.outputs.declared import FORCE, of_coupling, part_in_loops
+from equipoise.mechanism.outputs.declared import FORCE, of_coupling, of_mesh, part_in_loops
 from equipoise.mechanism.parts.couplings import (
     Pushed,
     Relation,
@@ -179,6 +179,7 @@ class Belt(Turning):
                 loop=part_in_loops("left"))  # fmt: skip
         declare(".right", "force", to_say("tension of the right strand {name}"), compared=FORCE,
                 loop=part_in_loops("right"))  # fmt: skip
+        of_mesh(table)
 
     def preload_rate(self, distance: Any) -> Any:
         """Sum of both tensions along the line of the pins, over their distance, N/m."""

@@ -25,6 +25,7 @@ from equipoise.keys import (
 )
 from equipoise.mechanism.checks import Bodies
 from equipoise.mechanism.formulas import kernels
+from equipoise.mechanism.outputs.declared import of_mesh
 from equipoise.mechanism.parts.couplings import (
     Law,
     LineOfAction,
@@ -194,6 +195,7 @@ class Gear(Turning):
     @classmethod
     def declare_outputs(cls, table: str) -> None:
         declare_teeth(table)
+        of_mesh(table)
 
     def demands(self, distance: Callable[[], Any]) -> Iterator[Any]:
         """A pressure angle that there is, and pitch curves that roll on each other."""

@@ -18,7 +18,9 @@ JOINTS = ("pin", "slider")
 """Kinds of joints that hold bodies together, which no coupling is."""
 OF_PIN = ("radius", "torsional_damping", "drag_torque", "width", "bearing")
 OF_SLIDER = ("guide_length", "damping", "drag_force")
-RUBBING = ("friction", "damping", "torsional_damping", "drag_force", "drag_torque")
+MESHES = ("gears", "belts")
+"""Lists of couplings of which one may lose a share of what it passes on."""
+RUBBING = ("friction", "mesh_loss", "damping", "torsional_damping", "drag_force", "drag_torque")
 """Keys of which each alone makes a joint resist its motion."""
 APART = ("radius", "width", "bearing", "stiffness")
 """Keys that have nothing to do with friction."""
@@ -37,7 +39,7 @@ class JointProperties(Frozen):
     file_order = (
         "joint", "radius", "width", "bearing", "stiffness", "friction", "static_friction",
         "stribeck_speed", "guide_length", "damping", "torsional_damping", "drag_force",
-        "drag_torque",
+        "drag_torque", "mesh_loss",
     )  # fmt: skip
     conditions: ClassVar[Conditions] = any_of("radius", "stiffness", "bearing", *RUBBING) | {
         "dependentRequired": {
@@ -107,6 +109,15 @@ class JointProperties(Frozen):
         example="0.05 N m",
         at_least=0,
     )
+    mesh_loss: float | None = key(
+        Number(),
+        "of gears or a belt, such as `gears.crank to wheel`: the share of their tangential force "
+        "that is lost in passing it on, so that they drive with an efficiency of 1 less this",
+        default=None,
+        example=0.02,
+        at_least=0,
+        below=1,
+    )
     width: float | None = key(
         "length",
         "of a plain bearing: the force on the pin presses on `width` times its diameter",
@@ -171,12 +182,17 @@ def _wrong_friction(where: str, one: JointProperties) -> Iterator[ModelError]:
 
 
 def wrong_of_kind(
-    where: str, one: JointProperties, kind: str, in_slot: bool
+    where: str, one: JointProperties, kind: str, in_slot: bool, varies: bool = False
 ) -> Iterator[ModelError]:
     """Report properties that a joint of this kind does not have, or lacks.
 
-    in_slot : whether it is a pin in a slot.
+    in_slot : whether it is a pin in a slot.  varies : whether it is a pair of gears of varying
+        ratio.
     """
+    if one.mesh_loss is not None and (varies or kind not in MESHES):
+        told = Note("{joint!r} is no belt or pair of gears of one ratio; leave it out",
+                    joint=one.joint)  # fmt: skip
+        yield ModelError(f"{where}.mesh_loss", told)
     if in_slot and (one.bearing or one.width) is not None:
         told = Note("a pin in a slot has no bearing whose load is computed; leave it out")
         yield ModelError(f"{where}.{'bearing' if one.bearing else 'width'}", told)

@@ -1,0 +1,124 @@
+"""Losses of gears and belts against torques of shafts by hand, and against power that goes in."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.errors import ModelError
+from equipoise.mechanism import JointProperties
+from equipoise.schema.files import to_csv
+from unit.schema.samples import survives
+
+LOSS, TORQUE = 0.04, 3.0
+RATIO = {"gears": -0.5, "belts": 0.4}
+
+
+def shafts(table: str, torque: float, loss: float | None = LOSS) -> eq.Machine:
+    """Two shafts without mass, joined by gears or a belt; a torque acts on the second."""
+    frame = {"A": (0.0, 0.0), "B": (0.3, 0.0)}
+    links = {"crank": eq.Link({"A": (0, 0)}, 0, (0, 0), 0),
+             "wheel": eq.Link({"B": (0, 0)}, 0, (0, 0), 0)}  # fmt: skip
+    couplings: dict[str, Any] = {"gears": [eq.Gear("crank", "wheel", ratio=-0.5)]}
+    if table == "belts":
+        from equipoise.mechanism import Belt
+
+        couplings = {"belts": [Belt("crank", "wheel", radii=(0.02, 0.05), tension=400.0)]}
+    joints = ()
+    if loss is not None:
+        joints = (JointProperties(f"{table}.crank to wheel", mesh_loss=loss),)
+    loads = [eq.Load("wheel", torque=torque)]
+    drive = eq.Drive("crank", 20.0)
+    return eq.Machine("shafts", drive, frame, links, loads=loads, joints=joints, **couplings)
+
+
+@pytest.mark.parametrize("table", ["gears", "belts"])
+@pytest.mark.parametrize("against", [True, False])
+def test_torques_of_two_shafts(table: str, against: bool) -> None:
+    """By hand: what the driver gives is what the load takes over 1 - loss; where the load drives,
+    what comes back is what it gives over 1 + loss.
+    """
+    ratio = RATIO[table]
+    torque = -np.sign(ratio) * TORQUE if against else np.sign(ratio) * TORQUE
+    found = eq.analyze(shafts(table, torque), 12)
+    share = 1 - LOSS if against else 1 + LOSS
+    np.testing.assert_allclose(found.forces.drive_torque, -torque * ratio / share, rtol=1e-12)
+    losses = found.losses
+    assert losses is not None
+    given = abs(torque * ratio * 20.0)
+    drive = given / (1 - LOSS) if against else given
+    assert losses.loss == pytest.approx(drive * LOSS if against else given * LOSS / (1 + LOSS))
+    assert losses.efficiency == pytest.approx(1 - LOSS if against else 1 / (1 + LOSS))
+
+
+@pytest.mark.parametrize(
+    ("name", "joint"),
+    [
+        ("geared-counterweight", "gears.rocker to counterweight"),
+        ("planetary-planting-arm", "gears.idler to planet"),
+        ("planetary-planting-arm", "gears.frame to idler"),
+    ],
+)
+def test_power_and_the_law(name: str, joint: str) -> None:
+    """Power of drive and loads less what is lost goes into motion and height, at every crank
+    angle; and what is lost is the share of the tangential force, as reported, times the speed of
+    the pitch circle.
+    """
+    machine = eq.load(name)
+    free = eq.analyze(machine, 36, acceleration=15.0)
+    lossy = replace(machine, joints=(JointProperties(joint, mesh_loss=0.05),), balance=None)
+    found = eq.analyze(lossy, 36, acceleration=15.0)
+    pair = joint.partition(".")[2]
+    friction = found.forces.frictions[pair]
+    gained = found.forces.power - free.forces.power
+    assert np.max(friction.loss) > 0 and np.min(friction.loss) >= 0
+    np.testing.assert_allclose(
+        gained, friction.loss, atol=1e-10 * np.max(np.abs(free.forces.power))
+    )
+    push = np.abs(found.forces.couplings["gears"][pair].parts["tangential"])
+    gear = next(one for one in lossy.gears if one.name == pair)
+    turns = {
+        "frame": np.zeros(36),
+        **{k: v.angular_velocity for k, v in found.motion.links.items()},
+    }
+    speed = turns[gear.driven] - turns[gear.carrier]
+    np.testing.assert_allclose(
+        friction.loss, 0.05 * push * np.abs(speed) * friction.reach, rtol=1e-9, atol=1e-12
+    )
+
+
+def test_in_a_whole_cycle_what_goes_in_is_lost_or_taken() -> None:
+    machine = eq.load("planetary-planting-arm")
+    joints = [JointProperties(f"gears.{one.name}", mesh_loss=0.03) for one in machine.gears]
+    losses = eq.analyze(replace(machine, joints=tuple(joints), balance=None)).losses
+    assert losses is not None and len(losses.joints) == len(machine.gears)
+    assert losses.drive + losses.loads == pytest.approx(losses.loss, rel=1e-6)
+
+
+def test_they_are_reported_everywhere() -> None:
+    machine = shafts("gears", TORQUE)
+    survives(machine)
+    found = eq.analyze(machine, 90)
+    name = "gears.crank to wheel.friction_loss"
+    assert found.to_dict()["friction"]["joints"]["crank to wheel"]["loss"] == found.losses.loss
+    assert found.summary[name].mean == pytest.approx(found.losses.loss)
+    assert f"{name} [W]" in to_csv(found).partition("\n")[0]
+    assert not [one for one in found.outputs.names if one.startswith("joints.crank to wheel")]
+
+
+@pytest.mark.parametrize(
+    ("name", "joint", "said"),
+    [
+        ("slider-crank-engine", "joints.B", "joints[1].mesh_loss: 'joints.B' is no belt or pair"),
+        ("elliptic-quick-return", "gears.shaft to crank", "joints[1].mesh_loss: 'gears.shaft to"),
+    ],
+)
+def test_where_there_is_none(name: str, joint: str, said: str) -> None:
+    machine = replace(eq.load(name), joints=(JointProperties(joint, mesh_loss=0.1),), balance=None)
+    with pytest.raises(ModelError) as caught:
+        eq.analyze(machine)
+    assert str(caught.value).startswith(said)
