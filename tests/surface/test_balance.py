@@ -26,6 +26,7 @@ from surface.running import (
     equipoise,
     massless,
     read,
+    refused,
     refuses,
     succeeded,
     unfolded,
@@ -459,6 +460,25 @@ def test_a_file_that_is_there_is_not_overwritten() -> None:
     line = refuses("balance balance-crank --out new.toml --csv x.csv", "")
     assert line == "new.toml: is there already; choose another name by --out"
     assert Path("new.toml").read_text(encoding="utf-8") == "mine"
+
+
+def test_the_drawing_of_each_counterweight_is_written_with_the_new_model(tmp_path: Path) -> None:
+    """And neither where there is nothing to draw, which is said."""
+    new, drawing = tmp_path / "new.toml", tmp_path / "new.pdf"
+    told = equipoise("balance", "balance-rig", "--out", new, "--drawing", drawing)
+    succeeded(told)
+    assert told.err.splitlines()[-2:] == [f"wrote {new}", f"wrote {drawing}"]
+    assert drawing.read_bytes().startswith(b"%PDF") and new.is_file()
+    point = ("balance", "balance-crank", "--out", tmp_path / "p.toml")
+    told = equipoise(*point, "--drawing", tmp_path / "p.dxf")
+    assert told.status == 0 and "note: the drawing leaves out" in told.err
+    other = ("balance", "balance-crank", "--out", tmp_path / "q.toml")
+    sentence = refused(equipoise(*other, "--drawing", tmp_path / "q.pdf"))
+    assert "balancing gives none to what it changes: crank" in sentence
+    assert 'the shape "disc", "ring" or "sector"' in sentence
+    assert not (tmp_path / "q.toml").exists()
+    sentence = refused(equipoise(*other, "--drawing", tmp_path / "q.xml"))
+    assert "give a name that ends in .pdf, .dxf or .svg" in sentence
 
 
 def test_a_limit_of_the_file_is_kept_beside_that_of_the_option() -> None:

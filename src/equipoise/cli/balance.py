@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Annotated
@@ -9,8 +10,18 @@ from typing import TYPE_CHECKING, Annotated
 from cyclopts import App, Parameter
 
 from equipoise.cli.models import LinkageFile, PlannedFile, at_speed
-from equipoise.cli.options import CrankZero, Goals, Limits, Out, Speed, blaming, count, size
-from equipoise.cli.outputs import Length, Outputs, Printed, check_new, write_model
+from equipoise.cli.options import (
+    CrankZero,
+    Goals,
+    Limits,
+    NewFile,
+    Out,
+    Speed,
+    blaming,
+    count,
+    size,
+)
+from equipoise.cli.outputs import Length, Outputs, Printed, check_new, write_model, wrote
 from equipoise.cli.plan import Freed, plan_of, read_objective
 from equipoise.cli.progress import counted
 from equipoise.cli.runner import CommandResult, command
@@ -19,6 +30,7 @@ from equipoise.i18n import Note, say
 
 if TYPE_CHECKING:
     from equipoise.balancing.balanced import Balanced
+    from equipoise.exchange.formats import Job
     from equipoise.results.result import Result
 
 app = App(name="balance")
@@ -36,6 +48,7 @@ def balance(
     speed: Speed = None,
     freed: Freed = Freed(),
     out: Out = None,
+    drawing: NewFile = None,
 ) -> CommandResult:
     """What to change so that the machine shakes less, with proof that nothing better exists.
 
@@ -52,23 +65,36 @@ def balance(
         "added_mass <= 500 g".  May be repeated.
     out
         Write the balanced machine as a new model file.
+    drawing
+        Write a workshop drawing of each counterweight: name of a .pdf, .dxf or .svg file.
     """
     from equipoise.balancing import advice, optimisation
 
     machine = at_speed(machine, speed)
     if out is not None:
         check_new(machine, out)
+    if drawing is not None:
+        _check_drawing(drawing)
     plan = plan_of(machine, freed, objective, limit)
     with counted("step") as progress:
         solve = partial(optimisation.balance, progress=progress)
         asked = freed.any or objective or limit
         found = solve(machine, plan) if asked else advice.advise(machine, solve)
-    if out is not None and not found.helps:
-        _refuse(found)
-    return replace(CommandResult.of(found), save=lambda: () if out is None else _save(found, out))
+    for option, path in {"--out": out, "--drawing": drawing}.items():
+        if path is not None and not found.helps:
+            _refuse(found, option)
+    sheets = None if drawing is None else _drawn(found, drawing)
+
+    def save() -> Iterator[str]:
+        if out is not None:
+            yield from _save(found, out)
+        if drawing is not None and sheets is not None:
+            yield from _save_drawing(drawing, *sheets)
+
+    return replace(CommandResult.of(found), save=save)
 
 
-def _refuse(found: Balanced) -> None:
+def _refuse(found: Balanced, option: str) -> None:
     """Write no machine that is not better."""
     from equipoise.balancing.outcome import nothing_told
 
@@ -76,10 +102,40 @@ def _refuse(found: Balanced) -> None:
         reason = next(nothing_told(found)).removesuffix(".")
         raise UsageError(
             at_place(
-                "--out",
+                option,
                 Note("nothing is written: {reason}", reason=f"{reason[:1].lower()}{reason[1:]}"),
             )
         )
+
+
+DRAWINGS = ("pdf", "dxf", "svg")
+"""Formats that show parts to be cut."""
+
+
+def _check_drawing(path: str) -> None:
+    from equipoise.exchange.export import format_of
+
+    with blaming("--drawing"):
+        if format_of(path).name not in DRAWINGS:
+            what = Note("got {path!r}; give a name that ends in .pdf, .dxf or .svg", path=path)
+            raise UsageError(what)
+
+
+def _drawn(found: Balanced, path: str) -> tuple[Job, str | bytes]:
+    """A drawing's content, before anything is written, since there may be nothing to draw."""
+    from equipoise.exchange.export import format_of, made
+
+    with blaming("--drawing"):
+        return made(found, format_of(path))
+
+
+def _save_drawing(path: str, job: Job, data: str | bytes) -> Iterator[str]:
+    from equipoise.schema.files import write
+
+    write(path, data)
+    for part in job.left_out:
+        yield f"note: the drawing leaves out {part}"
+    yield wrote(path)
 
 
 def _save(found: Balanced, out: str) -> list[str]:

@@ -11,6 +11,7 @@ from cyclopts import Parameter
 from equipoise.cli.models import NamedFile
 from equipoise.cli.options import (
     Angle,
+    Language,
     Out,
     blaming,
     crank_angles,
@@ -44,6 +45,7 @@ def export(
     kept: bool = False,
     link: Annotated[str | None, wants("LINK")] = None,
     angles: Annotated[Any, read_by(crank_angles)] = None,
+    language: Language = "en",
 ) -> CommandResult:
     """Write a linkage for another program, or all designs of a store as one table, in SI units.
 
@@ -66,6 +68,8 @@ def export(
         Of loads along a link: which; the only one with a section if not given.
     angles
         Of loads along a link: number of crank angles a turn, or the angles: "0 deg, 45 deg".
+    language
+        Of drawings and pages: English, Japanese or Korean.
     """
     from equipoise.exchange.export import check_kind, check_link_loads, format_of
     from equipoise.exchange.export import export as write
@@ -78,6 +82,9 @@ def export(
         one = format_of(out, format, of_store=os.path.isdir(file) or file.endswith(STORE))
         if os.path.exists(file) or file in bundled():
             check_kind(one, of_store=os.path.isdir(file))
+    if not one.worded:
+        other = language if language != "en" else None
+        refuse_idle(Note("a file of {title} has no sentences", title=one.title), language=other)
     if one.of_store:
         why = Note("a file of {title} holds the designs of a store", title=one.title)
         refuse_idle(why, at=at or None, balanced=balanced)
@@ -93,7 +100,7 @@ def export(
     machine = load_linkage(file)
     check_result_file("--out", out, sources_of(machine, file))
     what = _balanced(machine) if balanced else machine
-    parts = write(what, out, one.name, crank_angle=at, link=link, angles=angles)
+    parts = write(what, out, one.name, crank_angle=at, link=link, angles=angles, language=language)
     notes = [f"note: the file leaves out {part}" for part in parts]
     return CommandResult(save=lambda: [*notes, wrote(out)])
 

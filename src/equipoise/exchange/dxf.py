@@ -9,6 +9,7 @@ from __future__ import annotations
 import io
 import re
 from collections.abc import Iterable
+from itertools import cycle
 from math import degrees
 from typing import Any
 
@@ -17,6 +18,7 @@ import numpy as np
 from equipoise.errors import UsageError, needed
 from equipoise.exchange.formats import Job
 from equipoise.exchange.parts import Part, parts
+from equipoise.i18n import spoken
 from equipoise.mechanism.assembly.cam_fits import fits_of
 from equipoise.mechanism.kinematics.motion import Motion, move
 from equipoise.mechanism.parts.machine import FRAME
@@ -133,26 +135,57 @@ def _parts(space: Any, found: list[Part], scene: Scene) -> None:
         _measures(space, part, shift, gap)
         corner -= 1j * ((highest - lowest).imag + gap)
         for line in part.lines:
-            text = space.add_text(line, height=gap / 6, dxfattribs=_layer("dimensions", part.name))
+            looks = {**_layer("dimensions", part.name), "style": _style(space.doc)}
+            text = space.add_text(line, height=gap / 6, dxfattribs=looks)
             text.set_placement((corner.real, corner.imag))
             corner -= 1j * gap / 3
         corner -= 1j * gap
 
 
+FONTS = {"ja": "msgothic.ttc", "ko": "malgun.ttf"}
+"""Of texts in a language: as Windows has them, for which other systems take their own."""
+
+
+def _style(drawing: Any) -> str:
+    """The style of texts in the language that is spoken."""
+    font = FONTS.get(spoken())
+    if font is None:
+        return "Standard"
+    if font not in drawing.styles:
+        drawing.styles.new(font, dxfattribs={"font": font})
+    return font
+
+
 def _measures(space: Any, part: Part, shift: complex, gap: float) -> None:
-    """Width and height of a part, diameters of its circles and radii of its arcs."""
+    """Angle of a sector, width and height of what is not round; diameters of circles and radii of
+    arcs.
+    """
     low, high = (MM * place + shift for place in part.box)
     looks = {
         "override": {"dimtxt": gap / 8, "dimasz": gap / 10, "dimdec": 2, "dimzin": 8},
         "dxfattribs": _layer("dimensions", part.name),
     }
+    if part.arcs:
+        outer = part.arcs[0]
+        center, radius = MM * outer.center + shift, MM * outer.radius
+        first, last = (degrees(outer.direction + side * outer.angle / 2) for side in (-1, 1))
+        space.add_angular_dim_cra(
+            (center.real, center.imag), radius, first, last, gap / 2, **looks
+        ).render()
+    elif not part.is_round:
+        _widths(space, low, high, gap, looks)
+    sides = cycle((0.25, -0.25))  # of an arc, beside its middle, where the angle stands
+    for curve in sorted(part.curves, key=lambda one: -one.radius):
+        center = MM * curve.center + shift
+        place, radius = (center.real, center.imag), MM * curve.radius
+        add = space.add_diameter_dim if curve.whole else space.add_radius_dim
+        angle = 45.0 if curve.whole else degrees(curve.direction + next(sides) * curve.angle)
+        add(place, radius=radius, angle=angle, **looks).render()
+
+
+def _widths(space: Any, low: complex, high: complex, gap: float, looks: dict[str, Any]) -> None:
+    """Width and height of a part that is not round."""
     below, left = (low.real, low.imag - gap / 2), (low.real - gap / 2, low.imag)
     space.add_linear_dim(below, (low.real, low.imag), (high.real, low.imag), **looks).render()
     ends = (low.real, low.imag), (low.real, high.imag)
     space.add_linear_dim(left, *ends, angle=90, **looks).render()
-    for curve in part.curves:
-        center = MM * curve.center + shift
-        place, radius = (center.real, center.imag), MM * curve.radius
-        add = space.add_diameter_dim if curve.whole else space.add_radius_dim
-        angle = degrees(curve.direction) if not curve.whole else 45.0
-        add(place, radius=radius, angle=angle, **looks).render()

@@ -9,7 +9,7 @@ from math import isfinite
 from equipoise.balancing.balanced import Balanced
 from equipoise.errors import ChangePointError, RangeError, UsageError, at_place, needed, unknown
 from equipoise.exchange.formats import FORMATS, Angles, Format, Job
-from equipoise.i18n import Note, to_say
+from equipoise.i18n import LANGUAGES, Note, speaking, to_say
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.checks import numbered
 from equipoise.mechanism.parts.element_kinds import part_kinds
@@ -28,6 +28,7 @@ def export(
     kept: bool = False,
     link: str | None = None,
     angles: Angles = None,
+    language: str = "en",
 ) -> tuple[str, ...]:
     """Write a machine, or all designs of a store, as a file of another program.
 
@@ -43,6 +44,7 @@ def export(
     link : whose loads are written, in a format of them; the only link with a section if None.
     angles : instead of ``crank_angle``, crank angles of these loads: a number of them in each turn,
         or the angles, rad.
+    language : ``en``, ``ja`` or ``ko``, of drawings and pages.
 
     Returns
     -------
@@ -63,13 +65,18 @@ def export(
                 Note("got {crank_angle}; give an angle in rad", crank_angle=crank_angle),
             )
         )
+    if language not in LANGUAGES:
+        names = ", ".join(LANGUAGES)
+        what = Note("got {language!r}; give one of {names}", language=language, names=names)
+        raise UsageError(at_place("language", what))
     if isinstance(what, Store):
         write_designs(what, path, kept=kept)
         return ()
     check_link_loads(one, link=link, angles=angles)
     if angles is not None and crank_angle is not None:
         raise UsageError(Note("crank_angle and angles were given; give one of them"))
-    job, data = made(what, one, crank_angle, link, angles)
+    with speaking(language):
+        job, data = made(what, one, crank_angle, link, angles)
     write(path, data)
     return tuple(job.left_out)
 

@@ -29,6 +29,7 @@ class Format:
     joints : that it has beside pins, guides and what turns two links in a fixed ratio, as kinds of
     parts call them (`PartKind.special`); None where it has all.
     rubs : whether it holds friction in joints, or what follows from it.
+    worded : whether it has sentences for readers, in their language.
     of_link : whether it holds the loads along one link, at one crank angle or at several.
     """
 
@@ -44,6 +45,7 @@ class Format:
     module: str = ""
     rubs: bool = True
     of_link: bool = False
+    worded: bool = False
 
     @property
     def maker(self) -> str:
@@ -113,6 +115,7 @@ FORMATS: Mapping[str, Format] = {
             "cut: outlines and holes of links made of bodies, and of counterweights, with "
             "measures, thickness, material and mass; in mm",
             needs="ezdxf",
+            worded=True,
         ),
         Format(
             "pdf",
@@ -122,6 +125,7 @@ FORMATS: Mapping[str, Format] = {
             "material, mass",
             posed=False,
             module="figures.workshop_sheet",
+            worded=True,
         ),
         Format(
             "svg",
@@ -129,6 +133,7 @@ FORMATS: Mapping[str, Format] = {
             "parts (SVG)",
             "the same parts to be cut, at 1:1",
             posed=False,
+            worded=True,
         ),
         Format(
             "xlsx",
@@ -153,6 +158,7 @@ FORMATS: Mapping[str, Format] = {
             "one file that computes in a browser, without server or network: joints to drag, "
             "numbers to change, forces, torque and charts that follow at once",
             module="web.interactive",
+            worded=True,
             rubs=False,
         ),
         Format(

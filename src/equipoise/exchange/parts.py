@@ -16,10 +16,11 @@ import numpy as np
 
 from equipoise.errors import UsageError
 from equipoise.exchange.formats import Job
-from equipoise.i18n import Note
-from equipoise.mechanism.parts.bodies import Body, Points, material_of, place_of
+from equipoise.i18n import Note, say, to_say
+from equipoise.mechanism.parts.bodies import Body, Points, place_of
 from equipoise.mechanism.parts.body_checks import outlines
 from equipoise.quantities import told
+from equipoise.results.machine_blocks import SHAPES, stuff_named
 
 Edge = tuple[complex, float]
 """A corner, m, and the bulge of the edge to the next one."""
@@ -45,20 +46,38 @@ class RoundEdge:
         return f"Ø {in_mm(2e3 * self.radius)}" if self.whole else f"R {in_mm(1e3 * self.radius)}"
 
 
+COUNTERWEIGHT = "counterweight"
+KINDS = {**SHAPES, COUNTERWEIGHT: to_say("counterweight")}
+"""What a part is, in words."""
+
+
 @dataclass(frozen=True)
 class Part:
     """One thing to be cut from a plate.
 
-    name : with what tells it from others of its link.  thickness : m, None where not known.
+    link : that has it.  kind, number : what it is, and which of those of its link.
+    thickness : m, None where not known.
     edges : of its outline and of each opening, closed.
     density : kg/m3, None where not known.
     """
 
-    name: str
     link: str
+    kind: str
+    number: int
     thickness: float | None
     edges: tuple[tuple[Edge, ...], ...]
     density: float | None = None
+
+    @property
+    def name(self) -> str:
+        """By which files know it, in any language."""
+        return f"{self.link}, {self.kind} {self.number}"
+
+    @property
+    def label(self) -> str:
+        """In words."""
+        what = say(KINDS[self.kind])
+        return say("{link}, {what} {number}", link=self.link, what=what, number=self.number)
 
     @property
     def area(self) -> float:
@@ -81,31 +100,56 @@ class Part:
         return tuple(alike.values())
 
     @property
+    def arcs(self) -> tuple[RoundEdge, ...]:
+        """Those of a sector about its axis, the outer one first; none of other parts."""
+        arcs = (one for one in self.curves if not one.whole)
+        return tuple(sorted(arcs, key=lambda one: -one.radius))
+
+    @property
+    def is_round(self) -> bool:
+        """Whether diameters and radii give all of its outline, so that it needs no width."""
+        return bool(self.arcs) or any(one.whole for one in _curves(self.edges[0]))
+
+    @property
     def lines(self) -> tuple[str, ...]:
         """What a workshop has to know beside the drawing, a line each."""
-        told_of = [self.name]
+        said = [self.label]
         if self.thickness is not None:
-            told_of.append(f"thickness {in_mm(1e3 * self.thickness)} mm")
+            said.append(say("thickness {size} mm", size=in_mm(1e3 * self.thickness)))
         if self.density is not None:
-            name = material_of(self.density)
-            density = told(self.density, "density")
-            told_of.append(f"material: {name}, {density}" if name else f"material: {density}")
+            said.append(say("material: {stuff}", stuff=stuff_named(self.density)))
         if self.mass is not None:
-            told_of.append(f"mass {told(self.mass, 'mass')}")
-        arcs = [one for one in self.curves if not one.whole]
-        if arcs:
-            radii = ", ".join(one.text for one in arcs)
-            told_of.append(f"{radii} about the axis, over {in_mm(degrees(arcs[0].angle))}°")
+            said.append(say("mass {mass}", mass=told(self.mass, "mass")))
+        said.extend(self._round_lines())
         holes = [one.text for edges in self.edges[1:] for one in _curves(edges) if one.whole]
         if holes:
-            told_of.append(f"holes: {', '.join(dict.fromkeys(holes))}")
-        return tuple(told_of)
+            said.append(say("holes: {list}", list=", ".join(dict.fromkeys(holes))))
+        return tuple(said)
+
+    def _round_lines(self) -> Iterator[str]:
+        """Where a sector points, or a disc lies, in the axes of its link."""
+        if self.arcs:
+            outer = self.arcs[0]
+            yield say(
+                "{radii} about the axis, over {angle}°, its middle at {direction}° from the x axis "
+                "of the link",
+                radii=", ".join(one.text for one in self.arcs),
+                angle=in_mm(degrees(outer.angle)),
+                direction=in_mm(180 - (180 - round(degrees(outer.direction), 2)) % 360),
+            )
+        elif self.is_round:
+            (circle_of, *_) = (one for one in _curves(self.edges[0]) if one.whole)
+            x, y = circle_of.center.real, circle_of.center.imag
+            place = f"({in_mm(1e3 * x)}, {in_mm(1e3 * y)})"
+            yield say("its centre at {place} mm in the axes of the link", place=place)
 
     @property
     def title(self) -> str:
         """With how thick it is."""
-        thick = "" if self.thickness is None else f", {told(self.thickness, 'length')} thick"
-        return f"{self.name}{thick}"
+        if self.thickness is None:
+            return self.label
+        size = told(self.thickness, "length")
+        return say("{name}, {size} thick", name=self.label, size=size)
 
     @property
     def box(self) -> tuple[complex, complex]:
@@ -218,8 +262,7 @@ def _of_links(job: Job) -> Iterator[Part]:
             if section := _drawn_section(body):
                 job.leave_out(f"body {number} of {name!r}, {section}, which no plate gives")
             elif edges:
-                label = f"{name}, {body.shape} {number}"
-                yield Part(label, name, body.thickness, edges, body.density)
+                yield Part(name, body.shape, number, body.thickness, edges, body.density)
             elif body.shape != "point" or not job.changes:  # those are told with what was changed
                 job.leave_out(f"body {number} of {name!r}, a {body.shape} without an outline")
 
@@ -257,11 +300,12 @@ def _of_changes(job: Job) -> Iterator[Part]:
         for number, piece in enumerate(pieces, 1):
             center = complex(*change.values["center"])
             edges = tuple(_edges_of_piece(piece, center))
-            label = f"{change.link}, counterweight {number}"
+            part = Part(change.link, COUNTERWEIGHT, number, piece.get("thickness"), edges,
+                        piece.get("density"))  # fmt: skip
             if edges:
-                yield Part(label, change.link, piece["thickness"], edges, piece.get("density"))
+                yield part
             else:
-                job.leave_out(f"{label}, a point mass without an outline")
+                job.leave_out(f"{part.name}, a point mass without an outline")
 
 
 def _edges_of_piece(piece: dict[str, Any], center: complex) -> Iterator[tuple[Edge, ...]]:

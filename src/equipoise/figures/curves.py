@@ -20,6 +20,8 @@ from equipoise.symbols.torsion_springs import spiral
 
 SHADES = 4
 """Of cells in which something is."""
+DOT = 6.0
+"""Points: width of a dot that stands for a bar."""
 CAP = 2.2
 """Points: half the line across the end of an interval."""
 MARKERS = 7
@@ -94,16 +96,20 @@ def draw_area(view: View, area: Area) -> None:
 
 
 def draw_bars(view: View, bars: Bars) -> None:
-    """Bars of one kind, each in the look of its role."""
+    """Bars of one kind, each in the look of its role; dots where the axis has no 0 on which bars
+    could stand.
+    """
+    if (view.y if bars.across == "x" else view.x).axis.scale == "log":
+        _dots(view, bars)
+        return
     half = np.broadcast_to(np.asarray(bars.width, float) / 2, bars.at.shape)
     along, up = (view.x, view.y) if bars.across == "x" else (view.y, view.x)
-    lowest = 0.0 if up.low <= 0 else 1e-300
     by_role: dict[str, list[Array]] = {}
     for k, (at, wide, size) in enumerate(zip(bars.at, half, bars.size, strict=True)):
         if not np.isfinite(size):
             continue
         start, stop = along.at([at - wide, at + wide])
-        foot, top = up.at([lowest, size])
+        foot, top = up.at([0.0, size])
         if bars.across == "x":
             box = (start, top, stop, min(foot, up.start))
         else:
@@ -114,6 +120,19 @@ def draw_bars(view: View, bars: Bars) -> None:
         view.area(look_of(role), *corners)
     if bars.interval is not None:
         _intervals(view, bars, *bars.interval)
+
+
+def _dots(view: View, bars: Bars) -> None:
+    """A dot at the size of each."""
+    pair = (bars.at, bars.size) if bars.across == "x" else (bars.size, bars.at)
+    roles = np.array(bars.roles or [bars.role] * len(bars.at))
+    shown = np.isfinite(bars.size) & (bars.size > 0)
+    for role in dict.fromkeys(roles[shown].tolist()):
+        look = look_of(role)
+        chosen = shown & (roles == role)
+        places = view.places(pair[0][chosen], pair[1][chosen])
+        signs = Signs(places, "o", DOT, look.ink, look.inside, 0.0, view.box)
+        view.sheet.add(signs, look.order)
 
 
 def _intervals(view: View, bars: Bars, low: Array, high: Array) -> None:

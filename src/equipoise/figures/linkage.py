@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,6 +21,7 @@ from equipoise.symbols.clear import clear_angle
 from equipoise.symbols.pieces import GROUND, pieces, placed
 from equipoise.symbols.scene import Scene
 from equipoise.symbols.shapes import Shape, line
+from equipoise.symbols.stacks import in_turn
 from equipoise.symbols.wheels import called
 
 if TYPE_CHECKING:
@@ -64,12 +66,22 @@ def linkage(analysis: Analysis, at: Sequence[float] | None = None) -> Chart:
                 "got {count} crank angles; a picture shows 1 to {most}", count=len(which), most=MOST
             )
         )
+    parts = in_turn(scene, which[0]) if at is None else [((), scene)]
     columns = 1 if len(which) == 1 else 2 if len(which) <= 4 else MANY
-    paths = tuple(_paths(motion))
-    panels = tuple(_panel(scene, k, paths, columns) for k in which)
+    panels = tuple(
+        _panel(
+            *(part, k, tuple(_paths(motion, part))),
+            title=told_pose(scene, k) if columns > 1 else ", ".join(map(short, names)),
+            whole=scene,
+        )
+        for k in which
+        for names, part in parts
+    )
+    if columns == MANY:
+        panels = tuple(replace(panel, sign_size=SMALLER) for panel in panels)
     told = {"link": short(analysis.machine.drive.link), "angle": told_pose(scene, which[0])}
     what = say("Linkage, to scale; above each: angle of {link} in the frame", **told)
-    if columns == 1:
+    if len(which) == 1:
         what = say("Linkage, to scale; angle of {link} in the frame: {angle}", **told)
     keys = tuple(keys_of(scene))
     words = (*rows_told(scene), *beyond(scene), *_ends_told(scene))
@@ -123,24 +135,29 @@ def _at_ends(scene: Scene) -> Iterator[Shape]:
                 yield line("row", *corners, closed=len(corners) > 2)
 
 
-def _panel(scene: Scene, k: int, paths: tuple[Curve, ...], columns: int) -> Panel:
-    alone, parts = columns == 1, drawn(scene, k)
+def _panel(scene: Scene, k: int, paths: tuple[Curve, ...], title: str, whole: Scene) -> Panel:
+    """A scene on the axes of the whole one; with a crank angle as its title without names of links,
+    for which it has no room.
+    """
+    parts = drawn(scene, k)
+    named = title != told_pose(scene, k)
     return Panel(
-        *plane_axes(scene),
+        *plane_axes(whole),
         paths,
-        (*joint_names(scene, k), *(_other_names(scene, k) if alone else ())),
-        title="" if alone else told_pose(scene, k),
+        (*joint_names(scene, k), *(_other_names(scene, k) if named else ())),
+        title=title,
         equal=True,
         zero=False,
-        held=scene.box,
-        sign_size=SMALLER if columns == MANY else 1.0,
+        held=whole.box,
         **{**parts, "ground": (*parts["ground"], *_at_ends(scene))},
     )
 
 
-def _paths(motion: Motion) -> Iterator[Curve]:
-    """Paths of points that do not stand still, closed where the cycle is whole."""
+def _paths(motion: Motion, scene: Scene) -> Iterator[Curve]:
+    """Paths of points of a scene that do not stand still, closed where the cycle is whole."""
     for name in moving(motion):
+        if name not in scene.places:
+            continue
         place = motion.points[name].place
         place = np.append(place, place[:1]) if motion.whole_cycle else place
         yield Curve.of(place, say("paths of points"), "point path")

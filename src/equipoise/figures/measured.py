@@ -16,7 +16,7 @@ from equipoise.figures.shared import by_name, ends
 from equipoise.figures.style import free_name, short
 from equipoise.i18n import say
 from equipoise.quantities import Display
-from equipoise.results.charts import Area, Array, Axis, Band, Chart, Curve, Line, Mark, Panel, shown
+from equipoise.results.charts import Array, Axis, Band, Chart, Curve, Line, Mark, Panel, shown
 
 if TYPE_CHECKING:
     from equipoise.exposure.daily import Exposure
@@ -63,13 +63,12 @@ def spectrum(weighted: Weighted, title: str) -> Chart:
     before = after if weighted.band_a_h is None else np.sqrt(np.sum(weighted.band_a_h**2, axis=0))
     top = float(np.max(before)) or 1.0
     low = max(DEEPEST * top, 0.5 * float(np.min(after[after > 0], initial=top)))
-    areas = []
+    curves = []
     if weighted.band_a_h is not None:
         label = say("RMS, {value} m/s²", value=shown(_root(weighted.a_h)))
-        areas.append(_stairs(before, low, "unweighted", label))
+        curves.append(_stairs(before, low, "unweighted", label))
     label = say("weighted, total value a_hv = {value} m/s²", value=shown(weighted.a_hv))
-    areas.append(_stairs(after, low, "weighted", label))
-    curves = tuple(Curve(area.x, area.high, "", area.role) for area in areas)
+    curves.append(_stairs(after, low, "weighted", label))
     ticks = tuple((float(10 ** (0.1 * round(10 * np.log10(one)))), f"{one:g}") for one in TOLD)
     first, last = float(EDGES[0]), float(EDGES[-1])
     x = Axis(say("frequency"), Display("Hz", 1.0), "log", first, last, ticks=ticks)
@@ -77,16 +76,16 @@ def spectrum(weighted: Weighted, title: str) -> Chart:
     smooth = np.geomspace(first, last, 400)
     wh, weights = Axis("Wh", scale="log", low=0.005, high=1.5), factor(smooth)
     panels = (
-        Panel(x, y, curves, areas=tuple(areas), height=200.0),
+        Panel(x, y, tuple(curves), height=200.0),
         Panel(x, wh, (Curve(smooth, weights, "", "ink"),), height=62.0),
     )
     return Chart("spectrum", title, say("One-third-octave bands, all axes together"), panels)
 
 
-def _stairs(values: Array, low: float, role: str, label: str) -> Area:
-    """Bands as an area from their edges to their values."""
+def _stairs(values: Array, low: float, role: str, label: str) -> Curve:
+    """Bands as a line of steps: an area would have to stand on a 0 that its axis does not have."""
     x, high = np.repeat(EDGES, 2)[1:-1], np.repeat(np.maximum(values, low), 2)
-    return Area(x, np.full(len(x), low), high, role, label)
+    return Curve(x, high, label, role)
 
 
 def exposure(tools: Sequence[tuple[str, float]], day: Exposure | None) -> Chart:

@@ -121,15 +121,16 @@ def _signs(sheet: Sheet) -> frozenset[str]:
 
 
 @contextmanager
-def settings(sheet: Sheet | None = None) -> Iterator[None]:
-    """Everything inside looks the same whatever the user's Matplotlib is set to.
+def settings(sheet: Sheet | None = None, texts: str = "") -> Iterator[None]:
+    """Everything inside looks the same whatever the user's Matplotlib is set to, with fonts for the
+    texts of a sheet, or others.
 
     Matplotlib's settings belong to the whole process, so one thread paints at a time.
     """
     with _painting, matplotlib.rc_context(), warnings.catch_warnings():
         matplotlib.rcdefaults()
         matplotlib.rcParams.update(PARAMETERS)
-        more = () if sheet is None else fonts_for(_signs(sheet))[0]
+        more = fonts_for(frozenset(texts) if sheet is None else _signs(sheet))[0]
         matplotlib.rcParams["font.family"] = [*_families()[:-1], *more, "sans-serif"]
         warnings.filterwarnings("ignore", r"Glyph \d+ .*missing from", UserWarning)
         yield

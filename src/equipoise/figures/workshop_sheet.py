@@ -7,14 +7,17 @@ from __future__ import annotations
 
 import io
 from cmath import rect
-from math import pi
+from collections.abc import Sequence
+from math import degrees, pi
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from equipoise.exchange.formats import Job
 from equipoise.exchange.parts import Part, along, in_mm, parts
+from equipoise.figures.paint import fonts_for, settings
 from equipoise.figures.style import INK, MAIN
+from equipoise.i18n import LANGUAGES, said, say, speaking, spoken
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -25,8 +28,8 @@ MM, INCH = 1e3, 25.4
 SHEET = (210.0, 297.0)
 ROOM = (150.0, 190.0)
 """Width and height of a sheet and of what is drawn on it, mm."""
-SCALES = (1, 2, 5, 10, 20, 50, 100)
-"""By how much smaller than true a part may be drawn."""
+SCALES = (0.2, 0.5, 1, 2, 5, 10, 20, 50, 100)
+"""By how much smaller than true a part may be drawn; below 1 larger."""
 OFF = 12.0
 """Between a part and its widest measures, mm on paper."""
 LOWEST = 45.0
@@ -34,17 +37,40 @@ LOWEST = 45.0
 
 
 def made(job: Job) -> bytes:
-    """The file's content."""
+    """The file's content, in the language that is spoken; in English where no font of this computer
+    has its letters.
+    """
     from matplotlib.backends.backend_pdf import PdfPages
 
+    found = parts(job)
+    sheets = [_texts(job, part) for part in found]
+    if spoken() != "en" and fonts_for(frozenset("".join(map("".join, sheets))))[1]:
+        job.leave_out(
+            f"texts in {LANGUAGES[spoken()]}, for which this computer has no font; they are in "
+            "English; install one such as Noto Sans CJK"
+        )
+        with speaking("en"):
+            sheets = [_texts(job, part) for part in found]
     out = io.BytesIO()
-    with PdfPages(out, metadata={"CreationDate": None, "Title": str(job.machine.title)}) as pages:
-        for part in parts(job):
-            pages.savefig(_sheet(part, str(job.machine.title)))
+    about = {"CreationDate": None, "Title": str(job.machine.title)}
+    with (
+        settings(texts="".join(map("".join, sheets))),
+        PdfPages(out, metadata=about) as pages,
+    ):
+        for part, lines in zip(found, sheets, strict=True):
+            pages.savefig(_sheet(part, lines))
     return out.getvalue()
 
 
-def scale_of(part: Part) -> int:
+def _texts(job: Job, part: Part) -> tuple[str, ...]:
+    """What is written above a part, a line each."""
+    by = scale_of(part)
+    ratio = f"1:{by:g}" if by >= 1 else f"{1 / by:g}:1"
+    scale = say("scale {ratio}, dimensions in mm", ratio=ratio)
+    return said(job.machine.title), *part.lines, scale
+
+
+def scale_of(part: Part) -> float:
     """By how much smaller than true a part is drawn, so that it fits on its sheet."""
     low, high = (MM * corner for corner in part.box)
     size = high - low
@@ -52,7 +78,7 @@ def scale_of(part: Part) -> int:
     return next((scale for scale in SCALES if scale >= needed), SCALES[-1])
 
 
-def _sheet(part: Part, title: str) -> Figure:
+def _sheet(part: Part, lines: Sequence[str]) -> Figure:
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(SHEET[0] / INCH, SHEET[1] / INCH))
@@ -69,9 +95,11 @@ def _sheet(part: Part, title: str) -> Figure:
         for (one, bulge), (other, _) in zip(edges, (*edges[1:], edges[0]), strict=True):
             places = MM * along(one, other, bulge, 181 if bulge else 2)
             axes.plot(places.real, places.imag, color=INK, linewidth=1.0)
-    _widths(axes, low, high, OFF * scale)
+    if part.arcs:
+        _angle(axes, part, scale)
+    elif not part.is_round:
+        _widths(axes, low, high, OFF * scale)
     _radii(axes, part, scale)
-    lines = (title, *part.lines, f"scale 1:{scale}, dimensions in mm")
     figure.text(20 / SHEET[0], 1 - 20 / SHEET[1], "\n".join(lines), va="top", fontsize=11,
                 linespacing=1.5, color=INK, wrap=True)  # fmt: skip
     return figure
@@ -90,7 +118,30 @@ def _widths(axes: Axes, low: complex, high: complex, off: float) -> None:
               rotation=90, color=MAIN)  # fmt: skip
 
 
-def _radii(axes: Axes, part: Part, scale: int) -> None:
+def _angle(axes: Axes, part: Part, scale: float) -> None:
+    """The angle of a sector outside of it, and the x axis of its link through its axis."""
+    outer = part.arcs[0]
+    center, radius = MM * outer.center, MM * outer.radius + OFF * scale
+    ends = outer.direction - outer.angle / 2, outer.direction + outer.angle / 2
+    course = center + radius * np.exp(1j * np.linspace(*ends, 181))
+    axes.plot(course.real, course.imag, color=MAIN, linewidth=1.0)
+    arrow = {"arrowstyle": "->", "color": MAIN, "shrinkA": 0, "shrinkB": 0}
+    for end, before in ((course[0], course[5]), (course[-1], course[-6])):
+        axes.annotate("", (end.real, end.imag), (before.real, before.imag), arrowprops=arrow)
+        line = np.array([center, center + (end - center) * (1 + 2.0 * scale / radius)])
+        axes.plot(line.real, line.imag, color=MAIN, linewidth=0.6)
+    at = center + rect(radius + 5.0 * scale, outer.direction)
+    axes.text(at.real, at.imag, f"{in_mm(degrees(outer.angle))}°", ha="center", va="center",
+              color=MAIN)  # fmt: skip
+    way = 1.0 if abs(outer.direction) > outer.angle / 2 else -1.0  # beside the part
+    reach = MM * outer.radius
+    axes.plot([center.real - 0.15 * way * reach, center.real + 0.6 * way * reach],
+              [center.imag] * 2, color=MAIN, linewidth=0.8, dashes=(8, 2, 1.5, 2))  # fmt: skip
+    axes.text(center.real + way * (0.6 * reach + 3.0 * scale), center.imag,
+              "x" if way > 0 else "−x", ha="center", va="center", color=MAIN)  # fmt: skip
+
+
+def _radii(axes: Axes, part: Part, scale: float) -> None:
     """Diameters of circles, and radii of arcs, each in a direction of its own."""
     for number, curve in enumerate(part.curves):
         center, radius = MM * curve.center, MM * curve.radius

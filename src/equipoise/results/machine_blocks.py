@@ -177,9 +177,14 @@ def _stuff(body: Body) -> str:
     """The material of a body and its density, or that alone; nothing where it is weighed."""
     if body.density is None:
         return ""
-    density = told(body.density, "density", "kg/m^3")
-    name = material_of(body.density)
-    return f"{say(name)}, {density}" if name else density
+    return stuff_named(body.density)
+
+
+def stuff_named(density: float) -> str:
+    """A material by its density, kg/m3, with that; the density alone where none is known."""
+    value = told(density, "density", "kg/m^3")
+    name = material_of(density)
+    return f"{say(name)}, {value}" if name else value
 
 
 def rows_table(machine: Machine) -> Table:

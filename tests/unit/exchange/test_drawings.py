@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from xml.etree import ElementTree as ET
@@ -10,11 +11,18 @@ from xml.etree import ElementTree as ET
 import ezdxf
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 import equipoise as eq
-from equipoise.exchange.parts import along, in_mm
+from equipoise.errors import UsageError
+from equipoise.exchange.dxf import FONTS
+from equipoise.exchange.formats import Job
+from equipoise.exchange.parts import Part, along, in_mm, parts
 from equipoise.exchange.reading.formats import import_machine
+from equipoise.figures import workshop_sheet
+from equipoise.present.findings import Findings
 from equipoise.quantities import told
+from support.found import found as found_of
 
 START = 0.4
 SAME = 1e-9
@@ -24,8 +32,8 @@ DENSITY = {("balance-shafts", "crank"): 7200.0}
 """kg/m3; cast iron where the file says so."""
 
 
-def drawn(what: object, path: Path) -> ezdxf.document.Drawing:
-    eq.export(what, path, crank_angle=START)  # type: ignore[arg-type]
+def drawn(what: object, path: Path, **options: str) -> ezdxf.document.Drawing:
+    eq.export(what, path, crank_angle=START, **options)  # type: ignore[arg-type]
     found = ezdxf.readfile(path)
     assert found.units == ezdxf.units.MM
     assert found.audit().errors == []
@@ -142,9 +150,10 @@ def test_a_workshop_drawing_gives_what_was_advised(name: str, tmp_path: Path) ->
                 round(1e3 * piece["outer_radius"], 6),
                 round(1e3 * piece["inner_radius"], 6),
             } <= sizes
-            assert len(dims) == 4  # width, height, and each radius once
-            wide = in_mm(np.degrees(piece["angle"]))
-            assert any(one.endswith(f"about the axis, over {wide}°") for one in words)
+            wide = np.degrees(piece["angle"])
+            assert round(wide, 6) in sizes
+            assert len(dims) == 3  # each radius and the angle once, which say all
+            assert any(f"about the axis, over {in_mm(wide)}°" in one for one in words)
             axis = next(complex(*one.dxf.defpoint.vec2) for one in dims if one.dimtype == 4)
             moment += mass * (centroid(edges) - axis) * 1e-3
             pages += 1
@@ -152,6 +161,51 @@ def test_a_workshop_drawing_gives_what_was_advised(name: str, tmp_path: Path) ->
         assert abs(moment - wanted) <= 1e-5 * abs(wanted)
     sheets = re.findall(rb"/Type /Page\b", (tmp_path / "x.pdf").read_bytes())
     assert pages and len(sheets) == pages
+
+
+@pytest.mark.parametrize("name", ["yamashita-1", "kim-chung-c", "yamashita-rig"])
+def test_measures_that_are_advised_are_whole(name: str) -> None:
+    """Millimetres and degrees, and the figures are those of the shape that has them."""
+    found = found_of(name)
+    assert isinstance(found, Findings) and found.balanced is not None and found.helped
+    drawn_parts = parts(Job(found.balanced.machine, 0.0, found.balanced.changes))
+    assert drawn_parts
+    for part in drawn_parts:
+        texts = [one.text for one in part.curves]
+        numbers = re.findall(r"[\d.]+", " ".join((*texts, *part.lines[4:], part.lines[1])))
+        assert len(numbers) >= 5 and not [one for one in numbers if "." in one], part.lines
+        assert part.mass == pytest.approx(found.balanced.added_mass, rel=1e-9)
+
+
+def test_texts_of_drawings_are_in_the_language_asked_for(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """English where no font has its letters, and that is said; names of layers stay."""
+    found = found_of("yamashita-1").balanced  # type: ignore[union-attr]
+    shown: list[str] = []
+    sheet = workshop_sheet._sheet
+
+    def keep(part: Part, lines: Sequence[str]) -> Figure:
+        shown.extend(lines)
+        return sheet(part, lines)
+
+    monkeypatch.setattr(workshop_sheet, "_sheet", keep)
+    for language, words in {"ja": "厚さ 25 mm", "ko": "두께 25 mm"}.items():
+        drawing = drawn(found, tmp_path / "x.dxf", language=language)
+        texts = on_layer(drawing, "dimensions crank_ counterweight 1")
+        assert words in {one.dxf.text for one in texts if one.dxftype() == "TEXT"}
+        (font,) = {one.dxf.style for one in texts if one.dxftype() == "TEXT"}
+        assert drawing.styles.get(font).dxf.font == FONTS[language]
+        group = svg(found, tmp_path / "x.svg", language=language).find("{*}g/{*}title")
+        assert group is not None and group.text is not None and not group.text.isascii()
+        for signs, wanted in (("", words), ("厚", "thickness 25 mm")):
+            shown.clear()
+            monkeypatch.setattr(workshop_sheet, "fonts_for", lambda _, signs=signs: ((), signs))
+            notes = eq.export(found, tmp_path / "x.pdf", language=language)  # type: ignore[arg-type]
+            assert wanted in shown and bool(notes) == bool(signs)
+            assert all("for which this computer has no font" in one for one in notes)
+    with pytest.raises(UsageError, match="give one of en, ja, ko"):
+        eq.export(found, tmp_path / "x.pdf", language="fr")  # type: ignore[arg-type]
 
 
 def centroid(edges: list[tuple[complex, float]]) -> complex:
@@ -170,8 +224,8 @@ def test_workshop_drawings_are_the_same_bytes_on_every_run(tmp_path: Path) -> No
     assert (tmp_path / "a.pdf").read_bytes() == (tmp_path / "b.pdf").read_bytes()
 
 
-def svg(what: object, path: Path) -> ET.Element:
-    eq.export(what, path)  # type: ignore[arg-type]
+def svg(what: object, path: Path, **options: str) -> ET.Element:
+    eq.export(what, path, **options)  # type: ignore[arg-type]
     root = ET.parse(path).getroot()
     width, height = (float(root.attrib[key].removesuffix("mm")) for key in ("width", "height"))
     assert [float(one) for one in root.attrib["viewBox"].split()] == [0.0, 0.0, width, height]

@@ -12,7 +12,7 @@ import pytest
 
 from equipoise.figures import layout
 from equipoise.figures.layout import lay_out
-from equipoise.figures.sheet import Item, Sheet, Words, box_of
+from equipoise.figures.sheet import Item, Sheet, Stroke, Words, box_of
 from equipoise.figures.style import PAPER, DrawingStyle, look_of
 from equipoise.figures.vector import svg_of
 from equipoise.figures.view import View
@@ -54,7 +54,7 @@ class Laid:
     @property
     def faults(self) -> list[Fault]:
         """All that is not kept."""
-        checks = (texts_cut, texts_covered, axes, panels_left, alike_in_grey)
+        checks = (texts_cut, texts_covered, axes, bars_afloat, panels_left, alike_in_grey)
         return [fault for check in checks for fault in check(self)]
 
 
@@ -116,6 +116,23 @@ def axes(laid: Laid) -> Iterator[Fault]:
             numbers = [text for _, text in ticks if _is_number(text)]
             if len(numbers) < NUMBERS and (axis.ticks is None or numbers):
                 yield "few numbers on an axis", f"{axis.text}: {numbers}"
+
+
+def bars_afloat(laid: Laid) -> Iterator[Fault]:
+    """Bars and areas stand on 0, which a logarithmic axis does not have."""
+    for view, items in laid.panels:
+        panel = view.panel
+        ups = {"x": panel.y, "y": panel.x}
+        if any(ups[bars.across].scale == "log" for bars in panel.bars):
+            filled = [one for one in items if isinstance(one, Stroke) and one.fill]
+            colors = {
+                look_of(role).inside for bars in panel.bars for role in (bars.role, *bars.roles)
+            }
+            if any(one.fill in colors for one in filled):
+                yield "bars on a logarithmic axis", _told(view)
+        lowest = view.y.low / panel.y.unit.factor * (1 + 1e-9)
+        if panel.y.scale == "log" and any(np.any(one.low <= lowest) for one in panel.areas):
+            yield "area on a logarithmic axis", _told(view)
 
 
 def _is_number(text: str) -> bool:

@@ -14,12 +14,20 @@ import equipoise as eq
 from equipoise.figures.analysis import joint_polars, joints
 from equipoise.figures.forces import force, spectrum, torque
 from equipoise.figures.layout import HALF, lay_out
+from equipoise.figures.linkage import linkage
+from equipoise.figures.modes import mode_chart
 from equipoise.figures.points import main_kinematics
-from equipoise.figures.sheet import Words, box_of
+from equipoise.figures.sheet import Signs, Words, box_of
+from equipoise.figures.tool_shaft import mode_charts
+from equipoise.figures.vibration import spectra
 from equipoise.figures.view import View
+from equipoise.handheld.modes import vibrate_tool
+from equipoise.i18n import speaking
 from equipoise.results.charts import Axis, Chart, Curve, Panel
+from equipoise.schema.models import load_tool
+from equipoise.vibration.free import modes
 from support.chosen import DISTINCT, few
-from unit.figures.checks import Laid, views
+from unit.figures.checks import Laid, bars_afloat, texts_covered, texts_cut, views
 
 LINKAGES = tuple(eq.examples("linkage"))
 LARGER = re.compile(r"drawn (\S+) times as large")
@@ -120,3 +128,41 @@ def test_units_of_names_that_wrap_stay_whole() -> None:
     words = [text.text for text in lay_out(Chart("one", "M", "what", (panel,))).words]
     assert "N" not in words and "m" not in words
     assert any(text.endswith("N m") for text in words)
+
+
+def test_sizes_on_a_logarithmic_axis_are_dots_and_no_bars() -> None:
+    """A bar shows its size from 0, which such an axis does not have."""
+    (chart, *_) = spectra(eq.respond(eq.load("yamashita-rig")))
+    (panel,) = chart.panels
+    assert panel.y.scale == "log" and panel.bars
+    laid = Laid.of(chart)
+    assert not [*bars_afloat(laid)]
+    (dots,) = (one for _, items in laid.panels for one in items if isinstance(one, Signs))
+    assert len(dots.places) == len(panel.bars[0].at)
+
+
+@pytest.mark.parametrize("language", ["en", "ja", "ko"])
+def test_no_label_of_a_mode_covers_another(language: str) -> None:
+    """Of a support in space with nine mounts and gauges, and of a tool with numbered nodes."""
+    with speaking(language):
+        found = modes(eq.load("riding-transplanter"))
+        charts = [mode_chart(found, number + 1) for number in range(len(found.modes))]
+        charts += mode_charts(vibrate_tool(load_tool("brush-cutter"), 6)).values()
+        for chart in charts:
+            laid = Laid.of(chart)
+            assert not [*texts_covered(laid), *texts_cut(laid)], chart.name
+            names = [one.text for one in laid.sheet.words if one.text]
+            assert len(names) > 10
+
+
+def test_links_that_cover_each_other_are_shown_in_turn() -> None:
+    """Four walkers lie within 100 mm of each other, over 2300 mm."""
+    panels = linkage(eq.analyze(eq.load("straw-walker"), 72)).panels
+    assert [panel.title for panel in panels] == [f"walker-{number}" for number in (1, 2, 3, 4)]
+    for number, panel in enumerate(panels, 1):
+        texts = {mark.text for mark in panel.marks}
+        assert {text for text in texts if text.startswith("walker")} == {f"walker-{number}"}
+        assert {"front", "rear", f"T{number}", "F1", "F4"} <= texts
+    assert len({panel.held for panel in panels}) == 1  # at one scale
+    for name in ("stephenson-six-bar", "cam-pusher", "twin-engine"):
+        assert len(linkage(eq.analyze(eq.load(name), 72)).panels) == 1
