@@ -8,7 +8,8 @@ declared with them (`yardstick` in `mechanism.outputs.declared`):
     span          a moment that shakes the frame: peak, over that force at the span of the feet
     bearings      a moment across the plane: peak, over that force at the span across the plane
     effort        a torque: peak to peak, over its mean; where that is less than what lifts the
-                  moving links at the crank's throw, over the largest force that acts, there;
+                  moving links at the crank's throw, over the largest force that acts, there, but
+                  where loads swing it far more than the links do;
                   a force: peak, over the largest load or the weight of the links
     acting        a force between bodies: peak, over the largest force that acts: weight, load,
                   spring, inertia of a link, and what the drive exerts at the crank's throw
@@ -65,6 +66,10 @@ SHAKING = ("weight", "span", "bearings", "vibration")
 LEAST_MEAN = 0.01
 """Of the RMS of a torque: less is what samples of narrow peaks leave of a mean that is 0, as of a
 machine that swings near a dead position and does no work."""
+BY_LOADS, TRIFLE = 0.9, 0.1
+"""Shares of the swing of a torque: what loads make of it at least, and what lifts the links at
+most, where its mean, which is the work that the loads take, is its yardstick in any case.  On a
+press the load acts near a dead position, where its lever is a small part of the throw."""
 MEAN = to_say("its mean")
 VIBRATION = 4.5e-3
 """RMS of a velocity, m/s, beyond which a machine should not run for long."""
@@ -408,6 +413,16 @@ class _Scales:
         return (drive, Note("the force of the drive")) if drive > force else (force, what)
 
     @cached_property
+    def load_swings_drive(self) -> bool:
+        """Whether loads make nearly all of the swing of the drive's torque, as on a press."""
+        forces, effort = self.analysis.resolved.forces, self.machine.drive.effort
+        by_loads = forces.split.by_cause(effort).get("load")
+        if by_loads is None:
+            return False
+        swing = forces.motion.figures(by_loads).peak_to_peak
+        return bool(swing >= BY_LOADS * self.analysis.summary[effort].peak_to_peak)
+
+    @cached_property
     def span(self) -> float:
         """How far apart the feet of the machine are, or its pins in the frame."""
         machine, support = self.machine, self.machine.support
@@ -514,7 +529,10 @@ def _effort(scales: _Scales, output: Output) -> FigureAssessment | None:
         return _entry(output, "peak", rows * force, what)
     torque = output.analysis.summary[output.name]
     mean = abs(torque.mean)
-    if mean >= max(rows * scales.links_weight * scales.throw, LEAST_MEAN * torque.rms):
+    lifted = rows * scales.links_weight * scales.throw
+    if lifted < TRIFLE * torque.peak_to_peak and scales.load_swings_drive:
+        lifted = 0.0
+    if mean >= max(lifted, LEAST_MEAN * torque.rms):
         return _entry(output, "peak_to_peak", mean, Note(MEAN))
     force, what = scales.undriven
     against = Note("{force} at the throw of the crank", force=what)
