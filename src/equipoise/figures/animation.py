@@ -18,7 +18,14 @@ import numpy as np
 
 from equipoise.errors import UsageError
 from equipoise.figures.captions import Label, captions, ruler_ends
-from equipoise.figures.stage import ForceArrow, Moves, Stage, check_seconds, check_width
+from equipoise.figures.stage import (
+    ForceArrow,
+    Moves,
+    Stage,
+    check_seconds,
+    check_width,
+    width_of,
+)
 from equipoise.i18n import Note, said, say
 from equipoise.mechanism.parts.machine import unknown
 from equipoise.symbols.looks import DARK, LIGHT, LOOKS, Colors, pixels
@@ -250,7 +257,8 @@ def _path(stroke: Stroke) -> str:
 def _text(label: Label) -> str:
     x, y = pixels(label.place.real), pixels(label.place.imag)
     place = f'x="{x}" y="{y}" text-anchor="{label.anchor}"'
-    return f'<text class="{label.color}" {place}>{escape(label.text)}</text>'
+    role = f"{label.color} strip" if label.in_strip else label.color
+    return f'<text class="{role}" {place}>{escape(label.text)}</text>'
 
 
 def _steps(moves: Moves, times: Any) -> Iterator[str]:
@@ -281,6 +289,17 @@ def _motions(mark: str, moves: list[list[str]], seconds: float, closed: bool) ->
     yield f"@media print{{.{mark} .m{{animation:none}}}}"
 
 
+def _sizes_where_narrow(stage: Stage) -> tuple[float, float]:
+    """Of letters where the picture is shown small, pixels: beside the machine, and in the strip
+    below, whose lines neither touch nor run out of the picture.
+    """
+    larger = max(stage.size_of_type, SHRUNK * stage.width)
+    room = stage.width - 24 * stage.unit
+    longest = max((width_of(words, 1.0) for words, _ in stage.lines), default=0.0)
+    fitting = min(larger, stage.row / 1.05, room / max(longest, 1e-9))
+    return larger, max(stage.size_of_type, fitting) if len(stage.lines) > 1 else larger
+
+
 def _colors(mark: str, drawn: Moving) -> Iterator[str]:
     unit = drawn.stage.unit
     used = {stroke.role for part in drawn.parts for stroke in part.strokes}
@@ -294,8 +313,11 @@ def _colors(mark: str, drawn: Moving) -> Iterator[str]:
         yield f".{mark} .{name}{{{LOOKS[name].css(unit)}}}"
     yield f".{mark} text{{font:{pixels(size)}px 'DejaVu Sans',Verdana,sans-serif;"
     yield "dominant-baseline:central;paint-order:stroke;stroke:var(--paper);stroke-width:3px}"
-    larger = f".{mark} text{{font-size:{pixels(max(size, SHRUNK * drawn.stage.width))}px}}"
-    yield f"@media (max-width:{NARROW}px){{{larger}}}"
+    larger, strip = _sizes_where_narrow(drawn.stage)
+    rules = f".{mark} text{{font-size:{pixels(larger)}px}}"
+    if strip < larger:
+        rules += f".{mark} text.strip{{font-size:{pixels(strip)}px}}"
+    yield f"@media (max-width:{NARROW}px){{{rules}}}"
     for color in sorted({label.color for label in drawn.labels}):
         yield f".{mark} text.{color}{{fill:var(--{color})}}"
 

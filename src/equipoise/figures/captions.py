@@ -19,13 +19,15 @@ class Label:
     """A text that stands still.
 
     place : of its beginning, middle or end, as anchor says; the middle of its height.
-    color : name in `symbols.looks.LIGHT`.
+    color : name in `symbols.looks.LIGHT`.  in_strip : whether it is one of several
+    lines of the strip below.
     """
 
     text: str
     place: complex
     anchor: Literal["start", "middle", "end"] = "middle"
     color: str = "ink"
+    in_strip: bool = False
 
     def box(self, size: float) -> tuple[float, float, float, float]:
         """Left, top, right, bottom; about as wide as the text will be."""
@@ -68,7 +70,8 @@ def _strip(stage: Stage) -> Iterator[list[Label]]:
     yield [Label(words, right + 8 * stage.unit - 2j, "start")]
     corner = complex(stage.width - 12 * stage.unit, right.imag - 2)
     for row, (words, color) in enumerate(stage.lines):
-        yield [Label(words, corner - 1j * stage.row * row, "end", color)] if words else []
+        place = corner - 1j * stage.row * row
+        yield [Label(words, place, "end", color, len(stage.lines) > 1)] if words else []
 
 
 def ruler_ends(stage: Stage) -> tuple[complex, complex]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from itertools import pairwise
 from xml.etree import ElementTree
 
 import numpy as np
@@ -12,6 +13,8 @@ import pytest
 import equipoise as eq
 from equipoise.errors import UsageError
 from equipoise.figures.animation import animated_svg
+from equipoise.figures.stage import width_of
+from equipoise.figures.swing import swinging
 from equipoise.i18n import speaking
 from equipoise.symbols.scene import Scene
 from unit.animation.samples import analyzed, of_three_turns, prepared, shown
@@ -216,3 +219,17 @@ def test_one_crank_angle_does_not_move() -> None:
     scene = Scene.of(eq.move(eq.load("yamashita-1"), [0.3]))
     with pytest.raises(UsageError, match="got one crank angle"):
         animated_svg(scene, title="")
+
+
+def test_what_is_said_of_a_support_fits_where_the_picture_is_narrow() -> None:
+    """Letters are larger there; lines of the strip neither touch nor run out of the picture."""
+    rig = eq.load("yamashita-rig")
+    moving = swinging(Scene.of(eq.move(rig, 720)), eq.respond(rig), factor=2.0)
+    picture = Picture(animated_svg(moving, title="rig"))
+    narrow = picture.style.partition("@media (max-width:")[2]
+    size = float(re.findall(r"text\.strip\{font-size:([\d.]+)px\}", narrow)[0])
+    strip = [one for one in picture.root.iter(f"{NAME}text") if "strip" in one.get("class", "")]
+    assert len(strip) > 1 and size >= 12
+    places = sorted(float(one.get("y", "")) for one in strip)
+    assert min(b - a for a, b in pairwise(places)) > size
+    assert all(width_of(one.text or "", size) <= float(one.get("x", "")) for one in strip)
