@@ -39,6 +39,11 @@ def test_both_forms_stay_where_nobody_knows_the_sound() -> None:
         assert say("{one}은(는)", one="A") == "A은(는)"
 
 
+def test_and_or_and_being_take_their_form_too() -> None:
+    both = with_particles("A(이)나 M(이)나, 30°(이)며 199 g(이)며, 71.5 mm(이)고, 12 N(이)어야")
+    assert both == "A나 M이나, 30°며 199 g이며, 71.5 mm고, 12 N이어야"
+
+
 def test_sentences_are_said_with_one_form() -> None:
     """Also with a part that is said before."""
     note = Note("{links} can be moved no further", links=Note("{a} and {b}", a="cam", b="A"))
@@ -48,7 +53,8 @@ def test_sentences_are_said_with_one_form() -> None:
 
 def test_catalogues_give_both_forms_after_what_is_filled_in() -> None:
     """One that is fixed would be wrong after some words."""
-    fixed = re.compile(r"\}[\"'’”»)]*(?:을|를|이|가|은|는|와|과|으로|로)(?=[ ,.;:)]|$)")
+    particles = "을|를|이|가|은|는|와|과|으로|로|이나|나|이며|며|이고|고|이라|라|이어야|여야"
+    fixed = re.compile(rf"\}}[\"'’”»)\]]*(?:{particles})(?=[ ,.;:)]|$)")
     wrong = [text for text in catalogue("ko").values() if fixed.search(text)]
     assert wrong == []
 
