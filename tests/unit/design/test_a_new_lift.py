@@ -4,17 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 import equipoise as eq
+from equipoise.design import processes
 from equipoise.design.lifts import LIFTS, Draft, Lift, lift_named, with_lifts
 from equipoise.design.requirements import Requirement
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.planting.designs import Designs
 from equipoise.schema.template import Template
 from equipoise.studies.evaluate import evaluator
+from equipoise.web.stores import StoreDesk
 
 
 def heavier(machine: Machine, scale: float) -> Machine:
@@ -62,6 +65,37 @@ def test_studies_and_searches_take_a_lift_of_ones_own(scaled: None) -> None:
     found = eq.studies.search(asked, population=8, generations=5)
     assert found.values[0, 0] == pytest.approx(0.5, abs=0.06)
     assert found.machine().links["crank"].mass < base.links["crank"].mass
+
+
+def test_a_search_varies_it_around_balance(scaled: None) -> None:
+    """Each design is balanced by the plan of its file: what is left is least where links are
+    lightest, since force goes with their mass.
+    """
+    asked = eq.studies.Study(
+        title="",
+        model=Template.load("balance-crank"),
+        vary=(eq.design.Variable("mass_scale", eq.design.Choices((0.5, 1.0, 1.5))),),
+        outputs=(eq.studies.Output("after.shaking_force.y.rms", "balance", make="smallest"),),
+        sampling=eq.studies.Sampling("sobol", 8),
+    )
+    found = eq.studies.search(asked, population=8, generations=1, workers=1)
+    assert found.proof is not None and found.values[0, 0] == 0.5
+    machine = heavier(eq.load("balance-crank"), 0.5)
+    after = eq.balance(machine).after["shaking_force.y.rms"]
+    assert found.figures[0, 0] == pytest.approx(after, rel=1e-6)
+
+
+def test_the_page_opens_designs_of_it_as_machines(
+    scaled: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(processes, "Processes", processes.Threads)  # others know nothing of it
+    one = eq.design.Variable("mass_scale", eq.design.Range(0.5, 2.0))
+    eq.studies.sweep(study(one), tmp_path / "scaled.zarr", workers=1)
+    desk = StoreDesk.load(str(tmp_path / "scaled.zarr"))
+    told = desk.told(1).content
+    assert [column["name"] for column in told["columns"]] == ["mass_scale", "shaking_force.y.rms"]
+    scale = desk.store.read(range(3, 4)).values[0, 0]
+    assert desk.model(3).mass == pytest.approx(scale * eq.load("yamashita-1").mass)
 
 
 def test_the_search_of_geometry_takes_it_too(scaled: None) -> None:
