@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from copy import copy
 from dataclasses import dataclass, replace
 from functools import partial
 from math import degrees, floor, log10, pi, radians
@@ -13,6 +12,7 @@ import numpy as np
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, key_names
+from equipoise.keys import with_fields
 from equipoise.mechanism.assembly.builder import Guide
 from equipoise.mechanism.assembly.cam_shapes import (
     BESIDE,
@@ -275,8 +275,7 @@ def larger_base(machine: Machine, joints: Structure, cam: Cam) -> float | None:
 
 def _made(machine: Machine, joints: Structure, cam: Cam, radii: Array) -> Array:
     """With which base radii (R,), m, a cam can be made."""
-    several = copy(cam)
-    several.__dict__["base_radius"] = radii[:, None]  # unchecked: a column of designs
+    several = with_fields(cam, base_radius=radii[:, None])  # a column of designs
     alone = replace(joints, couplings=(several,))
     with np.errstate(all="ignore"):  # of some the follower does not reach the cam
         return can_be_made(fitted(machine, alone, several))[:, 0]

@@ -15,7 +15,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from copy import copy
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from typing import Any
 
@@ -24,6 +24,7 @@ import numpy as np
 from equipoise.displays import Brief
 from equipoise.errors import ChangePointError, ModelError, RangeError
 from equipoise.i18n import Note, series
+from equipoise.keys import with_fields
 from equipoise.keys.kinds import choice
 from equipoise.mechanism.assembly import sides
 from equipoise.mechanism.assembly.builder import Builder, Group
@@ -70,6 +71,7 @@ class Linkage(Brief):
     groups : what is solved after the drive, in order.
     near : motion of a machine that differs by little, from which loops are followed sooner.
     shared : all joints at once, where groups cannot tell their forces one after the other.
+    memory : what was computed of it elsewhere and takes time, by name, such as its cycle.
     """
 
     machine: Machine
@@ -79,6 +81,7 @@ class Linkage(Brief):
     groups: tuple[Group, ...]
     near: Cycle | None = None
     shared: Shared | None = None
+    memory: dict[str, Any] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     @cached_property
     def grounded(self) -> tuple[str, ...]:
@@ -148,16 +151,17 @@ class Linkage(Brief):
 
     def close(self) -> Cycle:
         """The closed motion, which is kept; its errors say only where the turn ends."""
-        if "cycle" not in self.__dict__:
+        if "cycle" not in self.memory:
             check = None if self.shared is None else self.shared.check
-            self.__dict__["cycle"] = close(self.machine, self.groups, self.near, check)
-        kept: Cycle = self.__dict__["cycle"]
+            self.memory["cycle"] = close(self.machine, self.groups, self.near, check)
+        kept: Cycle = self.memory["cycle"]
         return kept
 
     def of(self, machine: Machine) -> Linkage:
         """The same linkage for a machine that differs in nothing but masses, speed or gravity."""
         same = replace(self, machine=machine)
         same.__dict__.update({k: v for k, v in self.__dict__.items() if k not in same.__dict__})
+        same.memory.update(self.memory)
         return same
 
     def start(self, theta: np.ndarray) -> State:
@@ -299,7 +303,7 @@ def sides_at_position(machine: Machine, turning: Any = None) -> dict[str, str]:
     """
     bare = replace(machine, assembly={})
     if turning is not None:
-        bare.__dict__["turning"] = turning
+        bare = with_fields(bare, turning=turning)
     joints = structure(bare)
     choices = _grouped(bare, joints).choices
     return {choice.group.joint: choice.words[choice.side] for choice in choices}

@@ -107,9 +107,9 @@ def hidden(motion: Motion) -> tuple[str, ...]:
 
 def _kept(linkage: Linkage, find: Callable[[Linkage], Undecided]) -> Undecided:
     name = find.__name__
-    if name not in linkage.__dict__:
-        linkage.__dict__[name] = find(linkage)
-    found: Undecided = linkage.__dict__[name]
+    if name not in linkage.memory:
+        linkage.memory[name] = find(linkage)
+    found: Undecided = linkage.memory[name]
     return found
 
 

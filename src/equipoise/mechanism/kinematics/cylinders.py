@@ -18,6 +18,7 @@ import numpy as np
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, all_of
+from equipoise.keys import with_fields
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.assembly.reach import reach
 from equipoise.mechanism.assembly.steps import Array
@@ -221,8 +222,7 @@ def _turned(machine: Machine, shift: float) -> Machine:
     position = machine.position and replace(machine.position, crank_angle=0.0)
     bare = replace(machine, drive=drive, position=position, loads=(), planting=None, balance=None,
                    support=None, rows=())  # fmt: skip
-    bare.__dict__["turning"] = Shifted(drive.link, shift)
-    return bare
+    return with_fields(bare, turning=Shifted(drive.link, shift))
 
 
 def _lengths(bare: Followed, theta: Array, drive: Drive) -> Levels:

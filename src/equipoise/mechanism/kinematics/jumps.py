@@ -39,14 +39,14 @@ def jumps_of(linkage: Linkage) -> Array:
     ------
     MotionError : the crank cannot turn fully.
     """
-    known: Array | None = linkage.__dict__.get("_jumps")
+    known: Array | None = linkage.memory.get("jumps")
     if known is None:
         known = np.empty(0)
         if may_jump(linkage.machine) or linkage.machine.rubs:
             turns = linkage.cycle.turns
             every = [*declared_jumps(linkage.machine, turns), *_jumps_on_the_way(linkage)]
             known = _within(every, turns)
-        linkage.__dict__["_jumps"] = known
+        linkage.memory["jumps"] = known
     return known
 
 

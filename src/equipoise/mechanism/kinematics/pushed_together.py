@@ -17,6 +17,7 @@ import numpy as np
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, all_of
+from equipoise.keys import with_fields
 from equipoise.mechanism.assembly.linkage import Linkage, assemble
 from equipoise.mechanism.assembly.steps import Array, run, u
 from equipoise.mechanism.kinematics.motion import Motion
@@ -173,7 +174,7 @@ def commanded(machine: Machine) -> FollowedLinks:
     pushers = machine.pushers
     start = {one.link: one.start or 0.0 for one in pushers}
     bare = replace(machine, loads=(), planting=None, balance=None, support=None, rows=())
-    bare.__dict__["turning"] = RestingLinks(start)
+    bare = with_fields(bare, turning=RestingLinks(start))
     linkage = assemble(bare)
     moved = {end for one in machine.couplings for end in (one.driver, one.carrier)}
     if linkage.needed_references or moved & start.keys():

@@ -87,10 +87,10 @@ def rubbing_joints(linkage: Linkage) -> tuple[RubbingJoint, ...]:
     """Joints of a linkage that resist their motion; kept with it."""
     if not linkage.machine.rubs:
         return ()
-    known: tuple[RubbingJoint, ...] | None = linkage.__dict__.get("_rubbing")
+    known: tuple[RubbingJoint, ...] | None = linkage.memory.get("rubbing")
     if known is None:
         known = tuple(_rubbing(linkage))
-        linkage.__dict__["_rubbing"] = known
+        linkage.memory["rubbing"] = known
     return known
 
 

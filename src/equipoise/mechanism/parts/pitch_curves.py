@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from copy import copy
 from dataclasses import replace
 from functools import lru_cache
 from math import degrees, pi
@@ -12,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.i18n import Note
+from equipoise.keys import with_fields
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.formulas.curves import Array
 from equipoise.mechanism.formulas.rolling import (
@@ -202,13 +202,13 @@ def can_roll(shape: GearShape, gears: Pair) -> Array:
 
 def _design(held: Any, k: int) -> Any:
     """Numbers of one of the designs, instead of columns."""
-    found = copy(held)
+    of_one = {}
     for name, value in vars(held).items():
         several = value if isinstance(value, tuple) else (value,)
         if any(isinstance(one, np.ndarray) for one in several):
-            of_one = tuple(float(one[k, 0]) if np.ndim(one) else one for one in several)
-            found.__dict__[name] = of_one if isinstance(value, tuple) else of_one[0]
-    return found
+            numbers = tuple(float(one[k, 0]) if np.ndim(one) else one for one in several)
+            of_one[name] = numbers if isinstance(value, tuple) else numbers[0]
+    return with_fields(held, **of_one)
 
 
 @lru_cache(maxsize=64)
