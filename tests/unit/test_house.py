@@ -96,6 +96,33 @@ def test_functions_are_read_without_scrolling() -> None:
     assert long == []
 
 
+NUMBERED = ("balancing", "design", "handheld", "planting", "studies", "vibration")
+"""Rooms whose results hang on tolerances and limits of methods."""
+NUMBER = ast.Constant | ast.Tuple | ast.BinOp | ast.UnaryOp | ast.Name | ast.operator | ast.unaryop
+
+
+def without_reason(file: Path) -> Iterator[str]:
+    """Numbers of a module, settings of a method, with neither a text nor a comment behind them."""
+    body, lines = ast.parse(text_of(file)).body, text_of(file).splitlines()
+    for node, after in zip(body, [*body[1:], None], strict=True):
+        if not isinstance(node, ast.Assign | ast.AnnAssign) or node.value is None:
+            continue
+        parts = [*ast.walk(node.value)]
+        numbers = [one for one in parts if isinstance(one, ast.Constant)]
+        plain = all(isinstance(one, NUMBER | ast.expr_context) for one in parts)
+        said = isinstance(after, ast.Expr) and isinstance(after.value, ast.Constant)
+        if plain and any(isinstance(one.value, float | int) for one in numbers) and not said:
+            line = lines[node.lineno - 1]
+            if "  # " not in line and "[" not in line.partition("=")[0]:
+                yield line
+
+
+@pytest.mark.parametrize("room", NUMBERED)
+def test_numbers_that_decide_have_a_reason(room: str) -> None:
+    files = sorted((ROOT / room).glob("*.py"))
+    assert [line for file in files for line in without_reason(file)] == []
+
+
 def test_a_class_name_means_one_thing() -> None:
     """But for those that still mean several."""
     names = [node.name for file in FILES for node in nodes(file) if isinstance(node, ast.ClassDef)]

@@ -19,7 +19,7 @@ from functools import cached_property
 
 import numpy as np
 
-from equipoise.balancing.jump_bounds import JumpBounds
+from equipoise.balancing.jump_bounds import TINY, JumpBounds
 from equipoise.balancing.jump_readings import Forms, JumpReadings, linear_forms
 from equipoise.balancing.jumping_rows import JumpingDesigns, JumpingRows, smoothed
 from equipoise.balancing.least_of_forms import Part, least_of_forms
@@ -38,7 +38,6 @@ MOST_AT_ONCE = 2**25
 MOST_CUTS, STIFF, STEPS, SMALL = 60, 1e3, 10, 1e-6
 """Directions in which numbers are bounded; how hard they are pushed back, and in how many steps;
 share of an objective from which it counts as that much where it vanishes."""
-TINY = 1e-300
 
 
 @dataclass(frozen=True, eq=False)

@@ -26,6 +26,7 @@ MISSED = 1e-8
 CLOSE = 2e-9
 """Between the bounds, over the scale of the cost, at which the search ends."""
 MOST_NODES = 400
+"""Programs that are solved at most: a few seconds; what is left open then stands in the gap."""
 TANGENT_WIDTHS = (0.3, 0.1, 0.03, 0.01, 1e-3, 1e-4)
 """Over the interval: how far a ratio may go from where the square is replaced by its tangent."""
 WIDE = 10.0

@@ -29,6 +29,7 @@ directions are looked for too; directions."""
 LARGEST_DENOMINATOR = 3
 """Of the ratios that are tried where the driver turns fully: turns until the shaft is back."""
 TURNS = 720
+"""Crank angles at which the way of links past a shaft is looked at."""
 SAME = 2e-5
 """Share of the distance of two shafts to which gears have to fill it."""
 

@@ -25,6 +25,7 @@ from equipoise.balancing.jump_bounds import (
     SEGMENTS,
     SIGNS,
     SLACK,
+    TINY,
     BoxExtremes,
     Pieces,
 )
@@ -36,7 +37,6 @@ MOST = 12
 """Crank angles between jumps, and sides of jumps, at which a box is read."""
 MOST_VALUES = 2**26
 """Values of tables of pieces: half a GiB."""
-TINY = 1e-300
 
 
 @dataclass(frozen=True, eq=False)

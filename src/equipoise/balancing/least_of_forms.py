@@ -12,12 +12,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from equipoise.balancing.jump_bounds import TINY
 from equipoise.balancing.jump_readings import Forms
 from equipoise.signals import Array
 
 PENALTY = 1e4
 """Most that a limit may count, over what all objectives do."""
-TINY = 1e-300
 
 
 @dataclass(frozen=True, eq=False)

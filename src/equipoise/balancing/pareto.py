@@ -29,6 +29,7 @@ from equipoise.signals import Array
 Progress = Callable[[int, int], None]
 
 POINTS = 21
+"""Of a front between two objectives, both ends among them: twenty steps of the first."""
 SAME, HELD = 1e-7, 3e-9
 """Over the value before: less than this between the ends is no trade-off; how exactly the least
 second objective is held while the first is made small."""

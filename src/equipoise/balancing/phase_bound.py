@@ -16,7 +16,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from equipoise.balancing.box_bounds import HALVINGS, TINY, Bounder, Boxes, Numbers
+from equipoise.balancing.box_bounds import HALVINGS, Bounder, Boxes, Numbers
+from equipoise.balancing.jump_bounds import TINY
 from equipoise.balancing.multi_row import Cost
 from equipoise.balancing.phase_grid import alike
 from equipoise.signals import Array
@@ -27,6 +28,8 @@ MOST_BOXES, HOPELESS, BATCH = 40_000, 10_000, 512
 """Boxes that are looked at, half as many with numbers; where none of these bounds anything, as of
 many rows; cut in two at once."""
 BETTER, ROUNDING = 1e-9, 1e-9
+"""Shares of the cost before: what is better by less is as good; what a bound may be above by
+rounding."""
 LEAST_PART = 0.2
 """Share of a number's range that a cut leaves on either side."""
 

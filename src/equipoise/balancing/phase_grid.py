@@ -29,6 +29,8 @@ MOST_PAIRS, MOST_SAMPLES = 150_000_000, 1_000_000_000
 MOST_TABLE = 2**27
 """Samples that are held, of every row at every phase: half a GiB."""
 CHUNK, SAMPLED_CHUNK = 50_000, 4_000
+"""Arrangements that are judged together: by orders, and by samples, of which each takes many
+more."""
 SAMPLES = 96
 """In a turn, on which peaks are judged until they are polished."""
 FEWEST = 4
@@ -36,6 +38,7 @@ FEWEST = 4
 KEPT = 3_000
 """Best arrangements among which different ones are looked for."""
 SAME = 1e-12
+"""Over the largest amplitude: a difference of two rows that is rounding."""
 BETTER = 1e-9
 """Share by which a value must fall to count as better."""
 MOST_SWAPS, MOST_ROUNDS = 50_000, 100

@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from equipoise.balancing.jump_bounds import TINY
 from equipoise.balancing.multi_row import (
     AREA_SAMPLES,
     PENALTY,
@@ -46,7 +47,6 @@ REACH = 0.1
 """How far a top may move meanwhile, rad."""
 FINEST, MORE_WAYS, MOST_MOVES = 1e-6, 6, 2000
 """rad: least step of a search without slopes; ways by chance that it tries; its steps."""
-TINY = 1e-300
 
 
 def most_steps(cost: Cost) -> int:

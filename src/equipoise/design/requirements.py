@@ -18,8 +18,7 @@ from equipoise.signals import Array
 
 TURNING = {"crank_angle", "direction", "attitude", "min_at", "max_at"}
 """Last parts of the names of angles that are the same after a turn."""
-USUAL_SHARE = 0.01
-USUAL_ANGLE = radians(1)
+USUAL_SHARE, USUAL_ANGLE = 0.01, radians(1)
 """Tolerance where none is given: a share of the value, or an angle."""
 
 

@@ -38,6 +38,8 @@ Told = Callable[[int, int], None]
 TRIED, FOLLOWED = 256, 8
 """Designs spread over the room, and how many of the best are followed downhill."""
 STEPS, TOLERANCE = 200, 1e-9
+"""Of the sequential programs: steps at most, and the change of the measure, over its start, at the
+end."""
 LEAST = 1e-3
 """Share of the largest force below which an order does not count in the search."""
 WITHIN = 1e-6
@@ -216,6 +218,7 @@ SPEEDS = 81
 FINER, STILL = 4, 0.002
 """On so many times as many speeds the measure must be the same to this share; else they double."""
 DOUBLINGS = 3
+"""Of the speeds at most, which are 641 then."""
 DIGITS = 6
 """Significant digits of the numbers of a better tool, for people to set."""
 EDGE = 1e-6

@@ -23,6 +23,7 @@ nothing lies between its ends."""
 GROWTH, DOUBLINGS = 2.0, 200
 """Growth of the highest frequency until there are enough below it."""
 MOST = 200
+"""Natural frequencies that can be asked for: far above what shakes a hand."""
 
 
 def scale_of(tool: Tool) -> float:
@@ -152,6 +153,7 @@ WEDGE, LOSSES = 0.1, 1.5
 """With hysteresis eigenvalues nearer than this angle (rad), or than so many times that by which
 hysteresis turns a stiffness, to the negative real axis are not looked for."""
 HALVINGS = 52
+"""Of an interval between two counts, after which it is as wide as its last digit."""
 
 
 def characteristic(layout: Layout, s: Array) -> tuple[Array, Array]:

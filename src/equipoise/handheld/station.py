@@ -32,6 +32,7 @@ from equipoise.quantities import Dimension, Measured
 Both = tuple[float, float]
 """One number for bending in the vertical plane, one for the lateral one."""
 NOTHING: Both = (0.0, 0.0)
+"""A stiffness or damping that is not there, in both planes."""
 OF_HAND = ("mass", "stiffness", "damping")
 """What is said of a hand that has no measured impedance."""
 STIFFNESS = Planes(Quantity(dimension="stiffness"))

@@ -27,6 +27,7 @@ as small as the last of them."""
 SMALLEST_LOOP = 1e-9
 """Height and width of a loop, over the height of the whole curve, below which it is a cusp."""
 MOST_NODES = 6000
+"""Pieces of a cycle among which crossings are looked for, whose number goes with the square."""
 AT_ONCE, PIECES = 256, 4096
 """Loops that are measured, and pieces of the path that are followed, in one call: memory."""
 MOST_STEPS, CLOSED = 20, 1e-12

@@ -28,7 +28,10 @@ from equipoise.results.result import Result
 from equipoise.signals import Array
 
 GENERATIONS, POPULATION = 300, 120
+"""Of the global search, at most; it ends before where the targets are met or nothing gets
+better."""
 SMALLEST_POPULATION = 5
+"""Differential evolution breeds a design from four others."""
 CLOSE = 1e-2
 """Sum of squared steps from the targets at which the global search has found the place."""
 PATIENCE, STILL = 40, 1e-4

@@ -48,11 +48,13 @@ if TYPE_CHECKING:
 Array = np.ndarray[Any, Any]
 
 POPULATION, GENERATIONS = 100, 200
+"""Designs of a generation, and generations at most, where nothing else follows from the study."""
 FEWEST_GENERATIONS = 10
 """Into which a search of few designs is parted: in fewer, little is bred."""
 TIMED = 4
 """Generations from which the time to breed one is taken."""
 LEAST_POPULATION, MOST_POPULATION, MOST_GENERATIONS = 8, 100_000, 100_000
+"""Fewer parents than eight breed the same again; more than the others are a slip of the pen."""
 
 OnGeneration = Callable[[int, int, int, int], None]
 """Is called with generation, most of them, designs computed so far, designs on the front."""

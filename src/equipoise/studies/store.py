@@ -52,6 +52,7 @@ ABOUT, CHECKSUM = "zarr.json", "checksum"
 CODEC = "crc32c"
 """Zarr's name of what puts a checksum behind each chunk, and looks at it when that is read."""
 REASON, UNKNOWN = "reason", 255
+"""Name of the array of reasons, and the one of designs that are not computed yet."""
 NO_LINKS = "which no store has"
 DAMAGED = Note("see whether the disk is there, or sweep anew")
 BLOCK, NUMBERS = 65_536, 2**22

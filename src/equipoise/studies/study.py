@@ -22,7 +22,9 @@ Array = np.ndarray[Any, Any]
 CHUNK, SLOW_CHUNK = 65_536, 256
 """Designs that are computed and stored together: of analyses, and of whatever takes longer."""
 MOST_DESIGNS = 1_000_000_000
+"""Some days of computing where a design takes a microsecond."""
 MOST_VARIED, MOST_OUTPUTS, MOST_CHUNK, MOST_SEED = 1000, 1000, 10_000_000, 2**32 - 1
+"""Numbers that vary, outputs, designs of a chunk and seeds, each far beyond any use."""
 ANGLES, TOLERANCE = (8, 65_536), (1e-12, 0.1)
 """Fewest and most crank angles in a turn; least and largest tolerance of the figures."""
 RESERVED = ("design", "done", "kept", "reason")

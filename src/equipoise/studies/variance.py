@@ -152,6 +152,7 @@ def _drawn_again(terms: Array, seed: int) -> Array:
 
 
 PERCENTILES = (0.1, 1.0, 5.0, 50.0, 95.0, 99.0, 99.9)
+"""Shares of machines, %, below whose figures the table tells of; the middle one is the median."""
 BEYOND = 10
 """Machines that have to lie beyond a percentile for it to be told."""
 BINS, ROUNDING = 40, 1e-12

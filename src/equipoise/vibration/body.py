@@ -237,6 +237,7 @@ def _named(body: Body, chosen: Array) -> Note | str:
 
 
 SURGE, HEAVE, PITCH = 0, 1, 2
+"""Places of the motions in the plane among the six of a body."""
 IN_PLANE = (0, 1, 5)
 """Their numbers among the six coordinates of `vibration.body`."""
 

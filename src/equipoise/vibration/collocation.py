@@ -23,7 +23,9 @@ Rates = Callable[[Array], Array]
 STAGES = 8
 """Nodes in an interval: of order 16 at its ends."""
 COMPLEX_STEP = 1e-30
+"""Of the complex step of derivatives, of which no digits are lost however small it is."""
 MOST_ROUNDS = 40
+"""Steps of Newton's method, which takes about six where it comes to an end."""
 NOTHING = 1e-10
 """Size of a state (m, rad and their rates) below which it is rounding."""
 CLOSE = 1e-12

@@ -218,6 +218,7 @@ STALLS = to_say(
     "on, and has {given:.4g} N m; give a stronger motor, a higher ratio or a larger flywheel"
 )
 SETTLING_TURNS = 40
+"""Turns after which a motion in time is taken to have settled, as far as it ever does."""
 STANDSTILL = 1e-6
 """Speed backwards, over that of the file, at which a motor counts as stalled: above rounding."""
 

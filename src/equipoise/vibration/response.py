@@ -38,6 +38,7 @@ MODELS: dict[Model, str] = {
 NEUTRAL = 1e-9
 """How near to 1 a multiplier is told as 1."""
 LEAST_ORDERS = 10
+"""Orders that are listed where fewer are left."""
 SMALL = 1e-9
 """Share of the largest amplitude below which higher orders are left out."""
 

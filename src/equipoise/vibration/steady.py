@@ -33,6 +33,8 @@ SAMPLES = 720
 INTERVALS = 36
 """In a turn, to begin with."""
 MOST_INTERVALS, MOST_SWINGS = 4000, 400
+"""Intervals of a turn, and swings of the softest mode in a cycle, beyond which a solution takes
+minutes."""
 FINE = 1e-11
 """Residual of an interval at which it is left as it is."""
 SHORTEST = 1e-3

@@ -43,7 +43,9 @@ from equipoise.vibration.small_motion import respond_coupled, respond_linear
 SPEEDS = 200
 """In a sweep, besides those about resonances and where curves bend."""
 MOST_SPEEDS = 20_000
+"""Speeds that can be asked for: more than a picture has pixels."""
 MOST_RESONANCES = 60
+"""Resonances about which speeds are added: beyond these, orders are too high to be met."""
 PREFIXES = {"displacement": "", "velocity": "velocity_", "acceleration": "acceleration_"}
 """Of the figures of a gauge's displacement and of its derivatives."""
 

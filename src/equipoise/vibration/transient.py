@@ -27,7 +27,9 @@ from equipoise.vibration.response import of_support
 from equipoise.vibration.steady import equations, motor_setting
 
 MOST_TURNS = 2000
+"""Turns that are integrated at most, some minutes of computing."""
 LEAST_SAMPLES, SAMPLES_PER_TURN, MOST_SAMPLES = 2001, 72, 1_000_000
+"""Instants where none are asked for, at least and in a turn (every 5 deg); at most."""
 
 
 def _signal(name: str, dimension: Dimension, turned: Dimension) -> ResultOutput:
