@@ -5,11 +5,13 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 from math import hypot, radians
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 import equipoise as eq
+import support.found
 from equipoise.mechanism.outputs.declared import DECLARED, declaring, output
 from equipoise.mechanism.parts.balance import Balance, Limit, Objective
 from equipoise.results.yardsticks import OF_OUTPUT, FigureAssessment, assess, sentence, verdict
@@ -34,7 +36,7 @@ def pump() -> eq.Machine:
     [
         ("hydraulic-loader", "drive_force.peak"),
         ("twin-engine", "rocking_moment.peak"),
-        ("cam-pusher", "cams.crank to pusher.lift_off_speed"),
+        ("cam-pusher", "shaking_moment.peak"),
         ("quick-return", "drive_torque.peak_to_peak"),
         ("sieve", "gauges.stand_along.velocity.rms"),
         ("scotch-yoke", "shaking_force.peak"),
@@ -44,6 +46,14 @@ def test_each_machine_has_the_verdict_of_its_kind(name: str, figure: str) -> Non
     """By what its outputs declare: nothing knows these machines."""
     found = verdict(tuple(assessed(eq.load(name)).values()))
     assert found is not None and found.figure == figure
+
+
+def test_a_follower_that_lifts_off_is_the_verdict() -> None:
+    """From its lift-off speed of 583 rpm on, and not below it."""
+    machine = eq.load("cam-pusher")
+    for rpm, figure in ((580, "shaking_moment.peak"), (590, "cams.crank to pusher.lift_off_speed")):
+        found = verdict(tuple(assessed(machine.with_drive(speed=f"{rpm} rpm")).values()))
+        assert found is not None and found.figure == figure
 
 
 @pytest.mark.parametrize("name", few(sorted(eq.examples("linkage")), DISTINCT))
@@ -223,3 +233,14 @@ def test_a_figure_and_its_limit_stand_in_one_unit() -> None:
         words = sentence(assessed(limited)["gauges.stand.peak_to_peak"])
         units = re.findall(r"[\d.]+(?:e[+-]\d+)? (\S?m)\b", words)
         assert len(units) == 2 and len({*units}) == 1, words
+
+
+def test_a_torque_that_loads_swing_is_judged_by_their_work() -> None:
+    """A press whose links weigh more at its throw than its mean torque is; turned without its load
+    it only swings its links.
+    """
+    press = eq.load(Path(support.found.__file__).parent / "advised" / "stamping-press.toml")
+    found = assessed(press)["drive_torque.peak_to_peak"]
+    assert str(found.against) == "its mean" and found.yardstick < 60 < found.ratio
+    idle = assessed(replace(press, loads=()))["drive_torque.peak_to_peak"]
+    assert str(idle.against) == "the weight of the moving links at the throw of the crank"
