@@ -37,6 +37,7 @@ from equipoise.results.lost_contacts import lost_contacts
 from equipoise.results.named_figures import figures_by_name
 from equipoise.results.outputs import Output, Outputs
 from equipoise.results.result import Result
+from equipoise.results.slender_links import slender_links
 from equipoise.signals import Array, Figures, Periodic
 
 if TYPE_CHECKING:
@@ -237,7 +238,10 @@ class Analysis(Result):
     def notes(self) -> tuple[Note | str, ...]:
         """What to look at again, as `check` asks it: what may not be meant, and where it fails."""
         lost = () if self.solved is None else lost_contacts(self.solved)
-        asked = (*remarks(self.motion.linkage), *lost, *idle_parts(self.machine.support))
+        sectioned = any(link.section is not None for link in self.machine.links.values())
+        bending = slender_links(self.sections, self.motion.speed) if sectioned else ()
+        found = (*remarks(self.motion.linkage), *lost, *bending)
+        asked = (*found, *idle_parts(self.machine.support))
         return tuple(dict.fromkeys(asked))
 
     @property

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from equipoise.i18n import Note, say, to_say
 from equipoise.quantities import told
 from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Value
+from equipoise.results.slender_links import slender_links
 
 if TYPE_CHECKING:
     from equipoise.results.analysis import Analysis
@@ -47,8 +48,27 @@ def section_blocks(analysis: Analysis) -> Iterator[Block]:
     title = say("Largest stress along links (at crank angle), and safety")
     rows = ([row[k] for k in shown] for row in strength)
     yield Table.of(title, [columns[k] for k in shown], rows)
-    if notes := tuple(_notes(analysis)):
+    yield from _elastic_blocks(analysis)
+    if notes := (*_notes(analysis), *slender_links(analysis.sections, analysis.motion.speed)):
         yield Notes(notes)
+
+
+def _elastic_blocks(analysis: Analysis) -> Iterator[Block]:
+    """How links with an elastic modulus bend."""
+    rows: list[tuple[Cell, ...]] = []
+    for name, one in analysis.sections.items():
+        if one.deflection is not None:
+            frequency = None if one.natural_frequency is None else Value(one.natural_frequency)
+            bent = Value(one.deflection, at=one.deflection_at)
+            rows.append((name, frequency, bent, Value(one.path_error or 0.0)))
+    if rows:
+        columns = (
+            "",
+            Column(say("first natural frequency"), "frequency"),
+            Column(say("largest deflection"), "length"),
+            Column(say("largest error of the path of a point"), "length"),
+        )
+        yield Table.of(say("Links as beams on pins at both ends (at crank angle)"), columns, rows)
 
 
 def _first(analysis: Analysis, link: str) -> str:

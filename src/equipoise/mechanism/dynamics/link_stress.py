@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.i18n import to_say
+from equipoise.mechanism.dynamics.elastic import elastic_link, other_places
 from equipoise.mechanism.dynamics.fatigue import (
     WoehlerLine,
     amplitudes_about_zero,
@@ -19,6 +20,7 @@ from equipoise.mechanism.dynamics.fatigue import (
 from equipoise.mechanism.dynamics.forces import Forces
 from equipoise.mechanism.dynamics.section_loads import FIBRES, SectionLoads
 from equipoise.mechanism.kinematics.stroke_figures import figure
+from equipoise.mechanism.parts.machine import Link
 from equipoise.signals import Array
 
 
@@ -36,6 +38,11 @@ class LinkStress:
     cycles_to_failure : of the machine's cycle, by Miner's rule; None where it is endless, or no
         fatigue limit is given.  life : the same, s.
     fatigue_safety : fatigue limit over the largest amplitude about 0 that does as much.
+    natural_frequency : first one of bending, Hz, held as a beam by pins at both ends of the line;
+        None without an elastic modulus or mass along it.
+    deflection : largest one of the line, m.  deflection_at : crank angle of it, rad.
+    path_error : largest displacement, m, of the link's other points that follows from it and from
+        the stretch of the line; 0 where there are none.
     rod_mass, least_end_mass : the uniform part of the mass along the line, kg, and the smaller of
         the lumps at its ends, below 0 where mass lies beyond them.
     """
@@ -55,6 +62,10 @@ class LinkStress:
     life: float | None = figure(to_say("life"), "time")
     rod_mass: float = figure(to_say("mass spread along the line"), "mass")
     least_end_mass: float = figure(to_say("smaller mass at its ends"), "mass")
+    natural_frequency: float | None = figure(to_say("first natural frequency"), "frequency")
+    deflection: float | None = figure(to_say("largest deflection"), "length")
+    deflection_at: float | None = figure(to_say("largest deflection at crank angle"), "angle")
+    path_error: float | None = figure(to_say("largest error of the path of a point"), "length")
 
     def to_dict(self) -> dict[str, Any]:
         """As plain data in SI units."""
@@ -70,11 +81,12 @@ def link_stresses(forces: Forces) -> Mapping[str, LinkStress]:
         return {}
     period = 2 * pi * motion.turns / abs(motion.speed)
     return {
-        name: _figures(loads, motion.crank_angle, period) for name, loads in forces.sections.items()
+        name: _figures(loads, motion.machine.links[name], motion.crank_angle, period)
+        for name, loads in forces.sections.items()
     }
 
 
-def _figures(loads: SectionLoads, angles: Array, period: float) -> LinkStress:
+def _figures(loads: SectionLoads, link: Link, angles: Array, period: float) -> LinkStress:
     section, most = loads.section, loads.envelope
     side, k = np.unravel_index(int(np.argmax(most.stresses)), most.stresses.shape)
     cut = loads.cuts[int(k)]
@@ -99,7 +111,22 @@ def _figures(loads: SectionLoads, angles: Array, period: float) -> LinkStress:
         None if cycles is None else cycles * period,
         loads.mass.rod,
         min(loads.mass.first, loads.mass.last),
+        *_elastic(loads, link, angles),
     )
+
+
+def _elastic(
+    loads: SectionLoads, link: Link, angles: Array
+) -> tuple[float | None, float | None, float | None, float | None]:
+    """Natural frequency, largest deflection, its crank angle, and the error of paths."""
+    elastic = elastic_link(loads)
+    if elastic is None:
+        return None, None, None, None
+    sizes = np.max(np.abs(elastic.deflection), axis=0)
+    errors = (np.max(np.abs(elastic.moved(at))) for _, at in other_places(link))
+    worst = float(max(errors, default=0.0))
+    n = int(np.argmax(sizes))
+    return elastic.natural_frequency, float(sizes[n]), float(angles[n]), worst
 
 
 def _fatigue(loads: SectionLoads) -> tuple[float | None, float | None]:

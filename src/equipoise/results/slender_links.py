@@ -1,0 +1,42 @@
+"""Links so slender that what is computed of rigid ones misleads."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from math import inf, pi
+
+from equipoise.i18n import Note, to_say
+from equipoise.mechanism.dynamics.elastic import ADDED, added_share
+from equipoise.mechanism.dynamics.link_stress import LinkStress
+from equipoise.quantities import number, percent
+
+
+def slender_links(sections: Mapping[str, LinkStress], speed: float) -> Iterator[Note]:
+    """Links, by name, of which this is so at a speed of the crank, rad/s."""
+    for name, one in sections.items():
+        if one.natural_frequency is None or not speed:
+            continue
+        share = added_share(one.natural_frequency, speed)
+        if share <= ADDED:
+            continue
+        ratio = number(2 * pi * one.natural_frequency / abs(speed), digits=3)
+        if share == inf:
+            yield Note(
+                to_say(
+                    "the {link} bends at {ratio} times the crank's speed, within its first two "
+                    "orders: balancing by rigid links misleads; make it stiffer or lighter"
+                ),
+                link=name,
+                ratio=ratio,
+            )
+        else:
+            yield Note(
+                to_say(
+                    "the {link} has its first natural frequency at {ratio} times the crank's "
+                    "speed: bending adds {share} % to forces of twice that speed, which balancing "
+                    "by rigid links does not see"
+                ),
+                link=name,
+                ratio=ratio,
+                share=percent(share),
+            )
