@@ -31,7 +31,8 @@ def glossary() -> str:
         if one.word
     ]
     outputs = [
-        (one.label, MEANINGS[one.label], one.name.replace("{}", PLACE)) for one in DECLARED.values()
+        (one.label, MEANINGS.get(one.label, ""), one.name.replace("{}", PLACE))
+        for one in DECLARED.values()
     ]
     terms = [(term, meaning, "") for term, meaning in TERMS.items()]
     tables_ = (("Terms", terms), ("Outputs", outputs), ("Keys of files", keys))

@@ -136,6 +136,9 @@ MEANINGS = {
         "Component of the force in a sliding joint across its guide."
     ),
     "position of {name}": to_say("Coordinates of a point in the frame."),
+    "power lost in passing on the force {name}": to_say(
+        "Power that friction between teeth, or in a belt or chain, turns into heat."
+    ),
     "pressure angle {name}": to_say(
         "Angle between the normal of the contact and the motion of the follower."
     ),
