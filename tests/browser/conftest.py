@@ -41,12 +41,6 @@ def server() -> Iterator[tuple[str, int]]:
 
 
 @pytest.fixture(scope="session")
-def address(server: tuple[str, int]) -> str:
-    """The address of a server with a machine."""
-    return server[0]
-
-
-@pytest.fixture(scope="session")
 def hosted(tmp_path_factory: pytest.TempPathFactory) -> Site:
     """The page as a folder for any web host."""
     if lacks_runtime():
@@ -59,6 +53,17 @@ def host(hosted: Site) -> Iterator[str]:
     """The address of a web host that has it."""
     with hosting(hosted.folder) as address:
         yield address
+
+
+@pytest.fixture(
+    scope="session", params=["socket", pytest.param("worker", marks=pytest.mark.exhaustive)]
+)
+def address(request: pytest.FixtureRequest) -> str:
+    """The address of a page with a machine, over each wire: a socket, or a worker of the browser."""
+    if request.param == "worker":
+        return f"{request.getfixturevalue('host')}#example=yamashita-1"
+    address, _ = request.getfixturevalue("server")
+    return address
 
 
 @pytest.fixture(scope="package")  # longer, and Playwright's event loop would disturb other tests
@@ -81,7 +86,7 @@ def new_page(
     """
     contexts: list[BrowserContext] = []
     wrong: list[str] = []
-    origin = re.sub(r"/\?.*", "", address)
+    origin = re.sub(r"/[?#].*", "", address)
     known = (origin, origin.replace("http", "ws", 1), "data:", "blob:")
 
     def watch(url: str) -> None:
