@@ -21,8 +21,8 @@ from support.chosen import DISTINCT
 
 SEEDED = {Path(__file__).parent / room for room in ("laws", "secondroute", "crosscheck")}
 PARAM = type(pytest.param())
-MANY = 24
-"""Machines of one law, second route or cross-check, of which every change tries half."""
+MANY = 16
+"""Machines of one test, of which every change tries some."""
 FRESH = 20_000
 """Objects after which garbage is looked for; 700, as usual, take a twentieth of a long run."""
 NAMED = re.compile(r"(.+):(\d+)")
@@ -57,11 +57,10 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     seeded = metafunc.definition.path.parent in SEEDED or "seed" in metafunc.fixturenames
     seeds = metafunc.config.getoption("--seeds") if seeded else None
     every = metafunc.config.getoption("--exhaustive")
-    halved = not every and metafunc.definition.path.parent in SEEDED
-    half = metafunc.definition.name if halved else None
+    some = None if every else metafunc.definition.name
     marks = metafunc.definition.own_markers
     marks[:] = [
-        _thinned(mark, seeds, every, half) if mark.name == "parametrize" else mark for mark in marks
+        _thinned(mark, seeds, every, some) if mark.name == "parametrize" else mark for mark in marks
     ]
 
 
@@ -151,20 +150,20 @@ def _machines() -> frozenset[str]:
 
 
 def _is_tried(law: str, value: Any) -> bool:
-    """Whether a law is tried on one of its many machines: on half of them, other laws on others.
+    """Whether a test is tried on one of its many machines, other tests on others.
 
-    Whatever else a list has, such as formulas, is tried.
+    Half of those that can do what no other can, and a quarter of the rest.  Whatever else a list
+    has, such as formulas, is tried.
     """
     values = value.values if isinstance(value, PARAM) else value
     name = values if isinstance(values, str) else values[0] if isinstance(values, tuple) else None
-    if not isinstance(name, str) or name in DISTINCT:
+    if not isinstance(name, str) or re.split("[ :]", name)[0] not in _machines():
         return True
-    machine = re.split("[ :]", name)[0] in _machines()
-    return not machine or crc32(f"{law} {name}".encode()) % 2 == 0
+    return crc32(f"{law} {name}".encode()) % (2 if name in DISTINCT else 4) == 0
 
 
-def _thinned(mark: pytest.Mark, seeds: int | None, every: bool, half: str | None) -> pytest.Mark:
-    """A parametrisation without the values that are left out; of many, a named law takes half."""
+def _thinned(mark: pytest.Mark, seeds: int | None, every: bool, some: str | None) -> pytest.Mark:
+    """A parametrisation without the values that are left out; of many, a named test takes some."""
     names, values, *rest = mark.args
     names = [name.strip() for name in names.split(",")] if isinstance(names, str) else names
     values, kept = list(values), list[int]()
@@ -182,8 +181,8 @@ def _thinned(mark: pytest.Mark, seeds: int | None, every: bool, half: str | None
             if seed and seen[place].index(seed) >= seeds:
                 continue
         kept.append(k)
-    if half is not None and len(kept) >= MANY:
-        kept = [k for k in kept if _is_tried(half, values[k])]
+    if some is not None and len(kept) >= MANY:
+        kept = [k for k in kept if _is_tried(some, values[k])]
     how = dict(mark.kwargs)
     ids = how.get("ids")
     if ids is not None and not callable(ids):

@@ -15,13 +15,10 @@ from collections.abc import Callable, Iterator
 import pytest
 from playwright.sync_api import Browser, BrowserContext, Page, expect
 
-from browser.live import ROOT, SCREENSHOTS, Live
+from browser.live import LONGEST, ROOT, SCREENSHOTS, Live
 from equipoise.web.site import Site, write_site
 from support.chromium import chromium, path_of_chromium, served
 from support.host import RUNTIME, WHEELS, hosting, lacks_runtime
-
-SECONDS = 15
-"""The longest that anything may take on a busy machine."""
 
 
 def unavailable(reason: str) -> None:
@@ -59,7 +56,7 @@ def host(hosted: Site) -> Iterator[str]:
     scope="session", params=["socket", pytest.param("worker", marks=pytest.mark.exhaustive)]
 )
 def address(request: pytest.FixtureRequest) -> str:
-    """The address of a page with a machine, over each wire: a socket, or a worker of the browser."""
+    """The address of a page with a machine, over a socket, or over a worker of the browser."""
     if request.param == "worker":
         return f"{request.getfixturevalue('host')}#example=yamashita-1"
     address, _ = request.getfixturevalue("server")
@@ -71,7 +68,7 @@ def browser() -> Iterator[Browser]:
     """A Chromium."""
     if path_of_chromium() is None:
         unavailable("there is no Chromium (Debian: apt-get install chromium-headless-shell)")
-    expect.set_options(timeout=SECONDS * 1000)
+    expect.set_options(timeout=LONGEST * 1000)
     with chromium() as browser:
         yield browser
 
@@ -96,7 +93,7 @@ def new_page(
     def new(**options: object) -> Page:
         usual = {"viewport": {"width": 1280, "height": 900}, "reduced_motion": "reduce"}
         context = browser.new_context(**{**usual, **options})
-        context.set_default_timeout(SECONDS * 1000)
+        context.set_default_timeout(LONGEST * 1000)
         contexts.append(context)
         context.on("request", lambda sent: watch(sent.url))
         context.on("weberror", lambda error: wrong.append(str(error.error)))
@@ -120,7 +117,7 @@ def new_page(
 def free_page(browser: Browser, address: str) -> Iterator[Page]:
     """A page that may go to servers of its own test."""
     context = browser.new_context(viewport={"width": 1280, "height": 900}, reduced_motion="reduce")
-    context.set_default_timeout(SECONDS * 1000)
+    context.set_default_timeout(LONGEST * 1000)
     yield context.new_page()
     context.close()
 

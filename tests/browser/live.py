@@ -21,6 +21,8 @@ TWO_FRAMES = "new Promise(done => requestAnimationFrame(() => requestAnimationFr
 """The first may be under way already."""
 LONGEST = 60
 """s that an answer may take on a processor that others keep busy."""
+OVER_A_SOCKET = pytest.mark.parametrize("address", ["socket"], indirect=True)
+"""Of a test that looks at the line between page and server, or breaks it."""
 NUMBER = re.compile(r"[-−]?\d+(?:\.\d+)?")
 
 
@@ -36,9 +38,7 @@ class Live:
         page.goto(address)
         live = cls(page)
         joint = page.locator("[data-kind=point]").first  # whatever its language calls it
-        expect(joint).to_have_attribute(
-            "aria-valuetext", re.compile("mm"), timeout=LONGEST * 1000
-        )
+        expect(joint).to_have_attribute("aria-valuetext", re.compile("mm"), timeout=LONGEST * 1000)
         live.settled()
         page.evaluate("new Promise(done => setTimeout(() => requestAnimationFrame(done), 50))")
         return live

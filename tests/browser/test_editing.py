@@ -10,7 +10,7 @@ import pytest
 from playwright.sync_api import Page, expect
 
 import equipoise as eq
-from browser.live import NUMBER, Live
+from browser.live import NUMBER, OVER_A_SOCKET, Live
 from equipoise.quantities import number, typeset
 from surface.running import example_text
 
@@ -71,6 +71,7 @@ MOVES = """([x, y]) => new Promise((done) => {
 """Two moves at once, and whether the first was drawn when either was asked of the server."""
 
 
+@OVER_A_SOCKET
 def test_the_next_move_is_asked_for_before_the_last_is_drawn(live: Live) -> None:
     x, y = live.spot(live.joint("B"))
     live.page.mouse.move(x, y)

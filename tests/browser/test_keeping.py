@@ -12,7 +12,7 @@ from pathlib import Path
 from playwright.sync_api import Page, WebSocketRoute, expect
 
 import equipoise as eq
-from browser.live import Live
+from browser.live import OVER_A_SOCKET, Live
 from support.chromium import served, serving
 from surface.running import example_text
 
@@ -90,6 +90,7 @@ def test_the_file_of_a_tool_is_saved_and_its_steps_outlive_the_server(
         expect(live.button("Save")).to_be_enabled()
 
 
+@OVER_A_SOCKET
 def test_nothing_is_undone_before_there_is_anything(
     new_page: Callable[..., Page], address: str
 ) -> None:
@@ -120,6 +121,7 @@ def test_nothing_is_undone_before_there_is_anything(
     assert [json.loads(one)["type"] for one in held] == ["ready"]
 
 
+@OVER_A_SOCKET
 def test_an_undo_while_a_page_comes_back_is_of_the_last_step(
     new_page: Callable[..., Page], address: str
 ) -> None:

@@ -10,7 +10,7 @@ import pytest
 from playwright.sync_api import Page, WebSocketRoute, expect
 
 import equipoise as eq
-from browser.live import Live
+from browser.live import OVER_A_SOCKET, Live
 
 
 def test_the_page_is_small_and_moves_as_computed(
@@ -146,6 +146,7 @@ def test_by_keyboard_alone(live: Live) -> None:
     expect(live.page.get_by_role("dialog", name="Keys")).to_be_hidden()
 
 
+@OVER_A_SOCKET
 def test_a_broken_line_is_told_and_nothing_is_lost(
     new_page: Callable[..., Page], address: str
 ) -> None:
