@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import fcntl
 import gc
+import os
 import re
 import subprocess
 import sys
@@ -41,6 +42,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 def pytest_configure(config: pytest.Config) -> None:
     """Draw fewer examples at random on every change than where tests are asked for."""
+    _take_a_processor(config)
     from hypothesis import settings
 
     if not config.getoption("--exhaustive") and not _by_name(config):
@@ -112,6 +114,21 @@ def site() -> Path:
         made = subprocess.run(make, capture_output=True, text=True, check=False)
     assert (made.returncode, made.stderr) == (0, "")
     return top / "build" / "docs"
+
+
+def _take_a_processor(config: pytest.Config) -> None:
+    """Keep a worker on a processor of its own, where there is one for each.
+
+    Linear algebra then begins no further threads, nor do studies begin processes unless a test asks
+    for them: beside other workers these take longer to begin than what they share out.
+    """
+    worker = getattr(config, "workerinput", None)
+    if worker is None or not hasattr(os, "sched_setaffinity"):
+        return
+    processors = sorted(os.sched_getaffinity(0))
+    if worker["workercount"] <= len(processors):
+        number = int(worker["workerid"].removeprefix("gw"))
+        os.sched_setaffinity(0, {processors[number]})
 
 
 def _rewrite_share(config: pytest.Config) -> None:

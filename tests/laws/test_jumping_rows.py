@@ -261,6 +261,7 @@ def test_designs_that_jump_are_those_of_their_machines() -> None:
 
 
 @pytest.mark.parametrize("most", [None, pytest.param(0.6, marks=EXHAUSTIVE)])
+@EXHAUSTIVE
 def test_masses_with_phases_end_in_a_proof(most: float | None) -> None:
     """Where torque jumps: rows were shifted by orders, which ring, and the bound was none of the
     signal.  No phases and discs by chance are below it, nor with a limit any that keep it.

@@ -27,7 +27,7 @@ from equipoise.mechanism.parts.balance import (
     Weight,
 )
 from equipoise.mechanism.parts.planes import Bearing
-from support.chosen import few
+from support.chosen import EXHAUSTIVE, few
 
 MACHINE = eq.load("yamashita-1")
 PLATE = {"thickness": 0.02, "density": 7850.0}
@@ -109,6 +109,7 @@ def test_the_least_mass_of_a_moment(shape: str) -> None:
         assert 2 / 3 * 0.02 * 7850 * 0.1**3 * np.sin(piece["angle"] / 2) == pytest.approx(moment)
 
 
+@EXHAUSTIVE
 def test_teeth_with_a_range_of_directions() -> None:
     weight = Weight("any", 0.05, at_most=0.4)
     geared = GearedWeight("rocker", weight, teeth=(39, 40), module=0.0025, direction=(0.0, 1.0))

@@ -158,6 +158,7 @@ def test_a_force_that_can_vanish() -> None:
     assert found.machine.rows[1].phase == pytest.approx(pi, abs=1e-6)
 
 
+@EXHAUSTIVE
 def test_limits_are_kept_in_other_phases() -> None:
     """Of phases alone, and with masses, of which none could keep the limit in the phases before."""
     machine = side_by_side(TYPE_II, (0.0, 0.0, 0.0, 0.0))

@@ -13,7 +13,7 @@ import equipoise as eq
 from equipoise.measured.decay import Decay, identify_decay
 from equipoise.measured.fits import line_of_swings
 from equipoise.measured.turning import find_turns
-from support.chosen import few
+from support.chosen import EXHAUSTIVE, few
 from unit.measured.samples import OMEGA, simulated
 
 RUNS, FEW = 80, 30
@@ -103,6 +103,7 @@ def test_a_higher_confidence_gives_wider_intervals() -> None:
     assert widths[2] == pytest.approx(widths[1] * 2.576 / 1.96, rel=0.01)
 
 
+@EXHAUSTIVE
 def test_a_plain_regression_would_lean() -> None:
     """Errors in both variables make the slope of a regression too small, not that of this line."""
     slopes, plain = [], []

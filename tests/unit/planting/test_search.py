@@ -352,6 +352,7 @@ def test_an_arm_that_is_varied_alone_goes_its_own_way() -> None:
     assert names == ["tip.x", "tip.y", ECCENTRICITY]
 
 
+@EXHAUSTIVE
 def test_the_eccentricity_of_gears_is_found_again() -> None:
     wanted = eq.load("rotary-transplanter")
     start = Designs(wanted, {ECCENTRICITY: (0.0, 0.4)}).build([0.1])
