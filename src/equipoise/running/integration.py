@@ -17,7 +17,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
-from math import copysign, inf, pi
+from math import copysign, inf, nan, pi
 from typing import Any
 
 import numpy as np
@@ -75,6 +75,8 @@ ELECTRIC = 3
 """Values of a motor's circuit in a row of the track: its current, and two works."""
 BETWEEN = 6
 """Instants read in a step in time."""
+MOST_RATES = 50_000
+"""Of the motion, computed within one piece in time; usual are some hundred."""
 
 
 @dataclass(frozen=True)
@@ -170,6 +172,7 @@ class Integration:
         self.direction = 1.0
         self.halvings = 0
         self.cycle_before: dict[tuple[float, ...], Gained] = {}
+        self.rates_left = MOST_RATES
         self.on_turns: Callable[[float], None] = lambda turns: None
 
     def follow(
@@ -203,9 +206,13 @@ class Integration:
         now = self._switched_on(now)
         marks = [now]
         for k in range(1, MOST_PIECES + 1):
-            now = self._piece(now)
+            before = now
+            with np.errstate(over="ignore", invalid="ignore", divide="ignore"):  # of what is tried
+                now = self._piece(now)
             if now is None:
                 return
+            if not np.all(np.isfinite([now.time, now.angle, now.speed])):
+                raise _not_beyond(before.time)
             self.on_turns(abs(now.angle - angle) / (2 * pi))
             if k % LOOKED == 0:
                 marks = [*marks[-2:], now]
@@ -555,6 +562,7 @@ class Integration:
         events[0].direction = -1.0
         span = begin.time, min(until, begin.time + PATIENCE / self.usual)
         state = [begin.angle, begin.speed, *begin.electric, *begin.work]
+        self.rates_left = MOST_RATES
         done = solve_ivp(
             self._rates,
             span,
@@ -566,7 +574,7 @@ class Integration:
             atol=self.absolute,
         )
         if not done.success or not np.all(np.isfinite(done.y)):
-            raise ResponseError(Note("the motion cannot be followed beyond {t:g} s", t=done.t[-1]))
+            raise _not_beyond(done.t[-1])
         shares = np.arange(1, BETWEEN + 1) / BETWEEN
         time = (done.t[:-1, None] + np.diff(done.t)[:, None] * shares).ravel()
         rows = np.column_stack([time, done.sol(time).T])
@@ -582,6 +590,11 @@ class Integration:
         return self._happens(kind, replace(found, angle=edge) if kind == "edge" else found)
 
     def _rates(self, time: float, state: Array) -> list[float]:
+        if not np.all(np.isfinite(state[:2])):  # a try that has left all numbers
+            return [nan] * len(state)
+        self.rates_left -= 1
+        if self.rates_left < 0:  # as of a motor a thousand million times too strong
+            raise _not_beyond(time)
         angle, speed, driver = float(state[0]), float(state[1]), self.driver
         electric: list[float] = [0.0] * ELECTRIC
         if driver.controlled:
@@ -678,3 +691,8 @@ class Integration:
 
     def _note(self, kind: str, now: Instant) -> None:
         self.events.append(Event(kind, now.time, now.angle, now.speed))
+
+
+def _not_beyond(time: float) -> ResponseError:
+    """The motion can be followed up to a time, s, and no further."""
+    return ResponseError(Note("the motion cannot be followed beyond {t:g} s", t=time))

@@ -398,6 +398,15 @@ def wrong_motor(where: str, motor: Motor) -> Iterator[ModelError]:
             **key_names("no_load_speed", "stall_torque"),
         )
         yield ModelError(where, told)
+    elif motor.servo is not None and any(b <= a for a, b in pairwise(motor.servo.rows[0])):
+        yield ModelError(
+            f"{where}.servo.speed_gain",
+            Note(
+                "the speeds between which the torque falls from limit to limit are lost in "
+                "rounding; give less, or a larger {torque_limit}",
+                **key_names("torque_limit"),
+            ),
+        )
     elif table is None:
         return
     elif len(table.speed) != len(table.torque):

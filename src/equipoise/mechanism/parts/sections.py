@@ -21,6 +21,9 @@ from equipoise.keys import (
 )
 from equipoise.mechanism.checks import unknown_point
 
+THINNEST = 1e-9
+"""Share of a section that its wall has at least; of less, rounding leaves no digits of its area."""
+
 
 @declared
 class LinkSection(Frozen):
@@ -142,6 +145,11 @@ def wrong_section(
     if section.wall is not None and 2 * section.wall >= min(section._outer[0]):
         yield ModelError(
             f"{where}.wall", Note("got a wall that leaves no hole; give less, or leave it out")
+        )
+    if section.wall is not None and section.wall < THINNEST * max(section._outer[0]):
+        yield ModelError(
+            f"{where}.wall",
+            Note("got a wall that is lost in rounding beside the section; give more"),
         )
     if section.tensile_strength is not None and section.fatigue_limit is None:
         told = Note("goes with {fatigue_limit}; give that too", **key_names("fatigue_limit"))
