@@ -24,7 +24,8 @@ from dataclasses import asdict
 from itertools import chain
 from math import exp, sin
 from pathlib import Path
-from time import monotonic
+from threading import Event, Thread
+from time import monotonic, process_time
 from types import FrameType
 from typing import Any
 
@@ -37,7 +38,6 @@ from equipoise.web.messages import read
 from equipoise.web.replies import packed
 from equipoise.web.session import Session
 from support import machines_any, machines_strokes
-from support.chosen import few
 from support.machines import KINDS as KINDS_MADE
 from support.machines import Case, make
 from surface.registered import functions, line_of, loads
@@ -55,16 +55,24 @@ from surface.test_fuzz import NUMBERS, OF_UNIT, UNITS, WORDS, places
 
 SEARCH = int(os.environ.get("EQUIPOISE_FUZZ", "0"))
 FILES, MACHINES = SEARCH or 48, SEARCH or 200
-PARTS = 32
-"""Into which the machines are divided; a change tries some, which take a few seconds."""
+PARTS = 8
+"""Into which the machines are divided."""
 PROCESS = Path("/proc/self")
 SECONDS, BYTES = 30, 2 * 2**30
 SILENT = 16.0
 """Seconds on the clock in which a command need not say anything; processors together count more."""
-STOPPED, RARELY = 12, 10
-"""Seconds after which a command that computes on, and says so, is interrupted; of one machine in so
-many a minute, since a few long ones would take most of the time of all.
+SOON, STOPPED, RARELY = 1.5, 12, 10
+"""Seconds after which a command that computes on, and says so, is interrupted: on every change, so
+that all machines take about 40 s; where it is looked for longer; and of one machine in so many then
+a minute.
 """
+WAITING = 4
+"""So many times that on the clock, after which it is interrupted too: one that waits for others,
+such as for processes that it has started, takes no time of its own.
+"""
+HELD = 10.0
+"""Seconds of the processor's time in which another thread has to come to its turn, as that which
+says that a command still computes; and in which an interrupt is heard."""
 
 OF_EACH = {
     "linkage": (
@@ -251,7 +259,8 @@ def mutate(chance: random.Random, document: Any) -> None:
 
 @contextmanager
 def in_time(stop: float) -> Iterator[None]:
-    """A command that computes for too long is an error, however busy the machine is.
+    """A command that computes for too long is an error, however busy the machine is, and so is one
+    that lets no other thread come to its turn.
 
     stop : s after which it is interrupted instead, and has to end with 130; 0 for never.
     """
@@ -261,13 +270,40 @@ def in_time(stop: float) -> Iterator[None]:
             raise KeyboardInterrupt
         raise AssertionError(f"computes for more than {SECONDS} s")
 
-    before = signal.signal(signal.SIGPROF, late)
-    signal.setitimer(signal.ITIMER_PROF, stop or SECONDS)
+    clocks = {signal.ITIMER_PROF: signal.SIGPROF, signal.ITIMER_REAL: signal.SIGALRM}
+    before = {name: signal.signal(name, late) for name in clocks.values()}
+    with another_thread():
+        signal.setitimer(signal.ITIMER_PROF, stop or SECONDS)
+        signal.setitimer(signal.ITIMER_REAL, WAITING * (stop or 10 * SECONDS))
+        try:
+            yield
+        finally:
+            for clock, name in clocks.items():
+                signal.setitimer(clock, 0)
+                signal.signal(name, before[name])
+
+
+@contextmanager
+def another_thread() -> Iterator[None]:
+    """Inside, a thread beside comes to its turn again and again, and fails if it has to wait while
+    the processor computes for long.
+    """
+    ended, gaps = Event(), [0.0]
+
+    def turn() -> None:
+        last = process_time()
+        while not ended.wait(0.2):
+            last, before = process_time(), last
+            gaps.append(last - before)
+
+    thread = Thread(target=turn, daemon=True)
+    thread.start()
     try:
         yield
     finally:
-        signal.setitimer(signal.ITIMER_PROF, 0)
-        signal.signal(signal.SIGPROF, before)
+        ended.set()
+        thread.join()
+    assert max(gaps) < HELD, f"nobody could say or hear anything for {max(gaps):.0f} s"
 
 
 def tried(seed: int) -> None:
@@ -303,9 +339,10 @@ def machine_of(seed: int) -> tuple[dict[str, str], list[list[str]]]:
     return files, [shlex.split(part.replace("LINK", link)) for part in line.split(";")]
 
 
-def machine_tried(seed: int) -> None:
+def machine_tried(seed: int, longer: bool) -> None:
     """One machine from nothing through one command, or some that go on with what it wrote."""
-    run_through(seed, *machine_of(seed), stop=60 if seed % RARELY == 0 else STOPPED)
+    long = 60 if seed % RARELY == 0 else STOPPED
+    run_through(seed, *machine_of(seed), stop=long if longer else SOON)
 
 
 def open_page(file: str) -> None:
@@ -412,11 +449,11 @@ def test_every_command_on_every_kind_of_file(part: int) -> None:
 
 
 @pytest.mark.usefixtures("with_progress")
-@pytest.mark.parametrize("part", few(range(PARTS), range(PARTS) if SEARCH else (9, 10, 11)))
-def test_every_command_on_machines_from_nothing(part: int) -> None:
+@pytest.mark.parametrize("part", range(PARTS))
+def test_every_command_on_machines_from_nothing(part: int, pytestconfig: pytest.Config) -> None:
     first = random.randrange(2**40) if SEARCH else 0
     for seed in range(first + part, first + MACHINES, PARTS):
-        machine_tried(seed)
+        machine_tried(seed, bool(SEARCH) or pytestconfig.getoption("--exhaustive"))
 
 
 @pytest.mark.parametrize("kind", [kind for kind in KINDS_MADE if kind.startswith("torsion_")])
