@@ -407,7 +407,8 @@ def advice_blocks(found: Balanced) -> Iterator[Block]:
             (remedy_named(one), Change(1.0, 1 - one.gain), why_not(one)) for one in same
         )
         columns = (Column(say("remedy")), Column(say("change")), Column(say("why not")))
-        yield Table(say("What was tried to make smaller {aims}", aims=aims), columns, rows)
+        title = say("What was tried to make smaller {aims}", aims=aims)
+        yield Table(title, columns, rows, detail=True)
     yield from map(Text, _asking_for_more(found))
 
 

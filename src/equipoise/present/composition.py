@@ -21,7 +21,7 @@ from equipoise.present.drawing import drawings
 from equipoise.present.findings import Findings, ToolFindings, find
 from equipoise.present.fonts import check_pdf
 from equipoise.present.headlines import seen_in
-from equipoise.present.pages import ReportDocument, page, pdf
+from equipoise.present.pages import ReportDocument, SummaryAnswer, page, pdf
 from equipoise.present.sources import sources
 from equipoise.present.summary import answers, check_whole_cycle, tiles
 from equipoise.present.tool_headlines import judged
@@ -124,19 +124,32 @@ def _of_linkage(found: Findings, language: str, command: str, together: bool) ->
     if found.balanced is not None:
         blocks["balance"] = [*balance_blocks(found), *drawn.get("balance", [])]
     seen = {name: seen_in(name, found) for name in blocks}
+    summary = tuple(answers(found))
+    if "balance" in blocks:
+        blocks["balance"] = [*_not_said(blocks["balance"], summary)]
     return ReportDocument(
         language,
         said(machine.title),
         driven(machine, analysis.motion.speed),
         said(machine.description),
         tuple(tiles(found)),
-        tuple(answers(found)),
+        summary,
         _animation(found),
         *_sections(found, blocks, seen, _settings_of_linkage(found), command),
         lead="" if later is None else say(AFTER),
         verdict=next(_verdict(found), None),
         drawing=_first_picture(blocks["model"]),
     )
+
+
+def _not_said(
+    blocks: Iterable[Block | Section], summary: Iterable[SummaryAnswer]
+) -> Iterator[Block | Section]:
+    """Blocks but for texts that the summary has already."""
+    said_there = {sentence for answer in summary for sentence in answer.sentences}
+    for block in blocks:
+        if not (isinstance(block, Text) and block.text in said_there):
+            yield block
 
 
 def _verdict(found: Findings) -> Iterator[Text]:
@@ -233,7 +246,7 @@ def _sections(
     for name, parts in (blocks | last).items():
         short, long = ([], parts) if name in BEHIND else parted(parts)
         title = say(TITLES[name])
-        if short:
+        if short or seen.get(name):
             sections.append(Section(name, title, tuple(short), seen.get(name, "")))
         if long:
             appendix.append(Section(name, title, tuple(long)))

@@ -209,6 +209,7 @@ def _joints(found: Findings) -> Iterator[PictureEntry]:
         caption,
         partial(joints, found.analysis),
         partial(seen.joint_peaked, found.analysis),
+        detail=True,
     )
     caption = to_say("Forces in the joints as polar diagrams: the ends of their arrows.")
     yield from pages(
@@ -273,6 +274,7 @@ def _vibration(found: Findings) -> Iterator[PictureEntry]:
             caption,
             partial(sweep.resonance_map, over_speed),
             partial(gauged.met, over_speed, found.machine.drive.speed),
+            detail=True,
         )
         if over_speed.mounts:
             caption = to_say("Forces in the mounts against speed.")

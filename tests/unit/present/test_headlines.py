@@ -28,7 +28,7 @@ from equipoise.present.shaking import Shaking
 from equipoise.present.summary import answers, tiles
 from equipoise.quantities import brief
 from equipoise.results.analysis_blocks import orders_table
-from equipoise.results.blocks import SvgPicture, Table, Value
+from equipoise.results.blocks import SvgPicture, Table, Text, Value
 from equipoise.results.machine_blocks import angles_told
 from support.chosen import EXHAUSTIVE
 from support.found import found as found_of
@@ -145,7 +145,25 @@ def test_details_stand_in_the_appendix_and_no_picture_is_lost(name: str) -> None
     )
     assert len(first) <= len(behind) + 1
     assert sorted([*first, *behind]) == sorted(one.name for one in each(found_of(name)))
-    assert not [one for one in first if one.startswith(("mode", "balanced", "hodograph"))]
+    later = ("mode", "balanced", "hodograph", "joint", "resonance-map")
+    assert not [one for one in first if one.startswith(later)]
+    tried = [b.title for s in told.sections for b in s.blocks if isinstance(b, Table)]
+    assert not [title for title in tried if title.startswith("What was tried")]
+
+
+@pytest.mark.parametrize(
+    ("name", "most"), [("yamashita-1", 7), ("yamashita-rig", 9), ("stephenson-six-bar", 7)]
+)
+def test_a_report_is_read_on_a_few_pictures(name: str, most: int) -> None:
+    """Of each part those that show what its line says; a part without one has its line alone."""
+    told = document(name)
+    shown = [b for s in told.sections for b in s.blocks if isinstance(b, SvgPicture)]
+    assert len(told.without_drawing(shown)) <= most
+    assert [*dict.fromkeys(s.name for s in told.sections)][:4] == [
+        *("model", "motion", "forces", "joints"),
+    ]
+    (joints,) = (s for s in told.sections if s.name == "joints")
+    assert joints.seen and told.more("joints").startswith("Pictures in the appendix: ")
 
 
 @pytest.mark.parametrize("name", ["yamashita-1", "brush-cutter"])
@@ -188,6 +206,15 @@ def test_a_time_is_the_same_wherever_it_stands() -> None:
     printed = [str(block) for block in found.exposure.headline(False)]
     assert not [text for text in printed if re.search(r"\d\.\d+ h", text)]
     assert any("action value after 31 min, the limit value after 2 h 7 min" in t for t in printed)
+
+
+@pytest.mark.parametrize("name", ["yamashita-1", "stephenson-six-bar"])
+def test_what_the_summary_says_is_not_said_again(name: str) -> None:
+    told = document(name)
+    summary = {sentence for answer in told.summary for sentence in answer.sentences}
+    texts = [b.text for s in told.sections for b in s.blocks if isinstance(b, Text)]
+    assert any(one.startswith("Large here: ") for one in summary)
+    assert summary.isdisjoint(texts)
 
 
 def test_what_helps_is_told_before_and_after_at_once() -> None:
