@@ -97,6 +97,7 @@ def test_in_a_whole_cycle_what_goes_in_is_lost_or_taken() -> None:
     losses = eq.analyze(replace(machine, joints=tuple(joints), balance=None)).losses
     assert losses is not None and len(losses.joints) == len(machine.gears)
     assert losses.drive + losses.loads == pytest.approx(losses.loss, rel=1e-6)
+    assert {one.wear_work for one in losses.joints.values()} == {0.0}  # it is no sliding way
 
 
 def test_they_are_reported_everywhere() -> None:

@@ -29,7 +29,8 @@ def friction_blocks(analysis: Analysis) -> Iterator[Block]:
         figures = forces.motion.figures(abs(friction.effort))
         resists = largest(figures, dimension=kind)
         share = f"{percent(one.loss / total)} %" if total else ""
-        rows.append((joint_named(name), Value(one.loss), share, resists, Value(one.wear_work)))
+        wears = None if friction.table else Value(one.wear_work)
+        rows.append((joint_named(name), Value(one.loss), share, resists, wears))
     columns = (
         "",
         Column(say("mean loss"), "power"),

@@ -130,7 +130,11 @@ class JointFriction(Brief):
 
     @property
     def sliding_power(self) -> Array:
-        """What presses, times the sliding speed, W: its integral over time is what wears."""
+        """What presses, times the sliding speed, W: its integral over time is what wears.  None of
+        gears and belts, whose flanks slide otherwise than their pitch circles turn.
+        """
+        if self.table:
+            return 0.0 * self.pressing
         return self.pressing * np.abs(self.rate) * self.reach
 
 
