@@ -19,7 +19,7 @@ from statistics import median
 import psutil
 from joblib.externals.loky import get_reusable_executor
 
-from equipoise.design.processes import Processes, Task, computed
+from equipoise.design.processes import ChunkTask, Processes, computed
 
 TASKS, LENGTH = 40, 0.1
 
@@ -36,7 +36,7 @@ def busy(_: bytes, seconds: float) -> float:
 
 
 def own(lengths: list[float]) -> None:
-    with closing(Processes(Task(busy, b""), 2)) as pool:
+    with closing(Processes(ChunkTask(busy, b""), 2)) as pool:
         list(computed(pool, lengths))
 
 

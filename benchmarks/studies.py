@@ -35,7 +35,7 @@ from equipoise.mechanism.parts.gear_shapes import GearShape
 from equipoise.mechanism.parts.laws import LengthLaw, LengthSegment
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.schema.template import Template
-from equipoise.studies.objective_map import SingleValues, Variants, landscape
+from equipoise.studies.objective_map import MachineVariants, SingleValues, landscape
 from study_runs import ANGLES, MACHINE, SIGNALS, VARIED, designs
 from timing import in_turn
 
@@ -282,7 +282,7 @@ def maps(table: Table) -> None:
     some = np.stack([np.tile(x[::200], 5), np.repeat(y[::200], 5)], axis=1)
     for measure in ("ripple", "peak"):
         of = Objective("shaking_force.y" if measure == "ripple" else "shaking_force", measure)
-        single = SingleValues(Variants(model, {}), of, paths)
+        single = SingleValues(MachineVariants(model, {}), of, paths)
         found = landscape(model, dict(zip(paths, (x, y), strict=True)), of)
         agree(f"map, {measure}", found.values[::200, ::200].ravel(), single(some), CLOSE)
         tasks = {

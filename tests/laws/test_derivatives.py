@@ -11,7 +11,7 @@ import pytest
 from numpy.typing import NDArray
 
 import equipoise as eq
-from equipoise.mechanism.assembly.steps import Call, p, u
+from equipoise.mechanism.assembly.steps import KernelCall, p, u
 from equipoise.mechanism.parts.machine import FRAME
 from laws.subjects import machine_of
 from support.machines import KINDS, make
@@ -40,7 +40,7 @@ def exact_state(linkage: eq.mechanism.Linkage, theta: Any) -> dict[str, Any]:
     state.update(zip(u(FRAME), (one, zero, zero), strict=True))
     state.update(zip(u(drive), (mpmath.expj(theta), zero + 1, zero), strict=True))
     for step in linkage.motion:
-        assert isinstance(step, Call)
+        assert isinstance(step, KernelCall)
         inputs = [state[name] for name in step.inputs]
         values = step.kernel(*inputs, *map(exact, step.parameters))
         state.update(zip(step.outputs, values, strict=True))

@@ -15,9 +15,9 @@ import equipoise as eq
 from equipoise.balancing import rows_and_masses
 from equipoise.balancing.design_variables import LinkParameters
 from equipoise.balancing.effects import Effects
-from equipoise.balancing.jump_bounds import JumpBounds, Pieces
+from equipoise.balancing.jump_bounds import CubicPieces, JumpBounds
 from equipoise.balancing.jump_readings import JumpReadings
-from equipoise.balancing.multi_row import Rows, Term
+from equipoise.balancing.multi_row import PhasedRows, PhaseObjective
 from equipoise.balancing.phase_bound import CLOSE
 from equipoise.balancing.phasing import choose_phases
 from equipoise.mechanism.dynamics.forces import forces
@@ -45,8 +45,8 @@ def four_rows(machine: Machine) -> Machine:
 def test_extremes_of_rows_at_any_phases(measure: Measure) -> None:
     """Against sums at each row's own crank angles, so dense that jumps are met to 0.01 deg."""
     machine = four_rows(eq.load("transplanter"))
-    term = Term(
-        Objective("drive_torque", measure), Rows(machine).signals(Objective("drive_torque"))
+    term = PhaseObjective(
+        Objective("drive_torque", measure), PhasedRows(machine).signals(Objective("drive_torque"))
     )
     theta = np.arange(36_000) * (2 * pi / 36_000)
     for phases in np.random.default_rng(0).uniform(0, 2 * pi, (3, 4)):
@@ -89,7 +89,7 @@ def test_rows_of_tables_between_crank_angles(seed: int) -> None:
     """Extremes lie at rows of tables, and squares are integrated from one to the next: in closed
     form.
     """
-    rows = Rows(with_table())
+    rows = PhasedRows(with_table())
     phases = np.random.default_rng(seed).uniform(0, 2 * pi, 4)
     theta, torque = at_breaks(phases)
     before, after = torque[:-1], torque[1:]
@@ -103,14 +103,14 @@ def test_rows_of_tables_between_crank_angles(seed: int) -> None:
     }
     for measure, value in wanted.items():
         objective = Objective("drive_torque", measure)
-        found = Term(objective, rows.signals(objective)).value_at(phases)
+        found = PhaseObjective(objective, rows.signals(objective)).value_at(phases)
         # sides of jumps are taken 2e-8 rad away, over which the torque changes by 1e-7 of itself
         assert found == pytest.approx(value, rel=2e-6), measure
 
 
 def test_slopes_at_tops_and_sides_of_jumps() -> None:
     machine = four_rows(eq.load("transplanter"))
-    rows = Rows(machine).signals(Objective("drive_torque", "peak")).jumping
+    rows = PhasedRows(machine).signals(Objective("drive_torque", "peak")).jumping
     phases, step = np.array([0.3, 2.0, 3.1, 4.4]), 1e-6
     row, at = rows.anchors(phases, 1.0)
     carried = np.flatnonzero(row >= 0)  # tops stay where they are, sides go with their rows
@@ -142,7 +142,9 @@ def test_phases_for_the_least_peak() -> None:
 @pytest.mark.parametrize("measure", ["peak", "peak_to_peak"])
 def test_no_phases_in_a_box_are_below_its_bound(measure: Measure) -> None:
     """Against values at phases by chance in it; as the box shrinks, bounds come to the values."""
-    rows = Rows(four_rows(eq.load("transplanter"))).signals(Objective("drive_torque", measure))
+    rows = PhasedRows(four_rows(eq.load("transplanter"))).signals(
+        Objective("drive_torque", measure)
+    )
     assert rows.jumping is not None
     bounds, chance = JumpBounds(rows.jumping, measure), np.random.default_rng(2)
     middles = chance.uniform(0, 2 * pi, (12, 4)) * [0, 1, 1, 1]
@@ -159,12 +161,12 @@ def test_no_phases_in_a_box_are_below_its_bound(measure: Measure) -> None:
 
 def test_pieces_lie_between_their_extremes() -> None:
     """Over intervals of any length, with jumps in them, also beyond the period."""
-    rows = Rows(four_rows(eq.load("transplanter"))).signals(Objective("drive_torque")).jumping
+    rows = PhasedRows(four_rows(eq.load("transplanter"))).signals(Objective("drive_torque")).jumping
     assert rows is not None
     chance = np.random.default_rng(3)
     low, width = chance.uniform(-9.0, 9.0, 300), 10.0 ** chance.uniform(-6, 1, 300)
     low[:20] = rows.jumps[0] - width[:20] / 2
-    least, most = Pieces.of(rows).extremes(np.ones(300, int), low, low + width)
+    least, most = CubicPieces.of(rows).extremes(np.ones(300, int), low, low + width)
     curve, _ = rows.curves[1]
     inside = curve(low[:, None] + width[:, None] * np.linspace(0.0, 1.0, 2001))[..., 0]
     small = 1e-9 * float(np.ptp(inside))
@@ -180,8 +182,9 @@ def test_two_rows_that_jump_end_in_a_proof() -> None:
     found = choose_phases(machine, [Objective("drive_torque", "peak")])
     assert found.bound <= found.combined[1] <= found.bound + 1.01 * CLOSE
     assert not any("before it had proved" in str(note) for note in found.notes)
-    term = Term(
-        Objective("drive_torque", "peak"), Rows(machine).signals(Objective("drive_torque", "peak"))
+    term = PhaseObjective(
+        Objective("drive_torque", "peak"),
+        PhasedRows(machine).signals(Objective("drive_torque", "peak")),
     )
     grid = np.linspace(0.0, 2 * pi, 721)
     least = np.min(term.values(np.stack([0 * grid, grid], axis=1)))
@@ -253,7 +256,7 @@ def test_designs_that_jump_are_those_of_their_machines() -> None:
     effects = Effects(machine, [LinkParameters("crank")])
     designs = rows_and_masses.jumping_designs(effects, TORQUE)
     assert designs is not None
-    rows = Rows(found.machine).signals(TORQUE).jumping
+    rows = PhasedRows(found.machine).signals(TORQUE).jumping
     assert rows is not None
     moved = designs.at(np.array([mass, mass * x, mass * y, inertia]))
     phases = np.array([[0.0, 0.7, 2.0, 4.4]])
@@ -274,7 +277,7 @@ def test_masses_with_phases_end_in_a_proof(most: float | None) -> None:
     assert not any("before it had proved" in str(note) for note in found.notes)
     before, after = found.objectives[TORQUE.name]
     phases = np.array([row.phase for row in found.machine.rows])
-    term = Term(TORQUE, Rows(found.machine).signals(TORQUE))
+    term = PhaseObjective(TORQUE, PhasedRows(found.machine).signals(TORQUE))
     assert after == pytest.approx(term.value_at(phases), rel=1e-6)
     chance = np.random.default_rng(5)
     for share in chance.uniform(0, 1, 12):
@@ -286,7 +289,8 @@ def test_masses_with_phases_end_in_a_proof(most: float | None) -> None:
         changed = machine.with_link("crank", mass=mass, center_of_mass=(center.real, center.imag))
         near = phases + share * chance.normal(size=(50, 2))
         torque, force = (
-            Term(one, Rows(changed).signals(one)).values(near) for one in (TORQUE, FORCE)
+            PhaseObjective(one, PhasedRows(changed).signals(one)).values(near)
+            for one in (TORQUE, FORCE)
         )
         at_most = np.inf if most is None else found.prices[FORCE.name].at_most
         allowed = force <= at_most

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.balancing.multi_row import Rows, Term
+from equipoise.balancing.multi_row import PhasedRows, PhaseObjective
 from equipoise.balancing.phase_grid import PhaseGrid
 from equipoise.balancing.phase_polish import Tops, square_with_slopes
 from equipoise.balancing.phase_search import PhaseSearch
@@ -139,7 +139,7 @@ def test_slopes_by_phase(measure: str, seed: int) -> None:
     """The largest piece is the value, and its slope is that of differences."""
     machine = anyhow(TYPE_II, seed)
     wish = Objective("shaking_moment", measure)  # type: ignore[arg-type]
-    term = Term(wish, Rows(machine).signals(wish))
+    term = PhaseObjective(wish, PhasedRows(machine).signals(wish))
     phases = np.array([row.phase for row in machine.rows])
     values, slopes = Tops.of(term, phases).pieces(phases)
     best = int(np.argmax(values))
@@ -156,7 +156,7 @@ def test_slopes_by_phase(measure: str, seed: int) -> None:
 def test_second_derivatives_by_phase() -> None:
     machine = anyhow(TYPE_II, 1, 4)
     wish = Objective("shaking_force")
-    term = Term(wish, Rows(machine).signals(wish))
+    term = PhaseObjective(wish, PhasedRows(machine).signals(wish))
     phases = np.array([row.phase for row in machine.rows])
     _, gradient, second = square_with_slopes(term, phases)
     for k, direction in enumerate(np.eye(4) * 1e-5):

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from equipoise.handheld.frequencies import natural_frequencies
-from equipoise.handheld.layout import Line
+from equipoise.handheld.layout import ShaftDeflection
 from equipoise.handheld.model import Absorber, Excitation, Hand, Station, Tool
 from equipoise.handheld.modes import vibrate_tool
 from equipoise.handheld.response import ToolResponse, respond_tool
@@ -36,7 +36,7 @@ def shaken(tool: Tool, *excitations: Excitation) -> Tool:
     return replace(tool, excitations=excitations)
 
 
-def integral(response: ToolResponse, function: Callable[[Line, Array], Array]) -> Array:
+def integral(response: ToolResponse, function: Callable[[ShaftDeflection, Array], Array]) -> Array:
     """Of a function of the fields along the shaft, by Gauss's points between all places of note.
 
     function : of the fields at some places (X) and of (X, 5): EI, m, kGA and rho I, and the place.
@@ -109,10 +109,10 @@ def test_forces_and_moments_on_the_whole_tool(theory: Theory, seed: int) -> None
     found = respond_tool(made(theory, seed), SPEEDS)
     w2 = found.frequency**2
 
-    def pushed(line: Line, part: Array) -> Array:
+    def pushed(line: ShaftDeflection, part: Array) -> Array:
         return column(part[:, 1]) * line.displacement
 
-    def turned(line: Line, part: Array) -> Array:
+    def turned(line: ShaftDeflection, part: Array) -> Array:
         return column(part[:, 4]) * pushed(line, part) + column(part[:, 3]) * line.slope
 
     force, moment = integral(found, pushed) * w2, integral(found, turned) * w2
@@ -151,7 +151,7 @@ def test_power_that_the_material_takes(theory: Theory, seed: int) -> None:
     found = respond_tool(made(theory, seed), SPEEDS)
     loss = found.tool.shaft.loss_factor
 
-    def strained(line: Line, part: Array) -> Array:
+    def strained(line: ShaftDeflection, part: Array) -> Array:
         bent = np.abs(line.moment) ** 2 / column(part[:, 0])
         return bent + np.abs(line.shear) ** 2 / column(part[:, 2])
 
@@ -203,11 +203,11 @@ def energies(found: ToolResponse) -> tuple[Array, Array]:
     """Twice the potential and the kinetic energy (2, K, S) of an undamped tool."""
     w2 = found.frequency**2
 
-    def strained(line: Line, part: Array) -> Array:
+    def strained(line: ShaftDeflection, part: Array) -> Array:
         bent = line.moment**2 / column(part[:, 0])
         return bent + line.shear**2 / column(part[:, 2])
 
-    def moving(line: Line, part: Array) -> Array:
+    def moving(line: ShaftDeflection, part: Array) -> Array:
         across = column(part[:, 1]) * line.displacement**2
         return across + column(part[:, 3]) * line.slope**2
 

@@ -13,7 +13,7 @@ import numpy as np
 import pint
 
 import equipoise as eq
-from equipoise.keys import Frozen, Kind, Point, Table, innermost
+from equipoise.keys import Frozen, KeyTable, Kind, Point, innermost
 from equipoise.keys.declaring import declarations
 from equipoise.mechanism.parts.balance import Limit
 from equipoise.mechanism.parts.cams import Cam
@@ -420,7 +420,7 @@ def in_units(thing: Any, units: Units, machine: eq.Machine | None = None) -> Any
 def _in_units(value: Any, kind: Kind, units: Units, machine: eq.Machine | None) -> Any:
     if isinstance(value, Frozen):
         return in_units(value, units, machine)
-    if isinstance(kind, Table):  # with one key, which the object has without it
+    if isinstance(kind, KeyTable):  # with one key, which the object has without it
         kind = innermost(declarations(kind.type)[0].kind)
     if isinstance(value, Mapping):
         return {name: _in_units(one, kind, units, machine) for name, one in value.items()}

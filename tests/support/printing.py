@@ -7,10 +7,10 @@ from collections.abc import Iterable
 from contextlib import redirect_stdout
 
 from equipoise.present import show_blocks
-from equipoise.results.blocks import Block, Section
+from equipoise.results.blocks import Block, ReportSection
 
 
-def printed(blocks: Iterable[Block | Section], title: str = "", width: int = 80) -> str:
+def printed(blocks: Iterable[Block | ReportSection], title: str = "", width: int = 80) -> str:
     """The lines of blocks, without colour."""
     out = io.StringIO()
     with redirect_stdout(out):
@@ -18,6 +18,6 @@ def printed(blocks: Iterable[Block | Section], title: str = "", width: int = 80)
     return out.getvalue()
 
 
-def words(blocks: Iterable[Block | Section] | str) -> str:
+def words(blocks: Iterable[Block | ReportSection] | str) -> str:
     """The same as words with single spaces between them, however the lines are broken."""
     return " ".join((blocks if isinstance(blocks, str) else printed(blocks)).split())

@@ -8,7 +8,7 @@ from math import pi
 import numpy as np
 
 import equipoise as eq
-from equipoise.balancing.multi_row import Rows, Term
+from equipoise.balancing.multi_row import PhasedRows, PhaseObjective
 from equipoise.mechanism.parts.balance import Objective
 from equipoise.mechanism.parts.support import Row
 from unit.vibration.build import Array
@@ -69,4 +69,4 @@ def measured(values: Array, measure: str) -> float:
 def value_of(machine: eq.Machine, objective: Objective) -> float:
     """What the package says of the machine as it is."""
     phases = np.array([row.phase for row in machine.rows])
-    return float(Term(objective, Rows(machine).signals(objective)).values(phases))
+    return float(PhaseObjective(objective, PhasedRows(machine).signals(objective)).values(phases))

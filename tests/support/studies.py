@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.codegen.figures import NO_ASSEMBLY, NO_FULL_TURN
-from equipoise.design.processes import Task
+from equipoise.design.processes import ChunkTask
 from equipoise.design.spreads import Choices, Normal, Range
 from equipoise.design.variables import Variable
 from equipoise.errors import UsageError
@@ -139,8 +139,8 @@ class Orders:
     deadly: Mapping[int, int] = field(default_factory=dict)
 
     @property
-    def task(self) -> Task:
-        return Task(obey, pickle.dumps(self))
+    def task(self) -> ChunkTask:
+        return ChunkTask(obey, pickle.dumps(self))
 
     def processes(self) -> set[int]:
         """Numbers of the processes that have begun a chunk."""

@@ -20,7 +20,7 @@ from equipoise.cli.runner import declared_of
 from equipoise.present.cells import grid
 from equipoise.present.layout import plain
 from equipoise.present.terminal import block_text
-from equipoise.results.blocks import Block, Listing, Section, Table, Text
+from equipoise.results.blocks import Block, FileText, ReportSection, Table, Text
 from surface.registered import functions, line_of
 from surface.running import equipoise as equipoise_runs
 from surface.running import example_text, succeeded
@@ -130,31 +130,31 @@ STAND_OUT = [
 class Told:
     """What a command tells: as text by width, as cells, and as texts that stand out."""
 
-    def __init__(self, title: str | None, blocks: Iterable[Block | Section]) -> None:
+    def __init__(self, title: str | None, blocks: Iterable[Block | ReportSection]) -> None:
         parts = [*blocks]
         self.by_width = {width: shown(title, parts, width) for width in WIDTHS}
         with pytest.MonkeyPatch.context() as patch:
             patch.setenv("FORCE_COLOR", "1")
             self.coloured = shown(title, parts, 80)
-        self.whole = [line for one in parts if isinstance(one, Listing) for line in lines_of(one)]
+        self.whole = [line for one in parts if isinstance(one, FileText) for line in lines_of(one)]
         told = [grid(one) for one in within(parts) if isinstance(one, Table)]
         self.cells = [cell for one in told for row in one.rows for cell in row]
         texts = [one for one in within(parts) if isinstance(one, Text) and one.emphasis]
         self.marked = len(texts), sum(cell.emphasis is not None for cell in self.cells)
 
 
-def shown(title: str | None, blocks: Iterable[Block | Section], width: int) -> str:
+def shown(title: str | None, blocks: Iterable[Block | ReportSection], width: int) -> str:
     return block_text(title, blocks, width)
 
 
-def lines_of(one: Listing) -> list[str]:
+def lines_of(one: FileText) -> list[str]:
     """Lines to be pasted, which stay whole."""
     return plain(one.text).splitlines()
 
 
-def within(blocks: Iterable[Block | Section]) -> Iterator[Block | Section]:
+def within(blocks: Iterable[Block | ReportSection]) -> Iterator[Block | ReportSection]:
     for one in blocks:
-        yield from within(one.blocks) if isinstance(one, Section) else [one]
+        yield from within(one.blocks) if isinstance(one, ReportSection) else [one]
 
 
 @pytest.fixture(scope="module")
@@ -173,7 +173,7 @@ def run(line: str, place: Path) -> list[Told]:
         run("sweep study.toml --out designs.zarr", place)
     found: list[Told] = []
 
-    def keep(title: str | None, blocks: Iterable[Block | Section], **_: int | None) -> str:
+    def keep(title: str | None, blocks: Iterable[Block | ReportSection], **_: int | None) -> str:
         found.append(Told(title, blocks))
         return ""
 

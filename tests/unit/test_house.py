@@ -18,13 +18,6 @@ ROOT = Path(equipoise.__file__).parent
 FILES = sorted(ROOT.rglob("*.py"))
 TOP = Path(__file__).parents[2]
 PAGES = [*sorted((TOP / "docs").glob("*.md")), TOP / "README.md", TOP / "CONTRIBUTING.md"]
-AMBIGUOUS = """
-    Best Body Call Change Curve Estimate Excitation Flywheel Format Kind Line Listing
-    Number Output Outputs Pair Part Path Picture Pieces Planes Pose Pushing Reading
-    Record Row Rows Scale Section Segment Shape Solved Stroke Swinging Table Task Term
-    Text Told Variants Work
-"""
-"""Names of several classes, each of which is to get a name of its own; no further ones."""
 FILE, FUNCTION = 800, 60
 """Most lines in a file and in a function.
 
@@ -124,9 +117,8 @@ def test_numbers_that_decide_have_a_reason(room: str) -> None:
 
 
 def test_a_class_name_means_one_thing() -> None:
-    """But for those that still mean several."""
     names = [node.name for file in FILES for node in nodes(file) if isinstance(node, ast.ClassDef)]
-    assert {name for name, count in Counter(names).items() if count > 1} <= {*AMBIGUOUS.split()}
+    assert {name for name, count in Counter(names).items() if count > 1} == set()
 
 
 def test_the_documentation_tells_these_sizes() -> None:

@@ -14,7 +14,7 @@ import pytest
 import equipoise as eq
 from equipoise.balancing import box_bounds, multi_row
 from equipoise.balancing.box_bounds import largest_reading
-from equipoise.balancing.multi_row import Cost, RowSignals, Term
+from equipoise.balancing.multi_row import Cost, PhaseObjective, RowSignals
 from equipoise.balancing.phase_grid import PhaseGrid
 from equipoise.cli import run
 from equipoise.cli.worker import ToolCall, reply_to
@@ -51,8 +51,10 @@ def peak_of(call: Callable[[], Any]) -> float:
         tracemalloc.stop()
 
 
-def term(measure: Measure, rows: int = 2, orders: int = ORDERS, turns: int = TURNS) -> Term:
-    return Term(
+def term(
+    measure: Measure, rows: int = 2, orders: int = ORDERS, turns: int = TURNS
+) -> PhaseObjective:
+    return PhaseObjective(
         Objective("shaking_moment", measure), RowSignals(amplitudes(1, rows, 1, orders), turns)
     )
 

@@ -27,7 +27,7 @@ from equipoise.balancing.headlines import (
     headline_objectives,
     watched_of,
 )
-from equipoise.balancing.multi_row import Rows, Term
+from equipoise.balancing.multi_row import PhasedRows, PhaseObjective
 from equipoise.balancing.objectives import unit_of
 from equipoise.balancing.optimisation import balance, in_phases
 from equipoise.balancing.phase_bound import PhaseProof
@@ -229,9 +229,11 @@ class _Adviser:
         """Other phases of the rows; where they twist the machine more than they save, those too
         that leave it without twist.
         """
-        rows = Rows(self.machine)
+        rows = PhasedRows(self.machine)
         try:
-            moved = [one for one in plan.objectives if Term(one, rows.signals(one)).influenced]
+            moved = [
+                one for one in plan.objectives if PhaseObjective(one, rows.signals(one)).influenced
+            ]
             free = replace(plan, phases=Phases(), objectives=tuple(moved))
             found = self.judged(_in_whole_degrees(self.solve(self.machine, free)))
             yield found
@@ -485,11 +487,11 @@ def _aims_of(machine: Machine, plan: Balance) -> tuple[Objective, ...]:
 
 def _moved(machine: Machine, plan: Balance) -> Iterator[Objective]:
     """Objectives that are not nothing, and that the plan can change."""
-    rows = Rows(machine) if plan.phases is not None else None
+    rows = PhasedRows(machine) if plan.phases is not None else None
     weights = replace(plan, phases=None)
     problem = None if weights.changes_nothing else Problem.of(machine, weights)
     for one in plan.objectives:
-        turned = rows is None or Term(one, rows.signals(one)).influenced
+        turned = rows is None or PhaseObjective(one, rows.signals(one)).influenced
         if turned and (problem is None or problem.moves(one)):
             yield one
 

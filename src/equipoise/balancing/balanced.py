@@ -41,7 +41,7 @@ from equipoise.results.declaring import (
     dimension_at,
     values_of,
 )
-from equipoise.results.outputs import Outputs
+from equipoise.results.outputs import AnalysisOutputs
 from equipoise.results.result import Result
 from equipoise.signals import Array
 from equipoise.vibration.response import GaugeSignals, of_support
@@ -278,7 +278,7 @@ class Balanced(Result):
             motion = move(machine, angles, acceleration=0.0)
             columns += [
                 (f"{one.name}.{name}", one.unit, one.values)
-                for one in Outputs(Analysis(motion, forces(motion))).ordered
+                for one in AnalysisOutputs(Analysis(motion, forces(motion))).ordered
                 if one.declared.compared
             ]
         return columns

@@ -34,10 +34,10 @@ from equipoise.quantities import Dimension, change, display, number, percent
 from equipoise.results.blocks import (
     Block,
     Cell,
-    Change,
     Column,
     Facts,
     Notes,
+    RelativeChange,
     Table,
     Text,
     Value,
@@ -187,11 +187,13 @@ def objectives_table(found: Balanced) -> Table:
         unit = si_unit(one, found.original)
         name = objective_named(one, len(found.original.rows))
         pair = (quantity(before, unit), quantity(after, unit, before))
-        rows.append((name, *pair, Change(before, after, worse_if(after > (1 + WORSE) * before))))
+        rows.append(
+            (name, *pair, RelativeChange(before, after, worse_if(after > (1 + WORSE) * before)))
+        )
     if len(rows) > 1:
         share = found.cost / found.whole
         left = Value(100 * share if share > FAINT else 0.0)
-        rows.append((f"{say('together')}, %", Value(100.0), left, Change(1.0, share)))
+        rows.append((f"{say('together')}, %", Value(100.0), left, RelativeChange(1.0, share)))
     columns = (Column(""), *(Column(say(label)) for label in BEFORE_AFTER))
     return Table(say("What was made small"), columns, tuple(rows))
 
@@ -218,7 +220,7 @@ def before_after(found: Balanced) -> Table:
             nothing = 1e-10 * least
             grown = new > (1 + WORSE) * max(old, nothing) and new > FAINT * largest[_kin(unit)]
             worse = worse_if(grown and name != "mass")
-            changed = Change(old, new, worse) if old > nothing else None
+            changed = RelativeChange(old, new, worse) if old > nothing else None
             if changed is None and isinstance(has, Value):  # there is no share to stand out
                 has = replace(has, emphasis=worse)
         rows.append((figure_named(name, len(found.original.rows)), had, has, changed))

@@ -22,8 +22,8 @@ import numpy as np
 from equipoise.balancing.jump_bounds import TINY, JumpBounds
 from equipoise.balancing.jump_readings import Forms, JumpReadings, linear_forms
 from equipoise.balancing.jumping_rows import JumpingDesigns, JumpingRows, smoothed
-from equipoise.balancing.least_of_forms import Part, least_of_forms
-from equipoise.balancing.multi_row import AREA_SAMPLES, Cost, Term, by_orders
+from equipoise.balancing.least_of_forms import FormSum, least_of_forms
+from equipoise.balancing.multi_row import AREA_SAMPLES, Cost, PhaseObjective, by_orders
 from equipoise.mechanism.parts.balance import Measure
 from equipoise.signals import AT_ONCE, Array, Periodic
 
@@ -241,7 +241,7 @@ class Bounder:
                     groups = (groups[0].with_more(form),)
             values.append(value)
             here.append(sum(np.max(one.at(boxes.numbers), axis=1) for one in groups))
-            parts.append(Part(groups, np.full(len(value), 1.0 / term.scale), place >= terms))
+            parts.append(FormSum(groups, np.full(len(value), 1.0 / term.scale), place >= terms))
             losses += lost / term.scale
         shares = self._shares(self.cost.factors[:, None] * values[:terms])
         for place, share in enumerate(shares):
@@ -274,7 +274,7 @@ class Bounder:
         least, most = (np.sum(one, axis=2)[:, None] for one in (least, most))
         return linear_forms(least, most, boxes.low, boxes.high), drops
 
-    def _each(self, totals: list[Array]) -> list[tuple[Term, Array, Array]]:
+    def _each(self, totals: list[Array]) -> list[tuple[PhaseObjective, Array, Array]]:
         return list(zip(self.cost.measured, totals, self._amplitudes, strict=True))
 
     def _over(self, boxes: Boxes, turned: Array, pushed: Array) -> tuple[Array, Array, Array]:
@@ -336,7 +336,7 @@ class Bounder:
         return np.exp(1j * self._orders[:, None] * halves[:, None, None] * places)
 
     def _reading(
-        self, term: Term, total: Array, amplitudes: Array, boxes: Boxes
+        self, term: PhaseObjective, total: Array, amplitudes: Array, boxes: Boxes
     ) -> tuple[Array, Array]:
         """Value (B,) of a term in the middles of boxes, and its reading (B, 1 + K, m, N)."""
         whole = np.einsum("bj,bjvcn->bvcn", _with_one(boxes.numbers), total)
@@ -423,7 +423,7 @@ def _with_one(numbers: Array) -> Array:
     return np.concatenate([np.ones((len(numbers), 1)), numbers], axis=1)
 
 
-def largest_reading(term: Term, total: Array) -> tuple[Array, Array, Array]:
+def largest_reading(term: PhaseObjective, total: Array) -> tuple[Array, Array, Array]:
     """Value (B,) of a term of signals (B, V, C, N), and amplitudes (B, C, N) of the reading that is
     the term's there, and nowhere more than it; and which speed (B,) is read, the loudest.
     """
@@ -436,7 +436,7 @@ def largest_reading(term: Term, total: Array) -> tuple[Array, Array, Array]:
     return sizes[places, loudest], readings[places, loudest], loudest
 
 
-def _read_in_time(term: Term, total: Array) -> tuple[Array, Array]:
+def _read_in_time(term: PhaseObjective, total: Array) -> tuple[Array, Array]:
     """Values (B, V) of signals (B, V, C, K + 1) as they are read at crank angles, and the readings
     (B, V, C, K + 1).
     """

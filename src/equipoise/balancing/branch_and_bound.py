@@ -17,7 +17,13 @@ from math import inf, isfinite
 
 import numpy as np
 
-from equipoise.balancing.program import Affine, NoSolutionError, Program, Solved, StalledError
+from equipoise.balancing.program import (
+    Affine,
+    NoSolutionError,
+    Program,
+    ProgramSolution,
+    StalledError,
+)
 from equipoise.i18n import Note
 from equipoise.signals import Array
 
@@ -89,7 +95,7 @@ class Square:
 
 
 @dataclass(frozen=True, eq=False)
-class Best:
+class ProvedSolution:
     """The best numbers that were found: x, its value, a proved lower bound, prices of limits.
 
     program : whose solution x is, with every square that matters held exactly.
@@ -109,7 +115,7 @@ class _Node:
     """Intervals of the squares' ratios, and the solution of the program over them."""
 
     intervals: tuple[tuple[float, float], ...]
-    solved: Solved
+    solved: ProgramSolution
 
 
 def minimise(
@@ -118,7 +124,7 @@ def minimise(
     scale: float = 1.0,
     progress: Progress | None = None,
     above: float = inf,
-) -> Best:
+) -> ProvedSolution:
     """The least cost.
 
     Parameters
@@ -139,11 +145,11 @@ class _Search:
     def __init__(self, program: Program, squares: Sequence[Square], scale: float) -> None:
         self.program, self.squares = program, squares
         self.scale = scale
-        self.best: Best | None = None
+        self.best: ProvedSolution | None = None
         self.nodes = 0
         self.lost = inf  # the least bound of intervals that could not be looked into
 
-    def run(self, progress: Progress | None, above: float) -> Best:
+    def run(self, progress: Progress | None, above: float) -> ProvedSolution:
         self.nodes += 1
         intervals = tuple((square.low, square.high) for square in self.squares)
         root = _Node(intervals, self.program.solve())  # which keeps to these intervals already
@@ -191,8 +197,8 @@ class _Search:
             square.keep_between(program, low, high)
         return _Node(intervals, program.solve())
 
-    def _as_best(self, solved: Solved, program: Program, bound: float) -> Best:
-        return Best(solved.x, solved.value, bound, solved.prices, program, self.nodes)
+    def _as_best(self, solved: ProgramSolution, program: Program, bound: float) -> ProvedSolution:
+        return ProvedSolution(solved.x, solved.value, bound, solved.prices, program, self.nodes)
 
     def _try(self, node: _Node) -> None:
         """Look for a better solution from where a node's lies."""
@@ -231,7 +237,7 @@ class _Search:
             square.keep_tangent(program, ratio, width * (high - low))
         return program
 
-    def _prices(self, best: Best) -> dict[str, float]:
+    def _prices(self, best: ProvedSolution) -> dict[str, float]:
         """Prices where ratios are free to follow a limit, as they are not while they are held."""
         try:
             return self._tangent(self._ratios(best.x), TANGENT_WIDTHS[-1]).solve().prices

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 
-from equipoise.balancing.multi_row import Rows, Term
+from equipoise.balancing.multi_row import PhasedRows, PhaseObjective
 from equipoise.balancing.objectives import measured
 from equipoise.errors import EquipoiseError, ModelError, ResponseError
 from equipoise.mechanism.outputs.declared import GROUPS, declared
@@ -14,7 +14,7 @@ from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.objectives import GAUGES, ROWS, WITHIN
 from equipoise.planting.summary import plant
 from equipoise.results.analysis import Analysis, analyze
-from equipoise.results.outputs import Output, unit_of_measure
+from equipoise.results.outputs import AnalysisOutput, unit_of_measure
 from equipoise.vibration.forced import respond
 
 WORSE = 0.01
@@ -159,7 +159,7 @@ def figures_of(machine: Machine) -> dict[str, float]:
     return figures | _of_rows(analysis) | _of_support(machine)
 
 
-def _measured(analysis: Analysis, output: Output, measure: Measure) -> float:
+def _measured(analysis: Analysis, output: AnalysisOutput, measure: Measure) -> float:
     """A measure of an output as an analysis has it, which sees where forces jump."""
     whole = analysis.resolved
     values = output.declared.component(output.declared.vector(whole, output.item))
@@ -168,12 +168,12 @@ def _measured(analysis: Analysis, output: Output, measure: Measure) -> float:
 
 def _of_rows(analysis: Analysis) -> dict[str, float]:
     """Figures of all rows together, where there are several; 0 where the rows cancel."""
-    rows, figures = Rows(analysis.machine), {}
+    rows, figures = PhasedRows(analysis.machine), {}
     for output in analysis.outputs:
         one = output.declared
         for measure in one.compared if one.needs == "rows" else ():
             objective = Objective(output.name.removeprefix(ROWS), measure)
-            term = Term(objective, rows.signals(objective))
+            term = PhaseObjective(objective, rows.signals(objective))
             value = term.without_rounding(_measured(analysis, output, measure))
             figures[f"{output.name}.{measure}"] = value
     return figures

@@ -297,7 +297,7 @@ class Effects:
 
 
 @dataclass(frozen=True)
-class Solved(Exerted):
+class SolvedOutputs(Exerted):
     """Outputs of a machine, or of what is added to it.
 
     about : point about which moments are taken, m.
@@ -309,7 +309,7 @@ class Solved(Exerted):
     preloads: ClassVar[bool] = False
 
 
-class Present(Solved):
+class Present(SolvedOutputs):
     """Of the machine from which the numbers count."""
 
     preloads: ClassVar[bool] = True
@@ -341,7 +341,7 @@ class Present(Solved):
         return replace(self.effects.start.across, exerted=exerted_in(self.solved))
 
 
-class UnitResponse(Solved):
+class UnitResponse(SolvedOutputs):
     """Of a unit of each number; arrays (K, N)."""
 
     @property

@@ -39,7 +39,7 @@ STEEL = MATERIALS["steel"]
 
 
 @dataclass(frozen=True)
-class Flywheel:
+class RequiredFlywheel:
     """A steel disc that is missing on a shaft.
 
     fluctuation : share of the mean speed, from slowest to fastest, that it allows.
@@ -79,13 +79,15 @@ class Flywheels:
     power : W, of the mean.
     """
 
-    choices: tuple[Flywheel, ...]
+    choices: tuple[RequiredFlywheel, ...]
     mean_torque: float
     largest_torque: float
     power: float
 
     declared: ClassVar[Declarations] = {
-        "choices": ResultOutput("flywheels to choose from", of=Flywheel.declared, many=True),
+        "choices": ResultOutput(
+            "flywheels to choose from", of=RequiredFlywheel.declared, many=True
+        ),
         "mean_torque": ResultOutput("of the drive, with a flywheel", "torque"),
         "largest_torque": ResultOutput("without", "torque"),
         "power": ResultOutput("of the mean torque", "power"),
@@ -107,7 +109,7 @@ def flywheels_for(analysis: Analysis, entries: tuple[FigureAssessment, ...]) -> 
     output = analysis.outputs[entry.output]
     mean = output.figures.mean
     power = mean * motion.speed
-    choices: list[Flywheel] = []
+    choices: list[RequiredFlywheel] = []
     for share in (STEADY,) if power < 0 else (STEADY, COARSE):
         missing = _missing(machine, share)
         ratios = [one.ratio for one in choices] or _ratios(machine)  # all on one shaft, to compare
@@ -142,7 +144,9 @@ def _ratios(machine: Machine) -> tuple[float, ...]:
     return tuple(dict.fromkeys((1.0, *faster, *map(float, SHAFT_RATIOS))))
 
 
-def _disc_of(analysis: Analysis, missing: float, share: float, ratio: float) -> Flywheel | None:
+def _disc_of(
+    analysis: Analysis, missing: float, share: float, ratio: float
+) -> RequiredFlywheel | None:
     """The disc on a shaft; None where it is too heavy there, or too thick for its diameter."""
     machine = analysis.machine
     motor = machine.drive.motor
@@ -155,7 +159,7 @@ def _disc_of(analysis: Analysis, missing: float, share: float, ratio: float) -> 
     if mass > most or thickness > THICKEST_DISC * diameter:
         return None
     is_assumed = ratio != 1 and (motor is None or ratio != motor.ratio)
-    return Flywheel(share, inertia, ratio, is_assumed, diameter, thickness, mass)
+    return RequiredFlywheel(share, inertia, ratio, is_assumed, diameter, thickness, mass)
 
 
 def _turned(inertia: float, widest: float) -> tuple[float, float]:
@@ -209,15 +213,15 @@ def flywheel_sentences(found: Flywheels, crank: str, links: float) -> Iterator[s
         )
 
 
-def _shaft(one: Flywheel) -> tuple[float, bool]:
+def _shaft(one: RequiredFlywheel) -> tuple[float, bool]:
     return one.ratio, one.is_shaft_assumed
 
 
-def _lets_swing(choices: Iterable[Flywheel]) -> bool:
+def _lets_swing(choices: Iterable[RequiredFlywheel]) -> bool:
     return any(one.fluctuation > STEADY for one in choices)
 
 
-def _disc(one: Flywheel, links: float) -> str:
+def _disc(one: RequiredFlywheel, links: float) -> str:
     return say(
         "at least {inertia}, as of a steel disc of {diameter} by {thickness} and {mass} ({ratio} "
         "times the moving links), keeps its speed within {share} %",

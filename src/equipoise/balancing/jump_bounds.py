@@ -117,8 +117,8 @@ class JumpBounds:
         return self.pieces.windows(self._bins)
 
     @cached_property
-    def pieces(self) -> Pieces:
-        return Pieces.of(self.rows)
+    def pieces(self) -> CubicPieces:
+        return CubicPieces.of(self.rows)
 
     # -- the best of them, closely -----------------------------------------------------------------
 
@@ -188,7 +188,7 @@ def _doubled(bins: Array, pick: Any) -> Array:
 
 
 @dataclass(frozen=True, eq=False)
-class Pieces:
+class CubicPieces:
     """Cubics of rows by cell: their values, and between which values they lie over intervals.
 
     starts, widths : (P,) of the cells, rad.  cubics : (m, 4, P), of the highest power first.
@@ -199,7 +199,7 @@ class Pieces:
     cubics: Array
 
     @classmethod
-    def of(cls, rows: JumpingRows) -> Pieces:
+    def of(cls, rows: JumpingRows) -> CubicPieces:
         """Of rows with one component."""
         places = rows.curves[0][0].x
         cubics = np.array([curve.c[..., 0] for curve, _ in rows.curves])

@@ -27,7 +27,7 @@ from equipoise.balancing.jump_bounds import (
     SLACK,
     TINY,
     BoxExtremes,
-    Pieces,
+    CubicPieces,
 )
 from equipoise.balancing.jumping_rows import JumpingDesigns
 from equipoise.mechanism.parts.balance import Measure
@@ -155,7 +155,7 @@ class JumpReadings:
     # -- what there is to read ---------------------------------------------------------------------
 
     @cached_property
-    def pieces(self) -> Pieces:
+    def pieces(self) -> CubicPieces:
         """Of all functions: by row, then number, then component."""
         start = self.designs.each[0]
         places = start.curves[0][0].x
@@ -166,7 +166,7 @@ class JumpReadings:
             for one in self.designs.each
             for c in range(start.curves[row][0].c.shape[-1])
         ]
-        return Pieces(places[:-1], np.diff(places), np.array(cubics))
+        return CubicPieces(places[:-1], np.diff(places), np.array(cubics))
 
     @cached_property
     def _functions(self) -> Array:

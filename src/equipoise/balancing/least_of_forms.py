@@ -32,7 +32,7 @@ class Bounded:
 
 
 @dataclass(frozen=True, eq=False)
-class Part:
+class FormSum:
     """A sum of groups of forms, times factors (B,); at most 1 where it is a limit."""
 
     groups: tuple[Forms, ...]
@@ -41,7 +41,7 @@ class Part:
 
 
 def least_of_forms(
-    parts: Sequence[Part],
+    parts: Sequence[FormSum],
     low: Array,
     high: Array,
     start: Array,
@@ -89,7 +89,7 @@ def _shared(weights: Array, values: Array) -> Array:
 
 
 def _solved(
-    parts: Sequence[Part],
+    parts: Sequence[FormSum],
     low: Array,
     high: Array,
     directions: Array,
@@ -133,7 +133,7 @@ def _solved(
 
 
 def _rows(
-    parts: Sequence[Part],
+    parts: Sequence[FormSum],
     low: Array,
     width: Array,
     directions: Array,

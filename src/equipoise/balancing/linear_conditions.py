@@ -14,7 +14,7 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 
-from equipoise.balancing.readings import UNITS, Reading, machine_size, reading
+from equipoise.balancing.readings import UNITS, ParameterSum, machine_size, reading
 from equipoise.decompositions import lstsq, pinv
 from equipoise.errors import UsageError
 from equipoise.i18n import Note, say, to_say
@@ -74,7 +74,7 @@ class Conditions(Result):
     coefficients: Array
     residuals: Array
     units: tuple[str, ...]
-    readings: tuple[Reading, ...]
+    readings: tuple[ParameterSum, ...]
     crank: bool
 
     @property

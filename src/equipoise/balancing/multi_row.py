@@ -93,7 +93,7 @@ class RowSignals:
 
 
 @dataclass(frozen=True, eq=False)
-class Rows:
+class PhasedRows:
     """The rows of a machine, at the constant speed of its drive."""
 
     machine: Machine
@@ -191,7 +191,7 @@ def by_orders(measure: Measure) -> bool:
 
 
 @dataclass(frozen=True, eq=False)
-class Term:
+class PhaseObjective:
     """One objective as a function of the phases.
 
     signals : of each row, of the orders that count.
@@ -224,7 +224,7 @@ class Term:
         return self.signals.jumping if self.measure in ("peak", "peak_to_peak") else None
 
     @property
-    def smoothed(self) -> Term:
+    def smoothed(self) -> PhaseObjective:
         """A term of few orders that is nowhere larger; itself where nothing jumps."""
         if self.jumping is None:
             return self
@@ -265,7 +265,7 @@ class Term:
     def single(self) -> float:
         """Sum of the values that every row has alone: m times that of one where all are equal."""
         rows = range(self.signals.amplitudes.shape[1])
-        alone = [Term(self.objective, self.signals.alone(k)) for k in rows]
+        alone = [PhaseObjective(self.objective, self.signals.alone(k)) for k in rows]
         return float(sum(term.values(np.zeros(1)) for term in alone))
 
     def value_at(self, phases: Array) -> float:
@@ -298,12 +298,12 @@ class Cost:
     each over the value that counts as one; it rises steeply where limits are more than their scale.
     """
 
-    terms: tuple[Term, ...]
+    terms: tuple[PhaseObjective, ...]
     combine: Combine = "sum"
-    limits: tuple[Term, ...] = ()
+    limits: tuple[PhaseObjective, ...] = ()
 
     @property
-    def measured(self) -> tuple[Term, ...]:
+    def measured(self) -> tuple[PhaseObjective, ...]:
         """Everything whose value counts."""
         return (*self.terms, *self.limits)
 

@@ -34,7 +34,7 @@ from equipoise.balancing.workshop import in_its_plane, phases_told, sentences
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.parts.objectives import GAUGES, ROWS
 from equipoise.quantities import change, display, percent, told
-from equipoise.results.blocks import Block, Cell, Change, Column, Table, Text
+from equipoise.results.blocks import Block, Cell, Column, RelativeChange, Table, Text
 from equipoise.results.outputs import objective_named, shown_in
 from equipoise.results.yardsticks import FigureAssessment, sentence
 
@@ -404,7 +404,7 @@ def advice_blocks(found: Balanced) -> Iterator[Block]:
         yield from map(Text, sentences_beyond_masses(found))
     for aims, same in groupby(found.tried, key=aims_told):
         rows: tuple[tuple[Cell, ...], ...] = tuple(
-            (remedy_named(one), Change(1.0, 1 - one.gain), why_not(one)) for one in same
+            (remedy_named(one), RelativeChange(1.0, 1 - one.gain), why_not(one)) for one in same
         )
         columns = (Column(say("remedy")), Column(say("change")), Column(say("why not")))
         title = say("What was tried to make smaller {aims}", aims=aims)

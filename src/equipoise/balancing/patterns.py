@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.balancing.multi_row import Rows, Term
+from equipoise.balancing.multi_row import PhasedRows, PhaseObjective
 from equipoise.errors import UsageError
 from equipoise.i18n import Note, say
 from equipoise.mechanism.checks import unknown
@@ -233,6 +233,6 @@ def pattern_blocks(machine: Machine, rows: int, spacing: float) -> Iterator[Bloc
 
 
 def _of_all(machine: Machine, output: str) -> Value:
-    term = Term(Objective(output), Rows(machine).signals(Objective(output)))
+    term = PhaseObjective(Objective(output), PhasedRows(machine).signals(Objective(output)))
     phases = np.array([row.phase for row in machine.rows])
     return Value(float(term.values(phases)), 10 * term.single)

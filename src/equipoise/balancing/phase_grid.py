@@ -19,7 +19,7 @@ from math import comb, factorial, prod
 
 import numpy as np
 
-from equipoise.balancing.multi_row import Cost, RowSignals, Term, by_orders
+from equipoise.balancing.multi_row import Cost, PhaseObjective, RowSignals, by_orders
 from equipoise.signals import Array, synthesis
 
 MOST = 5_000_000
@@ -123,7 +123,7 @@ class PhaseGrid:
                 chunk[:, group] = part[here]
             yield chunk
 
-    def _by_pairs(self, term: Term) -> Callable[[Array], Array]:
+    def _by_pairs(self, term: PhaseObjective) -> Callable[[Array], Array]:
         """Value (B,) of numbers of steps (B, m), by the pairs' tables."""
         amplitudes = term.signals.amplitudes * np.sqrt(term.shares)
         turning = np.exp(1j * np.outer(term.signals.orders, np.arange(self.levels) * self.step))
@@ -144,7 +144,7 @@ class PhaseGrid:
 
         return judge
 
-    def _by_samples(self, term: Term) -> Callable[[Array], Array]:
+    def _by_samples(self, term: PhaseObjective) -> Callable[[Array], Array]:
         """Value (B,) of numbers of steps (B, m), by samples of the signal."""
         phases = np.repeat(np.arange(self.levels)[:, None] * self.step, self.cost.rows, axis=1)
         theta = np.arange(self._samples) * (2 * np.pi / self._samples)

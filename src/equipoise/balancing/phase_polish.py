@@ -21,7 +21,7 @@ from equipoise.balancing.multi_row import (
     AREA_SAMPLES,
     PENALTY,
     Cost,
-    Term,
+    PhaseObjective,
     by_orders,
     followed,
     squared,
@@ -153,7 +153,7 @@ def _slopes(cost: Cost, free: Array, smoothing: float) -> tuple[float, Array, Ar
     return value, gradient, second
 
 
-def square_with_slopes(term: Term, phases: Array) -> tuple[float, Array, Array]:
+def square_with_slopes(term: PhaseObjective, phases: Array) -> tuple[float, Array, Array]:
     """Mean square, its gradient (m,) and its second derivatives (m, m) at phases (m,), rad.
 
     Of the first speed.
@@ -313,11 +313,11 @@ class Tops:
         for them; where signals jump, those of sides of jumps too, with the rows that these go with.
     """
 
-    term: Term
+    term: PhaseObjective
     places: tuple[tuple[Any, Any], ...]
 
     @classmethod
-    def of(cls, term: Term, phases: Array) -> Tops:
+    def of(cls, term: PhaseObjective, phases: Array) -> Tops:
         """All tops at phases (m,), rad."""
         if (jumping := term.jumping) is not None:
             return cls(term, ((jumping.anchors(phases, 1.0), jumping.anchors(phases, -1.0)),))

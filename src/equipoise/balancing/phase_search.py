@@ -17,7 +17,14 @@ from math import ceil, degrees, pi
 
 import numpy as np
 
-from equipoise.balancing.multi_row import NOTHING, Combine, Cost, Rows, RowSignals, Term
+from equipoise.balancing.multi_row import (
+    NOTHING,
+    Combine,
+    Cost,
+    PhasedRows,
+    PhaseObjective,
+    RowSignals,
+)
 from equipoise.balancing.phase_grid import (
     BETTER,
     PhaseGrid,
@@ -110,8 +117,8 @@ class PhaseSearch:
         return np.asarray(found - found[0])
 
     @cached_property
-    def rows(self) -> Rows:
-        return Rows(self.machine)
+    def rows(self) -> PhasedRows:
+        return PhasedRows(self.machine)
 
     @cached_property
     def force(self) -> RowSignals:
@@ -125,8 +132,8 @@ class PhaseSearch:
         terms = tuple(self._term(k, wish) for k, wish in enumerate(self.objectives, 1))
         return Cost(terms, self.combine, tuple(map(self._limit, self.limits)))
 
-    def _term(self, number: int, objective: Objective) -> Term:
-        term = Term(objective, self.rows.signals(objective, f"objectives[{number}]"))
+    def _term(self, number: int, objective: Objective) -> PhaseObjective:
+        term = PhaseObjective(objective, self.rows.signals(objective, f"objectives[{number}]"))
         if not term.influenced:
             raise UsageError(
                 Note(
@@ -139,10 +146,10 @@ class PhaseSearch:
 
     def value_of(self, objective: Objective) -> float:
         """Value of an objective with the phases of the machine as it is."""
-        return Term(objective, self.rows.signals(objective)).value_at(self.present)
+        return PhaseObjective(objective, self.rows.signals(objective)).value_at(self.present)
 
-    def _limit(self, limit: Limit) -> Term:
-        term = Term(limit.objective, self.rows.signals(limit.objective, "limits"))
+    def _limit(self, limit: Limit) -> PhaseObjective:
+        term = PhaseObjective(limit.objective, self.rows.signals(limit.objective, "limits"))
         before = float(term.values(self.present))
         most = limit.most(before)
         if not most > NOTHING * term.single:
@@ -154,7 +161,7 @@ class PhaseSearch:
             )
         return replace(term, scale=most)
 
-    def vanishes(self, term: Term) -> bool:
+    def vanishes(self, term: PhaseObjective) -> bool:
         """Whether an objective is 0 already, so that it counts over the sum of all rows alone."""
         return float(term.values(self.present)) <= BETTER * term.single
 

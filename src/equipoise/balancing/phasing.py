@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.balancing.multi_row import Combine, Term
+from equipoise.balancing.multi_row import Combine, PhaseObjective
 from equipoise.balancing.objectives import unit_of
 from equipoise.balancing.phase_bound import PhaseProof, prove
 from equipoise.balancing.phase_search import PhaseSearch, Progress, with_phases
@@ -176,7 +176,7 @@ def phasing_of(search: PhaseSearch, found: Array, proof: PhaseProof) -> Phasing:
     moved = not np.all(found == search.present)
     placed = with_phases(search.machine, found, search.cost.period) if moved else search.machine
     varying = (Objective(output, "ripple") for output in OF_ROWS)
-    lateral = [Term(wish, search.rows.signals(wish)) for wish in varying]
+    lateral = [PhaseObjective(wish, search.rows.signals(wish)) for wish in varying]
     before, after = (
         {one.objective.name: one.value_at(at) for one in cost.terms} for at in (present, found)
     )

@@ -22,7 +22,7 @@ from equipoise.balancing.linear_conditions import (
     parameter_scales,
 )
 from equipoise.balancing.program import Affine, NoSolutionError, Program
-from equipoise.balancing.readings import Reading, machine_size, reading
+from equipoise.balancing.readings import ParameterSum, machine_size, reading
 from equipoise.decompositions import pinv
 from equipoise.mechanism.dynamics.parameters import QUANTITIES
 from equipoise.mechanism.parts.machine import Machine
@@ -229,7 +229,7 @@ class Proof:
     """
 
     coefficients: Array
-    reading: Reading
+    reading: ParameterSum
     least: float
     unit: str
 

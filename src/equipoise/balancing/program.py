@@ -137,7 +137,7 @@ class ConeRows:
 
 
 @dataclass(frozen=True, eq=False)
-class Solved:
+class ProgramSolution:
     """Solution: x (n,), its value, a lower bound of it, and the price of each named limit."""
 
     x: Array
@@ -221,7 +221,7 @@ class Program:
         """Named limits, each once."""
         return list(dict.fromkeys(block.name for block in self.blocks if block.name))
 
-    def solve(self) -> Solved:
+    def solve(self) -> ProgramSolution:
         """Solve; raises `NoSolutionError` where there is none."""
         found = self._solve()
         for _ in range(MOST_ROUNDS):
@@ -253,7 +253,7 @@ class Program:
             if broken.size:
                 yield block.of(broken)
 
-    def _solve(self) -> Solved:
+    def _solve(self) -> ProgramSolution:
         matrix, right, cones = self._assembled()
         cost = np.zeros(self.count)
         for place, factor in self.cost.items():
@@ -269,7 +269,7 @@ class Program:
             raise StalledError(Note("the solver ended with {reason}", reason=solution.reason))
         bound = min(solution.value, solution.dual_value)
         prices = self._prices(solution.x, solution.z)
-        return Solved(solution.x, solution.value, bound, prices)
+        return ProgramSolution(solution.x, solution.value, bound, prices)
 
     def feasible(self, stalled: bool = True) -> bool:
         """Whether any numbers meet the constraints.

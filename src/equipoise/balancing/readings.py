@@ -27,7 +27,7 @@ WORDS = {
 
 
 @dataclass(frozen=True)
-class Term:
+class ParameterTerm:
     """A parameter of a link in a sum.
 
     sign : ``+`` or ``-``.  size : by which it is multiplied, so that the sum is in kg; None where
@@ -53,13 +53,13 @@ class Term:
 
 
 @dataclass(frozen=True)
-class Reading:
+class ParameterSum:
     """A combination of inertial parameters as a sum.
 
     factor : by which the combination was multiplied for it.  unit : of the sum.
     """
 
-    terms: tuple[Term, ...]
+    terms: tuple[ParameterTerm, ...]
     factor: float
     unit: str
 
@@ -73,7 +73,7 @@ class Reading:
         """The same for readers, ``mass*x of coupler / 71.5 mm + mass*x of rocker / 80 mm``."""
         return self._sum(lambda term: say(WORDS[term.quantity], name=term.link))
 
-    def _sum(self, named: Callable[[Term], str]) -> str:
+    def _sum(self, named: Callable[[ParameterTerm], str]) -> str:
         parts = [f"{one.sign} {one.around[0]}{named(one)}{one.around[1]}" for one in self.terms]
         first = parts[0].removeprefix("+ ")
         return " ".join([f"-{first[2:]}" if first.startswith("- ") else first, *parts[1:]])
@@ -99,7 +99,7 @@ def joint_length(machine: Machine, link: str) -> float:
     return apart or size_of(own) or machine_size(machine)
 
 
-def reading(machine: Machine, row: Array, signed: bool = False) -> Reading:
+def reading(machine: Machine, row: Array, signed: bool = False) -> ParameterSum:
     """A combination (P,) of a machine's inertial parameters in words.
 
     It is divided so that a mass stands alone, else so that the first moment that comes first stands
@@ -111,14 +111,14 @@ def reading(machine: Machine, row: Array, signed: bool = False) -> Reading:
     sign = -1.0 if terms[0][2] < 0 and not signed else 1.0
     if len(terms) == 1:
         link, quantity, value = terms[0]
-        term = Term("-" if sign * value < 0 else "+", link, quantity)
-        return Reading((term,), sign / abs(value), UNITS[quantity])
+        term = ParameterTerm("-" if sign * value < 0 else "+", link, quantity)
+        return ParameterSum((term,), sign / abs(value), UNITS[quantity])
     factor = sign / _divisor(machine, terms)
     parts = tuple(
-        Term("-" if factor * value < 0 else "+", link, quantity, abs(factor * value))
+        ParameterTerm("-" if factor * value < 0 else "+", link, quantity, abs(factor * value))
         for link, quantity, value in terms
     )
-    return Reading(parts, factor, "kg")
+    return ParameterSum(parts, factor, "kg")
 
 
 def _divisor(machine: Machine, terms: list[tuple[str, str, float]]) -> float:

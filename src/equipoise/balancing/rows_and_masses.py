@@ -19,7 +19,7 @@ from equipoise.balancing.box_bounds import Numbers
 from equipoise.balancing.branch_and_bound import finite
 from equipoise.balancing.effects import Effects
 from equipoise.balancing.jumping_rows import JumpingDesigns
-from equipoise.balancing.multi_row import Cost, RowSignals, Term
+from equipoise.balancing.multi_row import Cost, PhaseObjective, RowSignals
 from equipoise.balancing.objectives import Near, of_rows_alone, read, reading_of
 from equipoise.balancing.phase_bound import PhaseProof, prove
 from equipoise.balancing.phase_grid import distinct
@@ -274,7 +274,7 @@ class JointPhaseMassOptimizer:
         for one, scale, each, designs in each_term:
             whole = each[0] + np.tensordot(numbers, each[1:], 1)
             jumping = None if designs is None else designs.at(numbers)
-            terms.append(Term(one, RowSignals(whole, self.turns, jumping), scale))
+            terms.append(PhaseObjective(one, RowSignals(whole, self.turns, jumping), scale))
         count = len(self.problem.plan.objectives)
         return Cost(tuple(terms[:count]), self.problem.plan.combine, tuple(terms[count:]))
 

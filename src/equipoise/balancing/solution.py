@@ -13,7 +13,7 @@ from math import inf, isfinite
 
 import numpy as np
 
-from equipoise.balancing.branch_and_bound import Best, minimise
+from equipoise.balancing.branch_and_bound import ProvedSolution, minimise
 from equipoise.balancing.design_variables import DesignVariables, MovedCenter
 from equipoise.balancing.objectives import mean_square_rows, unit_of
 from equipoise.balancing.problem import ADDED, WITHOUT_EFFECT, Problem
@@ -48,7 +48,7 @@ class Solution:
     """
 
     problem: Problem
-    best: Best
+    best: ProvedSolution
     numbers: list[Array]
     machine: Machine
     method: Note
@@ -126,7 +126,9 @@ def _solve_once(problem: Problem, progress: Progress | None, above: float = inf)
     if numbers is not None:
         machine = problem.machine_with(numbers)
         cost = problem.cost_of(machine)
-        best = Best(np.zeros(0), cost, cost, {}, Program(), 0)  # no limit, no interval, no gap
+        best = ProvedSolution(
+            np.zeros(0), cost, cost, {}, Program(), 0
+        )  # no limit, no interval, no gap
         return Solution(problem, best, numbers, machine, Note("closed form"))
     built = problem.built
     try:
@@ -149,7 +151,7 @@ def _split(problem: Problem, x: Array) -> list[Array]:
     return problem.tightened([x[at] for at in problem.built.places])
 
 
-def _lightest_numbers(problem: Problem, best: Best) -> list[Array]:
+def _lightest_numbers(problem: Problem, best: ProvedSolution) -> list[Array]:
     """Of the numbers that are as good, those that add the least mass."""
     found = _split(problem, best.x)
     masses, units = problem.added_masses(problem.built.places)

@@ -45,7 +45,7 @@ if TYPE_CHECKING:
     from equipoise.handheld.model import Tool
     from equipoise.handheld.modes import ToolModes
     from equipoise.handheld.sweep import ToolSweep
-    from equipoise.results.blocks import Block, Section
+    from equipoise.results.blocks import Block, ReportSection
 
 app = App(name="tool")
 RANGE = '"2000 rpm : 9000 rpm"'
@@ -234,7 +234,7 @@ def _result(
         told = {name: one for part in parts for name, one in part.to_dict().items()}
         return {"title": tool.title, **({key: told} if key else told)}
 
-    def headline(alone: bool) -> Iterator[Block | Section]:
+    def headline(alone: bool) -> Iterator[Block | ReportSection]:
         for part in reversed(parts):  # the hands before the shaft
             yield from part.headline(alone)
         if alone:

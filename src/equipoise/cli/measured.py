@@ -167,7 +167,7 @@ OWNERS = {
 
 
 @dataclass(frozen=True)
-class Told:
+class TaskInput:
     """What is known of one task: its total value, m/s2, and how long a day, s, if that is told."""
 
     name: str
@@ -243,7 +243,7 @@ def exposure(
     }
     told = [each for text in inputs for each in _told(text, options, gauge or ())]
     if idle is not None and racing is not None:
-        told.append(Told("idling and racing", equivalent(idle, racing)))
+        told.append(TaskInput("idling and racing", equivalent(idle, racing)))
     if not told:
         raise UsageError(Note('give a value, "7.4 m/s^2 for 2.5 h", or the path of a CSV file'))
     _check_options(told, options)
@@ -252,7 +252,7 @@ def exposure(
     return _answer(_timed(told, duration or []))
 
 
-def _answer(told: list[Told]) -> CommandResult:
+def _answer(told: list[TaskInput]) -> CommandResult:
     from equipoise.exposure.blocks import told_blocks
     from equipoise.figures import measured as pictures
 
@@ -284,7 +284,7 @@ def _values(
     return {"measured": files, "tasks": tasks, "a_hv": a_hv, "a8": None}
 
 
-def _told(text: str, options: Mapping[str, bool], gauges: Sequence[str]) -> list[Told]:
+def _told(text: str, options: Mapping[str, bool], gauges: Sequence[str]) -> list[TaskInput]:
     """Tasks that an argument stands for: one value, one file of accelerations, or one of tasks."""
     from equipoise.schema.records import Accelerations, read_accelerations
 
@@ -294,7 +294,7 @@ def _told(text: str, options: Mapping[str, bool], gauges: Sequence[str]) -> list
             duration = quantity(repr(text), match["duration"], "time")
             if a_hv < 0:
                 raise UsageError(Note("got {text!r}; give an acceleration of 0 or more", text=text))
-            return [Told(match["name"] or match["a_hv"], a_hv, duration)]
+            return [TaskInput(match["name"] or match["a_hv"], a_hv, duration)]
         if LOOKS_LIKE_A_VALUE.fullmatch(text):
             raise UsageError(
                 Note('got {text!r}; say for how long a day, as in "7.4 m/s^2 for 2.5 h"', text=text)
@@ -302,8 +302,8 @@ def _told(text: str, options: Mapping[str, bool], gauges: Sequence[str]) -> list
     found = read_accelerations(text, gauges)
     if isinstance(found, Accelerations):
         weighted = _weighted(text, found, options)
-        return [Told(os.path.basename(text), weighted.a_hv, None, weighted)]
-    return [Told(task.name, task.acceleration, task.duration) for task in found]
+        return [TaskInput(os.path.basename(text), weighted.a_hv, None, weighted)]
+    return [TaskInput(task.name, task.acceleration, task.duration) for task in found]
 
 
 def _weighted(path: str, found: Accelerations, options: Mapping[str, bool]) -> Weighted:
@@ -319,7 +319,7 @@ def _weighted(path: str, found: Accelerations, options: Mapping[str, bool]) -> W
         return weigh_spectrum(found.at, found.values, bands=options["bands"], **shared)
 
 
-def _check_options(told: list[Told], options: Mapping[str, bool]) -> None:
+def _check_options(told: list[TaskInput], options: Mapping[str, bool]) -> None:
     """An option that would do nothing is told, not passed over."""
     files = [each.weighted for each in told if each.weighted is not None]
     of_use = {
@@ -340,7 +340,7 @@ def _check_options(told: list[Told], options: Mapping[str, bool]) -> None:
             )
 
 
-def _timed(told: list[Told], durations: list[str]) -> list[Told]:
+def _timed(told: list[TaskInput], durations: list[str]) -> list[TaskInput]:
     """With the times of exposure that are given by an option."""
     times = [time_a_day("--duration", text) for text in durations]
     open_ended = [each for each in told if each.duration is None]
@@ -369,7 +369,7 @@ def _timed(told: list[Told], durations: list[str]) -> list[Told]:
     ]
 
 
-def _day(told: list[Told]) -> Exposure | None:
+def _day(told: list[TaskInput]) -> Exposure | None:
     """The exposure of a day; None if no time is told."""
     from equipoise.exposure.daily import Task, daily_exposure
 

@@ -29,12 +29,12 @@ if TYPE_CHECKING:
     from equipoise.figures import Picture
     from equipoise.handheld.model import Tool
     from equipoise.mechanism.parts.machine import Machine
-    from equipoise.results.blocks import Block, Section
+    from equipoise.results.blocks import Block, ReportSection
 
 Kind = Literal["svg", "png", "pdf"]
 Columns = Sequence[tuple[str, str, "np.ndarray[Any, Any]"]]
 Values = Callable[[], Mapping[str, Any]]
-Blocks = Callable[[], "Iterable[Block | Section]"]
+Blocks = Callable[[], "Iterable[Block | ReportSection]"]
 Drawings = Callable[[], "Mapping[str, Picture]"]
 """Results are made when they are asked for: what is not wanted is not computed."""
 

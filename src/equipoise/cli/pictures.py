@@ -36,7 +36,7 @@ from equipoise.mechanism.checks import unknown
 if TYPE_CHECKING:
     import numpy as np
 
-    from equipoise.present.pictures import Picture
+    from equipoise.present.pictures import LazyPicture
     from equipoise.studies.design_space import Model
 
 app = App(name="plot")
@@ -115,24 +115,26 @@ def plot(
     )
 
 
-def _outputs(found: Any, names: Sequence[str]) -> list[Picture]:
+def _outputs(found: Any, names: Sequence[str]) -> list[LazyPicture]:
     """Outputs over crank angle, in one picture."""
     from functools import partial
 
     from equipoise.figures.points import outputs_chart
-    from equipoise.present.pictures import Picture
+    from equipoise.present.pictures import LazyPicture
 
     names = list(dict.fromkeys(names))
     with blaming("--output"):
         caption = ", ".join(one.label() for one in found.analysis.outputs.chosen(names))
-    return [Picture("outputs", "motion", caption, partial(outputs_chart, found.analysis, names))]
+    return [
+        LazyPicture("outputs", "motion", caption, partial(outputs_chart, found.analysis, names))
+    ]
 
 
-def _chosen(pictures: Iterable[Picture], only: Sequence[str] | None) -> list[Picture]:
+def _chosen(pictures: Iterable[LazyPicture], only: Sequence[str] | None) -> list[LazyPicture]:
     """Those that are wanted; what comes after the last of them is not computed."""
     if only is None:
         return list(pictures)
-    found: dict[str, Picture] = {}
+    found: dict[str, LazyPicture] = {}
     for picture in pictures:
         found[picture.name] = picture
         if found.keys() >= {*only}:

@@ -55,7 +55,7 @@ from equipoise.interrupts import check
 from equipoise.partial import afterwards
 
 if TYPE_CHECKING:
-    from equipoise.results.blocks import Block, Section
+    from equipoise.results.blocks import Block, ReportSection
     from equipoise.results.result import Result
 
 T = TypeVar("T")
@@ -81,7 +81,7 @@ class CommandResult:
     values: Values = dict
     owner: Any = None
     title: str | None = None
-    headline: Callable[[bool], Iterable[Block | Section]] | None = None
+    headline: Callable[[bool], Iterable[Block | ReportSection]] | None = None
     columns: Callable[[], Columns] = tuple
     pictures: Drawings = dict
     save: Callable[[], Iterable[str]] = tuple
@@ -185,11 +185,11 @@ class FinishedCommand:
                 yield from write_pictures(answer.pictures(), outputs.plot, kind)
         yield from answer.save()
 
-    def _blocks(self) -> Iterator[Block | Section]:
+    def _blocks(self) -> Iterator[Block | ReportSection]:
         from equipoise.results.blocks import Text
 
         answer = self.answer
-        first: list[Block | Section] = []
+        first: list[Block | ReportSection] = []
         if answer.headline is not None and self.length is not None:
             first += answer.headline(not self.length.full)
         yield from first

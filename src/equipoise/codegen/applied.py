@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.codegen.terms import Pair, angle_of, rotation
+from equipoise.codegen.terms import VectorTerm, angle_of, rotation
 from equipoise.codegen.trace import FAR, Array, Trace
 from equipoise.codegen.tracks import TracedCurve
 from equipoise.keys import Frozen, with_fields
@@ -39,7 +39,7 @@ def trace_load(trace: Trace, number: int, load: Load) -> Held:
         for key in ("x", "y", "torque")
     )
     x, y, torque = parts
-    return _held(trace, load.link, load.point, Pair(x, y), torque)
+    return _held(trace, load.link, load.point, VectorTerm(x, y), torque)
 
 
 def _part_of_load(load: Load, key: str, theta: Array) -> Array:

@@ -22,10 +22,10 @@ from equipoise.codegen.terms import angle_of, floor, least, pick, rotation, sele
 from equipoise.codegen.trace import Array, Trace, links_of
 from equipoise.mechanism.assembly.cam_groups import Displacement
 from equipoise.mechanism.assembly.linkage import Linkage
-from equipoise.mechanism.assembly.steps import Call, u
+from equipoise.mechanism.assembly.steps import KernelCall, u
 from equipoise.mechanism.formulas import cam_kernels, kernels, rolling_kernels
 from equipoise.mechanism.formulas.curve_kernels import piece_value
-from equipoise.mechanism.formulas.curves import ROUNDING, Curve
+from equipoise.mechanism.formulas.curves import ROUNDING, PeriodicCurve
 from equipoise.mechanism.formulas.rolling import HalfAngle, PitchCurve, RatioTable, RatioWaves
 from equipoise.mechanism.parts.couplings import Coupling
 from equipoise.mechanism.parts.machine import FRAME
@@ -51,18 +51,18 @@ def known_by_crank(trace: Trace) -> dict[str, Turning]:
     turnings: dict[str, Turning] = {FRAME: lambda theta: (0.0 * theta, 0.0, 0.0)}
     turnings |= {drive.link: drive.turned for drive in trace.machine.driven}
     for step in trace.linkage.motion:
-        if isinstance(step, Call) and step.outputs[0].startswith("phi("):
+        if isinstance(step, KernelCall) and step.outputs[0].startswith("phi("):
             driver, carrier, driven = links_of(step)
             if {driver, carrier} <= turnings.keys() and driven not in trace.loose:
                 turnings[driven] = partial(_followed, step, turnings[driver], turnings[carrier])
     return turnings
 
 
-def _followed(step: Call, driver: Turning, carrier: Turning, theta: Array) -> tuple[Any, ...]:
+def _followed(step: KernelCall, driver: Turning, carrier: Turning, theta: Array) -> tuple[Any, ...]:
     return step.kernel(*driver(theta), *carrier(theta), *step.parameters)
 
 
-def trace_coupling(trace: Trace, step: Call) -> None:
+def trace_coupling(trace: Trace, step: KernelCall) -> None:
     """A coupling that need not be counted on, or one with a law."""
     driver, carrier, link = links_of(step)
     even = step.kernel is kernels.in_ratio and {driver, carrier} <= trace.orders.keys()
@@ -88,7 +88,7 @@ def trace_coupling(trace: Trace, step: Call) -> None:
     trace.put(u(link)[1:], (first, second))
 
 
-def trace_rolled(trace: Trace, step: Call, number: int) -> None:
+def trace_rolled(trace: Trace, step: KernelCall, number: int) -> None:
     """Where what rolls with a varying ratio touches: the step of this number of the ``forces``."""
     name = step.outputs[0].removeprefix("lever(")[:-1]
     link = next(one.driven for one in trace.machine.couplings if one.name == name)
@@ -109,7 +109,7 @@ def trace_rolled(trace: Trace, step: Call, number: int) -> None:
 
 def _centres(number: int, found: Linkage) -> Any:
     step = found.forces[number]
-    assert isinstance(step, Call)
+    assert isinstance(step, KernelCall)
     return step.parameters[1]
 
 
@@ -125,7 +125,7 @@ def _coupling(found: Linkage, link: str) -> Coupling:
     return next(one for one in found.machine.couplings if one.driven == link)
 
 
-def _trace_uniform(trace: Trace, step: Call) -> None:
+def _trace_uniform(trace: Trace, step: KernelCall) -> None:
     """What is driven by a driver and a carrier that turn in proportion to the crank does so too.
 
     Its rotation is a cosine and sine of a multiple of the crank angle, known for all designs.
@@ -137,7 +137,7 @@ def _trace_uniform(trace: Trace, step: Call) -> None:
     trace.put(u(link), (trace.turned(order) * start, order, 0.0))
 
 
-def _follows(step: Call, driver: Any, carrier: Any, offset: Any) -> Any:
+def _follows(step: KernelCall, driver: Any, carrier: Any, offset: Any) -> Any:
     """What the step makes of driver's and carrier's angle (or order, without an offset)."""
     ratio = step.parameters[0]
     angle, *_ = step.kernel(driver, 0.0, 0.0, carrier, 0.0, 0.0, ratio, offset)
@@ -147,7 +147,7 @@ def _follows(step: Call, driver: Any, carrier: Any, offset: Any) -> Any:
 def _start(found: Linkage, link: str) -> Any:
     """Angle of a link at crank angle 0, of links that turn in proportion to the crank."""
     for step in found.motion:
-        if isinstance(step, Call) and step.kernel is kernels.in_ratio:
+        if isinstance(step, KernelCall) and step.kernel is kernels.in_ratio:
             driver, carrier, driven = links_of(step)
             if driven == link:
                 offset = step.parameters[1]
@@ -183,7 +183,7 @@ def _displaced(
     return np.asarray(step.law.value(driver(theta)[0] - carrier(theta)[0])[place])
 
 
-def curve_value(trace: Trace, curve: Curve, angle: Any) -> tuple[Any, Any, Any]:
+def curve_value(trace: Trace, curve: PeriodicCurve, angle: Any) -> tuple[Any, Any, Any]:
     """A curve, and its two derivatives, at an angle that is each design's own."""
     curve, counted = _from_the_start(_rested(curve))
     near, length = ROUNDING * curve.length, curve.length
@@ -198,16 +198,16 @@ def curve_value(trace: Trace, curve: Curve, angle: Any) -> tuple[Any, Any, Any]:
     return value + curve.rise * rounds, first, second
 
 
-def _rested(curve: Curve) -> Curve:
+def _rested(curve: PeriodicCurve) -> PeriodicCurve:
     """A curve with one piece for each rest, whatever law the rest is given by."""
     still = ~np.any(curve.powers[:, 1:], axis=1) & (curve.waves[:, 0] == 0)
     same = np.abs(np.diff(curve.powers[:, 0])) <= ALIKE * np.max(np.abs(curve.powers[:, 0]))
     kept = np.append(True, ~(still[1:] & still[:-1] & same))
     knots = np.append(curve.knots[:-1][kept], curve.knots[-1])
-    return Curve(knots, curve.powers[kept], curve.waves[kept])
+    return PeriodicCurve(knots, curve.powers[kept], curve.waves[kept])
 
 
-def _from_the_start(curve: Curve) -> tuple[Curve, bool]:
+def _from_the_start(curve: PeriodicCurve) -> tuple[PeriodicCurve, bool]:
     """A curve of parabolas and waves with the ways counted from its start, so that there is less to
     choose; of higher powers that would lose digits, and the curve stays as it is.
     """
@@ -220,10 +220,10 @@ def _from_the_start(curve: Curve) -> tuple[Curve, bool]:
     halves = np.floor(phases / pi + ROUNDING)
     waves[:, 0] *= np.where(halves % 2, -1.0, 1.0)
     waves[:, 2] = np.round(phases - halves * pi, DIGITS)
-    return Curve(curve.knots, powers, waves), True
+    return PeriodicCurve(curve.knots, powers, waves), True
 
 
-def _waves(curve: Curve) -> Array:
+def _waves(curve: PeriodicCurve) -> Array:
     """Waves of the pieces (K, 3); those of pieces without one are like that before, so that there
     is less to choose.
     """
@@ -249,7 +249,7 @@ class Pieces:
     picked from tables.
     """
 
-    def __init__(self, trace: Trace, curve: Curve, since: Any, few: int = FEW) -> None:
+    def __init__(self, trace: Trace, curve: PeriodicCurve, since: Any, few: int = FEW) -> None:
         """since : way from the curve's beginning, rounding ahead.
 
         few : pieces up to which they are told apart by comparing.
@@ -294,7 +294,7 @@ def bins(knots: Array) -> int:
     return ceil(1.01 * float(knots[-1] / np.min(np.diff(knots))))
 
 
-def _in_bins(curve: Curve, count: int) -> tuple[Array, Array]:
+def _in_bins(curve: PeriodicCurve, count: int) -> tuple[Array, Array]:
     """Of each part the piece at its beginning, and the knot within it; one more at the end."""
     inner = curve.knots[1:-1]
     edges = np.arange(count + 1) * (curve.length / count)
@@ -304,7 +304,7 @@ def _in_bins(curve: Curve, count: int) -> tuple[Array, Array]:
     return first.astype(float), knot
 
 
-def trace_swung(trace: Trace, step: Call, number: int) -> None:
+def trace_swung(trace: Trace, step: KernelCall, number: int) -> None:
     """How a pinned follower turns whose carrier turns in proportion to the crank."""
     y, y1, y2, w_r, a_r, _, w, a = (trace.state.get(name) for name in step.inputs)
     link, carrier = (name[len("phi(") : -1] for name in (step.outputs[0], step.inputs[5]))
@@ -316,11 +316,11 @@ def trace_swung(trace: Trace, step: Call, number: int) -> None:
 
 def _turned(number: int, found: Linkage) -> Any:
     step = found.motion[number]
-    assert isinstance(step, Call)
+    assert isinstance(step, KernelCall)
     return np.exp(1j * np.asarray(step.parameters[0]))
 
 
-def trace_law(trace: Trace, step: Call, number: int) -> None:
+def trace_law(trace: Trace, step: KernelCall, number: int) -> None:
     """How something turns whose ratio varies: the step of this number of the ``motion``."""
     _Law(trace, step, number).trace_driven()
 
@@ -331,7 +331,7 @@ class _Law:
     angle : of the driver, seen from the carrier, from the law's zero on.
     """
 
-    def __init__(self, trace: Trace, step: Call, number: int) -> None:
+    def __init__(self, trace: Trace, step: KernelCall, number: int) -> None:
         self.trace, self.number = trace, number
         self.driver, self.carrier, self.link = links_of(step)
         self.law: Any = step.parameters[0]
@@ -417,19 +417,19 @@ class _Law:
         return y, ratio, bend
 
 
-def curve_of(law: RatioTable | PitchCurve) -> tuple[Curve, float]:
+def curve_of(law: RatioTable | PitchCurve) -> tuple[PeriodicCurve, float]:
     """A law as a curve, and the angle at which this begins."""
     if isinstance(law, PitchCurve):
         return law.summed()
     curve, factor = law.table.spline, law.factor
-    assert isinstance(curve, Curve)
-    return Curve(curve.knots, factor * curve.powers, curve.waves), law.table.origin
+    assert isinstance(curve, PeriodicCurve)
+    return PeriodicCurve(curve.knots, factor * curve.powers, curve.waves), law.table.origin
 
 
 def _parameters(found: Linkage, number: int) -> tuple[Any, ...]:
     """Law and offset."""
     step = found.motion[number]
-    assert isinstance(step, Call)
+    assert isinstance(step, KernelCall)
     return step.parameters
 
 

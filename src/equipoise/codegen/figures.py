@@ -50,7 +50,7 @@ def _first_highest(x: Array) -> Array:
 
 
 @dataclass(frozen=True)
-class Kind:
+class Reduction:
     """Something that a loop gathers of a signal over the crank angles.
 
     start : as source, before the first crank angle.
@@ -75,18 +75,18 @@ class Kind:
 
 SUM = "{g} += {x}"
 KINDS = {
-    "sum": Kind("0.0", SUM, lambda x: x.sum(axis=1), np.add, "{g} += share * {x}"),
-    "squares": Kind(
+    "sum": Reduction("0.0", SUM, lambda x: x.sum(axis=1), np.add, "{g} += share * {x}"),
+    "squares": Reduction(
         "0.0",
         "{g} += {x} * {x}",
         lambda x: np.einsum("ij,ij->i", x, x),
         np.add,
         "{g} += share * {x} * {x}",
     ),
-    "highest": Kind("-1e300", "{g} = max({g}, {x})", lambda x: x.max(axis=1), np.maximum),
-    "highest_at": Kind("0.0", "", _first_highest),
-    "lowest": Kind("1e300", "{g} = min({g}, {x})", lambda x: x.min(axis=1), np.minimum),
-    "lowest_at": Kind("0.0", "", lambda x: _first_highest(-x)),
+    "highest": Reduction("-1e300", "{g} = max({g}, {x})", lambda x: x.max(axis=1), np.maximum),
+    "highest_at": Reduction("0.0", "", _first_highest),
+    "lowest": Reduction("1e300", "{g} = min({g}, {x})", lambda x: x.min(axis=1), np.minimum),
+    "lowest_at": Reduction("0.0", "", lambda x: _first_highest(-x)),
 }
 GATHERED = {
     "mean": ("sum",),

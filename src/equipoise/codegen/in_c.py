@@ -10,7 +10,7 @@ import numpy as np
 from equipoise.codegen.emission import C, Lines
 from equipoise.codegen.source import TermSource
 from equipoise.codegen.terms import ANGLE, BOTH, DESIGN, Term, reached, substituted
-from equipoise.codegen.trace import Row
+from equipoise.codegen.trace import AngleFunction
 from equipoise.errors import UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism.assembly.linkage import Linkage
@@ -62,7 +62,7 @@ def _known(source: TermSource, linkage: Linkage, values: list[Any]) -> Iterator[
             yield arguments[row.name], _of_angle(row)
 
 
-def _of_angle(row: Row) -> Any:
+def _of_angle(row: AngleFunction) -> Any:
     """What depends on the crank angle, or does not but might."""
     if row.formula is not None:
         return row.formula

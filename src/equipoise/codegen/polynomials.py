@@ -10,7 +10,7 @@ from collections.abc import Iterable, Sequence
 from functools import reduce
 from typing import Any
 
-from equipoise.codegen.terms import BOTH, Pair, Term, nearest, replaced, root
+from equipoise.codegen.terms import BOTH, Term, VectorTerm, nearest, replaced, root
 
 ARC = (
     -0.005280870051487617,
@@ -69,7 +69,7 @@ def turn(angle: Any) -> Any:
     turns = angle * 0.15915494309189535
     quarter = (turns - nearest(turns)) * 1.5707963267948966
     z = quarter * quarter
-    u = Pair(_polynomial(COSINE, z), quarter * _polynomial(SINE, z))
+    u = VectorTerm(_polynomial(COSINE, z), quarter * _polynomial(SINE, z))
     u = u * u
     return u * u
 

@@ -11,10 +11,10 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.codegen.terms import Pair
+from equipoise.codegen.terms import VectorTerm
 from equipoise.codegen.trace import Trace
 from equipoise.mechanism.assembly.linkage import Linkage
-from equipoise.mechanism.assembly.steps import Array, Call, State, p, size_of_bodies, u
+from equipoise.mechanism.assembly.steps import Array, KernelCall, State, p, size_of_bodies, u
 
 STANDING = 1e-13
 """Of the size of the machine, or of a rotation: what moves by less than this stands still."""
@@ -53,7 +53,9 @@ def trace_prescribed(trace: Trace) -> None:
         trace.state[turn] = _vector(trace, motion, turn, 1.0)
         for name in rates:
             trace.state[name] = _number(trace, motion, name, "real", 1.0)
-    asked = {name for step in linkage.forces if isinstance(step, Call) for name in step.inputs}
+    asked = {
+        name for step in linkage.forces if isinstance(step, KernelCall) for name in step.inputs
+    }
     for name in sorted(asked & motion.probed.keys() - trace.state.keys()):
         vector = np.iscomplexobj(motion.probed[name])
         trace.state[name] = (_vector(trace, motion, name, size) if vector
@@ -63,8 +65,8 @@ def trace_prescribed(trace: Trace) -> None:
             trace.state[group.margin] = _number(trace, motion, group.margin, "real", 1.0)
 
 
-def _vector(trace: Trace, motion: PrescribedMotion, name: str, size: float) -> Pair:
-    return Pair(*(_number(trace, motion, name, part, size) for part in ("real", "imag")))
+def _vector(trace: Trace, motion: PrescribedMotion, name: str, size: float) -> VectorTerm:
+    return VectorTerm(*(_number(trace, motion, name, part, size) for part in ("real", "imag")))
 
 
 def _number(trace: Trace, motion: PrescribedMotion, name: str, part: str, size: float) -> Any:

@@ -24,7 +24,7 @@ from equipoise.codegen.figures import KINDS, Gathered
 from equipoise.codegen.loops import WATCHED
 from equipoise.codegen.polynomials import without_calls
 from equipoise.codegen.terms import ANGLE, BOTH, DESIGN, Term, reached
-from equipoise.codegen.trace import Array, Recurrence, Row, Slot, Trace
+from equipoise.codegen.trace import AngleFunction, Array, Recurrence, Slot, Trace
 from equipoise.signals import ROUNDING
 
 PLACE = {"highest": "{x} - {g} >", "lowest": "{g} - {x} >"}
@@ -57,7 +57,7 @@ class TermSource:
     values: Mapping[str, Any]
     slots: tuple[Slot, ...]
     width: int
-    rows: tuple[Row, ...]
+    rows: tuple[AngleFunction, ...]
     watched: tuple[int, ...]
     running: tuple[str, ...]
     gathered: Gathered

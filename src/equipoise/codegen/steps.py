@@ -35,7 +35,7 @@ from equipoise.mechanism.assembly.loopgroup import LoopForces
 from equipoise.mechanism.assembly.newton import LoopGroup
 from equipoise.mechanism.assembly.shared import Shared
 from equipoise.mechanism.assembly.steps import (
-    Call,
+    KernelCall,
     Rotation,
     RunningAngle,
     Step,
@@ -101,7 +101,7 @@ def trace_step(trace: Trace, step: Step, steps: str, number: int) -> None:
     elif isinstance(step, Rotation):
         if trace.counted and step.link not in trace.rotated:
             trace.state[f"u({step.link})"] = rotation(trace.state[f"phi({step.link})"])
-    elif isinstance(step, Call):
+    elif isinstance(step, KernelCall):
         if step.kernel is coupled and links_of(step)[-1] in trace.loose:
             trace_law(trace, step, number)
         elif step.kernel is coupled or (step.kernel is kernels.in_ratio and not trace.counted):
@@ -120,7 +120,7 @@ def trace_step(trace: Trace, step: Step, steps: str, number: int) -> None:
         (trace_shared if isinstance(step, Shared) else trace_loop_forces)(trace, number)
 
 
-def _trace_call(trace: Trace, step: Call, steps: str, number: int) -> None:
+def _trace_call(trace: Trace, step: KernelCall, steps: str, number: int) -> None:
     inputs = [trace.state[name] for name in step.inputs]
     known = list(inspect.signature(step.kernel).parameters)[len(inputs) :]
     numbers = [

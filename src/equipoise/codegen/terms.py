@@ -82,7 +82,7 @@ class Graph:
         return term
 
 
-class Number:
+class TermArithmetic:
     """Arithmetic of terms and pairs."""
 
     __slots__ = ()
@@ -115,7 +115,7 @@ class Number:
         return _by_numpy(ufunc, method, inputs)
 
 
-class Term(Number):
+class Term(TermArithmetic):
     """A real number: an operation and what it is done to.
 
     order : of creation; a term comes after those that it is made of.
@@ -166,7 +166,7 @@ class Term(Number):
 Real = Term | float
 
 
-class Pair(Number):
+class VectorTerm(TermArithmetic):
     """A vector in the plane, as a complex number of two terms or plain numbers."""
 
     __slots__ = ("imag", "real")
@@ -174,14 +174,14 @@ class Pair(Number):
     def __init__(self, real: Any, imag: Any) -> None:
         self.real, self.imag = real, imag
 
-    def __neg__(self) -> Pair:
-        return Pair(negative(self.real), negative(self.imag))
+    def __neg__(self) -> VectorTerm:
+        return VectorTerm(negative(self.real), negative(self.imag))
 
     def __abs__(self) -> Any:
         return root(self.real * self.real + self.imag * self.imag)
 
-    def conjugate(self) -> Pair:
-        return Pair(self.real, negative(self.imag))
+    def conjugate(self) -> VectorTerm:
+        return VectorTerm(self.real, negative(self.imag))
 
 
 def at_base(value: Any) -> float:
@@ -206,14 +206,14 @@ def at_base(value: Any) -> float:
 
 def as_value(value: Any) -> Any:
     """A number as terms compute with it: a term, a pair or a float; None for anything else."""
-    if type(value) in (Term, Pair, float):
+    if type(value) in (Term, VectorTerm, float):
         return value
     if isinstance(value, np.ndarray) and value.size == 1:
         return as_value(value.item())
     if isinstance(value, int | float | np.integer | np.floating):
         return float(value)
     if isinstance(value, complex | np.complexfloating):
-        return Pair(float(value.real), float(value.imag))
+        return VectorTerm(float(value.real), float(value.imag))
     return None
 
 
@@ -259,8 +259,8 @@ def negative(a: Any) -> Any:
 
 
 def add(a: Any, b: Any) -> Any:  # noqa: PLR0911
-    if type(a) is Pair or type(b) is Pair:
-        return Pair(add(a.real, b.real), add(a.imag, b.imag))
+    if type(a) is VectorTerm or type(b) is VectorTerm:
+        return VectorTerm(add(a.real, b.real), add(a.imag, b.imag))
     if type(a) is not Term and type(b) is not Term:
         return a + b
     if type(a) is not Term and a == 0:
@@ -276,8 +276,8 @@ def add(a: Any, b: Any) -> Any:  # noqa: PLR0911
 
 
 def subtract(a: Any, b: Any) -> Any:  # noqa: PLR0911
-    if type(a) is Pair or type(b) is Pair:
-        return Pair(subtract(a.real, b.real), subtract(a.imag, b.imag))
+    if type(a) is VectorTerm or type(b) is VectorTerm:
+        return VectorTerm(subtract(a.real, b.real), subtract(a.imag, b.imag))
     if type(a) is not Term and type(b) is not Term:
         return a - b
     if type(b) is not Term and b == 0:
@@ -293,14 +293,14 @@ def subtract(a: Any, b: Any) -> Any:  # noqa: PLR0911
 
 
 def multiply(a: Any, b: Any) -> Any:
-    if type(a) is Pair and type(b) is Pair:
-        return Pair(
+    if type(a) is VectorTerm and type(b) is VectorTerm:
+        return VectorTerm(
             subtract(multiply(a.real, b.real), multiply(a.imag, b.imag)),
             add(multiply(a.real, b.imag), multiply(a.imag, b.real)),
         )
-    if type(a) is Pair or type(b) is Pair:
-        vector, factor = (a, b) if type(a) is Pair else (b, a)
-        return Pair(multiply(vector.real, factor), multiply(vector.imag, factor))
+    if type(a) is VectorTerm or type(b) is VectorTerm:
+        vector, factor = (a, b) if type(a) is VectorTerm else (b, a)
+        return VectorTerm(multiply(vector.real, factor), multiply(vector.imag, factor))
     if type(a) is not Term and type(b) is not Term:
         return a * b
     (a, minus), (b, less) = _without_sign(a), _without_sign(b)
@@ -321,7 +321,7 @@ def _positive_product(a: Any, b: Any) -> Any:
 
 def inverse(a: Any) -> Any:
     """1 / a."""
-    if type(a) is Pair:
+    if type(a) is VectorTerm:
         return a.conjugate() * inverse(a.real * a.real + a.imag * a.imag)
     if type(a) is not Term:
         return _reciprocal(a)
@@ -371,9 +371,9 @@ def pick(table: Term, place: Any) -> Any:
     return _made("pick", table, place)
 
 
-def rotation(angle: Any) -> Pair:
+def rotation(angle: Any) -> VectorTerm:
     """exp(i angle)."""
-    return Pair(_operation("cos", angle), _operation("sin", angle))
+    return VectorTerm(_operation("cos", angle), _operation("sin", angle))
 
 
 def angle_of(vector: Any) -> Any:

@@ -10,10 +10,10 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.codegen.terms import ANGLE, BOTH, DESIGN, Graph, Pair, Term, angle_of, rotation
+from equipoise.codegen.terms import ANGLE, BOTH, DESIGN, Graph, Term, VectorTerm, angle_of, rotation
 from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.assembly.linkage import Linkage
-from equipoise.mechanism.assembly.steps import Call, RunningAngle, Step, p, planar, u
+from equipoise.mechanism.assembly.steps import KernelCall, RunningAngle, Step, p, planar, u
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.parts.couplings import Coupling, coupled
 from equipoise.mechanism.parts.machine import FRAME, Machine
@@ -43,7 +43,7 @@ class Slot:
 
 
 @dataclass(frozen=True)
-class Row:
+class AngleFunction:
     """Something that depends on the crank angle alone.
 
     name : of the argument.  what : that it is.  values : (N,) at crank angles (N,), rad.
@@ -97,7 +97,7 @@ class Trace:
         self.linkage, self.machine, self.graph = linkage, linkage.machine, Graph()
         self.state: dict[str, Any] = {}
         self.slots: dict[str, Slot] = {}
-        self.rows: dict[str, Row] = {}
+        self.rows: dict[str, AngleFunction] = {}
         self.running: dict[str, Any] = {}
         self.carried: list[Recurrence] = []
         self.following: dict[Term, Any] = {}
@@ -120,22 +120,22 @@ class Trace:
             self.width += 1 + vector
         column = self.slots[name].column
         parts = [self.graph.argument(f"d{k}", DESIGN) for k in range(column, column + 1 + vector)]
-        return Pair(*parts) if vector else parts[0]
+        return VectorTerm(*parts) if vector else parts[0]
 
     def row(self, name: str, values: Callable[[Array], Array], formula: Any = None) -> Term:
         """A number that depends on the crank angle alone."""
         if name not in self.rows:
-            self.rows[name] = Row(f"a{len(self.rows)}", name, values, formula)
+            self.rows[name] = AngleFunction(f"a{len(self.rows)}", name, values, formula)
         return self.graph.argument(self.rows[name].name, ANGLE)
 
     @property
     def theta(self) -> Term:
         """The crank angle."""
         term = self.graph.argument("theta", ANGLE)
-        self.rows.setdefault("theta", Row("theta", "the crank angle", np.asarray, term))
+        self.rows.setdefault("theta", AngleFunction("theta", "the crank angle", np.asarray, term))
         return term
 
-    def turned(self, order: float) -> Pair:
+    def turned(self, order: float) -> VectorTerm:
         """exp(i order theta)."""
         return rotation(order * self.theta)
 
@@ -146,14 +146,14 @@ class Trace:
     def carry(self, start: float | complex, watch: str = "") -> Any:
         """A value of the crank angle before; `carry_on` says what it is after this one."""
         if isinstance(start, complex):
-            return Pair(self.carry(start.real, watch), self.carry(start.imag, watch))
+            return VectorTerm(self.carry(start.real, watch), self.carry(start.imag, watch))
         before = self.graph.argument(f"c{len(self.carried)}", BOTH)
         self.carried.append(Recurrence(before, float(start), watch))
         return before
 
     def carry_on(self, before: Any, value: Any) -> None:
         """What the next crank angle has of a value that was carried."""
-        if isinstance(before, Pair):
+        if isinstance(before, VectorTerm):
             self.carry_on(before.real, value.real)
             self.carry_on(before.imag, value.imag)
         else:
@@ -228,11 +228,11 @@ def _drives_on(machine: Machine) -> bool:
 
 def _counts(step: Step) -> bool:
     """Whether a step asks for the angle of a link that a dyad moves, or tells one of a rack's."""
-    racked = isinstance(step, Call) and step.kernel in (kernels.rolled, kernels.wound)
+    racked = isinstance(step, KernelCall) and step.kernel in (kernels.rolled, kernels.wound)
     return racked or isinstance(step, RunningAngle)
 
 
-def links_of(step: Call) -> list[str]:
+def links_of(step: KernelCall) -> list[str]:
     """Driver, carrier and driven link of a coupling's step."""
     angles = step.inputs[0], step.inputs[3], step.outputs[0]
     return [name.removeprefix("phi(")[:-1] for name in angles]
@@ -257,7 +257,7 @@ def _changed(linkage: Linkage, paths: Collection[str]) -> tuple[set[str], set[st
             shaped.add(one.driven)
     told, loose = {FRAME, *(drive.link for drive in linkage.machine.driven)}, set()
     for step in linkage.motion:
-        if not (isinstance(step, Call) and step.outputs[0].startswith("phi(")):
+        if not (isinstance(step, KernelCall) and step.outputs[0].startswith("phi(")):
             continue
         driver, carrier, driven = links_of(step)
         known = {driver, carrier} <= told

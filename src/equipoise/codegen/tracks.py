@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 
 from equipoise.codegen.coupled import MOST_BINS, Pieces, bins
-from equipoise.codegen.terms import Pair, angle_of, floor, greatest, select
+from equipoise.codegen.terms import VectorTerm, angle_of, floor, greatest, select
 from equipoise.codegen.trace import Array, Trace
 from equipoise.mechanism.formulas.curve_kernels import plane_piece
-from equipoise.mechanism.formulas.curves import MOST_POWERS, Curve
+from equipoise.mechanism.formulas.curves import MOST_POWERS, PeriodicCurve
 from equipoise.mechanism.formulas.plane_curves import PlaneCurve
 
 FEW = 2
@@ -28,7 +28,8 @@ class TracedCurve:
         """Place and its first three derivatives by the parameter."""
         way, pieces = self._place(s, self.curve.knots)
         powers = [
-            Pair(pieces.value(one.real), pieces.value(one.imag)) for one in self.curve.powers.T
+            VectorTerm(pieces.value(one.real), pieces.value(one.imag))
+            for one in self.curve.powers.T
         ]
         return tuple(plane_piece(way, *powers))  # type: ignore[no-untyped-call]
 
@@ -50,7 +51,7 @@ class TracedCurve:
         if self.closed:
             s = s - tau * floor(s * (1 / tau))
         count = len(knots) - 1
-        curve = Curve(knots, np.zeros((count, MOST_POWERS)), np.zeros((count, 3)))
+        curve = PeriodicCurve(knots, np.zeros((count, MOST_POWERS)), np.zeros((count, 3)))
         pieces = Pieces(self.trace, curve, greatest(0.0, s), FEW)
         return s - pieces.beginning(), pieces
 

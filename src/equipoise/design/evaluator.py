@@ -14,7 +14,7 @@ from typing import Any, Generic, NamedTuple, Self, TypeVar
 
 import numpy as np
 
-from equipoise.design.processes import Pool, Runner, Task
+from equipoise.design.processes import ChunkTask, Pool, Runner
 
 Array = np.ndarray[Any, Any]
 Figures = TypeVar("Figures")
@@ -78,7 +78,7 @@ class PooledEvaluator(Generic[Figures]):
         *,
         shared: bool = True,
         together: int = 1,
-        elsewhere: Callable[[Task], Pool] | None = None,
+        elsewhere: Callable[[ChunkTask], Pool] | None = None,
     ) -> None:
         self.alone, self.join, self.together = alone, join, together
         self.runner: Runner[DesignSlice, Figures] = Runner(

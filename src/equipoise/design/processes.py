@@ -55,7 +55,7 @@ MOST_PROCESSES = 61 if sys.platform == "win32" else 10_000
 
 
 @dataclass(frozen=True)
-class Task:
+class ChunkTask:
     """What is to be computed of a chunk.
 
     function : at the top level of a module, so that other processes find it; it is given `study`
@@ -162,7 +162,7 @@ class Runner(Generic[Chunk, Result]):
         workers: int | None = None,
         *,
         threads: bool = False,
-        elsewhere: Callable[[Task], Pool] | None = None,
+        elsewhere: Callable[[ChunkTask], Pool] | None = None,
     ) -> None:
         self.alone, self.make, self.threads = alone, make, threads and elsewhere is None
         self.workers = processors() if workers is None else workers
@@ -192,10 +192,10 @@ class Runner(Generic[Chunk, Result]):
         """Chunks, each with its result; see `computed`."""
         return computed(self.begin(), chunks)
 
-    def _task(self) -> Task:
+    def _task(self) -> ChunkTask:
         if self.threads:
-            return Task(lambda _, chunk: self.alone(chunk), b"")
-        return Task(_compute, pickle.dumps(self.make))
+            return ChunkTask(lambda _, chunk: self.alone(chunk), b"")
+        return ChunkTask(_compute, pickle.dumps(self.make))
 
 
 def _compute(packed: bytes, chunk: Any) -> Any:
@@ -216,7 +216,7 @@ def _made(packed: bytes) -> Callable[[Any], Any]:
 class Threads(Pool):
     """Threads of this process, for what computes without Python's lock."""
 
-    def __init__(self, task: Task, workers: int) -> None:
+    def __init__(self, task: ChunkTask, workers: int) -> None:
         self.task, self.room = task, workers + 1
         self.executor = ThreadPoolExecutor(workers)
 
@@ -235,7 +235,7 @@ class Processes(Pool):
     when this process is killed.
     """
 
-    def __init__(self, task: Task, workers: int) -> None:
+    def __init__(self, task: ChunkTask, workers: int) -> None:
         self.task, self.workers = task, min(workers, MOST_PROCESSES)
         self.room = 2 * self.workers
         self._start()

@@ -30,7 +30,7 @@ from equipoise.exchange.tree import constant_loads
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.results.analysis import Analysis, analyze
-from equipoise.results.outputs import Output
+from equipoise.results.outputs import AnalysisOutput
 
 SOURCE = "model.c"
 MODEL = "linkage"
@@ -71,7 +71,7 @@ def made(job: Job) -> bytes:
     return data.getvalue()
 
 
-def _outputs(analysis: Analysis) -> list[Output]:
+def _outputs(analysis: Analysis) -> list[AnalysisOutput]:
     """Those that a compiled loop can have too."""
     arrays = {one.name: one for one in analysis.outputs.arrays}
     names = signals_in_loops(assemble(analysis.machine), arrays)
@@ -89,7 +89,7 @@ def _code(machine: Machine, names: Sequence[str], crank_angle: float) -> str:
     return f"{defined}{in_c(source, linkage, names)}\n{model}"
 
 
-def _description(job: Job, outputs: Sequence[Output], guid: str) -> str:
+def _description(job: Job, outputs: Sequence[AnalysisOutput], guid: str) -> str:
     """What there is to set and to read, by number, unit and name."""
     machine = job.machine
     root = ET.Element("fmiModelDescription", fmiVersion="2.0", modelName=_plain(machine), guid=guid)

@@ -19,7 +19,7 @@ from equipoise.exchange.formats import Job
 from equipoise.i18n import Note
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.results.analysis import Analysis, analyze
-from equipoise.results.outputs import Output
+from equipoise.results.outputs import AnalysisOutput
 
 Cell = str | float | None
 HEADS, MOST_ROWS, MOST_COLUMNS = 2, 2**20, 2**14
@@ -119,7 +119,7 @@ def _points(machine: Machine) -> list[Sequence[Cell]]:
     return [("body", "point", "x [m]", "y [m]"), *rows]
 
 
-def _signals(book: Any, analysis: Analysis, columns: Iterable[Output]) -> None:
+def _signals(book: Any, analysis: Analysis, columns: Iterable[AnalysisOutput]) -> None:
     """Name, unit, and the values over crank angle, below each other."""
     told = [(one.name, one.unit, one.values) for one in columns]
     sheet = _sheet(book, "Signals", [["crank_angle", *(name for name, _, _ in told)]])
@@ -132,7 +132,7 @@ def _signals(book: Any, analysis: Analysis, columns: Iterable[Output]) -> None:
     sheet.freeze_panes(2, 1)
 
 
-def _charts(book: Any, sheet: Any, columns: Sequence[Output], count: int) -> None:
+def _charts(book: Any, sheet: Any, columns: Sequence[AnalysisOutput], count: int) -> None:
     """Signals of one group and unit in one chart; they are drawn from the sheet of signals."""
     numbered = sorted(enumerate(columns, 1), key=lambda one: (one[1].group, one[1].unit))
     kinds = groupby(numbered, key=lambda one: (one[1].group, one[1].unit))

@@ -22,7 +22,7 @@ from equipoise.results.blocks import (
     Column,
     Emphasis,
     Notes,
-    Section,
+    ReportSection,
     Table,
     Text,
     Value,
@@ -119,10 +119,10 @@ def told_blocks(
     measured: Sequence[tuple[str, Weighted]],
     tools: Sequence[tuple[str, float]],
     day: Exposure | None,
-) -> Iterator[Block | Section]:
+) -> Iterator[Block | ReportSection]:
     """What was weighted, by name; then the day, or where no time is told how long one may work."""
     for name, weighted in measured:
-        yield Section("weighted", shortened(name), tuple(weighted_blocks(weighted)))
+        yield ReportSection("weighted", shortened(name), tuple(weighted_blocks(weighted)))
     yield from times_blocks(tools) if day is None else exposure_blocks(day)
 
 

@@ -41,7 +41,7 @@ BEHIND = ("field", "support", "rows", "wheels", "guides", "stands")
 
 
 @dataclass(frozen=True, eq=False)
-class Stroke:
+class PixelPath:
     """A shape in pixels: a line through points (n,), or a circle about the only one."""
 
     role: str
@@ -51,10 +51,10 @@ class Stroke:
 
 
 @dataclass(frozen=True, eq=False)
-class Part:
+class MovingGroup:
     """Strokes that move together; those without moves stand still."""
 
-    strokes: tuple[Stroke, ...]
+    strokes: tuple[PixelPath, ...]
     moves: Moves | None = None
 
 
@@ -66,12 +66,12 @@ class Moving:
     """
 
     stage: Stage
-    behind: tuple[Part, ...]
+    behind: tuple[MovingGroup, ...]
     labels: tuple[Label, ...]
-    before: tuple[Part, ...]
+    before: tuple[MovingGroup, ...]
 
     @property
-    def parts(self) -> tuple[Part, ...]:
+    def parts(self) -> tuple[MovingGroup, ...]:
         return self.behind + self.before
 
 
@@ -103,8 +103,8 @@ def laid_out(
     stage = Stage(scene, arrow, frames, width)
     names = tuple(dict.fromkeys(traced))
     moves: dict[Any, Moves | None] = {}
-    behind: list[Part] = []
-    before: list[Part] = []
+    behind: list[MovingGroup] = []
+    before: list[MovingGroup] = []
     for piece in pieces(scene, names):
         held = piece.hold, piece.still
         if held not in moves:  # pieces that are held alike share their moves
@@ -112,26 +112,26 @@ def laid_out(
             moves[held] = None if track is None else stage.moves(track)
         origin = stage.origin if moves[held] is None else 0
         strokes = tuple(_stroke(stage, shape, origin) for shape in piece.shapes)
-        part = Part(strokes, moves[held])
+        part = MovingGroup(strokes, moves[held])
         (behind if piece.layer in BEHIND else before).append(part)
-    behind.append(Part((*_paths(stage, names), _ruler(stage))))
+    behind.append(MovingGroup((*_paths(stage, names), _ruler(stage))))
     return Moving(stage, tuple(behind), captions(stage, names), (*before, *_force(stage)))
 
 
-def _stroke(stage: Stage, shape: Shape, origin: complex = 0) -> Stroke:
+def _stroke(stage: Stage, shape: Shape, origin: complex = 0) -> PixelPath:
     points = np.conj(shape.at(stage.scale, stage.unit)) + origin
-    return Stroke(shape.role, points, shape.closed, shape.size(stage.scale, stage.unit))
+    return PixelPath(shape.role, points, shape.closed, shape.size(stage.scale, stage.unit))
 
 
-def _paths(stage: Stage, traced: tuple[str, ...]) -> Iterator[Stroke]:
+def _paths(stage: Stage, traced: tuple[str, ...]) -> Iterator[PixelPath]:
     for name in traced:
-        yield Stroke("trace", stage.way(name), stage.closed)
+        yield PixelPath("trace", stage.way(name), stage.closed)
     if stage.arrow is not None:
         tips = stage.at(stage.foot) + np.conj(stage.arrow.force) * stage.strength
-        yield Stroke("force-path", stage.path(tips), stage.closed)
+        yield PixelPath("force-path", stage.path(tips), stage.closed)
 
 
-def _force(stage: Stage) -> Iterator[Part]:
+def _force(stage: Stage) -> Iterator[MovingGroup]:
     """The arrow of the force: its shaft is stretched, its head is not, but where it is short."""
     if stage.arrow is None:
         return
@@ -147,14 +147,14 @@ def _force(stage: Stage) -> Iterator[Part]:
         PieceTrack(foot + reach, angle, short),
     )
     for shape, track in zip(shapes, tracks, strict=True):
-        yield Part((_stroke(stage, shape),), stage.moves(track))
+        yield MovingGroup((_stroke(stage, shape),), stage.moves(track))
 
 
-def _ruler(stage: Stage) -> Stroke:
+def _ruler(stage: Stage) -> PixelPath:
     """A length by which one can measure, at the lower left."""
     left, right = ruler_ends(stage)
     tick = 4j * stage.unit
-    return Stroke("scale", np.array([left - tick, left, right, right - tick]), closed=False)
+    return PixelPath("scale", np.array([left - tick, left, right, right - tick]), closed=False)
 
 
 MOST_STEPS = 1500
@@ -229,7 +229,7 @@ viewBox="0 0 {stage.width} {stage.height}" width="{stage.width}" height="{stage.
 """
 
 
-def _group(part: Part, numbers: dict[int, int]) -> str:
+def _group(part: MovingGroup, numbers: dict[int, int]) -> str:
     strokes = "".join(_strokes(part.strokes))
     if part.moves is None:
         return f"<g>{strokes}</g>"
@@ -240,7 +240,7 @@ def _group(part: Part, numbers: dict[int, int]) -> str:
     return f'<g class="m m{numbers[id(moves)]}" transform="{at}">{strokes}</g>'
 
 
-def _strokes(strokes: tuple[Stroke, ...]) -> Iterator[str]:
+def _strokes(strokes: tuple[PixelPath, ...]) -> Iterator[str]:
     for (role, round_), run in groupby(strokes, lambda one: (one.role, one.radius > 0)):
         if not round_:
             yield f'<path class="{role}" d="{"".join(map(_path, run))}"/>'
@@ -250,7 +250,7 @@ def _strokes(strokes: tuple[Stroke, ...]) -> Iterator[str]:
             yield f'<circle class="{role}" cx="{x}" cy="{y}" r="{pixels(one.radius)}"/>'
 
 
-def _path(stroke: Stroke) -> str:
+def _path(stroke: PixelPath) -> str:
     return f"M{'L'.join(map(_xy, stroke.points))}{'Z' if stroke.closed else ''}"
 
 

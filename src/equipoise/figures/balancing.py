@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from equipoise.balancing.multi_row import Rows
+from equipoise.balancing.multi_row import PhasedRows
 from equipoise.balancing.problem import Problem
 from equipoise.figures.aims import aims
 from equipoise.figures.analysis import rounding, settled
@@ -198,7 +198,7 @@ def together(original: Machine | None, machine: Machine) -> Chart:
 
 def summed(machine: Machine, axis: str) -> tuple[Array, Array]:
     """Crank angles (N,), rad, of a whole cycle, and a part of the force of all rows (N,), N."""
-    read = Rows(machine).signals(Objective(f"shaking_force.{axis}"))
+    read = PhasedRows(machine).signals(Objective(f"shaking_force.{axis}"))
     total = read.total(np.array([row.phase for row in machine.rows]))[0, 0]
     count = SAMPLES_OF_ROWS * read.turns
     found = Periodic(total, read.turns)

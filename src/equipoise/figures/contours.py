@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.figures.curves import thinned
-from equipoise.figures.sheet import Array, Stroke, Words, width_of
+from equipoise.figures.sheet import Array, CanvasStroke, Words, width_of
 from equipoise.figures.style import FAINT, INK, SMALL, mixed
 from equipoise.figures.view import View, corners_of
 from equipoise.results.charts import Surface
@@ -31,13 +31,13 @@ def draw_surface(view: View, surface: Surface) -> None:
 
     left, top, right, bottom = view.box
     if surface.lacking:
-        view.sheet.add(Stroke((corners_of(view.box),), fill="#f2f2f2", closed=True), 0.1)
+        view.sheet.add(CanvasStroke((corners_of(view.box),), fill="#f2f2f2", closed=True), 0.1)
         reach = bottom - top
         slants = tuple(
             np.array([(x, bottom), (x + reach, top)])
             for x in np.arange(left - reach, right, APART).tolist()
         )
-        view.sheet.add(Stroke(slants, FAINT, 0.5, clip=view.box), 0.2)
+        view.sheet.add(CanvasStroke(slants, FAINT, 0.5, clip=view.box), 0.2)
     values = surface.axis.unit.factor * surface.values
     levels = levels_of(values)
     if not len(levels):
@@ -52,13 +52,15 @@ def draw_surface(view: View, surface: Surface) -> None:
         found: Any = drawn.filled(low, high)  # points, and where the lines in them begin and end
         for points, parts in zip(*found, strict=True):
             lines = tuple(thinned(points[a:b]) for a, b in pairwise(parts.tolist()))
-            view.sheet.add(Stroke(lines, color, 0.3, fill=color, closed=True, clip=view.box), 1.0)
+            view.sheet.add(
+                CanvasStroke(lines, color, 0.3, fill=color, closed=True, clip=view.box), 1.0
+            )
     told = []
     for level in levels:
         every: Any = drawn.lines(level)
         lines = tuple(line for line in map(thinned, every) if len(line) > 1)
         if lines:
-            view.sheet.add(Stroke(lines, INK, 0.8, clip=view.box), 2.0)
+            view.sheet.add(CanvasStroke(lines, INK, 0.8, clip=view.box), 2.0)
             told.append((level, max(lines, key=_length)))
         for line in lines:
             view.labels.avoid(line)

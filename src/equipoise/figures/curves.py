@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.figures.sheet import MIDDLE, Array, Box, Labels, Sheet, Signs, Stroke, Words
+from equipoise.figures.sheet import MIDDLE, Array, Box, CanvasStroke, Labels, Sheet, Signs, Words
 from equipoise.figures.style import INK, SMALL, DrawingStyle, look_of, mixed
-from equipoise.figures.view import Scale, View, corners_of, ends_of, ticks_of
+from equipoise.figures.view import AxisScale, View, corners_of, ends_of, ticks_of
 from equipoise.results.charts import Area, Bars, Cells, Curve, Panel, Rule
 from equipoise.symbols import looks
 from equipoise.symbols.carrier import gauge
@@ -42,7 +42,7 @@ def draw_curve(view: View, curve: Curve, number: int) -> None:
         longer = tuple(part for part in parts if len(part) > 1)
         alone = np.array([part[0] for part in parts if len(part) == 1])
         if longer:
-            line = Stroke(longer, look.color, look.width, look.lengths, clip=view.box)
+            line = CanvasStroke(longer, look.color, look.width, look.lengths, clip=view.box)
             view.sheet.add(line, look.order)
         if len(alone):
             dot = DrawingStyle(look.color, sign=".", size=2.5)
@@ -143,7 +143,9 @@ def _intervals(view: View, bars: Bars, low: Array, high: Array) -> None:
         places = view.places(*line.T)
         across = np.array([0.0, CAP]) if bars.across == "y" else np.array([CAP, 0.0])
         caps = (np.array([place - across, place + across]) for place in places)
-        view.sheet.add(Stroke((places, *caps), look.color, look.width, clip=view.box), look.order)
+        view.sheet.add(
+            CanvasStroke((places, *caps), look.color, look.width, clip=view.box), look.order
+        )
 
 
 def draw_cells(view: View, cells: Cells) -> None:
@@ -166,7 +168,7 @@ def draw_cells(view: View, cells: Cells) -> None:
         )
         if corners:
             color = mixed(look.color, shade / SHADES)
-            line = Stroke(corners, color, 0.3, fill=color, closed=True, clip=view.box)
+            line = CanvasStroke(corners, color, 0.3, fill=color, closed=True, clip=view.box)
             view.sheet.add(line, look.order + 0.01 * shade)
 
 
@@ -180,7 +182,7 @@ def draw_rule(view: View, rule: Rule) -> None:
     """An upright axis with its numbers, on a pale ground, for lines run across it."""
     _, top, _, bottom = view.box
     x = float(view.x.at(rule.at))
-    scale = Scale(rule.axis, *ends_of(rule.axis, ()), bottom, top)
+    scale = AxisScale(rule.axis, *ends_of(rule.axis, ()), bottom, top)
     view.line(np.array([(x, top), (x, bottom)]), look_of("rule"))
     for place, text in ticks_of(scale, upright=True):
         y = float(scale.of(place))
@@ -201,9 +203,9 @@ def draw_arrow(view: View, tail: complex, head: complex, look: DrawingStyle) -> 
     foot, beside = end - length * along, 0.4 * length * np.array([-along[1], along[0]])
     if look.width and size > length:
         shaft = np.array([start, foot + 0.3 * length * along])
-        view.sheet.add(Stroke((shaft,), look.color, look.width), 3.5)
+        view.sheet.add(CanvasStroke((shaft,), look.color, look.width), 3.5)
     corners = np.array([end, foot + beside, foot - beside])
-    view.sheet.add(Stroke((corners,), fill=look.color, closed=True), 3.6)
+    view.sheet.add(CanvasStroke((corners,), fill=look.color, closed=True), 3.6)
     view.labels.avoid(np.array([start, end]))
 
 
@@ -265,7 +267,7 @@ def draw_shapes(
         dashes = tuple(length * UNIT * size for length in look.dashes or ())
         filled = fill if closed or len(lines[0]) > 2 else ""
         flat = bool(look.dashes) or look.flat
-        stroke = Stroke(lines, color, width, dashes, filled, 1.0, closed, clip, not flat)
+        stroke = CanvasStroke(lines, color, width, dashes, filled, 1.0, closed, clip, not flat)
         sheet.add(stroke, above)
 
 

@@ -16,7 +16,7 @@ from matplotlib.patheffects import withStroke
 from matplotlib.transforms import Affine2D
 
 from equipoise.errors import UsageError, needed
-from equipoise.figures.animation import Moving, Part, Stroke, laid_out
+from equipoise.figures.animation import Moving, MovingGroup, PixelPath, laid_out
 from equipoise.figures.paint import settings
 from equipoise.figures.stage import RATES, ForceArrow, check_seconds, check_width, in_a_turn
 from equipoise.i18n import Note
@@ -249,7 +249,7 @@ def draw_frames(drawn: Moving, colors: Colors = LIGHT) -> Iterator[Array]:
     image = np.asarray(canvas.buffer_rgba())
     ground = [round(255 * part) for part in to_rgba(colors["paper"])]
 
-    def draw(parts: list[tuple[Part, list[Brushed]]], instant: int) -> None:
+    def draw(parts: list[tuple[MovingGroup, list[Brushed]]], instant: int) -> None:
         for part, strokes in parts:
             placed = _placed(part, instant) + upright
             for brush, path, fill in strokes:
@@ -263,7 +263,7 @@ def draw_frames(drawn: Moving, colors: Colors = LIGHT) -> Iterator[Array]:
         yield image[..., :3].copy()
 
 
-def _placed(part: Part, instant: int) -> Affine2D:
+def _placed(part: MovingGroup, instant: int) -> Affine2D:
     moves = part.moves
     if moves is None:
         return Affine2D()
@@ -272,7 +272,7 @@ def _placed(part: Part, instant: int) -> Affine2D:
     return stretched.rotate(moves.angle[instant]).translate(place.real, place.imag)
 
 
-def _brushed(canvas: Any, part: Part, colors: Colors, unit: float) -> Iterator[Brushed]:
+def _brushed(canvas: Any, part: MovingGroup, colors: Colors, unit: float) -> Iterator[Brushed]:
     for role, run in groupby(part.strokes, lambda stroke: stroke.role):
         look = LOOKS[role]
         path = Path.make_compound_path(*map(_path, run))
@@ -280,7 +280,7 @@ def _brushed(canvas: Any, part: Part, colors: Colors, unit: float) -> Iterator[B
         yield _brush(canvas, look, colors, unit), path, fill
 
 
-def _path(shape: Stroke) -> Path:
+def _path(shape: PixelPath) -> Path:
     if shape.radius:
         return Path.circle((shape.points[0].real, shape.points[0].imag), shape.radius)
     corners = np.column_stack([shape.points.real, shape.points.imag])

@@ -13,7 +13,7 @@ from equipoise.figures.legend import APART, KEY, LegendKey, draw_legend, keys_of
 from equipoise.figures.panel import LEAD, draw, flag_height, frame
 from equipoise.figures.sheet import Sheet, Words, lines_of, width_of
 from equipoise.figures.style import INK, LARGE, LINES, NORMAL, SMALL
-from equipoise.figures.view import Scale, View, ticks_of
+from equipoise.figures.view import AxisScale, View, ticks_of
 from equipoise.i18n import said
 from equipoise.results.charts import Axis, Chart
 
@@ -117,7 +117,7 @@ def _sides(cell: Cell) -> None:
     if panel.bare:
         cell.below = LINE * len(panel.x.label.split("\n")) + 4 if panel.x.label else 4.0
         return
-    y = Scale(panel.y, *cell.y_ends, cell.height, 0.0)
+    y = AxisScale(panel.y, *cell.y_ends, cell.height, 0.0)
     numbers = [text for _, text in ticks_of(y, upright=True)] or [""]
     if panel.equal:
         numbers.append("−0000")
@@ -188,8 +188,8 @@ def _draw(sheet: Sheet, cell: Cell, left: float, top: float, inner: float) -> No
     """A panel whose axes begin at some height, in its room from the left."""
     panel = cell.panel
     start, end = left + cell.left, left + inner - cell.right
-    x = Scale(panel.x, *cell.x_ends, start, end)
-    y = Scale(panel.y, *cell.y_ends, top + cell.height, top)
+    x = AxisScale(panel.x, *cell.x_ends, start, end)
+    y = AxisScale(panel.y, *cell.y_ends, top + cell.height, top)
     view = View(panel, x, y, sheet)
     draw(view)
     above = top - flag_height(panel, end - start)

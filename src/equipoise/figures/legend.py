@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.figures.curves import draw_shapes, sample_of, signs_at
-from equipoise.figures.sheet import MIDDLE, Sheet, Stroke, Words, set_in, width_of
+from equipoise.figures.sheet import MIDDLE, CanvasStroke, Sheet, Words, set_in, width_of
 from equipoise.figures.style import INK, NORMAL, look_of
 from equipoise.figures.view import corners_of
 from equipoise.results.charts import Panel
@@ -96,11 +96,11 @@ def _sample(sheet: Sheet, key: LegendKey, x: float, y: float) -> None:
     look = look_of(key.role, key.dashed)
     if key.kind == "patch":
         corners = corners_of((x + 3, y - 4, x + 17, y + 4))
-        sheet.add(Stroke((corners,), fill=look.inside, opacity=look.opacity, closed=True), 6)
+        sheet.add(CanvasStroke((corners,), fill=look.inside, opacity=look.opacity, closed=True), 6)
         return
     if look.width and key.kind == "line" and not (look.sign and look.order >= 4):
         ends = np.array([(x, y), (x + SAMPLE, y)])
-        sheet.add(Stroke((ends,), look.color, look.width, look.lengths), 6)
+        sheet.add(CanvasStroke((ends,), look.color, look.width, look.lengths), 6)
     if look.sign or key.kind == "sign":
         shown = replace(look, size=3.0 if look.sign == "." else look.size)
         if not look.sign:

@@ -21,7 +21,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import PathPatch, Rectangle
 from matplotlib.path import Path
 
-from equipoise.figures.sheet import Item, Sheet, Signs, Stroke, Words, box_of
+from equipoise.figures.sheet import CanvasStroke, Item, Sheet, Signs, Words, box_of
 from equipoise.figures.style import PAPER
 from equipoise.figures.vector import BACK, SHAPES
 
@@ -197,7 +197,9 @@ def _paint(axes: Axes, item: Item, order: int, scale: float) -> None:
         return
     if isinstance(item, Signs) and item.shape in SHAPES:
         outlines = tuple(place + item.size * np.array(SHAPES[item.shape]) for place in item.places)
-        item = Stroke(outlines, item.edge, item.width, fill=item.face, closed=True, clip=item.clip)
+        item = CanvasStroke(
+            outlines, item.edge, item.width, fill=item.face, closed=True, clip=item.clip
+        )
     if isinstance(item, Signs):
         artist = Line2D(*item.places.T, linestyle="none", marker=item.shape, zorder=order)
         wide = 2 * item.size if item.shape == "." else item.size
@@ -219,7 +221,7 @@ def _paint(axes: Axes, item: Item, order: int, scale: float) -> None:
         artist.set_clip_on(False)
 
 
-def _path(stroke: Stroke) -> Path:
+def _path(stroke: CanvasStroke) -> Path:
     parts = []
     for line in stroke.lines:
         corners = np.vstack([line, line[:1]]) if stroke.closed else line

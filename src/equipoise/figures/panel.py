@@ -19,7 +19,7 @@ from equipoise.figures.curves import (
     draw_rule,
     signs_at,
 )
-from equipoise.figures.sheet import MIDDLE, Array, Stroke, Text, Words, spread, width_of
+from equipoise.figures.sheet import MIDDLE, Array, CanvasStroke, CanvasText, Words, spread, width_of
 from equipoise.figures.style import (
     GRID,
     INK,
@@ -68,7 +68,9 @@ def draw(view: View) -> None:
         look = look_of(outline.role)
         lines = tuple(view.places(one.real, one.imag) for one in (outline.places, *outline.holes))
         view.sheet.add(
-            Stroke(lines, look.color, look.width, (), look.fill, look.opacity, True, view.box),
+            CanvasStroke(
+                lines, look.color, look.width, (), look.fill, look.opacity, True, view.box
+            ),
             look.order,
         )
     draw_machine(view.sheet, view.labels, panel, view.places, view.box)
@@ -100,7 +102,7 @@ def _grid(view: View) -> None:
         lines = [np.array([(x, top), (x, bottom)]) for x in across]
         lines += [np.array([(left, y), (right, y)]) for y in up]
         if lines:
-            view.sheet.add(Stroke(tuple(lines), GRID, 0.6), 0.5)
+            view.sheet.add(CanvasStroke(tuple(lines), GRID, 0.6), 0.5)
     for scale, axis in ((view.y, "y"), (view.x, "x")):
         level = panel.zero and (axis == "y" or panel.equal)
         if level and scale.axis.scale == "linear" and scale.low < 0 < scale.high:
@@ -118,7 +120,7 @@ def _rings(view: View) -> None:
         np.column_stack([x.of(k * step * np.cos(turn)), y.of(k * step * np.sin(turn))])
         for k in range(1, ceil(most / step) + 1)
     )
-    view.sheet.add(Stroke(lines, PALE, 0.6, clip=view.box), 0.5)
+    view.sheet.add(CanvasStroke(lines, PALE, 0.6, clip=view.box), 0.5)
 
 
 def _level(view: View, at: float, look: DrawingStyle, axis: str) -> None:
@@ -138,7 +140,7 @@ def frame(view: View, numbers: bool) -> None:
     """The box around the axes, its ticks and, along x where wanted, their numbers."""
     left, _, right, bottom = view.box
     panel = view.panel
-    view.sheet.add(Stroke((corners_of(view.box),), LINES, 0.7, closed=True), 5.0)
+    view.sheet.add(CanvasStroke((corners_of(view.box),), LINES, 0.7, closed=True), 5.0)
     lines = []
     for place, text in view.ticks[0]:
         x = float(view.x.of(place))
@@ -155,7 +157,7 @@ def frame(view: View, numbers: bool) -> None:
             lines.append(np.array([(right, y), (right + 3, y)]))
             view.write(right + 5, y, text)
     if lines:
-        view.sheet.add(Stroke(tuple(lines), LINES, 0.7), 5.0)
+        view.sheet.add(CanvasStroke(tuple(lines), LINES, 0.7), 5.0)
 
 
 ALIKE = (0.01, 0.004)
@@ -212,7 +214,7 @@ def _marks(view: View) -> None:
     for mark, (x, y) in apart:
         if mark.text:
             ink = look_of(mark.role).ink
-            text = Text(mark.text, ink, mark.wish, mark.near, mark.optional, mark.bold)
+            text = CanvasText(mark.text, ink, mark.wish, mark.near, mark.optional, mark.bold)
             view.labels.put(float(x) + mark.off.real, float(y) - mark.off.imag, text)
 
 

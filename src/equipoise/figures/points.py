@@ -27,7 +27,7 @@ from equipoise.results.charts import Array, Arrow, Axis, Chart, Curve, Mark, Pan
 if TYPE_CHECKING:
     from equipoise.mechanism.kinematics.motion import Motion
     from equipoise.results.analysis import Analysis
-    from equipoise.results.outputs import Output
+    from equipoise.results.outputs import AnalysisOutput
 
 
 STILL = 1e-9
@@ -277,7 +277,7 @@ def main_kinematics(analysis: Analysis) -> list[Chart]:
 
 def _each(analysis: Analysis, group: str) -> Iterator[Chart]:
     """A chart of each member of a group; components are told, and the sizes of vectors are not."""
-    members: dict[str, list[Output]] = {}
+    members: dict[str, list[AnalysisOutput]] = {}
     still = analysis.machine.frame if group == "points" else ()
     for one in analysis.outputs:
         if one.group == group and one.declared.array and one.item not in still:

@@ -22,7 +22,7 @@ Anchor = Literal["start", "middle", "end"]
 
 
 @dataclass(frozen=True, eq=False)
-class Stroke:
+class CanvasStroke:
     """Lines, each (N, 2), open or closed, drawn and filled as one.
 
     color : of the line; none is drawn where empty.  fill : of the inside.
@@ -74,7 +74,7 @@ class Words:
     backed: bool = False
 
 
-Item = Stroke | Signs | Words
+Item = CanvasStroke | Signs | Words
 
 
 @dataclass
@@ -206,7 +206,7 @@ ON_TOP, LEAD = 8.0, 4.0
 
 
 @dataclass(frozen=True)
-class Text:
+class CanvasText:
     """A text to be put beside a point, in lines.
 
     wish : direction (deg, against the clock) in which it stands best.  near : least distance.
@@ -252,7 +252,7 @@ class Labels:
         """Keep texts out of a box."""
         self.boxes = np.vstack([self.boxes, box])
 
-    def put(self, x: float, y: float, text: Text) -> bool:
+    def put(self, x: float, y: float, text: CanvasText) -> bool:
         """Write a text beside a point; whether there was room."""
         lines = text.text.split("\n")
         wide = max(width_of(line, text.size, text.bold) for line in lines)
@@ -308,7 +308,7 @@ class Labels:
         corner = np.clip(0.0, offset - size / 2, offset + size / 2)
         far = float(np.hypot(*corner)) or 1.0
         ends = np.array([at + corner * min(2 / far, 1.0), at + corner * max(1 - 3 / far, 0.0)])
-        self.sheet.add(Stroke((ends,), FAINT, 0.6), LEAD)
+        self.sheet.add(CanvasStroke((ends,), FAINT, 0.6), LEAD)
 
 
 def spread(middles: Sequence[float], widths: Sequence[float], low: float, high: float) -> Array:

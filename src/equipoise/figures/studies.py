@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from equipoise.studies.blocks import Unit
     from equipoise.studies.objective_map import Landscape
     from equipoise.studies.tolerances import Cause, Tolerances
-    from equipoise.studies.variance import Estimate, Scatter
+    from equipoise.studies.variance import IntervalEstimate, Scatter
 
 Units = Mapping[str, "Unit"]
 NARROW = 0.05
@@ -141,7 +141,7 @@ def shares(found: Tolerances, units: Units) -> Iterator[Chart]:
         yield Chart(f"shares{suffix}", found.study.title, what, tuple(panels), keys=keys)
 
 
-def _shares(estimates: Sequence[Estimate], rows: Array, role: str) -> Bars:
+def _shares(estimates: Sequence[IntervalEstimate], rows: Array, role: str) -> Bars:
     """Estimates that may come out below 0 within their interval, as bars from 0."""
     told = [(one.value, one.low, one.high) for one in estimates]
     size, low, high = np.maximum(np.array(told).T, 0.0)

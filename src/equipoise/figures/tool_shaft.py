@@ -30,7 +30,7 @@ from equipoise.results.charts import (
 from equipoise.signals import highest_at
 
 if TYPE_CHECKING:
-    from equipoise.handheld.layout import Line as ShaftLine
+    from equipoise.handheld.layout import ShaftDeflection as ShaftLine
     from equipoise.handheld.model import Station, Tool
     from equipoise.handheld.modes import PlaneModes, ToolModes
     from equipoise.handheld.response import ToolResponse

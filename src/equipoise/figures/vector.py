@@ -9,7 +9,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from equipoise.figures.sheet import Array, Box, Sheet, Signs, Stroke, Words, box_of
+from equipoise.figures.sheet import Array, Box, CanvasStroke, Sheet, Signs, Words, box_of
 from equipoise.figures.style import PAPER
 
 FONTS = "DejaVu Sans, Verdana, sans-serif"
@@ -72,7 +72,7 @@ def _words(words: Words) -> Iterator[str]:
     yield f"<text {place} {look}>{escape(words.text, quote=False)}</text>"
 
 
-def _stroke(stroke: Stroke) -> str:
+def _stroke(stroke: CanvasStroke) -> str:
     end = "Z" if stroke.closed else ""
     path = "".join(f"{_path(line)}{end}" for line in stroke.lines)
     look = f'fill="{stroke.fill or "none"}"'

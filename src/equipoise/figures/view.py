@@ -14,9 +14,9 @@ from equipoise.figures.sheet import (
     MIDDLE,
     Anchor,
     Box,
+    CanvasStroke,
     Labels,
     Sheet,
-    Stroke,
     Words,
     width_of,
 )
@@ -43,7 +43,7 @@ DECADES = 6.0
 
 
 @dataclass(frozen=True)
-class Scale:
+class AxisScale:
     """An axis between two places.
 
     low, high : ends in the unit of the axis.  start, end : points, where these are.
@@ -104,7 +104,7 @@ def _log_ends(values: Array, low: float | None, high: float | None) -> tuple[flo
     return (least, most) if most > least else (least / 3, most * 3)
 
 
-def ticks_of(scale: Scale, upright: bool = False) -> Ticks:
+def ticks_of(scale: AxisScale, upright: bool = False) -> Ticks:
     """Places in the unit of the axis, and numbers there: at least three where there is room."""
     axis = scale.axis
     if axis.ticks is not None:
@@ -116,7 +116,7 @@ def ticks_of(scale: Scale, upright: bool = False) -> Ticks:
     return (_log_ticks if axis.scale == "log" else _round_ticks)(scale, upright)
 
 
-def _apart(scale: Scale, ticks: Ticks) -> Ticks:
+def _apart(scale: AxisScale, ticks: Ticks) -> Ticks:
     """Those of words side by side that do not touch."""
     kept: Ticks = []
     end = -np.inf
@@ -129,7 +129,7 @@ def _apart(scale: Scale, ticks: Ticks) -> Ticks:
     return kept
 
 
-def steps_of(scale: Scale, digits: tuple[float, ...]) -> Iterator[float]:
+def steps_of(scale: AxisScale, digits: tuple[float, ...]) -> Iterator[float]:
     """Round distances of numbers, from small to large."""
     span = scale.high - scale.low
     if scale.axis.scale == "crank" and span >= 90:
@@ -141,7 +141,7 @@ def steps_of(scale: Scale, digits: tuple[float, ...]) -> Iterator[float]:
         power *= 10
 
 
-def _round_ticks(scale: Scale, upright: bool) -> Ticks:
+def _round_ticks(scale: AxisScale, upright: bool) -> Ticks:
     """Numbers as near to each other as they have room, but not fewer than three."""
     fewer: Ticks = []
     for digits, free in ((ROUND, BESIDE), (ROUNDISH, NARROW)):
@@ -158,7 +158,7 @@ def _round_ticks(scale: Scale, upright: bool) -> Ticks:
     return fewer
 
 
-def _fits(scale: Scale, ticks: Ticks, upright: bool, free: float) -> bool:
+def _fits(scale: AxisScale, ticks: Ticks, upright: bool, free: float) -> bool:
     if len(ticks) < 2:
         return True
     gap = abs(float(scale.of(ticks[1][0]) - scale.of(ticks[0][0])))
@@ -176,7 +176,7 @@ def _written(value: float, step: float) -> str:
     return typeset(f"{value + 0.0:.{digits}f}") if value else "0"
 
 
-def _log_ticks(scale: Scale, upright: bool) -> Ticks:
+def _log_ticks(scale: AxisScale, upright: bool) -> Ticks:
     """Plain numbers, as few digits as give three of them; round ones where there are no decades."""
     powers = range(floor(log10(scale.low)), ceil(log10(scale.high)) + 1)
     found: Ticks = []
@@ -190,7 +190,7 @@ def _log_ticks(scale: Scale, upright: bool) -> Ticks:
     return found if len(found) >= FEWEST else _round_ticks(scale, upright)
 
 
-def _log_fits(scale: Scale, ticks: Ticks, upright: bool) -> bool:
+def _log_fits(scale: AxisScale, ticks: Ticks, upright: bool) -> bool:
     gaps = np.abs(np.diff([float(scale.of(place)) for place, _ in ticks]))
     least = 0.7 * UP
     if not upright:
@@ -203,8 +203,8 @@ class View:
     """A panel with its place on a sheet."""
 
     panel: Panel
-    x: Scale
-    y: Scale
+    x: AxisScale
+    y: AxisScale
     sheet: Sheet
 
     @property
@@ -228,13 +228,13 @@ class View:
 
     def line(self, places: Array, look: DrawingStyle, order: float | None = None) -> None:
         """A line (N, 2) on the sheet, not clipped."""
-        stroke = Stroke((places,), look.color, look.width, look.lengths)
+        stroke = CanvasStroke((places,), look.color, look.width, look.lengths)
         self.sheet.add(stroke, look.order if order is None else order)
 
     def area(self, look: DrawingStyle, *places: Array) -> None:
         """Filled areas, each (N, 2), cut at the axes."""
         color = look.inside
-        stroke = Stroke(places, fill=color, opacity=look.opacity, closed=True, clip=self.box)
+        stroke = CanvasStroke(places, fill=color, opacity=look.opacity, closed=True, clip=self.box)
         self.sheet.add(stroke, look.order)
 
     def write(self, x: float, y: float, text: str, anchor: Anchor = "start", **rest: Any) -> None:

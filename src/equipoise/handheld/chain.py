@@ -142,7 +142,7 @@ def _paired_series(quadratic: Any, quartic: Any) -> tuple[Any, Any, Any, Any]:
     return c0, c1, c2, c3
 
 
-class Pair(NamedTuple):
+class NodePair(NamedTuple):
     """Two numbers of a node: for displacement and slope, or for force and couple."""
 
     across: Any
@@ -177,7 +177,7 @@ class Chain:
     """
 
     segments: Sequence[Transfer]
-    stations: Sequence[Pair]
+    stations: Sequence[NodePair]
 
 
 @dataclass(frozen=True, eq=False)
@@ -197,8 +197,8 @@ class CondensedStiffness:
 class States:
     """Answer of every node: displacement and slope, and force and moment just right of it."""
 
-    motion: Sequence[Pair]
-    force: Sequence[Pair]
+    motion: Sequence[NodePair]
+    force: Sequence[NodePair]
 
 
 @np.errstate(all="ignore")  # whoever asks looks whether the answer is finite
@@ -235,13 +235,13 @@ def _cross(over: Transfer, z: Symmetric) -> tuple[SegmentTransfer, Symmetric]:
 
 
 @np.errstate(all="ignore")
-def solve(carried: CondensedStiffness, loads: Sequence[Pair | None]) -> States:
+def solve(carried: CondensedStiffness, loads: Sequence[NodePair | None]) -> States:
     """The motion under harmonic forces and couples on the nodes; None for no load there.
 
     At a resonance without damping it is not finite.
     """
     z, chain = carried.stiffness, carried.chain
-    g = _less(Pair(0.0, 0.0), loads[0])
+    g = _less(NodePair(0.0, 0.0), loads[0])
     held = [g]
     for over, load, after, station in zip(
         chain.segments, loads[1:], z[1:], chain.stations[1:], strict=True
@@ -251,36 +251,36 @@ def solve(carried: CondensedStiffness, loads: Sequence[Pair | None]) -> States:
     last = z[-1]
     determinant = last.aa * last.tt - last.at * last.at
     across = (last.at * g.turning - last.tt * g.across) / determinant
-    motion = [Pair(across, (last.at * g.across - last.aa * g.turning) / determinant)]
-    force = [Pair(0.0 * g.across, 0.0 * g.turning)]
+    motion = [NodePair(across, (last.at * g.across - last.aa * g.turning) / determinant)]
+    force = [NodePair(0.0 * g.across, 0.0 * g.turning)]
     for step, before, g in zip(carried.steps[::-1], z[-2::-1], held[-2::-1], strict=True):
         q = _back(step, motion[-1], g)
         motion.append(q)
         across = before.aa * q.across + before.at * q.turning + g.across
-        force.append(Pair(across, before.at * q.across + before.tt * q.turning + g.turning))
+        force.append(NodePair(across, before.at * q.across + before.tt * q.turning + g.turning))
     return States(motion[::-1], force[::-1])
 
 
-def _carry_load(over: Transfer, z: Symmetric, station: Pair, g: Pair) -> Pair:
+def _carry_load(over: Transfer, z: Symmetric, station: NodePair, g: NodePair) -> NodePair:
     """The load g' after a segment; z is that after the station behind it."""
     w = over.wv * g.across + over.wm * g.turning
     t = over.tv * g.across + over.tm * g.turning
-    return Pair(
+    return NodePair(
         over.vv * g.across + over.vm * g.turning - (z.aa - station.across) * w - z.at * t,
         over.mv * g.across + over.mm * g.turning - z.at * w - (z.tt - station.turning) * t,
     )
 
 
-def _less(g: Pair, load: Pair | None) -> Pair:
-    return g if load is None else Pair(g.across - load.across, g.turning - load.turning)
+def _less(g: NodePair, load: NodePair | None) -> NodePair:
+    return g if load is None else NodePair(g.across - load.across, g.turning - load.turning)
 
 
-def _back(step: SegmentTransfer, q: Pair, g: Pair) -> Pair:
+def _back(step: SegmentTransfer, q: NodePair, g: NodePair) -> NodePair:
     """Motion at the left end of a segment, from that at its right end."""
     over = step.over
     w = q.across - (over.wv * g.across + over.wm * g.turning)
     t = q.turning - (over.tv * g.across + over.tm * g.turning)
-    return Pair(
+    return NodePair(
         (step.tt * w - step.at * t) / step.determinant,
         (step.aa * t - step.ta * w) / step.determinant,
     )

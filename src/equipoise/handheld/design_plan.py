@@ -10,13 +10,13 @@ from equipoise.handheld.station import Station
 from equipoise.i18n import Note
 from equipoise.keys import (
     Conditions,
+    DependentQuantity,
     Frozen,
+    KeyTable,
     Listing,
     Quantity,
-    Table,
     Tables,
-    Text,
-    Told,
+    TextKind,
     declared,
     told_by,
 )
@@ -83,14 +83,14 @@ class DesignVariable(Frozen):
 
     conditions: ClassVar[Conditions] = told_by("key", ("from", "to"), KEYS)
 
-    station: str = _key(Text(), "name of the station", example="belt")
+    station: str = _key(TextKind(), "name of the station", example="belt")
     key: str = _key(
-        Text(suggested=(*KEYS,)),
+        TextKind(suggested=(*KEYS,)),
         "of the station; those of a part of it with a dot",
         example="position",
     )
-    low: float = _key(Told(), "the least", name="from", example="0.1 m")
-    high: float = _key(Told(), "the most", name="to", example="0.5 m")
+    low: float = _key(DependentQuantity(), "the least", name="from", example="0.1 m")
+    high: float = _key(DependentQuantity(), "the most", name="to", example="0.5 m")
 
     @classmethod
     def from_table(cls, given: dict[str, Any]) -> DesignVariable:
@@ -116,13 +116,13 @@ class DesignLimit(Frozen):
     conditions: ClassVar[Conditions] = told_by("output", ("at_most",), OUTPUTS)
 
     output: str = _key(
-        Text(suggested=(*OUTPUTS,)),
+        TextKind(suggested=(*OUTPUTS,)),
         "`acceleration`: weighted, of a station that is held; `force`: on the body, at a station; "
         "`added_mass`: all that is added",
         example="acceleration",
     )
-    at_most: float = _key(Told(), "in a unit of the output", example="5 m/s^2")
-    station: str | None = _key(Text(), "of an acceleration or force", default=None)
+    at_most: float = _key(DependentQuantity(), "in a unit of the output", example="5 m/s^2")
+    station: str | None = _key(TextKind(), "of an acceleration or force", default=None)
 
     @classmethod
     def from_table(cls, given: dict[str, Any]) -> DesignLimit:
@@ -147,18 +147,18 @@ class DesignPlan(Frozen):
         SPEEDS, "lowest and highest speed of the engine", example=["6000 rpm", "8000 rpm"]
     )
     variables: tuple[DesignVariable, ...] = _key(
-        Tables(Table(DesignVariable)), "what may be changed", default=()
+        Tables(KeyTable(DesignVariable)), "what may be changed", default=()
     )
     limits: tuple[DesignLimit, ...] = _key(
-        Tables(Table(DesignLimit)), "what must not become larger", default=()
+        Tables(KeyTable(DesignLimit)), "what must not become larger", default=()
     )
     measure: Measure = _key(
-        Text(MEASURES),
+        TextKind(MEASURES),
         "over the speeds: `rms`: root of the mean square; `peak`: the largest",
         default="rms",
     )
     hands: tuple[str, ...] = _key(
-        Listing(Text(), right=Note('a list of names such as ["handle"]')),
+        Listing(TextKind(), right=Note('a list of names such as ["handle"]')),
         "stations that count; all that are held if left out",
         default=(),
     )

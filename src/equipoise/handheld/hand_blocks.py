@@ -27,9 +27,9 @@ from equipoise.quantities import brief, number
 from equipoise.results.blocks import (
     Block,
     Cell,
-    Change,
     Column,
-    Section,
+    RelativeChange,
+    ReportSection,
     Table,
     Text,
     Value,
@@ -70,7 +70,7 @@ def varied_named(name: str) -> str:
 # -- hands -----------------------------------------------------------------------------------------
 
 
-def exposure_of_tool(found: ToolExposure) -> Iterator[Block | Section]:
+def exposure_of_tool(found: ToolExposure) -> Iterator[Block | ReportSection]:
     """Weighted acceleration of every hand, and the day of the one that gets most."""
     yield _hands(found)
     least, most = (
@@ -96,7 +96,7 @@ def exposure_of_tool(found: ToolExposure) -> Iterator[Block | Section]:
         yield Text(say("There is no daily exposure without work; the file tells none."))
         return
     title = say("A day at {hand}, the hand that gets most", hand=found.worst)
-    yield Section("day", title, tuple(exposure_blocks(found.days[found.worst])))
+    yield ReportSection("day", title, tuple(exposure_blocks(found.days[found.worst])))
 
 
 def _hands(found: ToolExposure) -> Table:
@@ -168,7 +168,7 @@ def _verdict(found: ToolDesign) -> Iterator[Text]:
 def _pair(one: Before, told: bool = False) -> tuple[Cell, ...]:
     worse = told and one.dimension != "mass" and one.after > 1.001 * one.before
     pair = (cell(one.before, one.dimension), cell(one.after, one.dimension))
-    return (*pair, Change(one.before, one.after, worse_if(worse)))
+    return (*pair, RelativeChange(one.before, one.after, worse_if(worse)))
 
 
 def figure_named(one: Before) -> str:

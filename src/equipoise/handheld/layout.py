@@ -13,7 +13,7 @@ import numpy as np
 from equipoise.errors import ModelError, UsageError
 from equipoise.handheld.chain import (
     Chain,
-    Pair,
+    NodePair,
     States,
     Transfer,
     longest,
@@ -228,7 +228,7 @@ class Layout:
             _column([one.rotary_inertia for one in sections]) * square,
         )
 
-    def sitting(self, stations: Sequence[Station], s: Any, square: Any, kind: Kind) -> Pair:
+    def sitting(self, stations: Sequence[Station], s: Any, square: Any, kind: Kind) -> NodePair:
         """Dynamic stiffness of what sits at a node."""
         across: Any = np.zeros((2, 1))
         turning: Any = np.zeros((2, 1))
@@ -239,7 +239,7 @@ class Layout:
             turning = turning + self.of(one, "inertia") * square
             if one.absorber is not None:
                 across = across + self.absorber(one, s, square, kind)
-        return Pair(across, turning)
+        return NodePair(across, turning)
 
     def mass_at(self, station: Station) -> Any:
         """Mass that moves with a station, kg: its own, and that of the hands on it."""
@@ -299,7 +299,7 @@ def _column(numbers: list[float]) -> Array:
     return np.array(numbers)[:, None, None]
 
 
-class Line(NamedTuple):
+class ShaftDeflection(NamedTuple):
     """Of some places (X) of the shaft, in both planes: arrays (X, 2, F).
 
     displacement (m) and slope (rad); moment (N m) and shear (N), just right of a station.
@@ -320,7 +320,7 @@ class HarmonicField:
     states: States
     kind: Kind = "forced"
 
-    def at(self, places: Array) -> Line:
+    def at(self, places: Array) -> ShaftDeflection:
         """Shape at some places (X), m from the left end.
 
         Raises
@@ -339,4 +339,4 @@ class HarmonicField:
         w, t = (np.array(part)[which] for part in zip(*self.states.motion, strict=True))
         v, m = (np.array(part)[which] for part in zip(*self.states.force, strict=True))
         displacement, slope, shear, moment = over.carried(w, t, v, m)
-        return Line(displacement, slope, moment, shear)
+        return ShaftDeflection(displacement, slope, moment, shear)

@@ -37,10 +37,10 @@ from equipoise.keys import (
     Frozen,
     Key,
     Keys,
+    KeyTable,
     Number,
-    Table,
     Tables,
-    Text,
+    TextKind,
     Wording,
     declared,
     inside,
@@ -92,10 +92,10 @@ class Excitation(Frozen):
     called = to_say("{what} of excitation {number}")
     beside: ClassVar[Keys] = {
         "name": Key(
-            "name", Text(), "if left out, that of the station and what it is", default=None
+            "name", TextKind(), "if left out, that of the station and what it is", default=None
         ),
         "direction": Key(
-            "direction", Text(DIRECTIONS), "of a force", default=None, shown="vertical"
+            "direction", TextKind(DIRECTIONS), "of a force", default=None, shown="vertical"
         ),
     }
     file_order = ("name", "station", "force", "unbalance", "linkage", "direction")
@@ -105,8 +105,8 @@ class Excitation(Frozen):
         "allOf": [{"properties": {"ratio": {"not": {"const": 0}}}}],
     }
 
-    name: str = inside(Text())
-    station: str = key(Text(), "where it acts", example="engine")
+    name: str = inside(TextKind())
+    station: str = key(TextKind(), "where it acts", example="engine")
     force: float | None = key(
         "force", "amplitude, the same at all speeds", default=None, at_least=0
     )
@@ -120,7 +120,7 @@ class Excitation(Frozen):
         default=None,
         example="engine.toml",
     )
-    direction: Direction = inside(Text(DIRECTIONS), default="vertical")
+    direction: Direction = inside(TextKind(DIRECTIONS), default="vertical")
     phase: float = key(
         "angle",
         "by which it is ahead; of an unbalance or linkage, the angle of its shaft",
@@ -131,7 +131,7 @@ class Excitation(Frozen):
         "its speed over that of the engine; negative turns the other way",
         default=1.0,
     )
-    file: str = inside(Text(), default="", compare=False)
+    file: str = inside(TextKind(), default="", compare=False)
 
     @classmethod
     def from_table(cls, given: dict[str, Any]) -> Excitation:
@@ -177,7 +177,7 @@ class Work(Frozen):
 
     called = to_say("{what} of {name}")
 
-    name: str = key(Text(), "of the work", example="mowing")
+    name: str = key(TextKind(), "of the work", example="mowing")
     speed: float = key("angular speed", "of the engine", example="7000 rpm", above=0)
     duration: float = key("time", "of it in a day", example="2 h", above=0)
 
@@ -190,7 +190,7 @@ class ShaftTable(Frozen):
     beside: ClassVar[Keys] = {
         **keys_of(Shaft),
         "stations": Key(
-            "stations", Tables(Table(Station)), "what sits on it and holds it", default=()
+            "stations", Tables(KeyTable(Station)), "what sits on it and holds it", default=()
         ),
     }
     conditions: ClassVar[Conditions] = Shaft.conditions
@@ -214,19 +214,19 @@ class Tool(Displayed, Frozen):
     file_order = ("schema", "title", "description", "units")
 
     title: str = key(Wording(), "shown in reports", example="Brush cutter")
-    shaft: Shaft = key(Table(ShaftTable), "the beam")
-    stations: tuple[Station, ...] = inside(Tables(Table(Station)), default=())
+    shaft: Shaft = key(KeyTable(ShaftTable), "the beam")
+    stations: tuple[Station, ...] = inside(Tables(KeyTable(Station)), default=())
     excitations: tuple[Excitation, ...] = key(
-        Tables(Table(Excitation)), "what shakes the tool", default=()
+        Tables(KeyTable(Excitation)), "what shakes the tool", default=()
     )
-    operation: Operation | None = key(Table(Operation), "speeds of the engine", default=None)
-    work: tuple[Work, ...] = key(Tables(Table(Work)), "the parts of a day", default=())
+    operation: Operation | None = key(KeyTable(Operation), "speeds of the engine", default=None)
+    work: tuple[Work, ...] = key(Tables(KeyTable(Work)), "the parts of a day", default=())
     design: DesignPlan | None = key(
-        Table(DesignPlan), "what may be changed so that the hands feel less", default=None
+        KeyTable(DesignPlan), "what may be changed so that the hands feel less", default=None
     )
     description: str = key(Wording(), "further text", default="")
     units: ShownUnits | None = key(
-        Table(ShownUnits), "in which values are shown, as by `--units`", default=None
+        KeyTable(ShownUnits), "in which values are shown, as by `--units`", default=None
     )
 
     def __repr__(self) -> str:  # its own, so that dataclass makes none

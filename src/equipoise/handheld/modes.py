@@ -10,7 +10,7 @@ from typing import ClassVar
 import numpy as np
 
 from equipoise.errors import ModelError
-from equipoise.handheld.chain import Pair, carry, solve
+from equipoise.handheld.chain import NodePair, carry, solve
 from equipoise.handheld.frequencies import (
     TOO_FAR_APART,
     eigenvalues,
@@ -318,7 +318,7 @@ def _loaded(layout: Layout, s: Array, places: Array, kind: Kind) -> tuple[Array,
     """Displacement and slope (X, 2, K) under that load."""
     numbers = np.arange(s.shape[-1])
     loads = [
-        Pair(1 + np.cos(2.4 * k + 0.7 * numbers), np.sin(1.3 * k + 0.3 + 1.1 * numbers))
+        NodePair(1 + np.cos(2.4 * k + 0.7 * numbers), np.sin(1.3 * k + 0.3 + 1.1 * numbers))
         for k in range(len(layout.nodes))
     ]
     states = solve(carry(layout.chain(s, kind)), loads)

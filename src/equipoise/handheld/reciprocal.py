@@ -22,7 +22,7 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.handheld.chain import CondensedStiffness, Pair, States, solve
+from equipoise.handheld.chain import CondensedStiffness, NodePair, States, solve
 from equipoise.handheld.duals import Dual, value_of
 from equipoise.handheld.layout import HarmonicField, Layout
 from equipoise.signals import Array
@@ -70,12 +70,12 @@ class Reciprocal:
     def _unit(self) -> States:
         """Answers (U, 2, F) to a force of 1 N on each watched station."""
         layout = self.field.layout
-        loads: list[Pair | None] = [None] * len(layout.nodes)
+        loads: list[NodePair | None] = [None] * len(layout.nodes)
         for name in self.row:
             node = layout.node_of[name]
             force = np.zeros((len(self.row), 1, 1))
             force[[k for one, k in self.row.items() if layout.node_of[one] == node]] = 1.0
-            loads[node] = Pair(force, 0.0)
+            loads[node] = NodePair(force, 0.0)
         return solve(self.carried, loads)
 
     @cached_property

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from equipoise.errors import MassError, ModelError, ResponseError, UsageError
-from equipoise.handheld.chain import Pair, carry, solve
-from equipoise.handheld.layout import HarmonicField, Layout, Line, check_coverage
+from equipoise.handheld.chain import NodePair, carry, solve
+from equipoise.handheld.layout import HarmonicField, Layout, ShaftDeflection, check_coverage
 from equipoise.handheld.model import Excitation, Tool
 from equipoise.i18n import Note
 from equipoise.mechanism.dynamics.forces import forces, massless
@@ -161,10 +161,12 @@ class ToolResponse(Result):
         """Acceleration (2, K, S) of a station, m/s2."""
         return np.asarray(self.displacement(station) * self._s**2)
 
-    def line(self, places: Sequence[float] | Array) -> Line:
+    def line(self, places: Sequence[float] | Array) -> ShaftDeflection:
         """Displacement, slope, bending moment and shear at places (X), m: arrays (X, 2, K, S)."""
         found = self.field.at(np.asarray(places, dtype=float))
-        return Line(*(part.reshape(*part.shape[:2], *self.frequency.shape) for part in found))
+        return ShaftDeflection(
+            *(part.reshape(*part.shape[:2], *self.frequency.shape) for part in found)
+        )
 
     def forces(self, station: str) -> dict[str, Array]:
         """Forces (2, K, S), N, of a station on the ``hand``, the ``harness`` and the ``ground``.
@@ -226,7 +228,7 @@ class ToolResponse(Result):
             total = total + np.sum(np.imag(entered), axis=0) * np.abs(s[0]) / 2
         return np.asarray(total.reshape(self.frequency.shape))
 
-    def _node(self, station: str) -> Pair:
+    def _node(self, station: str) -> NodePair:
         self.tool.station(station)
         return self.field.states.motion[self.field.layout.node_of[station]]
 
@@ -312,13 +314,15 @@ def shaken(
 
 def loads_on(
     layout: Layout, all_shakes: Sequence[Shake], orders: Array, speeds: Array
-) -> list[Pair | None]:
+) -> list[NodePair | None]:
     """What shakes, on the nodes of a layout: forces (2, K S)."""
     loads: list[Any] = [None] * len(layout.nodes)
     for shake in all_shakes:
         force = np.zeros((2, len(orders), len(speeds)), complex)
         force[:, np.searchsorted(orders, shake.order)] = shake.at(speeds)
         node = layout.node_of[shake.station]
-        load = Pair(force.reshape(2, -1), 0.0)
-        loads[node] = load if loads[node] is None else Pair(loads[node].across + load.across, 0.0)
+        load = NodePair(force.reshape(2, -1), 0.0)
+        loads[node] = (
+            load if loads[node] is None else NodePair(loads[node].across + load.across, 0.0)
+        )
     return loads

@@ -18,11 +18,11 @@ from equipoise.keys import (
     Frozen,
     Key,
     Keys,
+    KeyTable,
     Number,
     Quantity,
-    Table,
     Tables,
-    Text,
+    TextKind,
     declared,
     inside,
     key,
@@ -106,7 +106,7 @@ MATERIALS = {
 """The usual values of their alloys."""
 
 
-def _key(kind: Dimension | Number | Text, text: str, default: Any = None, **more: Any) -> Key:
+def _key(kind: Dimension | Number | TextKind, text: str, default: Any = None, **more: Any) -> Key:
     of = Quantity(dimension=kind) if isinstance(kind, str) else kind
     return Key("", of, text, default=default, **more)
 
@@ -120,7 +120,7 @@ PROFILE: Keys = {
         "length", "of a tube, instead of `bending_stiffness` and the mass", example="26 mm"
     ),
     "inner_diameter": _key("length", "of a tube; 0 for a rod", 0.0),
-    "material": _key(Text(suggested=(*MATERIALS,)), "of a tube", example="aluminium"),
+    "material": _key(TextKind(suggested=(*MATERIALS,)), "of a tube", example="aluminium"),
     "youngs_modulus": _key("modulus", "modulus of elasticity of a tube, instead of `material`"),
     "density": _key("density", "goes with `youngs_modulus`"),
     "poisson_ratio": _key(Number(), "goes with `youngs_modulus`", shown=0.3),
@@ -267,7 +267,7 @@ class Segment(Profiled):
 
     start: float = key("length", "where it begins", name="from", example="1.2 m")
     stop: float = key("length", "where it ends", name="to", example="1.35 m")
-    profile: Section | Tube = inside(Table(Frozen, flat=True))
+    profile: Section | Tube = inside(KeyTable(Frozen, flat=True))
 
 
 @declared
@@ -290,9 +290,9 @@ class Shaft(Profiled):
     conditions: ClassVar[Conditions] = profile_conditions("mass_per_length", "mass")
 
     length: float = key("length", "from end to end", example="1.5 m", above=0)
-    profile: Section | Tube = inside(Table(Frozen, flat=True))
+    profile: Section | Tube = inside(KeyTable(Frozen, flat=True))
     segments: tuple[Segment, ...] = key(
-        Tables(Table(Segment)), "parts with another section", default=()
+        Tables(KeyTable(Segment)), "parts with another section", default=()
     )
     loss_factor: float = key(
         Number(),
@@ -302,7 +302,7 @@ class Shaft(Profiled):
         below=1,
     )
     theory: Theory = key(
-        Text(get_args(Theory)),
+        TextKind(get_args(Theory)),
         "`timoshenko`: with shear and rotary inertia; needs the measures of tubes",
         default="euler-bernoulli",
     )

@@ -16,10 +16,10 @@ from equipoise.keys import (
     Conditions,
     File,
     Frozen,
+    KeyTable,
     Planes,
     Quantity,
-    Table,
-    Text,
+    TextKind,
     Whole,
     declared,
     inside,
@@ -69,7 +69,7 @@ class Impedance(CsvTable):
     frequency: tuple[float, ...] = inside(ROW)
     resistance: tuple[float, ...] = inside(ROW)
     reactance: tuple[float, ...] = inside(ROW)
-    file: str = inside(Text(), default="", compare=False)
+    file: str = inside(TextKind(), default="", compare=False)
 
 
 @declared
@@ -121,7 +121,7 @@ class Station(Frozen):
 
     called = to_say("{what} of the {name}")
 
-    name: str = key(Text(), "by which the other tables call it", example="engine")
+    name: str = key(TextKind(), "by which the other tables call it", example="engine")
     position: float = key("length", "from the left end of the shaft", example="0 mm")
     mass: float = key("mass", "of a rigid body", default=0.0, at_least=0)
     inertia: Both = key(
@@ -139,10 +139,10 @@ class Station(Frozen):
         TURNING_DAMPING, "to the ground, against bending", default=NOTHING, at_least=0
     )
     absorber: Absorber | None = key(
-        Table(Absorber), "a mass on a spring and damper of its own", default=None
+        KeyTable(Absorber), "a mass on a spring and damper of its own", default=None
     )
-    hand: Hand | None = key(Table(Hand), "what a hand with its arm is to the tool", default=None)
-    harness: Harness | None = key(Table(Harness), "the belt that carries the tool", default=None)
+    hand: Hand | None = key(KeyTable(Hand), "what a hand with its arm is to the tool", default=None)
+    harness: Harness | None = key(KeyTable(Harness), "the belt that carries the tool", default=None)
 
     @property
     def grounded(self) -> bool:

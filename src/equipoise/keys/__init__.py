@@ -13,7 +13,7 @@ plain functions beside the class.
 """
 
 from equipoise.keys.base import Kind as Kind
-from equipoise.keys.base import Record as Record
+from equipoise.keys.base import TableRecord as TableRecord
 from equipoise.keys.conditions import any_of as any_of
 from equipoise.keys.conditions import lacks as lacks
 from equipoise.keys.conditions import needs as needs
@@ -40,9 +40,11 @@ from equipoise.keys.kinds import MOST_WHOLE as MOST_WHOLE
 from equipoise.keys.kinds import NO_INERTIA as NO_INERTIA
 from equipoise.keys.kinds import PLANES as PLANES
 from equipoise.keys.kinds import Anything as Anything
+from equipoise.keys.kinds import DependentQuantity as DependentQuantity
 from equipoise.keys.kinds import Direction as Direction
 from equipoise.keys.kinds import File as File
 from equipoise.keys.kinds import Flag as Flag
+from equipoise.keys.kinds import KeyTable as KeyTable
 from equipoise.keys.kinds import Listing as Listing
 from equipoise.keys.kinds import Named as Named
 from equipoise.keys.kinds import Number as Number
@@ -51,10 +53,8 @@ from equipoise.keys.kinds import ParameterValue as ParameterValue
 from equipoise.keys.kinds import Planes as Planes
 from equipoise.keys.kinds import Point as Point
 from equipoise.keys.kinds import Quantity as Quantity
-from equipoise.keys.kinds import Table as Table
 from equipoise.keys.kinds import Tables as Tables
-from equipoise.keys.kinds import Text as Text
-from equipoise.keys.kinds import Told as Told
+from equipoise.keys.kinds import TextKind as TextKind
 from equipoise.keys.kinds import Whole as Whole
 from equipoise.keys.kinds import Wording as Wording
 from equipoise.keys.kinds import choice as choice

@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 from equipoise.i18n import Note
 
 
-class Record:
+class TableRecord:
     """What a table of a file is read to, and holds by the names of its fields."""
 
     wanted: ClassVar[Note] = Note("such an object")
@@ -15,7 +15,7 @@ class Record:
     @classmethod
     def checked(cls, value: Any) -> Any:
         """The value of a field that holds such an object; a `TypeError` where it is none."""
-        if not isinstance(value, Record):
+        if not isinstance(value, TableRecord):
             raise TypeError
         return value
 

@@ -11,14 +11,14 @@ from typing import Any, ClassVar, Self, TypeVar, dataclass_transform
 from equipoise.errors import ModelError, UsageError
 from equipoise.guarding import keyworded
 from equipoise.i18n import Note
-from equipoise.keys.base import Kind, Record
+from equipoise.keys.base import Kind, TableRecord
 from equipoise.keys.kinds import (
+    DependentQuantity,
+    KeyTable,
     Listing,
     Number,
     Quantity,
-    Table,
     Tables,
-    Told,
     Whole,
     innermost,
 )
@@ -141,7 +141,7 @@ def once(compute: Callable[[type[Frozen]], Result]) -> Callable[[type[Frozen]], 
     return cache(compute)  # type: ignore[return-value]
 
 
-class Frozen(Record):
+class Frozen(TableRecord):
     """Base of the frozen dataclasses of a model: numbers as floats, lists as tuples, mappings
     read-only, each checked by its kind when the object is made.  A quantity may be given as the
     text that a file has, such as ``"300 rpm"``.
@@ -251,7 +251,7 @@ def all_keys(cls: type[Frozen]) -> Mapping[str, Key]:
     found: dict[str, Key] = {}
     for one in keys_of(cls).values():
         kind = one.kind
-        if isinstance(kind, Table) and kind.flat:
+        if isinstance(kind, KeyTable) and kind.flat:
             inner = all_keys(kind.type).items()
             found |= {name: own for name, own in inner if name not in kind.without}
         else:
@@ -285,7 +285,9 @@ def numbers_of(value: Frozen | type[Frozen]) -> Mapping[str, Key]:
     keys = keys_of(value if isinstance(value, type) else type(value)).items()
     numbers = {name: one for name, one in keys if isinstance(one.kind, Number) and one.field}
     # What a number that something else tells is of, such as a limit, is not known here.
-    return {name: one for name, one in numbers.items() if not isinstance(one.kind, Told)}
+    return {
+        name: one for name, one in numbers.items() if not isinstance(one.kind, DependentQuantity)
+    }
 
 
 def changed(
@@ -315,7 +317,7 @@ def changed(
         return {**value, step: changed(value[step], rest, change, make)}
     one = keys_of(type(value))[str(step)]
     held = getattr(value, one.field)
-    if isinstance(one.kind, Table) and not isinstance(held, Frozen):
+    if isinstance(one.kind, KeyTable) and not isinstance(held, Frozen):
         rest = rest[1:]  # a table with one key, which the object has without it
     new = {one.field: changed(held, rest, change, make)}
     return make(value, **value.following(new))

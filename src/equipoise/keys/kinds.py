@@ -10,7 +10,7 @@ from types import MappingProxyType
 from typing import Any, Literal
 
 from equipoise.i18n import LANGUAGES, Note, Worded
-from equipoise.keys.base import Kind, Record
+from equipoise.keys.base import Kind, TableRecord
 from equipoise.quantities import Dimension, in_si
 
 MOST_WHOLE = 1_000_000
@@ -26,7 +26,7 @@ def choice(names: Iterable[Any]) -> Note | str:
 
 
 @dataclass(frozen=True)
-class Text(Kind):
+class TextKind(Kind):
     """Text; `names` are the only ones, if there are any.
 
     suggested : those that editors offer; what else is wrong with it is said elsewhere.
@@ -50,7 +50,7 @@ class Text(Kind):
 
 
 @dataclass(frozen=True)
-class Wording(Text):
+class Wording(TextKind):
     """Text for readers: one for all of them, or one for each of some languages."""
 
     def check(self, value: Any) -> str:
@@ -140,7 +140,7 @@ _IN_QUOTES = Note("give number and unit in quotes")
 
 
 @dataclass(frozen=True)
-class Told(Number):
+class DependentQuantity(Number):
     """A number whose dimension something else tells; `Frozen.from_table` makes it of its text.
 
     right : what to give where no text is given.  schema : what the JSON Schema says of it.
@@ -171,7 +171,7 @@ class Listing(Kind):
 
     @property
     def wanted(self) -> Note:  # type: ignore[override]
-        if isinstance(self.item, Text):
+        if isinstance(self.item, TextKind):
             return Note("a list of texts")
         if isinstance(self.item, Listing | Point):
             return Note("two points of two numbers each") if self.sizes else Note("rows of numbers")
@@ -288,25 +288,25 @@ class Named(Kind):
 
     item: Kind
     listed: bool = False
-    by: Text = Text()
+    by: TextKind = TextKind()
 
     @property
     def wanted(self) -> Note:  # type: ignore[override]
-        of = {Point: Note("two numbers"), Text: Note("text"), Table: Note("such objects")}
+        of = {Point: Note("two numbers"), TextKind: Note("text"), KeyTable: Note("such objects")}
         values = of.get(type(self.item), Note("numbers"))
         return Note("a mapping of names to {values}", values=values)
 
     def check(self, value: Any) -> Any:
         if self.listed and isinstance(value, tuple | list):
-            return tuple(map(Text().check, value))
+            return tuple(map(TextKind().check, value))
         if not isinstance(value, Mapping):
             raise TypeError
-        name, item = Text().check, self.item.check
+        name, item = TextKind().check, self.item.check
         return MappingProxyType({name(key): item(one) for key, one in value.items()})
 
 
 @dataclass(frozen=True)
-class Table(Kind):
+class KeyTable(Kind):
     """A table with keys of its own, those of a class.
 
     of : the class, or ``module:name`` of one that takes time to import.
@@ -341,7 +341,7 @@ class Table(Kind):
 class Tables(Kind):
     """Any number of such tables."""
 
-    item: Table
+    item: KeyTable
     wanted = Note("a list of such objects")
 
     def check(self, value: Any) -> tuple[Any, ...]:
@@ -360,7 +360,7 @@ class File(Kind):
     wanted = Note("such an object")
 
     def check(self, value: Any) -> Any:
-        return Record.checked(value)
+        return TableRecord.checked(value)
 
 
 def innermost(kind: Kind) -> Kind:

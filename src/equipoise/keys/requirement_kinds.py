@@ -17,7 +17,7 @@ from equipoise.errors import UsageError, unknown
 from equipoise.i18n import Note, any_of
 from equipoise.keys.base import Kind
 from equipoise.keys.declaring import REQUIRED, Key
-from equipoise.keys.kinds import Text
+from equipoise.keys.kinds import TextKind
 
 Make = Literal["smallest", "largest"]
 Asks = tuple[tuple[str, Any], ...]
@@ -118,7 +118,7 @@ class RequirementKeys(Mapping[str, Key]):
             raise KeyError(key)
         default = REQUIRED if self.needed and len(self) == 1 else None
         given: dict[str, Any] = {"text": kind.description, "default": default, **self.more}
-        return Key(key, Text(kind.choices) if kind.choices else self.value, **given)
+        return Key(key, TextKind(kind.choices) if kind.choices else self.value, **given)
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from typing import Any
 from equipoise.errors import ModelError
 from equipoise.i18n import Note
 from equipoise.keys.declaring import Frozen, Key, declarations, once
-from equipoise.keys.kinds import PLANES, OneOr, Planes, Table, choice, innermost
+from equipoise.keys.kinds import PLANES, KeyTable, OneOr, Planes, choice, innermost
 from equipoise.quantities import HUGE, TINY, Measured
 
 
@@ -57,7 +57,7 @@ def _leaves(where: str, value: Any, of: Key | None) -> Iterator[tuple[str, Any, 
             yield from _leaves(where if alike else where + part, item, of)
     else:
         for one in declarations(type(value)):
-            flat = isinstance(one.kind, Table) and one.kind.flat
+            flat = isinstance(one.kind, KeyTable) and one.kind.flat
             place = where if flat else f"{where}.{one.name or one.field}".lstrip(".")
             yield from _leaves(place, getattr(value, one.field), one)
 

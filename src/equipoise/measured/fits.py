@@ -12,7 +12,7 @@ import numpy as np
 from equipoise.decompositions import pinv
 from equipoise.errors import UsageError
 from equipoise.i18n import Note
-from equipoise.measured.record import Kind, Record, Swinging, reaches
+from equipoise.measured.record import FreeSwing, Kind, Record, reaches
 from equipoise.measured.turning import Turns
 from equipoise.signals import Array
 
@@ -234,7 +234,7 @@ class WholeFit:
     """
 
     constants: Constants
-    motion: Swinging
+    motion: FreeSwing
     time: Array
     residual: Array
     per_point: int
@@ -264,9 +264,9 @@ def fit_whole(record: Record, turns: Turns, line: Constants, confidence: float) 
     zero, scale = float(turns.time[1]), float(turns.heights[0])
     unit = np.array([line.damped**-1, scale, scale, line.damped, line.damped, scale])
 
-    def motion(p: Array) -> Swinging:
+    def motion(p: Array) -> FreeSwing:
         turned, amplitude, center, damped, rate, friction = (p * unit).tolist()
-        return Swinging(zero + turned, -turns.side, amplitude, center, damped, rate, friction)
+        return FreeSwing(zero + turned, -turns.side, amplitude, center, damped, rate, friction)
 
     def left(p: Array) -> Array:
         return (motion(p).displacement(time) - values) / scale

@@ -145,7 +145,7 @@ def _column(name: str, values: Any) -> Array:
 
 
 @dataclass(frozen=True)
-class Swinging:
+class FreeSwing:
     """A free motion, told from one of its turning points.
 
     Parameters
@@ -261,11 +261,11 @@ def simulate_decay(
 
 def _from_start(
     time: float, start: float, velocity: float, damped: float, rate: float, friction: float
-) -> Swinging:
+) -> FreeSwing:
     """The motion about 0 that passes `start` with that velocity."""
     if velocity == 0:
         side = 1.0 if start >= 0 else -1.0
-        return Swinging(time, side, abs(start), 0.0, damped, rate, friction)
+        return FreeSwing(time, side, abs(start), 0.0, damped, rate, friction)
     side = 1.0 if velocity > 0 else -1.0  # it turns on the side to which it moves
     away = side * start + friction  # from the centre that friction has moved
     speed = side * velocity
@@ -274,4 +274,4 @@ def _from_start(
     slow = rate / damped
     reach = np.exp(-slow * turn) * (away * np.cos(turn) + sine * np.sin(turn))
     amplitude = float(reach) - friction
-    return Swinging(time + turn / damped, side, amplitude, 0.0, damped, rate, friction)
+    return FreeSwing(time + turn / damped, side, amplitude, 0.0, damped, rate, friction)

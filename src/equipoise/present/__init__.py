@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from equipoise.displays import Displayed
     from equipoise.quantities import Dimension
-    from equipoise.results.blocks import Block, Section
+    from equipoise.results.blocks import Block, ReportSection
     from equipoise.results.result import Result
 
 
@@ -35,7 +35,7 @@ def show(
 
 def show_blocks(
     title: str | None,
-    blocks: Iterable[Block | Section],
+    blocks: Iterable[Block | ReportSection],
     width: int | None = None,
     most: int | None = None,
 ) -> None:

@@ -11,7 +11,16 @@ from math import isfinite, isnan
 from equipoise.i18n import Note, listed, say, spoken
 from equipoise.quantities import Dimension, Display, change, display, fixed, typeset
 from equipoise.quantities.numbers import ROUNDING
-from equipoise.results.blocks import Cell, Change, Column, Emphasis, Many, Span, Table, Value
+from equipoise.results.blocks import (
+    Cell,
+    Column,
+    Emphasis,
+    Many,
+    RelativeChange,
+    Span,
+    Table,
+    Value,
+)
 
 Kind = tuple[Dimension | None, str | None]
 """Dimension and unit of a number; those of one kind have one unit in a table."""
@@ -26,7 +35,7 @@ UNCHANGED = change(1.0, 1.0)
 
 
 @dataclass(frozen=True)
-class Text:
+class CellText:
     """A cell as text.
 
     at : where the value holds.  number : whether it is set to the right.
@@ -69,7 +78,7 @@ class Grid:
 
     title: str
     heads: tuple[Head, ...]
-    rows: tuple[tuple[Text, ...], ...]
+    rows: tuple[tuple[CellText, ...], ...]
 
     def is_words(self, column: int) -> bool:
         """Whether the cells of a column are words, which are set to the left."""
@@ -101,7 +110,7 @@ def grid(table: Table) -> Grid:
 
 def _row(
     table: Table, row: tuple[Cell, ...], shown: Mapping[Kind, Display], sizes: Sizes
-) -> Iterator[Text]:
+) -> Iterator[CellText]:
     unit = _unit_of_row(table, row, shown)
     faint = _faint(table, row, sizes)
     for place, (column, cell) in enumerate(zip(table.columns, row, strict=True)):
@@ -196,17 +205,17 @@ def _text(
     shown: Mapping[Kind, Display],
     sizes: Mapping[Kind, float],
     faint: Mapping[Kind, float],
-) -> Text:
+) -> CellText:
     if cell is None or isinstance(cell, str):
-        return Text(cell or "")
-    if isinstance(cell, Change):
+        return CellText(cell or "")
+    if isinstance(cell, RelativeChange):
         share = change(cell.before, cell.after)
-        return Text(say("same") if share == UNCHANGED else share, "", True, cell.emphasis)
+        return CellText(say("same") if share == UNCHANGED else share, "", True, cell.emphasis)
     if isinstance(cell, Many):
         told = [_text(value, column, shown, sizes, faint) for value in cell.values]
         more = [say("and {count} more", count=cell.more)] if cell.more else []
         words = say(", ").join([*(one.told for one in told), *more])
-        return Text(words, emphasis=next((one.emphasis for one in told if one.emphasis), None))
+        return CellText(words, emphasis=next((one.emphasis for one in told if one.emphasis), None))
     if isinstance(cell, Span):
         kind = column.dimension, column.unit
         unit, size = shown[kind], sizes[kind]
@@ -215,7 +224,7 @@ def _text(
         least = faint.get(kind, 0.0)
         low, high = (_number(end, unit, column.dimension, size, least) for end in ends)
         equal = cell.high - cell.low <= ROUNDING * scale or low == high
-        return Text(high if equal else say("{low} to {high}", low=low, high=high), number=True)
+        return CellText(high if equal else say("{low} to {high}", low=low, high=high), number=True)
     kind = _kind(cell, column)
     text = _number(cell, shown[kind], kind[0], sizes[kind] * column.alike, faint.get(kind, 0.0))
     at = ""
@@ -223,7 +232,7 @@ def _text(
         place = Value(cell.at, after=1 if column.at[0] == "angle" else None)
         at = _number(place, shown[column.at], column.at[0])
     limit = "" if cell.limit is None else f"{cell.limit * shown[kind].factor:.4g}"
-    return Text(text, at, number=True, emphasis=cell.emphasis, limit=limit)
+    return CellText(text, at, number=True, emphasis=cell.emphasis, limit=limit)
 
 
 def _number(

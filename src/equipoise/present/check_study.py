@@ -10,7 +10,7 @@ from equipoise.codegen.figures import COMPUTED, REASONS
 from equipoise.errors import lacking
 from equipoise.i18n import Note
 from equipoise.quantities.numbers import rate_told, time_told
-from equipoise.results.blocks import Block, Cell, Listing, Notes, Table, Text
+from equipoise.results.blocks import Block, Cell, FileText, Notes, Table, Text
 from equipoise.signals import Array
 from equipoise.studies.blocks import Units, in_unit, labelled, spread_told, unit_in
 from equipoise.studies.evaluate import evaluator
@@ -50,7 +50,7 @@ def study_blocks(study: Study, units: Units, file: str) -> Iterator[Block]:
     if outcome.reason[0] != COMPUTED:
         reason = Note(REASONS[int(outcome.reason[0])])
         yield Notes((Note("the model itself has no figures ({reason})", reason=reason),))
-    yield Listing("", "\n".join(_ready(study, file)))
+    yield FileText("", "\n".join(_ready(study, file)))
 
 
 def _times(study: Study, compute: Evaluator) -> Iterator[str]:

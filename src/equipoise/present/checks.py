@@ -18,13 +18,13 @@ from equipoise.mechanism.dynamics.loads import work_in_cycle
 from equipoise.mechanism.kinematics.motion import move
 from equipoise.mechanism.parts.support import idle_parts
 from equipoise.quantities import PER_RPM, SI, Dimension, angle, display, number, told
-from equipoise.results.blocks import Block, Cell, Column, Listing, Notes, Table, Text, Value
+from equipoise.results.blocks import Block, Cell, Column, FileText, Notes, Table, Text, Value
 from equipoise.results.cam_blocks import cams_told
 from equipoise.results.drive_blocks import driven
 from equipoise.results.lost_contacts import where_lost
 from equipoise.results.machine_blocks import bodies_tables, place_told
-from equipoise.vibration.body import Body, at_rest
-from equipoise.vibration.linear import Excitation as Shaking
+from equipoise.vibration.body import SupportBody, at_rest
+from equipoise.vibration.linear import SupportExcitation as Shaking
 
 if TYPE_CHECKING:
     from equipoise.handheld.design_plan import DesignPlan
@@ -88,7 +88,7 @@ def _uncarried(machine: Machine) -> Iterator[str]:
     if machine.support is None or massless(machine):
         return
     try:
-        at_rest(Body(machine), Shaking(Body(machine), "moment").weights)
+        at_rest(SupportBody(machine), Shaking(SupportBody(machine), "moment").weights)
     except ModelError as error:
         yield f"{error}; respond and modes need that"
 
@@ -301,7 +301,7 @@ def tool_blocks(tool: Tool, file: str) -> Iterator[Block]:
         yield Text(f"day: {', '.join(times)}")
     if tool.design is not None:
         yield from map(Text, _design(tool.design))
-    yield Listing("", f"ready: equipoise tool {file}")
+    yield FileText("", f"ready: equipoise tool {file}")
 
 
 def _length(value: float) -> str:

@@ -33,9 +33,9 @@ from equipoise.results.belt_blocks import belt_blocks
 from equipoise.results.blocks import (
     Block,
     Facts,
-    Listing,
+    FileText,
     Notes,
-    Section,
+    ReportSection,
     SvgPicture,
     Table,
     Text,
@@ -66,7 +66,7 @@ TITLES = {
 
 AFTER = to_say("Lines that end in “after” are those after the change that helps most.")
 
-Parts = dict[str, list[Block | Section]]
+Parts = dict[str, list[Block | ReportSection]]
 """What stands in each section, by its name."""
 
 SHORT = 6
@@ -182,7 +182,7 @@ def balance_blocks(found: Findings) -> Iterator[Block]:
 
 
 def _of_tool(found: ToolFindings, language: str, command: str) -> ReportDocument:
-    blocks: list[Block | Section] = [*drawings(found).get("tool", [])]
+    blocks: list[Block | ReportSection] = [*drawings(found).get("tool", [])]
     if found.design is not None:
         blocks.extend(design_blocks(found.design))
     if found.exposure is not None:
@@ -208,17 +208,17 @@ def _of_tool(found: ToolFindings, language: str, command: str) -> ReportDocument
     )
 
 
-def _details(blocks: Iterable[Block | Section]) -> Iterator[Block | Section]:
+def _details(blocks: Iterable[Block | ReportSection]) -> Iterator[Block | ReportSection]:
     """Blocks whose tables stand in the appendix, however short they are."""
     for block in blocks:
         yield replace(block, detail=True) if isinstance(block, Table) else block
 
 
-def _first_picture(blocks: Iterable[Block | Section]) -> SvgPicture | None:
+def _first_picture(blocks: Iterable[Block | ReportSection]) -> SvgPicture | None:
     return next((block for block in blocks if isinstance(block, SvgPicture)), None)
 
 
-def _first_text(blocks: Iterable[Block | Section]) -> Text | None:
+def _first_text(blocks: Iterable[Block | ReportSection]) -> Text | None:
     return next((block for block in blocks if isinstance(block, Text)), None)
 
 
@@ -228,7 +228,7 @@ def _sections(
     seen: Mapping[str, str],
     settings: Iterable[str],
     command: str,
-) -> tuple[tuple[Section, ...], tuple[Section, ...]]:
+) -> tuple[tuple[ReportSection, ...], tuple[ReportSection, ...]]:
     """Sections of the blocks, then what every report ends with; and the appendix.
 
     seen : what is seen in a section, by its name.
@@ -237,7 +237,7 @@ def _sections(
     made = say(template, version=equipoise.__version__, file=found.file)
     asked = (*found.notes, *questions_of(found))
     notes = [Notes(asked)] if asked else []
-    again = [Listing(say("Command"), command)] if command else []  # as it is, to be copied
+    again = [FileText(say("Command"), command)] if command else []  # as it is, to be copied
     last: Parts = {
         "sources": [Facts("", tuple(sources(found)))],
         "settings": [Facts("", (*settings, made)), *notes, *again],
@@ -247,21 +247,21 @@ def _sections(
         short, long = ([], parts) if name in BEHIND else parted(parts)
         title = say(TITLES[name])
         if short or seen.get(name):
-            sections.append(Section(name, title, tuple(short), seen.get(name, "")))
+            sections.append(ReportSection(name, title, tuple(short), seen.get(name, "")))
         if long:
-            appendix.append(Section(name, title, tuple(long)))
+            appendix.append(ReportSection(name, title, tuple(long)))
     if found.text:
-        listing = Listing(found.file, found.text)
-        appendix.append(Section("file", say(TITLES["file"]), (listing,)))
+        listing = FileText(found.file, found.text)
+        appendix.append(ReportSection("file", say(TITLES["file"]), (listing,)))
     return tuple(sections), tuple(appendix)
 
 
 def parted(
-    blocks: Iterable[Block | Section],
-) -> tuple[list[Block | Section], list[Block | Section]]:
+    blocks: Iterable[Block | ReportSection],
+) -> tuple[list[Block | ReportSection], list[Block | ReportSection]]:
     """What stands in a section; and long tables, pictures and tables of details."""
-    short: list[Block | Section] = []
-    long: list[Block | Section] = []
+    short: list[Block | ReportSection] = []
+    long: list[Block | ReportSection] = []
     for block in blocks:
         of_detail = isinstance(block, Table | SvgPicture) and block.detail
         if of_detail or (isinstance(block, Table) and len(block.rows) > SHORT):

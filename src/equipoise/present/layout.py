@@ -12,7 +12,7 @@ from functools import cached_property
 from unicodedata import combining, east_asian_width
 
 from equipoise.i18n import say, to_say
-from equipoise.present.cells import Grid, Head, Text, bound
+from equipoise.present.cells import CellText, Grid, Head, bound
 from equipoise.results.blocks import Emphasis
 
 GAP, HEAD, DEEPER = 2, 14, 2
@@ -189,7 +189,7 @@ def _units(head: Head) -> str:
     return f"{head.unit} at {head.at}".strip() if head.at else head.unit
 
 
-def _aligned(cells: Sequence[Text]) -> Iterator[str]:
+def _aligned(cells: Sequence[CellText]) -> Iterator[str]:
     """Numbers and where they hold, both set to the right."""
     values, places = [plain(cell.text) for cell in cells], [plain(cell.at) for cell in cells]
     wide, far = max(map(size, values), default=0), max(map(size, places), default=0)
@@ -218,7 +218,7 @@ def _turned(told: Grid) -> Grid:
     names = (comma.join(cell.text for cell in row[:first] if cell.text) for row in told.rows)
     labels = [comma.join(filter(None, (head.label, _units(head)))) for head in told.heads]
     rows = tuple(
-        (Text(label), *(row[place] for row in told.rows))
+        (CellText(label), *(row[place] for row in told.rows))
         for place, label in enumerate(labels)
         if place >= first
     )

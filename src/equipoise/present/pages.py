@@ -21,12 +21,12 @@ from markupsafe import Markup
 import equipoise
 from equipoise.errors import EquipoiseError
 from equipoise.i18n import Note, say, speaking, spoken
-from equipoise.present.cells import Grid, Head, Text, grid, noted, printed, sign_of
+from equipoise.present.cells import CellText, Grid, Head, grid, noted, printed, sign_of
 from equipoise.present.colors import colored, colors
 from equipoise.present.fonts import boxes, check_pdf, families, installed
 from equipoise.present.layout import Looks
 from equipoise.quantities import Units, showing
-from equipoise.results.blocks import Block, Emphasis, Section, SvgPicture, Table
+from equipoise.results.blocks import Block, Emphasis, ReportSection, SvgPicture, Table
 from equipoise.results.blocks import Text as RunningText
 from equipoise.symbols.looks import LIGHT
 
@@ -78,8 +78,8 @@ class ReportDocument:
     tiles: tuple[Tile, ...]
     summary: tuple[SummaryAnswer, ...]
     animation: str
-    sections: tuple[Section, ...]
-    appendix: tuple[Section, ...] = ()
+    sections: tuple[ReportSection, ...]
+    appendix: tuple[ReportSection, ...] = ()
     lead: str = ""
     verdict: RunningText | None = None
     units: Units = field(default_factory=dict)
@@ -96,12 +96,14 @@ class ReportDocument:
             told.append(say("Tables in the appendix: {count}", count=tables))
         return say("; ").join(told)
 
-    def without_drawing(self, blocks: Iterable[Block | Section]) -> list[Block | Section]:
+    def without_drawing(
+        self, blocks: Iterable[Block | ReportSection]
+    ) -> list[Block | ReportSection]:
         """Blocks but for the drawing that the summary has."""
         return [block for block in blocks if block is not self.drawing]
 
     @property
-    def together(self) -> tuple[Block | Section, ...]:
+    def together(self) -> tuple[Block | ReportSection, ...]:
         """The appendix without its headings."""
         return tuple(block for section in self.appendix for block in section.blocks)
 
@@ -141,7 +143,7 @@ def inlined(svg: str, name: str, title: str) -> str:
     return _SPACE.sub(" ", f"{opening}{body}").strip()
 
 
-def part_of_page(title: str, blocks: Iterable[Block | Section], picture: str = "") -> str:
+def part_of_page(title: str, blocks: Iterable[Block | ReportSection], picture: str = "") -> str:
     """Blocks below a title as a part of a page that has no style of its own.
 
     picture : SVG above them, as an image, so that its names meet no other picture's.
@@ -197,7 +199,7 @@ def printed_grid(table: Table) -> Grid:
     return Grid(printed(told.title), tuple(heads), tuple(rows))
 
 
-def _classes(cell: Text) -> Markup:
+def _classes(cell: CellText) -> Markup:
     names = [*(["strong"] if cell.emphasis else []), *([] if cell.number else ["word"])]
     return Markup(f' class="{" ".join(names)}"' if names else "")  # names of this package
 
@@ -206,7 +208,9 @@ def _inlined(svg: str, name: str, caption: str) -> Markup:
     return Markup(inlined(svg, name, caption))  # Matplotlib escapes its texts
 
 
-def _runs(blocks: Iterable[Block | Section]) -> Iterator[tuple[str, list[Block | Section]]]:
+def _runs(
+    blocks: Iterable[Block | ReportSection],
+) -> Iterator[tuple[str, list[Block | ReportSection]]]:
     """Neighbours of the same kind together."""
     for kind, members in groupby(blocks, key=lambda block: block.kind):
         yield kind, list(members)
@@ -226,7 +230,7 @@ def paired(drawn: Iterable[SvgPicture]) -> list[list[SvgPicture]]:
     return [*rows, waiting] if waiting else rows
 
 
-def flowed(blocks: Iterable[Block | Section]) -> Iterator[tuple[str, list[Any]]]:
+def flowed(blocks: Iterable[Block | ReportSection]) -> Iterator[tuple[str, list[Any]]]:
     """Blocks of a kind together, pictures in rows; one without a neighbour before tables is packed
     with these.
     """

@@ -25,7 +25,7 @@ SECTIONS = (
 
 
 @dataclass(frozen=True)
-class Picture:
+class LazyPicture:
     """A picture that is drawn when it is wanted.
 
     name : which also does for a file.  section : one of `SECTIONS`.
@@ -42,7 +42,9 @@ class Picture:
     detail: bool = False
 
 
-def pictures(found: Findings | ToolFindings, at: Sequence[float] | None = None) -> list[Picture]:
+def pictures(
+    found: Findings | ToolFindings, at: Sequence[float] | None = None
+) -> list[LazyPicture]:
     """All of them, in the order of `SECTIONS`.
 
     at : crank angles at which the linkage is drawn, rad; usual ones if None.
@@ -54,7 +56,7 @@ def each(
     found: Findings | ToolFindings,
     at: Sequence[float] | None = None,
     sections: Collection[str] = SECTIONS,
-) -> Iterator[Picture]:
+) -> Iterator[LazyPicture]:
     """Those of some sections one by one: what only later ones need is not computed before."""
     from equipoise.figures.style import free_name
 
@@ -66,7 +68,7 @@ def each(
         for entry in parts[section](found):
             own = free_name(entry.name, taken)
             taken[own] = None
-            yield Picture(own, section, *entry[1:])
+            yield LazyPicture(own, section, *entry[1:])
 
 
 # -- of a linkage; nothing of what it does not have ------------------------------------------------

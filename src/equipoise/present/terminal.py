@@ -12,7 +12,16 @@ from typing import TextIO, get_args
 from equipoise.i18n import said, say
 from equipoise.present.cells import grid
 from equipoise.present.layout import Looks, plain, table_lines, wrapped
-from equipoise.results.blocks import Block, Emphasis, Facts, Listing, Notes, Picture, Section, Table
+from equipoise.results.blocks import (
+    Block,
+    Emphasis,
+    Facts,
+    FileText,
+    Notes,
+    Picture,
+    ReportSection,
+    Table,
+)
 from equipoise.results.blocks import Text as Running
 
 LEAST, PROSE = 40, 100
@@ -23,7 +32,7 @@ SIGN = "! "
 
 def print_blocks(
     title: str | None,
-    blocks: Iterable[Block | Section],
+    blocks: Iterable[Block | ReportSection],
     width: int | None = None,
     most: int | None = None,
 ) -> None:
@@ -38,7 +47,7 @@ def print_blocks(
 
 def block_text(
     title: str | None,
-    blocks: Iterable[Block | Section],
+    blocks: Iterable[Block | ReportSection],
     width: int | None = None,
     most: int | None = None,
 ) -> str:
@@ -50,7 +59,7 @@ def block_text(
     """
     columns = shutil.get_terminal_size().columns if width is None else width
 
-    def printed(shown: Iterable[Block | Section]) -> list[str]:
+    def printed(shown: Iterable[Block | ReportSection]) -> list[str]:
         printer = _Printer(max(columns, LEAST), Looks(coloured(sys.stdout)), begun=title is None)
         if title:
             printer.words(title, "title")
@@ -65,7 +74,7 @@ def block_text(
     return "".join(f"{line}\n" for line in lines)
 
 
-def _shortened(blocks: list[Block | Section]) -> list[Block | Section]:
+def _shortened(blocks: list[Block | ReportSection]) -> list[Block | ReportSection]:
     """Blocks without the last item of the last list that has several, then without notes, then
     without the last sentence of detail, then without a whole list; empty where nothing is left to
     leave out.
@@ -114,12 +123,12 @@ class _Printer:
         self.lines: list[str] = []
         self.apart = False  # whether running text begins after a space, as after a table
 
-    def blocks(self, blocks: Iterable[Block | Section]) -> None:
+    def blocks(self, blocks: Iterable[Block | ReportSection]) -> None:
         for block in blocks:
             if self.apart and isinstance(block, Running):
                 self.space()
             self.apart = isinstance(block, Table | Facts)
-            if isinstance(block, Section):
+            if isinstance(block, ReportSection):
                 self.space()
                 self.words(block.title, "section")
                 self.blocks(block.blocks)
@@ -145,7 +154,7 @@ class _Printer:
                 self.words(_with_more(f"note: {said(note)}", more))
             if not block.notes and block.more:
                 self.words(say("notes left out here: {count}", count=block.more))
-        elif isinstance(block, Listing):
+        elif isinstance(block, FileText):
             self.space()
             if block.title:
                 self.words(block.title, "title")

@@ -50,4 +50,4 @@ from equipoise.quantities.units import KINDS as KINDS
 from equipoise.quantities.units import SI as SI
 from equipoise.quantities.units import TINY as TINY
 from equipoise.quantities.units import Dimension as Dimension
-from equipoise.quantities.units import Kind as Kind
+from equipoise.quantities.units import QuantityKind as QuantityKind

@@ -17,7 +17,7 @@ from typing import overload
 from equipoise.errors import UsageError, at_place
 from equipoise.i18n import Note, to_say
 from equipoise.quantities.numbers import chosen_unit
-from equipoise.quantities.units import FACTORS, HUGE, KINDS, TINY, Dimension, Kind
+from equipoise.quantities.units import FACTORS, HUGE, KINDS, TINY, Dimension, QuantityKind
 
 # -- grammar ---------------------------------------------------------------------------------------
 
@@ -232,7 +232,7 @@ def start_of_range(text: str) -> str:
     return f"{match['low']} {unit}" if _known(unit) else ""
 
 
-def _number_complaint(text: str, kind: Kind) -> str:
+def _number_complaint(text: str, kind: QuantityKind) -> str:
     such = Note('such as "{example}"', example=kind.example)
     if kind is KINDS["angle"] and (angle := _POINTED.get(text.strip().lower())):
         return Note('did you mean "{number} {unit}"?', number=angle, unit="deg")
@@ -257,7 +257,7 @@ def _number_slip(text: str) -> str:
     )
 
 
-def _comma_complaint(text: str, kind: Kind) -> str:
+def _comma_complaint(text: str, kind: QuantityKind) -> str:
     such = kind.example
     if pointed := readings(text)[0]:
         such = f"{pointed} {kind.example.partition(' ')[2]}"
@@ -300,7 +300,7 @@ def _spelled(unit: str) -> str:
     return re.sub(r"[^\W\d_]+", lambda word: _WORDS.get(word[0].lower(), word[0]), unit.strip())
 
 
-def _known(unit: str) -> Kind | None:
+def _known(unit: str) -> QuantityKind | None:
     return next((kind for kind in KINDS.values() if unit in kind.units), None)
 
 

@@ -49,7 +49,7 @@ Dimension = Literal[
 
 
 @dataclass(frozen=True)
-class Kind:
+class QuantityKind:
     """What is known of a dimension.
 
     Attributes
@@ -76,8 +76,8 @@ class Kind:
         return self.usual or (self.si,)
 
 
-KINDS: dict[Dimension, Kind] = {
-    "length": Kind(
+KINDS: dict[Dimension, QuantityKind] = {
+    "length": QuantityKind(
         to_say("a length"),
         {
             "m": "1",
@@ -91,7 +91,7 @@ KINDS: dict[Dimension, Kind] = {
         example="33.5 mm",
         usual=("mm", "m"),
     ),
-    "angle": Kind(
+    "angle": QuantityKind(
         to_say("an angle"),
         {
             "rad": "1",
@@ -101,7 +101,7 @@ KINDS: dict[Dimension, Kind] = {
         example="-83 deg",
         usual=("deg", "rad"),
     ),
-    "mass": Kind(
+    "mass": QuantityKind(
         to_say("a mass"),
         {
             "kg": "1",
@@ -114,7 +114,7 @@ KINDS: dict[Dimension, Kind] = {
         example="199 g",
         usual=("g", "kg"),
     ),
-    "inertia": Kind(
+    "inertia": QuantityKind(
         to_say("a moment of inertia"),
         {
             "kg m^2": "1",
@@ -132,7 +132,7 @@ KINDS: dict[Dimension, Kind] = {
         example="30 kg mm^2",
         usual=("kg mm^2", "kg m^2"),
     ),
-    "angular speed": Kind(
+    "angular speed": QuantityKind(
         to_say("an angular speed"),
         {
             "rad/s": "1",
@@ -143,7 +143,7 @@ KINDS: dict[Dimension, Kind] = {
         example="193 rpm",
         usual=("rpm", "rad/s"),
     ),
-    "angular acceleration": Kind(
+    "angular acceleration": QuantityKind(
         to_say("an angular acceleration"),
         {
             "rad/s^2": "1",
@@ -153,7 +153,7 @@ KINDS: dict[Dimension, Kind] = {
         example="0 rad/s^2",
         usual=("rad/s^2", "rpm/s"),
     ),
-    "acceleration": Kind(
+    "acceleration": QuantityKind(
         to_say("an acceleration"),
         {
             "m/s^2": "1",
@@ -164,7 +164,7 @@ KINDS: dict[Dimension, Kind] = {
         },
         example="-9.80665 m/s^2",
     ),
-    "force": Kind(
+    "force": QuantityKind(
         to_say("a force"),
         {
             "N": "1",
@@ -176,7 +176,7 @@ KINDS: dict[Dimension, Kind] = {
         },
         example="12 N",
     ),
-    "torque": Kind(
+    "torque": QuantityKind(
         to_say("a torque"),
         {
             "N m": "1",
@@ -191,7 +191,7 @@ KINDS: dict[Dimension, Kind] = {
         },
         example="1.5 N m",
     ),
-    "speed": Kind(
+    "speed": QuantityKind(
         to_say("a speed"),
         {
             "m/s": "1",
@@ -204,14 +204,14 @@ KINDS: dict[Dimension, Kind] = {
         example="0.3 m/s",
         usual=("m/s", "km/h"),
     ),
-    "frequency": Kind(to_say("a frequency"), {"Hz": "1", "kHz": "1000"}, example="50 Hz"),
-    "time": Kind(
+    "frequency": QuantityKind(to_say("a frequency"), {"Hz": "1", "kHz": "1000"}, example="50 Hz"),
+    "time": QuantityKind(
         to_say("a time"),
         {"s": "1", "ms": "0.001", "min": "60", "h": "3600"},
         example="2 s",
         usual=("s", "h", "min"),
     ),
-    "stiffness": Kind(
+    "stiffness": QuantityKind(
         to_say("a stiffness"),
         {
             "N/m": "1",
@@ -224,7 +224,7 @@ KINDS: dict[Dimension, Kind] = {
         },
         example="20 kN/m",
     ),
-    "damping": Kind(
+    "damping": QuantityKind(
         to_say("a damping coefficient"),
         {
             "N s/m": "1",
@@ -235,12 +235,12 @@ KINDS: dict[Dimension, Kind] = {
         },
         example="300 N s/m",
     ),
-    "damping per length": Kind(
+    "damping per length": QuantityKind(
         to_say("a damping coefficient per length"),
         {"N s/m^2": "1", "kN s/m^2": "1000"},
         example="300 N s/m^2",
     ),
-    "torsional stiffness": Kind(
+    "torsional stiffness": QuantityKind(
         to_say("a torsional stiffness"),
         {
             "N m/rad": "1",
@@ -251,13 +251,15 @@ KINDS: dict[Dimension, Kind] = {
         },
         example="500 N m/rad",
     ),
-    "torsional damping": Kind(
+    "torsional damping": QuantityKind(
         to_say("a torsional damping coefficient"),
         {"N m s/rad": "1", "N m s/deg": "57.29577951308232087679815481", "kgf m s/rad": "9.80665"},
         example="3 N m s/rad",
     ),
-    "power": Kind(to_say("a power"), {"W": "1", "mW": "0.001", "kW": "1000"}, example="40 W"),
-    "density": Kind(
+    "power": QuantityKind(
+        to_say("a power"), {"W": "1", "mW": "0.001", "kW": "1000"}, example="40 W"
+    ),
+    "density": QuantityKind(
         to_say("a density"),
         {
             "kg/m^3": "1",
@@ -267,8 +269,10 @@ KINDS: dict[Dimension, Kind] = {
         },
         example="7850 kg/m^3",
     ),
-    "energy": Kind(to_say("an energy"), {"J": "1", "mJ": "0.001", "kJ": "1000"}, example="12 J"),
-    "bending stiffness": Kind(
+    "energy": QuantityKind(
+        to_say("an energy"), {"J": "1", "mJ": "0.001", "kJ": "1000"}, example="12 J"
+    ),
+    "bending stiffness": QuantityKind(
         to_say("a bending stiffness"),
         {
             "N m^2": "1",
@@ -281,13 +285,13 @@ KINDS: dict[Dimension, Kind] = {
         },
         example="980 N m^2",
     ),
-    "mass per length": Kind(
+    "mass per length": QuantityKind(
         to_say("a mass per length"),
         {"kg/m": "1", "g/m": "0.001", "kg/mm": "1000", "lb/ft": "1.488163943569553805774278215"},
         example="2.3 kg/m",
         usual=("g/m", "kg/m"),
     ),
-    "modulus": Kind(
+    "modulus": QuantityKind(
         to_say("a stress or modulus of elasticity"),
         {
             "Pa": "1",
@@ -302,13 +306,13 @@ KINDS: dict[Dimension, Kind] = {
         example="70 GPa",
         usual=("GPa", "MPa"),
     ),
-    "pressure times speed": Kind(
+    "pressure times speed": QuantityKind(
         to_say("a pressure times speed"),
         {"Pa m/s": "1", "MPa m/s": "1000000", "W/mm^2": "1000000"},
         example="1.7 MPa m/s",
         usual=("MPa m/s", "Pa m/s"),
     ),
-    "unbalance": Kind(
+    "unbalance": QuantityKind(
         to_say("an unbalance"),
         {
             "kg m": "1",
@@ -322,21 +326,25 @@ KINDS: dict[Dimension, Kind] = {
         example="300 g mm",
         usual=("g mm", "kg m"),
     ),
-    "per length": Kind(
+    "per length": QuantityKind(
         to_say("a number per length"), {"1/m": "1", "1/mm": "1000"}, example="20 1/m"
     ),
-    "voltage": Kind(to_say("a voltage"), {"V": "1", "mV": "0.001", "kV": "1000"}, example="24 V"),
-    "current": Kind(to_say("a current"), {"A": "1", "mA": "0.001", "kA": "1000"}, example="5 A"),
-    "resistance": Kind(
+    "voltage": QuantityKind(
+        to_say("a voltage"), {"V": "1", "mV": "0.001", "kV": "1000"}, example="24 V"
+    ),
+    "current": QuantityKind(
+        to_say("a current"), {"A": "1", "mA": "0.001", "kA": "1000"}, example="5 A"
+    ),
+    "resistance": QuantityKind(
         to_say("a resistance"), {"ohm": "1", "mohm": "0.001", "kohm": "1000"}, example="0.4 ohm"
     ),
-    "inductance": Kind(
+    "inductance": QuantityKind(
         to_say("an inductance"),
         {"H": "1", "mH": "0.001", "uH": "0.000001"},
         example="0.6 mH",
         usual=("mH", "H"),
     ),
-    "torque constant": Kind(
+    "torque constant": QuantityKind(
         to_say("a torque constant"), {"N m/A": "1", "V s/rad": "1"}, example="0.08 N m/A"
     ),
 }

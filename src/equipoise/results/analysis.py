@@ -35,7 +35,7 @@ from equipoise.quantities import Dimension, column_heading
 from equipoise.results.declaring import OWN, Declarations, ResultOutput, values_of
 from equipoise.results.lost_contacts import lost_contacts
 from equipoise.results.named_figures import figures_by_name
-from equipoise.results.outputs import Output, Outputs
+from equipoise.results.outputs import AnalysisOutput, AnalysisOutputs
 from equipoise.results.result import Result
 from equipoise.results.slender_links import slender_links
 from equipoise.signals import Array, Figures, Periodic
@@ -158,16 +158,16 @@ class Analysis(Result):
         return {} if self.solved is None else link_stresses(self.resolved.forces)
 
     @cached_property
-    def outputs(self) -> Outputs:
+    def outputs(self) -> AnalysisOutputs:
         """Every output of motion and forces, by name."""
-        return Outputs(self)
+        return AnalysisOutputs(self)
 
     @cached_property
     def summary(self) -> Mapping[str, Figures]:
         """Mean, RMS, peak and extremes of outputs, by name."""
         return self._figures(self.outputs.summed)
 
-    def _figures(self, ones: Sequence[Output]) -> Mapping[str, Figures]:
+    def _figures(self, ones: Sequence[AnalysisOutput]) -> Mapping[str, Figures]:
         """Those of some outputs, by name; of so many at once as leave memory to others."""
         motion, found = self.resolved.motion, NamedItems[Figures]("output", ())
         some = max(1, AT_ONCE // len(motion.crank_angle))

@@ -68,7 +68,7 @@ class Span:
 
 
 @dataclass(frozen=True)
-class Change:
+class RelativeChange:
     """By how much a figure has changed, in per cent; nothing where it came from 0."""
 
     before: float
@@ -84,7 +84,7 @@ class Many:
     more: int = 0
 
 
-Cell = str | Value | Span | Change | Many | None
+Cell = str | Value | Span | RelativeChange | Many | None
 """Words, a number, a range, a change, several numbers, or nothing."""
 
 
@@ -205,7 +205,7 @@ class SvgPicture:
 
 
 @dataclass(frozen=True)
-class Listing:
+class FileText:
     """Text as it stands in a file."""
 
     kind: ClassVar[str] = "listing"
@@ -213,11 +213,11 @@ class Listing:
     text: str
 
 
-Block = Text | Facts | Table | Notes | Picture | SvgPicture | Listing
+Block = Text | Facts | Table | Notes | Picture | SvgPicture | FileText
 
 
 @dataclass(frozen=True)
-class Section:
+class ReportSection:
     """A heading and what stands below it; `name` is its anchor.
 
     seen : what is seen in it, in one line.
@@ -226,7 +226,7 @@ class Section:
     kind: ClassVar[str] = "section"
     name: str
     title: str
-    blocks: tuple[Block | Section, ...]
+    blocks: tuple[Block | ReportSection, ...]
     seen: str = ""
 
 

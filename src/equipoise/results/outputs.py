@@ -29,7 +29,7 @@ FAR = 5.0
 
 
 @dataclass(frozen=True, eq=False)
-class Output:
+class AnalysisOutput:
     """One output of an analysis.
 
     declared : what it is.  item : the member, such as a joint's name; empty where it is no family.
@@ -105,8 +105,8 @@ class Output:
         return motion.periodic(self.resolved)
 
 
-class Outputs:
-    """Every output that an analysis has; iterates `Output`, and finds one by its name.
+class AnalysisOutputs:
+    """Every output that an analysis has; iterates `AnalysisOutput`, and finds one by its name.
 
     What masses are missing for, or needs several rows, is left out where there are none.
     """
@@ -117,7 +117,7 @@ class Outputs:
         # with friction that is solved already, and names are the same
         named = analysis.resolved if analysis.machine.rubs else analysis
         self._linkage = analysis.motion.linkage
-        self._found: dict[str, Output] = {}
+        self._found: dict[str, AnalysisOutput] = {}
         for _, group in groupby(had, key=lambda one: one.group):
             own = []
             for one in group:
@@ -128,9 +128,9 @@ class Outputs:
             for item in dict.fromkeys(item for _, items in own for item in items):
                 for one, items in own:
                     if item in items:
-                        self._found[one.named(item)] = Output(one, item, analysis)
+                        self._found[one.named(item)] = AnalysisOutput(one, item, analysis)
 
-    def __iter__(self) -> Iterator[Output]:
+    def __iter__(self) -> Iterator[AnalysisOutput]:
         return iter(self._found.values())
 
     def __len__(self) -> int:
@@ -139,20 +139,20 @@ class Outputs:
     def __contains__(self, name: object) -> bool:
         return name in self._found
 
-    def __getitem__(self, name: str) -> Output:
+    def __getitem__(self, name: str) -> AnalysisOutput:
         if name not in self._found:
             refuse_unbounded(self._linkage, name)
             raise UsageError(unknown(name, self._found, "output"))
         return self._found[name]
 
-    def chosen(self, names: Iterable[str]) -> list[Output]:
+    def chosen(self, names: Iterable[str]) -> list[AnalysisOutput]:
         """Those of some names, both components of what is a vector without a size.
 
         Raises
         ------
         UsageError : there is no output of a name.
         """
-        found: dict[str, Output] = {}
+        found: dict[str, AnalysisOutput] = {}
         for name in names:
             parts = [f"{name}.{axis}" for axis in "xy" if name not in self]
             every = [part for part in parts if part in self] or [name]
@@ -165,21 +165,21 @@ class Outputs:
         return list(self._found)
 
     @property
-    def arrays(self) -> list[Output]:
+    def arrays(self) -> list[AnalysisOutput]:
         """Those that stand among the arrays; the size of a vector is told by its components."""
         return [one for one in self if one.declared.array]
 
     @property
-    def summed(self) -> list[Output]:
+    def summed(self) -> list[AnalysisOutput]:
         """Those of which the summary tells figures."""
         return [one for one in self if one.declared.summed]
 
     @property
-    def ordered(self) -> list[Output]:
+    def ordered(self) -> list[AnalysisOutput]:
         """Those that are told by orders."""
         return [one for one in self if one.declared.ordered]
 
-    def grouped(self) -> dict[str, list[Output]]:
+    def grouped(self) -> dict[str, list[AnalysisOutput]]:
         """Those of each group of `GROUPS` that has any."""
         found = {group: [one for one in self if one.group == group] for group in GROUPS}
         return {group: ones for group, ones in found.items() if ones}
@@ -319,7 +319,7 @@ def shown_in(unit: str, values: Any = ()) -> Display:
     return display(dimension, values, "mrad" if dimension == "angle" else None)
 
 
-def tops_of(found: Iterable[tuple[Output, Array]]) -> dict[Dimension | None, float]:
+def tops_of(found: Iterable[tuple[AnalysisOutput, Array]]) -> dict[Dimension | None, float]:
     """The largest amplitude of any output of each dimension, beside which others are rounding."""
     tops: dict[Dimension | None, float] = {}
     for one, sizes in found:

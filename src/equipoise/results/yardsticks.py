@@ -48,7 +48,7 @@ from equipoise.mechanism.parts.objectives import GAUGES
 from equipoise.quantities import SI, Dimension, angle, display, number, percent
 from equipoise.results.analysis import Analysis
 from equipoise.results.drive_blocks import pushing
-from equipoise.results.outputs import FIGURES, Output
+from equipoise.results.outputs import FIGURES, AnalysisOutput
 
 LARGE, NOTHING = 1.0, 1e-9
 """Ratio from which a figure is large, and up to which it is rounding."""
@@ -246,7 +246,7 @@ def _of_outputs(analysis: Analysis) -> Iterator[FigureAssessment]:
                 yield found
 
 
-def _yardstick_of_whole(output: Output) -> str:
+def _yardstick_of_whole(output: AnalysisOutput) -> str:
     """The yardstick of the vector that an output is a component of; empty of what is none."""
     whole = DECLARED.get(output.name.rpartition(".")[0])
     return "" if whole is None or output.declared.part not in ("x", "y") else whole.yardstick
@@ -320,7 +320,7 @@ FEW = 0.1
 """Share below which a digit more is said."""
 
 
-def _is_of_one_row_or_drive(output: Output) -> bool:
+def _is_of_one_row_or_drive(output: AnalysisOutput) -> bool:
     """Whether all rows together, or the drives one by one, have the same output."""
     machine = output.analysis.machine
     one_of_drives = bool(machine.told_drives) and output.name == machine.drive.effort
@@ -483,7 +483,11 @@ def _extent(places: list[Any]) -> float:
 
 
 def _entry(
-    output: Output, measure: str, yardstick: float, against: Note, ratio: float | None = None
+    output: AnalysisOutput,
+    measure: str,
+    yardstick: float,
+    against: Note,
+    ratio: float | None = None,
 ) -> FigureAssessment | None:
     """A figure of an output; None where there is no yardstick, or it is nothing beside that."""
     figures = output.figures
@@ -513,16 +517,16 @@ def pusher_of(machine: Machine, output: str) -> Drive | FurtherDrive | None:
     return (each | first).get(output)
 
 
-def _weight(scales: _Scales, output: Output) -> FigureAssessment | None:
+def _weight(scales: _Scales, output: AnalysisOutput) -> FigureAssessment | None:
     return _entry(output, "peak", *scales.steadying)
 
 
-def _couple(scales: _Scales, output: Output, span: float) -> FigureAssessment | None:
+def _couple(scales: _Scales, output: AnalysisOutput, span: float) -> FigureAssessment | None:
     force, what = scales.steadying
     return _entry(output, "peak", force * span, Note("{force} at the span", force=what))
 
 
-def _effort(scales: _Scales, output: Output) -> FigureAssessment | None:
+def _effort(scales: _Scales, output: AnalysisOutput) -> FigureAssessment | None:
     rows = 1 if output.declared.is_of_row else scales.rows
     if output.dimension == "force":
         force, what = scales.lifting
@@ -539,17 +543,17 @@ def _effort(scales: _Scales, output: Output) -> FigureAssessment | None:
     return _entry(output, "peak_to_peak", rows * force * scales.throw, against)
 
 
-def _acting(scales: _Scales, output: Output) -> FigureAssessment | None:
+def _acting(scales: _Scales, output: AnalysisOutput) -> FigureAssessment | None:
     return _entry(output, "peak", *scales.acting)
 
 
-def _pressure(scales: _Scales, output: Output) -> FigureAssessment | None:
+def _pressure(scales: _Scales, output: AnalysisOutput) -> FigureAssessment | None:
     (cam,) = (one for one in scales.machine.cams if one.name == output.item)
     most = PRESSURE if cam.swing is None else SWINGING_PRESSURE
     return _entry(output, "peak", most, Note("the usual limit"))
 
 
-def _transmission(scales: _Scales, output: Output) -> FigureAssessment | None:
+def _transmission(scales: _Scales, output: AnalysisOutput) -> FigureAssessment | None:
     groups = scales.analysis.motion.linkage.groups
     if output.item in {group.joint for group in groups if group.through}:
         return None  # other joints carry it through its dead position
@@ -561,7 +565,7 @@ def _transmission(scales: _Scales, output: Output) -> FigureAssessment | None:
     return _entry(output, measure, limit, Note("the usual limit"), ratio)
 
 
-OF_OUTPUT: Mapping[str, Callable[[_Scales, Output], FigureAssessment | None]] = {
+OF_OUTPUT: Mapping[str, Callable[[_Scales, AnalysisOutput], FigureAssessment | None]] = {
     "weight": _weight,
     "span": lambda scales, output: _couple(scales, output, scales.span),
     "bearings": lambda scales, output: _couple(scales, output, scales.span_across),

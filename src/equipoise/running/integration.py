@@ -135,7 +135,7 @@ method there."""
 
 
 @dataclass(frozen=True, eq=False)
-class Part:
+class TableRange:
     """A piece of the table, or a part of it.
 
     place : what is the same in every cycle.  ends : crank angles, rad.
@@ -323,13 +323,13 @@ class Integration:
         self._record(end)
         return self._happens(kind, end)
 
-    def _part(self, begin: Instant, k: int, ends: tuple[float, float]) -> Part:
+    def _part(self, begin: Instant, k: int, ends: tuple[float, float]) -> TableRange:
         """What is tried next of a piece: all of it, or its rest from an instant on, halved as
         often as `halvings` says.
         """
         near, far = ends[:: int(self.direction)]
         if not self.halvings and begin.angle == near:
-            return Part(
+            return TableRange(
                 (k, self.direction), ends, self.table.values[:, k], self.table.coefficients[k][0]
             )
         far = begin.angle + (far - begin.angle) * 0.5**self.halvings
@@ -337,14 +337,14 @@ class Integration:
         half = (ends[1] - ends[0]) / 2
         places = (low - ends[0]) / half - 1, (high - ends[0]) / half - 1
         place = (k, self.direction, *(round(one, 9) for one in places))
-        return Part(place, (low, high), *self.table.within(k, *places))
+        return TableRange(place, (low, high), *self.table.within(k, *places))
 
     def _slows(self, now: Instant) -> bool:
         """Whether the speed of the crank falls."""
         state = np.array([now.angle, now.speed, *now.electric])
         return self._rates(now.time, state)[1] * self.direction < 0
 
-    def _by_angle(self, begin: Instant, part: Part) -> Solution | None:
+    def _by_angle(self, begin: Instant, part: TableRange) -> Solution | None:
         """The motion in a piece; None where the crank is so slow that the angle is no clock."""
         ends = part.ends
         half = (ends[1] - ends[0]) / 2
@@ -368,7 +368,7 @@ class Integration:
         return self._dense(begin, part, (start, began, rates))
 
     def _iterated(
-        self, start: tuple[Instant, float], part: Part, paths: Array, guess: Gained
+        self, start: tuple[Instant, float], part: TableRange, paths: Array, guess: Gained
     ) -> tuple[Gained, Array, Array, Array] | None:
         """Newton's method for the kinetic energies at the nodes of a piece: what it has gained up
         to them, speeds (N,), currents (N,) and torques (K, N) there; None where it has no solution.
@@ -398,7 +398,9 @@ class Integration:
             energy = energy + inverse @ missed
         return None
 
-    def _dense(self, begin: Instant, part: Part, found: tuple[float, float, Array]) -> Solution:
+    def _dense(
+        self, begin: Instant, part: TableRange, found: tuple[float, float, Array]
+    ) -> Solution:
         """The motion in a piece anywhere in it, as of `_by_angle`.
 
         found : place of its begin, kinetic energy there, and rates by crank angle at the nodes of

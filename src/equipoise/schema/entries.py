@@ -15,7 +15,7 @@ from typing import Any
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note
-from equipoise.keys import Frozen, Key, Named, Table, Tables, Whole, all_keys, innermost, keys_of
+from equipoise.keys import Frozen, Key, KeyTable, Named, Tables, Whole, all_keys, innermost, keys_of
 from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.parts.machine import Machine
@@ -96,10 +96,10 @@ class Document:
         return Document(self.of, content, self.beside)
 
 
-def entry_of(kind: Any) -> Table | None:
+def entry_of(kind: Any) -> KeyTable | None:
     """The table that is one entry of a key: itself, or one of a list or of those with names."""
     item = kind.item if isinstance(kind, Tables | Named) else kind
-    return item if isinstance(item, Table) else None
+    return item if isinstance(item, KeyTable) else None
 
 
 def own_keys(of: type[Frozen]) -> dict[str, Key]:
@@ -118,14 +118,14 @@ def kept(of: type[Frozen], entry: Mapping[str, Any]) -> Content:
     return {name: value for name, value in entry.items() if name not in own}
 
 
-def kind_at(of: type[Frozen], place: KeyPath) -> Table:
+def kind_at(of: type[Frozen], place: KeyPath) -> KeyTable:
     """The kind of an entry.
 
     Raises
     ------
     ModelError : no file has entries there.
     """
-    held = Table(of)
+    held = KeyTable(of)
     steps = iter(place)
     for step in steps:
         known = tables_below(held.type)
@@ -151,7 +151,7 @@ def _fixed(one: Key) -> bool:
 
 
 def _below(one: Key) -> bool:
-    return isinstance(innermost(one.kind), Table | Tables)
+    return isinstance(innermost(one.kind), KeyTable | Tables)
 
 
 def _held(above: Any, step: str | int) -> bool:

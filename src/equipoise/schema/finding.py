@@ -10,14 +10,22 @@ from typing import Any
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, all_of
-from equipoise.keys import PLANES, Key, Listing, Named, OneOr, Table, Tables, Whole, all_keys
+from equipoise.keys import PLANES, Key, KeyTable, Listing, Named, OneOr, Tables, Whole, all_keys
 from equipoise.keys import Kind as KeyKind
 from equipoise.keys.paths import KeyPath, with_values
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.parts.parameters import SIGN
 from equipoise.quantities import KINDS, NUMBER, Dimension, plain_unit
 from equipoise.quantities.reading import described
-from equipoise.schema.numbers import POLAR, XYZ, Number, Planes, Vector, read_number, vector_of
+from equipoise.schema.numbers import (
+    POLAR,
+    XYZ,
+    FileNumber,
+    PlanePair,
+    Vector,
+    read_number,
+    vector_of,
+)
 from equipoise.schema.opening import Kind, document_of
 from equipoise.schema.writing import plain_default
 
@@ -33,8 +41,8 @@ class NumberLocation:
     """
 
     place: KeyPath
-    number: Number | None = None
-    whole: Vector | Planes | None = None
+    number: FileNumber | None = None
+    whole: Vector | PlanePair | None = None
     part: str = ""
     rest: str = ""
 
@@ -64,12 +72,12 @@ def find(content: Content, kind: Kind, path: str) -> NumberLocation:
     return NumberLocation(place, number)
 
 
-def all_numbers(content: Content) -> dict[str, Number]:
+def all_numbers(content: Content) -> dict[str, FileNumber]:
     """Every number that is written in a model file, by its path."""
     return dict(_walk(content, KeyPath()))
 
 
-def _walk(here: Any, place: KeyPath) -> Iterator[tuple[str, Number]]:
+def _walk(here: Any, place: KeyPath) -> Iterator[tuple[str, FileNumber]]:
     vector, number = vector_of(here), read_number(here)
     if vector is not None:
         for part, component in vector.numbers.items():
@@ -81,11 +89,11 @@ def _walk(here: Any, place: KeyPath) -> Iterator[tuple[str, Number]]:
             yield from _walk(below, place / key)
 
 
-def _group(here: Any, step: str | int, kind: Kind) -> Vector | Planes | None:
+def _group(here: Any, step: str | int, kind: Kind) -> Vector | PlanePair | None:
     """The vector or pair of planes that has a number of that name, or None."""
     if kind == "tool" and step in PLANES and isinstance(here, str):
         number = read_number(here)
-        return None if number is None else Planes(here, number)
+        return None if number is None else PlanePair(here, number)
     vector = vector_of(here)
     if vector is None:
         return None
@@ -100,7 +108,7 @@ def _group(here: Any, step: str | int, kind: Kind) -> Vector | Planes | None:
 def key_at(kind: Kind, place: KeyPath) -> Key | None:
     """The key at the end of a place; None where it is a name of the user's, or unknown."""
     above = _kind_at(kind, place.parent)
-    return all_keys(above.type).get(str(place[-1])) if isinstance(above, Table) else None
+    return all_keys(above.type).get(str(place[-1])) if isinstance(above, KeyTable) else None
 
 
 def is_whole(kind: Kind, place: KeyPath) -> bool:
@@ -110,9 +118,9 @@ def is_whole(kind: Kind, place: KeyPath) -> bool:
 
 def _kind_at(kind: Kind, place: KeyPath) -> KeyKind | None:
     """What stands at a place; None where nothing is known of it."""
-    found: KeyKind | None = Table(document_of(kind))
+    found: KeyKind | None = KeyTable(document_of(kind))
     for step in place:
-        if isinstance(found, Table):
+        if isinstance(found, KeyTable):
             one = all_keys(found.type).get(str(step))
             found = None if one is None else one.kind
         elif isinstance(found, Named | Tables | Listing | OneOr):
@@ -201,7 +209,7 @@ def replaced(content: Content, given: Iterable[Given]) -> dict[str, Any]:
     """
     changes: dict[KeyPath, Any] = {}
     parts: dict[KeyPath, dict[str, float]] = {}
-    wholes: dict[KeyPath, Vector | Planes] = {}
+    wholes: dict[KeyPath, Vector | PlanePair] = {}
     for path, found, value in given:
         if isinstance(value, bool) or not isinstance(value, Real):
             raise ModelError(path, Note("got {value!r}; give a number", value=value))

@@ -38,7 +38,7 @@ def rows(of: Mapping[str, keys.Key]) -> list[tuple[str, str, str, str]]:
 
 def _holds_tables(kind: keys.Kind) -> bool:
     """Whether a key has tables below it, which the documentation tells for themselves."""
-    return isinstance(keys.innermost(kind), keys.Table | keys.Tables)
+    return isinstance(keys.innermost(kind), keys.KeyTable | keys.Tables)
 
 
 def _default(one: keys.Key) -> str:
@@ -58,7 +58,7 @@ def _words_of(kind: keys.Kind) -> str:
         return re.sub(r"^an? ", "", KINDS[kind.dimension].noun)
     if isinstance(kind, keys.Whole) and kind.names:
         return " or ".join(map(str, kind.names))
-    if isinstance(kind, keys.Text) and (names := kind.names or kind.suggested):
+    if isinstance(kind, keys.TextKind) and (names := kind.names or kind.suggested):
         *most, last = (f'`"{name}"`' for name in names)
         return f"{', '.join(most)} or {last}" if most else last
     if isinstance(kind, keys.Point):
@@ -69,7 +69,7 @@ def _words_of(kind: keys.Kind) -> str:
 def _words_of_several(kind: keys.Listing | keys.Named | keys.OneOr | keys.Planes) -> str:
     item = _words_of(kind.item)
     if isinstance(kind, keys.Listing):
-        if isinstance(kind.item, keys.Text) and kind.item.names:
+        if isinstance(kind.item, keys.TextKind) and kind.item.names:
             return f"list of {item}"
         count = _COUNTS.get(kind.sizes[0], "") if kind.sizes else "list of"
         return f"{count} {_plural(item)}"

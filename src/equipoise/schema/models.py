@@ -329,7 +329,7 @@ def files_of(model: Machine | Tool, path: str | os.PathLike[str]) -> list[Path]:
 
 
 @dataclass(frozen=True)
-class Part:
+class ModelPart:
     """A table or linkage that has a file of its own.
 
     where : key that names the file.
@@ -360,18 +360,20 @@ class Part:
         return f"{path.stem}.{self.sort}{number}.{suffix}"
 
 
-def parts_of(model: Machine | Tool) -> list[Part]:
+def parts_of(model: Machine | Tool) -> list[ModelPart]:
     """Tables and linkages of a model that have files of their own."""
-    parts: list[Part] = []
+    parts: list[ModelPart] = []
     for where, sort, value, file in beside(type(model), model):
         number = len(parts) + 1
         if sort in {"load", "linkage"}:  # numbered as in the file
             number = int(where[where.index("[") + 1 : where.index("]")])
-        parts.append(Part(where, sort, value, file, 0 if sort in {"soil", "motor"} else number))
+        parts.append(
+            ModelPart(where, sort, value, file, 0 if sort in {"soil", "motor"} else number)
+        )
     return parts
 
 
-def _written(parts: list[Part], path: Path) -> list[tuple[Part, Path]]:
+def _written(parts: list[ModelPart], path: Path) -> list[tuple[ModelPart, Path]]:
     """The parts that are written beside a model, each with its path."""
     named = ((part, part.name_beside(path)) for part in parts)
     return [(part, path.with_name(name)) for part, name in named if name != part.kept]

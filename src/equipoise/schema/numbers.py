@@ -129,7 +129,7 @@ _QUANTITY = re.compile(rf"{NUMBER} +(\S.*)")
 
 
 @dataclass(frozen=True)
-class Number:
+class FileNumber:
     """A number of a model file.
 
     value : in SI units; an `int` where only whole numbers will do.
@@ -153,7 +153,7 @@ class Number:
         return int(value) if whole else float(value)
 
 
-def read_number(given: Any, whole: bool = False) -> Number | None:
+def read_number(given: Any, whole: bool = False) -> FileNumber | None:
     """What a value of a model file is as a number; None where it is none.
 
     whole : whether only whole numbers will do there.
@@ -161,18 +161,18 @@ def read_number(given: Any, whole: bool = False) -> Number | None:
     if isinstance(given, bool):
         return None
     if isinstance(given, int | float):
-        return Number(given if whole else float(given))
+        return FileNumber(given if whole else float(given))
     if not isinstance(given, str):
         return None
     try:
         match = _QUANTITY.fullmatch(given)
         dimension = OF_UNIT.get(plain_unit(match[1])) if match else None
         if dimension is not None:
-            return Number(parse(given, dimension), dimension)
+            return FileNumber(parse(given, dimension), dimension)
         share = parse_share(given)
     except UsageError:
         return None
-    return None if share is None else Number(share, share=True)
+    return None if share is None else FileNumber(share, share=True)
 
 
 def si_value(where: str, given: Any, dimension: str | None) -> float:
@@ -208,16 +208,16 @@ class Vector:
     dimension: Dimension
 
     @cached_property
-    def numbers(self) -> dict[str, Number]:
+    def numbers(self) -> dict[str, FileNumber]:
         """Everything of it that can be varied, by its last key."""
         found = {
-            key: Number(value, self.dimension)
+            key: FileNumber(value, self.dimension)
             for key, value in zip(XYZ, self.components, strict=False)
         }
         if self.dimension == "length":
             distance, direction = self._polar
-            found["distance"] = Number(distance, "length")
-            found["direction"] = Number(direction, "angle")
+            found["distance"] = FileNumber(distance, "length")
+            found["direction"] = FileNumber(direction, "angle")
         return found
 
     @property
@@ -246,14 +246,14 @@ class Vector:
 
 
 @dataclass(frozen=True)
-class Planes:
+class PlanePair:
     """One value of a tool for both planes of bending, which can be taken apart."""
 
     given: str
-    number: Number
+    number: FileNumber
 
     @property
-    def numbers(self) -> dict[str, Number]:
+    def numbers(self) -> dict[str, FileNumber]:
         return dict.fromkeys(PLANES, self.number)
 
     def changed(self, values: Mapping[str, float]) -> Any:

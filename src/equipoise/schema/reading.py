@@ -53,7 +53,7 @@ def read_table(
     ------
     ModelError : the first thing that is wrong with it, with the number of the others.
     """
-    found = _table(keys.Table(of), content, place, context)
+    found = _table(keys.KeyTable(of), content, place, context)
     if context.problems:
         (where, what), *others = context.problems
         if others:
@@ -67,7 +67,7 @@ UNKNOWN = "no-key-of-that-name"
 """What `equipoise explain` knows about keys that there are not."""
 
 
-def _table(kind: keys.Table, given: Any, place: KeyPath, context: Context) -> Any:
+def _table(kind: keys.KeyTable, given: Any, place: KeyPath, context: Context) -> Any:
     if not isinstance(given, dict):
         return context.wrong(place, given, Note("give a table"))
     of = kind.type
@@ -104,7 +104,7 @@ def _meant_below(name: str, value: Any, known: Mapping[str, keys.Key]) -> str:
 def _looks_like(kind: keys.Kind, value: Any) -> bool:
     if isinstance(kind, keys.Point):
         return isinstance(value, list) and len(value) == (3 if kind.space else 2)
-    if not isinstance(kind, keys.Table) or not isinstance(value, dict) or not value:
+    if not isinstance(kind, keys.KeyTable) or not isinstance(value, dict) or not value:
         return False
     return value.keys() <= keys.all_keys(kind.type).keys()
 
@@ -116,7 +116,7 @@ def _values(
     values: dict[str, Any] = {}
     for name, one in keys.keys_of(of).items():
         kind, at = one.kind, one.field or name
-        if isinstance(kind, keys.Table) and kind.flat:
+        if isinstance(kind, keys.KeyTable) and kind.flat:
             values[at] = Values(kind.type, place, _values(kind.type, given, place, context))
         elif name in given:
             values[at] = READERS[type(kind)](kind, given[name], place / name, context)
@@ -146,7 +146,7 @@ def _tables(kind: keys.Tables, given: Any, place: KeyPath, context: Context) -> 
 def _named(kind: keys.Named, given: Any, place: KeyPath, context: Context) -> Any:
     if kind.listed and isinstance(given, list):
         return _listing(
-            keys.Listing(keys.Text(), right=Note("names in quotes")), given, place, context
+            keys.Listing(keys.TextKind(), right=Note("names in quotes")), given, place, context
         )
     if not isinstance(given, dict):
         return context.wrong(
@@ -222,7 +222,7 @@ def _worked_out(dimension: Dimension | None, given: str, place: KeyPath, context
     return value
 
 
-def _text(kind: keys.Text, given: Any, place: KeyPath, context: Context) -> Any:
+def _text(kind: keys.TextKind, given: Any, place: KeyPath, context: Context) -> Any:
     if kind.names:
         right = Note("give {what}", what=keys.choice(kind.names))
         if isinstance(given, str):
@@ -291,7 +291,7 @@ def _whole(kind: keys.Whole, given: Any, place: KeyPath, context: Context) -> An
 
 
 def _file(kind: keys.File, given: Any, place: KeyPath, context: Context) -> Any:
-    file = _text(keys.Text(), given, place, context)
+    file = _text(keys.TextKind(), given, place, context)
     return file if file is WRONG else NamedFile(kind.sort, place, file)
 
 
@@ -337,7 +337,7 @@ def _point(kind: keys.Point, given: Any, place: KeyPath, context: Context) -> An
         return given
     if isinstance(given, dict):
         count = len(context.problems)
-        found = _table(keys.Table(Polar), given, place, context)
+        found = _table(keys.KeyTable(Polar), given, place, context)
         if len(context.problems) > count:
             return WRONG
         x, y = made(found, context)
@@ -402,7 +402,7 @@ def example_of(kind: keys.Kind) -> str:
     return KINDS[kind.dimension].example if isinstance(kind, keys.Quantity) else "hand.csv"
 
 
-def _told(kind: keys.Told, given: Any, place: KeyPath, context: Context) -> Any:
+def _told(kind: keys.DependentQuantity, given: Any, place: KeyPath, context: Context) -> Any:
     context.wrote(place, given)
     return given if isinstance(given, str) else context.wrong(place, given, kind.right)
 
@@ -424,10 +424,10 @@ READERS: dict[type[keys.Kind], Callable[[Any, Any, KeyPath, Context], Any]] = {
     keys.Planes: _planes,
     keys.Point: _point,
     keys.Quantity: _quantity,
-    keys.Table: _table,
+    keys.KeyTable: _table,
     keys.Tables: _tables,
-    keys.Text: _text,
-    keys.Told: _told,
+    keys.TextKind: _text,
+    keys.DependentQuantity: _told,
     keys.Whole: _whole,
     keys.Wording: _wording,
 }

@@ -94,7 +94,7 @@ def _described(dimension: Dimension, more: str = "") -> Schema:
     return {"description": f"{kind.noun}: number, space and one of {units}{more}"}
 
 
-def _text(kind: keys.Text, definitions: Definitions) -> Schema:
+def _text(kind: keys.TextKind, definitions: Definitions) -> Schema:
     names = kind.names or kind.suggested
     return {"type": "string", **({"enum": [*names]} if names else {})}
 
@@ -127,7 +127,9 @@ def _whole(kind: keys.Whole, definitions: Definitions) -> Schema:
 def _listing(kind: keys.Listing, definitions: Definitions) -> Schema:
     least, most = (min(kind.sizes), max(kind.sizes)) if kind.sizes else (1, None)
     most_items = {} if most is None else {"maxItems": most}
-    unique = {"uniqueItems": True} if isinstance(kind.item, keys.Text) and kind.item.names else {}
+    unique = (
+        {"uniqueItems": True} if isinstance(kind.item, keys.TextKind) and kind.item.names else {}
+    )
     items = _schema(kind.item, definitions)
     return {"type": "array", "items": items, "minItems": least, **most_items, **unique}
 
@@ -192,7 +194,7 @@ def _in_planes(text: Schema, told: str) -> Schema:
     return {"anyOf": [text, table], "description": told}
 
 
-def _table(kind: keys.Table, definitions: Definitions) -> Schema:
+def _table(kind: keys.KeyTable, definitions: Definitions) -> Schema:
     of = kind.type
     return _defined(of.__name__, lambda: _object(of, definitions), definitions)
 
@@ -210,13 +212,13 @@ SCHEMAS: Mapping[type[keys.Kind], Callable[[Any, Definitions], Schema]] = {
     keys.Planes: _planes,
     keys.Point: _point,
     keys.Quantity: _quantity,
-    keys.Table: _table,
+    keys.KeyTable: _table,
     keys.Tables: lambda kind, definitions: {
         "type": "array",
         "items": _table(kind.item, definitions),
     },
-    keys.Text: _text,
-    keys.Told: lambda kind, _: {"type": "string", **(kind.schema or {})},
+    keys.TextKind: _text,
+    keys.DependentQuantity: lambda kind, _: {"type": "string", **(kind.schema or {})},
     keys.Whole: _whole,
     keys.Wording: _wording,
 }

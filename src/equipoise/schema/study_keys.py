@@ -12,11 +12,11 @@ from equipoise.keys import (
     Conditions,
     Frozen,
     Keys,
+    KeyTable,
     Listing,
     Number,
-    Table,
     Tables,
-    Text,
+    TextKind,
     Whole,
     Wording,
     declared,
@@ -37,7 +37,7 @@ VALUE = Anything(
 """Number and unit in quotes, or a plain number: which, is told by what it is a value of."""
 LIMITS = Listing(VALUE, (2,), Note('two limits, such as ["60 mm", "80 mm"]'))
 ANY_WHOLE = Whole(most=10**18)
-PATHS = Listing(Text(), (2,), Note("a list of two paths"))
+PATHS = Listing(TextKind(), (2,), Note("a list of two paths"))
 
 
 @declared
@@ -66,7 +66,7 @@ class VaryTable(Frozen):
         "dependentRequired": {"steps": ["range"]},
     }
 
-    path: str = key(Text(), "of it in the model file", example="links.crank.mass")
+    path: str = key(TextKind(), "of it in the model file", example="links.crank.mass")
     range: Any = key(LIMITS, "lowest and highest", default=None)
     steps: int | None = key(ANY_WHOLE, "of a range on a grid", default=None)
     list: Any = key(
@@ -74,8 +74,8 @@ class VaryTable(Frozen):
         "all that it can be",
         default=None,
     )
-    normal: NormalTable | None = key(Table(NormalTable), "a normal spread", default=None)
-    uniform: UniformTable | None = key(Table(UniformTable), "a uniform spread", default=None)
+    normal: NormalTable | None = key(KeyTable(NormalTable), "a normal spread", default=None)
+    uniform: UniformTable | None = key(KeyTable(UniformTable), "a uniform spread", default=None)
 
 
 @declared
@@ -90,7 +90,7 @@ class CorrelationTable(Frozen):
 class SamplingTable(Frozen):
     """Which designs are computed."""
 
-    method: str = key(Text(suggested=(*METHODS,)), "how designs are spread", example="sobol")
+    method: str = key(TextKind(suggested=(*METHODS,)), "how designs are spread", example="sobol")
     designs: int | None = key(ANY_WHOLE, "their number; not of a grid", default=None)
     seed: int | None = key(
         ANY_WHOLE, "of random numbers; not of a grid", default=None, shown=Sampling.seed
@@ -104,10 +104,10 @@ class OutputTable(Frozen):
     beside: ClassVar[Keys] = RequirementKeys("outputs", VALUE)
 
     value: str = key(
-        Text(), "place in the JSON object of the command", example="shaking_force.y.rms"
+        TextKind(), "place in the JSON object of the command", example="shaking_force.y.rms"
     )
-    name: str | None = key(Text(), "of its column; its place if left out", default=None)
-    of: str | None = key(Text(suggested=(*COMMANDS,)), "the command that has it", default=None)
+    name: str | None = key(TextKind(), "of its column; its place if left out", default=None)
+    of: str | None = key(TextKind(suggested=(*COMMANDS,)), "the command that has it", default=None)
     asks: Any = inside(Anything(), factory=dict)
 
     @classmethod
@@ -137,21 +137,21 @@ class StudyTable(Frozen):
     file_order = ("schema", "title", "model", "vary", "correlations")
 
     model: str = key(
-        Text(),
+        TextKind(),
         "model file beside this one, or name of a bundled example",
         example="yamashita-1",
     )
-    vary: tuple[VaryTable, ...] = key(Tables(Table(VaryTable)), "what varies")
+    vary: tuple[VaryTable, ...] = key(Tables(KeyTable(VaryTable)), "what varies")
     sampling: SamplingTable = key(
-        Table(SamplingTable), "which designs are computed", example={"method": "sobol"}
+        KeyTable(SamplingTable), "which designs are computed", example={"method": "sobol"}
     )
-    outputs: tuple[OutputTable, ...] = key(Tables(Table(OutputTable)), "what is computed")
+    outputs: tuple[OutputTable, ...] = key(Tables(KeyTable(OutputTable)), "what is computed")
     title: str | None = key(Wording(), "that of the model if left out", default=None)
     correlations: tuple[CorrelationTable, ...] = key(
-        Tables(Table(CorrelationTable)), "what goes together", default=()
+        Tables(KeyTable(CorrelationTable)), "what goes together", default=()
     )
     accuracy: AccuracyTable | None = key(
-        Table(AccuracyTable), "how exactly figures are computed", default=None
+        KeyTable(AccuracyTable), "how exactly figures are computed", default=None
     )
 
     @classmethod

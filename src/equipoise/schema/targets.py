@@ -19,10 +19,10 @@ from equipoise.keys import (
     Anything,
     Frozen,
     Keys,
+    KeyTable,
     Named,
-    Table,
     Tables,
-    Text,
+    TextKind,
     Whole,
     declared,
     inside,
@@ -52,7 +52,7 @@ class SearchTable(Frozen):
     seed: int = key(Whole(0, 2**32 - 1), "of random numbers", default=1)
     generations: int = key(Whole(1, 100_000), "at most so many", default=GENERATIONS)
     population: int = key(Whole(5, 10_000), "designs of a generation", default=POPULATION)
-    crank: Sense = key(Text(get_args(Sense)), "sense in which it turns", default="as given")
+    crank: Sense = key(TextKind(get_args(Sense)), "sense in which it turns", default="as given")
 
 
 @declared
@@ -61,7 +61,7 @@ class GoalTable(Frozen):
 
     beside: ClassVar[Keys] = RequirementKeys("goals", VALUE)
 
-    figure: str = key(Text(), "that `equipoise plant` tells", example="curve.height")
+    figure: str = key(TextKind(), "that `equipoise plant` tells", example="curve.height")
     tolerance: Quantity | None = key(VALUE, "of the target", default=None)
     asks: Any = inside(Anything(), factory=dict)
 
@@ -77,9 +77,9 @@ class TargetTable(Frozen):
     beside: ClassVar[Keys] = {"schema": VERSION}
 
     goals: tuple[GoalTable, ...] = key(
-        Tables(Table(GoalTable)), "what figures have to be", example=[]
+        Tables(KeyTable(GoalTable)), "what figures have to be", example=[]
     )
-    search: SearchTable = key(Table(SearchTable), "how to search", default=SearchTable())
+    search: SearchTable = key(KeyTable(SearchTable), "how to search", default=SearchTable())
     vary: Mapping[str, Any] | None = key(Named(VALUE), "numbers with their limits", default=None)
 
     @classmethod

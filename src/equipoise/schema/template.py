@@ -34,7 +34,7 @@ from equipoise.schema.finding import (
     unit_in,
 )
 from equipoise.schema.models import Beside, Held, machine_of, parts_of, text_of, tool_of
-from equipoise.schema.numbers import Number
+from equipoise.schema.numbers import FileNumber
 from equipoise.schema.opening import Kind, Opened, in_file, kind_of, model_content, opened
 from equipoise.schema.tables import TABLES
 from equipoise.schema.words import words_of
@@ -172,7 +172,7 @@ class Template:
             return None
         return key_at(self.kind, self._find(path).place)
 
-    def numbers(self) -> dict[str, Number]:
+    def numbers(self) -> dict[str, FileNumber]:
         """Every number that the file has, by its path."""
         return all_numbers(self._content)
 

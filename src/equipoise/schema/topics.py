@@ -103,7 +103,7 @@ def _below(
     """Path, class, and whether it is a list, of all tables below one; each class once on a way."""
     for name, one in keys.all_keys(of).items():
         inner = keys.innermost(one.kind)
-        if not isinstance(inner, keys.Table | keys.Tables):
+        if not isinstance(inner, keys.KeyTable | keys.Tables):
             continue
         item = inner.item.type if isinstance(inner, keys.Tables) else inner.type
         here = (*path, name, *([NAME] if isinstance(one.kind, keys.Named) else []))

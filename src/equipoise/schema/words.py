@@ -14,13 +14,13 @@ from typing import Any
 from equipoise.i18n import Note, to_say
 from equipoise.keys import (
     Key,
+    KeyTable,
     Listing,
     Named,
     OneOr,
     ParameterValue,
     Planes,
     Point,
-    Table,
     Tables,
     all_keys,
 )
@@ -67,7 +67,7 @@ class Layer:
     @property
     def called(self) -> str:
         """Around a number in what stands here; nothing where that is no table."""
-        return self.held.type.called if isinstance(self.held, Table) else ""
+        return self.held.type.called if isinstance(self.held, KeyTable) else ""
 
 
 def plain_word(key: Key) -> str:
@@ -100,7 +100,7 @@ def words_of(
     length = None if other in map(KeyPath.parse, others) else _length(content, found)
     what = length or Note(last.word, **last.names)
     for above, layer in enumerate(reversed(around)):
-        alone = isinstance(layer.key.kind, Table)
+        alone = isinstance(layer.key.kind, KeyTable)
         if not layer.called and not (alone and above):
             return None
         if not (alone and above):  # a table tells what stands in it, not what is further down
@@ -120,12 +120,12 @@ def _number(layer: Layer) -> str:
 
 def _layers(content: Content, kind: Kind, place: KeyPath) -> list[Layer]:
     """Keys on the way to a place; none where they are not known."""
-    held: KeyKind = Table(document_of(kind))
+    held: KeyKind = KeyTable(document_of(kind))
     here: Any = content
     layers: list[Layer] = []
     for step in place:
         here = _below(here, step)
-        if isinstance(held, Table):
+        if isinstance(held, KeyTable):
             one = all_keys(held.type).get(str(step))
             if one is None:
                 return []

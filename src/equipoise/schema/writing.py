@@ -68,7 +68,7 @@ class Writer:
         for name, one in keys.keys_of(of).items():
             if name not in given:
                 continue
-            if isinstance(one.kind, keys.Table) and one.kind.flat:
+            if isinstance(one.kind, keys.KeyTable) and one.kind.flat:
                 table |= self.content(one.kind.type, given[name], place)
             else:
                 table[name] = self.plain(one.kind, given[name], place / name)
@@ -91,7 +91,7 @@ def plain_default(one: keys.Key) -> Any:
     """What a key that is left out stands for, as it would be written; None for nothing."""
     if one.shown is not None or one.required or one.default is None or one.endless:
         return one.shown
-    if isinstance(one.kind, keys.Table | keys.Tables | keys.File):
+    if isinstance(one.kind, keys.KeyTable | keys.Tables | keys.File):
         return None
     default = Writer({}).plain(one.kind, one.default, KeyPath())
     return None if isinstance(default, list | dict) and not default else default
@@ -99,7 +99,7 @@ def plain_default(one: keys.Key) -> Any:
 
 def beside(of: type[keys.Frozen], value: Any) -> Iterator[tuple[str, str, Any, str]]:
     """What lies in files of their own: the key that names each, its sort, itself, and its name."""
-    yield from _beside(keys.Table(of), value, KeyPath())
+    yield from _beside(keys.KeyTable(of), value, KeyPath())
 
 
 def _beside(kind: keys.Kind, value: Any, place: KeyPath) -> Iterator[tuple[str, str, Any, str]]:
@@ -114,10 +114,10 @@ def _beside(kind: keys.Kind, value: Any, place: KeyPath) -> Iterator[tuple[str, 
     elif isinstance(kind, keys.Named) and isinstance(value, Mapping):
         for name, item in value.items():
             yield from _beside(kind.item, item, place / name)
-    elif isinstance(kind, keys.Table):
+    elif isinstance(kind, keys.KeyTable):
         for name, item in _given(kind.type.to_table, value, place).items():
             one = keys.keys_of(kind.type)[name]
-            inner = place if isinstance(one.kind, keys.Table) and one.kind.flat else place / name
+            inner = place if isinstance(one.kind, keys.KeyTable) and one.kind.flat else place / name
             for where, sort, found, file in _beside(one.kind, item, inner):
                 named = isinstance(one.kind, keys.File) and one.kind.named
                 yield where, sort, found, getattr(value, named) if named else file
@@ -212,12 +212,12 @@ WRITERS: dict[type[keys.Kind], Callable[[Any, Any, KeyPath, Writer], Any]] = {
     keys.Planes: _planes,
     keys.Point: _point,
     keys.Quantity: _number,
-    keys.Table: lambda kind, value, place, writer: writer.content(kind.type, value, place),
+    keys.KeyTable: lambda kind, value, place, writer: writer.content(kind.type, value, place),
     keys.Tables: lambda kind, value, place, writer: [
         writer.plain(kind.item, one, place / n) for n, one in enumerate(value)
     ],
-    keys.Text: lambda kind, value, place, writer: value,
-    keys.Told: lambda kind, value, place, writer: value,
+    keys.TextKind: lambda kind, value, place, writer: value,
+    keys.DependentQuantity: lambda kind, value, place, writer: value,
     keys.Whole: _number,
     keys.Wording: lambda kind, value, place, writer: (
         dict(value.texts) if isinstance(value, Worded) else value
@@ -247,13 +247,13 @@ def _headed(name: str, kind: keys.Kind, value: Any) -> Iterator[str]:
     if isinstance(kind, keys.Tables):
         for item in value:
             yield from _blocks(f"[[{name}]]", name, kind.item.type, item)
-    elif isinstance(kind, keys.Named) and not isinstance(kind.item, keys.Table):
+    elif isinstance(kind, keys.Named) and not isinstance(kind.item, keys.KeyTable):
         yield "".join([f"[{name}]\n", *_lines(value)])
     elif isinstance(kind, keys.Named):
         for key, item in value.items():
             inner = f"{name}.{_key(key)}"
             yield from _blocks(f"[{inner}]", inner, kind.item.type, item)  # type: ignore[attr-defined]
-    elif isinstance(kind, keys.Table):
+    elif isinstance(kind, keys.KeyTable):
         yield from _blocks(f"[{name}]", name, kind.type, value)
 
 
@@ -271,7 +271,7 @@ def _blocks(
 def _has_header(kind: keys.Kind) -> bool:
     """Whether what is inside of a table is written below a header of its own."""
     item = kind.item if isinstance(kind, keys.Named | keys.Tables) else kind
-    return isinstance(item, keys.Table) and (item.headed or kind is not item)
+    return isinstance(item, keys.KeyTable) and (item.headed or kind is not item)
 
 
 def _is_tables(value: Any) -> bool:

@@ -14,7 +14,7 @@ from equipoise.design.solvers import UNPROVED
 from equipoise.design.spreads import Choices, Normal, Range
 from equipoise.i18n import Note, say, to_say
 from equipoise.quantities import number
-from equipoise.results.blocks import Block, Cell, Column, Facts, Listing, Notes, Table, Text, Value
+from equipoise.results.blocks import Block, Cell, Column, Facts, FileText, Notes, Table, Text, Value
 from equipoise.results.outputs import objective_named
 from equipoise.studies.outcomes import far_apart, signs_of
 
@@ -299,7 +299,7 @@ def summary_blocks(summary: Summary, units: Units | None = None, run: str = "") 
         yield best_table(summary.best, units)
     if summary.note:
         yield Notes((summary.note,))
-    yield Listing(say("Next:"), "\n".join(_next(summary, path)))
+    yield FileText(say("Next:"), "\n".join(_next(summary, path)))
 
 
 def _path(store: Store) -> str:

@@ -14,7 +14,7 @@ from socket import gethostname
 from time import monotonic, sleep
 from typing import Any
 
-from equipoise.design.processes import DEAD, Pool, StoppedError, Task
+from equipoise.design.processes import DEAD, ChunkTask, Pool, StoppedError
 from equipoise.errors import UsageError, needed
 from equipoise.i18n import Note
 from equipoise.studies.store import brief, versions
@@ -38,7 +38,7 @@ class Cluster(Pool):
     StoppedError : no scheduler answers at `address`, or it has no workers.
     """
 
-    def __init__(self, task: Task, address: str) -> None:
+    def __init__(self, task: ChunkTask, address: str) -> None:
         self.task, self.address = task, address
         self.rpc = needed("distributed.core", "a cluster").rpc
         self.seen = monotonic()
@@ -118,7 +118,7 @@ class Cluster(Pool):
         return StoppedError(DEAD) if isinstance(error, killed) else None
 
 
-def elsewhere(address: str | None, workers: int | None) -> Callable[[Task], Pool] | None:
+def elsewhere(address: str | None, workers: int | None) -> Callable[[ChunkTask], Pool] | None:
     """What begins a cluster at an address; None where this machine computes.
 
     Raises

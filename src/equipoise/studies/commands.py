@@ -19,7 +19,7 @@ import numpy as np
 from equipoise.errors import EquipoiseError, ModelError, UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism.assembly.linkage import assemble
-from equipoise.mechanism.assembly.steps import Call
+from equipoise.mechanism.assembly.steps import KernelCall
 from equipoise.results.declaring import ALONG, PLACES
 from equipoise.studies.figures import Step, answers_about_tools, figure_name, resolve
 
@@ -224,7 +224,7 @@ def _parted(study: Study, model: Machine | Tool, asked: Request) -> list[Request
     machine = cast("Machine", model)
     field = {path for path in study.paths if path.startswith("planting.")}
     alike = field <= EACH_ITS_OWN and not machine.couplings
-    alike = alike and all(isinstance(step, Call) for step in assemble(machine).motion)
+    alike = alike and all(isinstance(step, KernelCall) for step in assemble(machine).motion)
     parts: dict[str, list[int]] = {"planted": [], "plant": []}
     for k, steps in enumerate(asked.steps):
         parts["planted" if alike and steps[0] not in of_one else "plant"].append(k)

@@ -28,7 +28,7 @@ from equipoise.balancing.objectives import (
 from equipoise.balancing.problem import Problem
 from equipoise.balancing.room import pin_of
 from equipoise.design.evaluator import PooledEvaluator
-from equipoise.design.processes import Pool, Task
+from equipoise.design.processes import ChunkTask, Pool
 from equipoise.errors import EquipoiseError, MassError, ModelError, UsageError, at_place
 from equipoise.i18n import Note, to_say
 from equipoise.mechanism.assembly.family import with_columns
@@ -94,7 +94,7 @@ def linkage_of(model: Any) -> Machine:
 
 
 @dataclass(frozen=True, eq=False)
-class Variants:
+class MachineVariants:
     """Machines of a model with numbers set in it."""
 
     model: Model
@@ -122,7 +122,7 @@ class Variants:
 class SingleValues:
     """An objective of machines that are computed one by one."""
 
-    maker: Variants
+    maker: MachineVariants
     of: Objective
     paths: tuple[str, str]
 
@@ -179,7 +179,7 @@ class LinearValues:
     signal : the output, with a column for each parameter in the order of `start`.
     """
 
-    maker: Variants
+    maker: MachineVariants
     paths: tuple[str, str]
     machine: Machine
     start: Mapping[str, Array]
@@ -188,7 +188,7 @@ class LinearValues:
 
     @classmethod
     def of(
-        cls, maker: Variants, of: Objective, paths: tuple[str, str], points: Array
+        cls, maker: MachineVariants, of: Objective, paths: tuple[str, str], points: Array
     ) -> Self | None:
         """None where more than masses differs at points (P, 2), or more than those counts."""
         named = [
@@ -379,7 +379,7 @@ def landscape(
     told = {path: told_as(model, path, paths) for path in (*paths, *given)}
     dimensions = {path: kind for path, (kind, _) in told.items()}
     words = {path: one for path, (_, one) in told.items()}
-    maker = Variants(model, given)
+    maker = MachineVariants(model, given)
     base = maker.machine({})
     if missing := massless(base):
         raise MassError(missing)
@@ -418,7 +418,7 @@ def _computed(
     points: Array,
     progress: Progress | None,
     workers: int | None,
-    others: Callable[[Task], Pool] | None,
+    others: Callable[[ChunkTask], Pool] | None,
 ) -> Array:
     """The objective (P,) at points (P, 2); what is analysed one by one is shared out."""
     tell = None if progress is None else lambda done: progress(done, len(points))

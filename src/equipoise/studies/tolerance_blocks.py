@@ -13,7 +13,7 @@ from equipoise.studies.blocks import Units, in_unit, labelled, named_together, u
 
 if TYPE_CHECKING:
     from equipoise.studies.tolerances import Cause, Tolerances
-    from equipoise.studies.variance import Estimate
+    from equipoise.studies.variance import IntervalEstimate
 
 
 LITTLE = 0.01
@@ -72,7 +72,7 @@ def _kept(found: Tolerances, units: Units | None) -> Table:
     return Table(say("Limits"), columns, tuple(rows))
 
 
-def _share(share: Estimate) -> str:
+def _share(share: IntervalEstimate) -> str:
     """A share with its interval: ``93.2 % (92.7 to 93.7 %)``."""
     value, low, high = (percent(one, 2) for one in (share.value, share.low, share.high))
     return f"{value} % ({say('{low} to {high}', low=low, high=high)} %)"

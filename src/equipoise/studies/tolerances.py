@@ -25,7 +25,7 @@ from equipoise.studies.sampling import samples
 from equipoise.studies.study import SLOW_CHUNK
 from equipoise.studies.variance import (
     Effect,
-    Estimate,
+    IntervalEstimate,
     Scatter,
     causes_of,
     effects,
@@ -83,7 +83,7 @@ class Tolerances(Result):
     study: Study
     designs: int
     failures: Mapping[str, int]
-    within: Estimate | None
+    within: IntervalEstimate | None
     scatters: Mapping[str, Scatter]
     causes: tuple[Cause, ...]
     rows: int

@@ -37,7 +37,7 @@ LEAST_ROWS = 16
 
 
 @dataclass(frozen=True)
-class Estimate:
+class IntervalEstimate:
     """A number with its 95 % interval."""
 
     value: float
@@ -54,8 +54,8 @@ class Effect:
         over that with all of it.
     """
 
-    first: Estimate
-    total: Estimate
+    first: IntervalEstimate
+    total: IntervalEstimate
     halved: float
     removed: float
 
@@ -120,7 +120,7 @@ def effects(figures: Sequence[Array], seed: int) -> list[Effect] | None:
 # not left where machines fail; its intervals draw single rows: 8 times the time at 1,024 of them.
 def _shares(
     base: Array, other: Array, swapped: Array, seed: int
-) -> list[tuple[Estimate, Estimate]]:
+) -> list[tuple[IntervalEstimate, IntervalEstimate]]:
     """First-order and total share of each cause, with intervals by drawing rows again."""
     middle = np.mean([base, other])  # the estimates are closer without what does not vary
     base, other, swapped = base - middle, other - middle, swapped - middle
@@ -128,7 +128,7 @@ def _shares(
     terms = np.vstack([mean, square, other * (swapped - base), 0.5 * (base - swapped) ** 2])
     told = _ratios(np.mean(terms, axis=1)[None])[0]
     low, high = np.percentile(_ratios(_drawn_again(terms, seed)), [2.5, 97.5], axis=0)
-    every = [Estimate(*map(float, one)) for one in zip(told, low, high, strict=True)]
+    every = [IntervalEstimate(*map(float, one)) for one in zip(told, low, high, strict=True)]
     return [*zip(every[: len(swapped)], every[len(swapped) :], strict=True)]
 
 
@@ -183,7 +183,7 @@ class Scatter:
     counts: Array
     below: float
     above: float
-    within: Estimate | None
+    within: IntervalEstimate | None
 
     def to_dict(self) -> dict[str, Any]:
         """As plain values in SI units."""
@@ -228,10 +228,10 @@ def scatter_of(output: Output, base: float, figures: Array) -> Scatter:
     )
 
 
-def share_of(good: Array) -> Estimate:
+def share_of(good: Array) -> IntervalEstimate:
     """Share of machines (P,) with its 95 % interval, by Wilson's score."""
     from scipy.stats import binomtest
 
     number = int(np.sum(good))
     interval = binomtest(number, len(good)).proportion_ci(0.95, method="wilson")
-    return Estimate(number / len(good), float(interval.low), float(interval.high))
+    return IntervalEstimate(number / len(good), float(interval.low), float(interval.high))

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from equipoise.mechanism.assembly.cam_fits import CamFit, fitted, sharpest
-from equipoise.mechanism.assembly.cam_shapes import Shape
+from equipoise.mechanism.assembly.cam_shapes import CamShape
 from equipoise.mechanism.formulas.kernels import cross
 from equipoise.mechanism.parts.cams import Cam
 from equipoise.symbols.part_signs import Surroundings
@@ -41,7 +41,7 @@ def cam_sign(cam: Cam, around: Surroundings) -> Iterator[BodyMark]:
         yield BodyMark(cam.driven, cam.point, line("face", *_face(fit, shape)))
 
 
-def _face(fit: CamFit, shape: Shape) -> Array:
+def _face(fit: CamFit, shape: CamShape) -> Array:
     """Both ends of a flat face, from its point and in the follower's axes, m."""
     along = cross(shape.ride.normal, shape.contact[0] - shape.ride.place)
     beyond = BEYOND * fit.cam.base_radius

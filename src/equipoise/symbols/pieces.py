@@ -12,7 +12,7 @@ from equipoise.mechanism.parts.support import Mount, unit_vector
 from equipoise.symbols.carrier import foot, gauge, ground, strut, turning
 from equipoise.symbols.drives import DriveSign
 from equipoise.symbols.looks import LAYERS
-from equipoise.symbols.scene import WIDE, Body, GuideSign, Scene
+from equipoise.symbols.scene import WIDE, GuideSign, LinkOutline, Scene
 from equipoise.symbols.shapes import (
     PIN,
     Array,
@@ -105,7 +105,7 @@ def _part(guide: GuideSign) -> tuple[str, str]:
     return "slider", guide.name
 
 
-def _with(body: Body) -> Hold:
+def _with(body: LinkOutline) -> Hold:
     return Hold(body.points[0], link=body.name)
 
 
@@ -218,7 +218,7 @@ def _ends(scene: Scene, guide: GuideSign) -> tuple[Array, Array]:
 def _links(scene: Scene) -> Iterator[Piece]:
     slotted = {guide.on for guide in scene.guides}
 
-    def order(body: Body) -> tuple[bool, int, int]:
+    def order(body: LinkOutline) -> tuple[bool, int, int]:
         corners = hull(np.array([*scene.corners(body), *body.extent]))
         area = float(np.sum((np.conj(corners) * np.roll(corners, -1)).imag)) / 2
         length = float(np.max(abs(corners - corners[0])))
@@ -241,14 +241,14 @@ def _rows(scene: Scene) -> Iterator[Piece]:
                 yield Piece("rows", (shape,), hold)
 
 
-def _solids(body: Body) -> Iterator[Shape]:
+def _solids(body: LinkOutline) -> Iterator[Shape]:
     """What a link is made of, to scale, below its sign."""
     for corners, radius in body.solids:
         role = "opening" if radius < 0 else "solid"
         yield circle(role, corners[0], abs(radius)) if radius else line(role, *corners, closed=True)
 
 
-def _body(scene: Scene, body: Body) -> Iterator[Shape]:
+def _body(scene: Scene, body: LinkOutline) -> Iterator[Shape]:
     corners = list(map(complex, scene.corners(body)))
     if body.name in scene.mass_centers:
         center = scene.local(body, scene.mass_centers[body.name])
@@ -285,7 +285,7 @@ def _pin(scene: Scene, point: str, place: complex) -> Shape:
     return circle("pin", place, radius, 0.0 if radius else PIN)
 
 
-def _marks(scene: Scene, body: Body, traced: Collection[str]) -> Iterator[Shape]:
+def _marks(scene: Scene, body: LinkOutline, traced: Collection[str]) -> Iterator[Shape]:
     """Pins, traced points and centre of mass of a link."""
     others = scene.bodies[: scene.bodies.index(body)]
     hung = {point for ends in (*scene.springs, *scene.planned) for point in ends}

@@ -25,7 +25,7 @@ from equipoise.symbols.wheels import Wheel, wheels_of
 
 
 @dataclass(frozen=True)
-class Body:
+class LinkOutline:
     """A link: its points, and those of them that lie around it.
 
     outline : one name for a point, two for a bar, more for a plate, counterclockwise.
@@ -110,7 +110,7 @@ class Scene:
 
     crank_angle: Array
     frame: tuple[str, ...]
-    bodies: tuple[Body, ...]
+    bodies: tuple[LinkOutline, ...]
     places: Mapping[str, Array]
     pins: frozenset[str]
     pin_radii: Mapping[str, float]
@@ -291,12 +291,12 @@ class Scene:
         turned = np.exp(1j * self.angles.get(mark.body, 0 * self.crank_angle))
         return np.asarray(self.places[mark.point] + corners[:, None] * turned)
 
-    def local(self, body: Body, place: Array) -> complex:
+    def local(self, body: LinkOutline, place: Array) -> complex:
         """Where a place (N,) of a link is from its first point, in the link's own axes, m."""
         arm = place[0] - self.places[body.points[0]][0]
         return complex(arm * np.exp(-1j * self.angles[body.name][0]))
 
-    def corners(self, body: Body) -> Array:
+    def corners(self, body: LinkOutline) -> Array:
         """The same of what lies around a link, (n,)."""
         return np.array([self.local(body, self.places[name]) for name in body.outline])
 
@@ -320,12 +320,12 @@ def _field(motion: Motion) -> FieldSign | None:
     return FieldSign(surface, max(depth, 0.0), tuple(complex(*end) for end in planting.tray or ()))
 
 
-def bodies_of(links: Mapping[str, Link]) -> Iterator[Body]:
+def bodies_of(links: Mapping[str, Link]) -> Iterator[LinkOutline]:
     """The links, with what lies around each."""
     for name, link in links.items():
         named = {complex(*place): point for point, place in reversed(list(link.points.items()))}
         around = tuple(named[complex(place)] for place in hull(np.array(list(named))))
-        yield Body(name, tuple(link.points), around, tuple(_solids(link)))
+        yield LinkOutline(name, tuple(link.points), around, tuple(_solids(link)))
 
 
 def _solids(link: Link) -> Iterator[Outline]:

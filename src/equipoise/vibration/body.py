@@ -31,7 +31,7 @@ LOOSE = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
-class Body:
+class SupportBody:
     """The support of a machine, seen from its reference point; matrices are (6, 6)."""
 
     machine: Machine
@@ -148,7 +148,7 @@ class Rest:
         return not mount.one_sided or self.preload[name] > 0
 
 
-def at_rest(body: Body, weights: list[tuple[Array, Array]]) -> Rest:
+def at_rest(body: SupportBody, weights: list[tuple[Array, Array]]) -> Rest:
     """What holds the support, and how preloads and weights stiffen it.
 
     Mounts without a given preload share the weight as linear springs do that were put under the
@@ -178,7 +178,7 @@ def at_rest(body: Body, weights: list[tuple[Array, Array]]) -> Rest:
     return Rest(preload, stiffness, unbalance)
 
 
-def _shared(body: Body, load: Array) -> dict[str, float]:
+def _shared(body: SupportBody, load: Array) -> dict[str, float]:
     """Preload of every mount; those that are given, and those in which the weight settles."""
     mounts = body.support.mounts
     known = {name: m.preload for name, m in mounts.items() if m.preload is not None}
@@ -206,7 +206,7 @@ def _shared(body: Body, load: Array) -> dict[str, float]:
     return {**{name: found.get(name, 0.0) for name in mounts}, **known}
 
 
-def _uncarried(body: Body, over: Array) -> Note:
+def _uncarried(body: SupportBody, over: Array) -> Note:
     is_loose = np.abs(over) > 0.05 * np.max(np.abs(over))
     return Note(
         "they do not carry the weight in {loose}; add a mount there, or give the mounts a preload",
@@ -214,7 +214,7 @@ def _uncarried(body: Body, over: Array) -> Note:
     )
 
 
-def driven_away(body: Body, is_loose: Array) -> Note:
+def driven_away(body: SupportBody, is_loose: Array) -> Note:
     """Say in which of its coordinates (D,) nothing holds the support against a constant force."""
     return Note(
         "a constant force drives the support away in {loose}; add a mount there",
@@ -231,7 +231,7 @@ def unbounded_at(speed: float) -> Note:
     )
 
 
-def _named(body: Body, chosen: Array) -> Note | str:
+def _named(body: SupportBody, chosen: Array) -> Note | str:
     names = zip(body.support.coordinates, chosen, strict=True)
     return all_of([Note(name) for name, is_chosen in names if is_chosen])
 
@@ -255,7 +255,7 @@ class Reading:
     share: float = 1.0
 
     @classmethod
-    def of(cls, body: Body, item: Mount | Gauge) -> Reading:
+    def of(cls, body: SupportBody, item: Mount | Gauge) -> Reading:
         if item.point is None:
             return cls(None, np.zeros(2), 1.0 if item.axis == "pitch" else 0.0)
         arm = (np.array(item.point) - body.reference)[:2]
@@ -318,7 +318,7 @@ class MountContact:
         return force
 
 
-def contacts_of(body: Body, rest: Rest) -> tuple[MountContact, ...]:
+def contacts_of(body: SupportBody, rest: Rest) -> tuple[MountContact, ...]:
     """The mounts of a planar support."""
     found = []
     for name, mount in body.support.mounts.items():

@@ -29,7 +29,7 @@ from equipoise.mechanism.assembly.steps import size_of_bodies
 from equipoise.mechanism.kinematics.jumps import jumps_of_rows
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.signals import Array, within_period
-from equipoise.vibration.body import IN_PLANE, PITCH, Body, MountContact, Rest, contacts_of
+from equipoise.vibration.body import IN_PLANE, PITCH, MountContact, Rest, SupportBody, contacts_of
 from equipoise.vibration.collocation import Rates
 from equipoise.vibration.linkages import Sums, sums
 
@@ -68,7 +68,7 @@ class Coupled:
 
     @classmethod
     def on_support(
-        cls, body: Body, rest: Rest, speed: float, torque: Torque | None = None
+        cls, body: SupportBody, rest: Rest, speed: float, torque: Torque | None = None
     ) -> Coupled:
         """On the support of the model."""
         matrix = body.mass
@@ -223,7 +223,7 @@ STANDSTILL = 1e-6
 """Speed backwards, over that of the file, at which a motor counts as stalled: above rounding."""
 
 
-class Table:
+class CouplingTable:
     """The linkages' sums at any crank angle, one at a time, by periodic splines."""
 
     def __init__(self, system: Coupled) -> None:
@@ -267,7 +267,7 @@ def follow(
     """
     from scipy.integrate import solve_ivp
 
-    table = Table(system)
+    table = CouplingTable(system)
     d = len(system.free)
     left = evaluations
 

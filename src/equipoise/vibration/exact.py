@@ -20,7 +20,7 @@ from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.support import FREEDOMS
 from equipoise.results.analysis import analyze
 from equipoise.signals import GAUSS_POINTS, Array, JumpSampling, Periodic, mean
-from equipoise.vibration.body import IN_PLANE, PITCH, Body, Reading
+from equipoise.vibration.body import IN_PLANE, PITCH, Reading, SupportBody
 from equipoise.vibration.coupled import TO_SETTLE, Coupled, StallError, follow, settled
 from equipoise.vibration.linear import Linear, gauges_of
 from equipoise.vibration.linkages import BaseMotion, Sums, joint_forces, rows_of
@@ -288,7 +288,7 @@ class ExactSolution:
             said = to_say("the support leans by {angle} deg from the drawn position in the mean")
             yield Note(said, angle=f"{self.lean:.1f}")
 
-    def _gauges(self, body: Body) -> dict[str, GaugeSignals]:
+    def _gauges(self, body: SupportBody) -> dict[str, GaugeSignals]:
         ride = self.ride
         found = {}
         for name, gauge in gauges_of(body).items():

@@ -33,8 +33,8 @@ from equipoise.mechanism.parts.support import AXES, FREEDOMS, Gauge, Row
 from equipoise.quantities import Dimension, told
 from equipoise.signals import Array, Periodic
 from equipoise.vibration.body import (
-    Body,
     Rest,
+    SupportBody,
     at_rest,
     driven_away,
     moved,
@@ -75,13 +75,13 @@ def motion_of(machine: Machine) -> Motion:
 
 
 @dataclass(frozen=True, eq=False)
-class Excitation:
+class SupportExcitation:
     """Wrench of all linkages on the support, and where their mass and weight are.
 
     body : the support.  model : what of it is taken into account.
     """
 
-    body: Body
+    body: SupportBody
     model: ExcitationModel
 
     @property
@@ -313,14 +313,14 @@ class Excitation:
 class Linear:
     """The support with its linkages as a linear system; matrices (D, D) of the free coordinates."""
 
-    excitation: Excitation
+    excitation: SupportExcitation
 
     @classmethod
     def of(cls, machine: Machine, model: ExcitationModel = DEFAULT_EXCITATION_MODEL) -> Linear:
-        return cls(Excitation(Body(machine), model))
+        return cls(SupportExcitation(SupportBody(machine), model))
 
     @property
-    def body(self) -> Body:
+    def body(self) -> SupportBody:
         return self.excitation.body
 
     @cached_property
@@ -447,7 +447,7 @@ class Linear:
         return Periodic(row[self.body.free] @ moved.amplitudes, moved.turns)
 
 
-def gauges_of(body: Body) -> dict[str, Gauge]:
+def gauges_of(body: SupportBody) -> dict[str, Gauge]:
     """The gauges of the model; the free coordinates at the reference point where it has none."""
     if body.support.gauges:
         return dict(body.support.gauges)

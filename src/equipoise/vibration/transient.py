@@ -18,7 +18,7 @@ from equipoise.quantities import Dimension, in_si
 from equipoise.results.declaring import TITLE, Declarations, ResultOutput
 from equipoise.results.result import Result
 from equipoise.signals import Array
-from equipoise.vibration.body import Body, Reading
+from equipoise.vibration.body import Reading, SupportBody
 from equipoise.vibration.coupled import Coupled, follow
 from equipoise.vibration.exact import solve_exact
 from equipoise.vibration.forced import chosen_model, steady_speed
@@ -57,7 +57,7 @@ class Transient(Result):
         """Displacement (M,) at each gauge, m or rad."""
         if self.machine.support is None:
             return {}
-        body = Body(self.machine)
+        body = SupportBody(self.machine)
         place, _ = self.system.place_and_rate(self.states)
         return {
             name: Reading.of(body, gauge).displacement(place)

@@ -14,7 +14,7 @@ from string import ascii_uppercase
 from equipoise.errors import UsageError
 from equipoise.i18n import Note, all_of
 from equipoise.mechanism.checks import unknown
-from equipoise.mechanism.kinematics.outline import Pose, length_between, pose_between
+from equipoise.mechanism.kinematics.outline import LinkPlacement, length_between, pose_between
 from equipoise.mechanism.parts.machine import FRAME, Drive, Link, Slider
 from equipoise.quantities import clean
 from equipoise.web.assuming import assumed_bar, assumed_block
@@ -145,7 +145,9 @@ def with_slider(
         link = _new_link(sketch, "slider")
         block = assumed_block(sketch.links, abs(other - place))
         points = {point: (0.0, 0.0)}
-        sketch = sketch.with_link(link, Link(points=points, bodies=(block,)), Pose(place, way))
+        sketch = sketch.with_link(
+            link, Link(points=points, bodies=(block,)), LinkPlacement(place, way)
+        )
     check_link(sketch, link)
     if point not in sketch.links[link].points:
         raise UsageError(

@@ -18,7 +18,7 @@ from equipoise.mechanism.assembly.builder import Guide
 from equipoise.mechanism.assembly.cam_fits import check_shape, fitted
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.formulas.kernels import cross, dot
-from equipoise.mechanism.kinematics.outline import Pose
+from equipoise.mechanism.kinematics.outline import LinkPlacement
 from equipoise.mechanism.parts.cams import RIDES, Cam
 from equipoise.mechanism.parts.laws import AngleLaw, AngleSegment, LengthLaw, LengthSegment
 from equipoise.mechanism.parts.machine import FRAME, Slider
@@ -174,7 +174,7 @@ def _cut(sketch: Sketch, cam: Cam, pin: str, joint: Slider | str) -> Sketch:
 
 def _moving(sketch: Sketch, cam: Cam, pin: str, joint: Slider | str) -> Iterator[Cam]:
     """The cam with rise, dwell, return and rest, by less and less."""
-    turned = Pose(0j, sketch.pose(cam.driver).angle - sketch.pose(cam.carrier).angle)
+    turned = LinkPlacement(0j, sketch.pose(cam.driver).angle - sketch.pose(cam.carrier).angle)
     drawn = round(degrees(phase(turned.turn)) - RESTING) % 360
     far, rider = abs(sketch.places[cam.point] - sketch.places[pin]), sketch.places[cam.point]
     for share in LIFTS:

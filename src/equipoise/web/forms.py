@@ -102,7 +102,7 @@ def _control(kind: keys.Kind) -> Values:
     return CONTROLS[type(kind)](kind)
 
 
-def _text(kind: keys.Text) -> Values:
+def _text(kind: keys.TextKind) -> Values:
     if kind.names:
         return {"kind": "choice", "options": [*kind.names]}
     if kind.of == "output":  # of which a file may have others, such as those of rows
@@ -148,8 +148,8 @@ CONTROLS: Mapping[type[keys.Kind], Callable[[Any], Values]] = {
     keys.OneOr: _one_or,
     keys.Point: _place,
     keys.Quantity: lambda kind: {"kind": "quantity", "unit": _unit(kind.dimension)},
-    keys.Text: _text,
-    keys.Told: lambda kind: {"kind": "text", "options": []},
+    keys.TextKind: _text,
+    keys.DependentQuantity: lambda kind: {"kind": "text", "options": []},
     keys.Whole: _whole,
     keys.Wording: lambda kind: {"kind": "wording"},
 }  # fmt: skip

@@ -31,9 +31,9 @@ from equipoise.mechanism.parts.objectives import ROWS
 from equipoise.quantities import FACTORS, KINDS, display, display_rules
 from equipoise.quantities.numbers import Display, in_unit
 from equipoise.results.analysis import Analysis, analyze
-from equipoise.results.outputs import Output
+from equipoise.results.outputs import AnalysisOutput
 from equipoise.results.own_words import words_of
-from equipoise.schema.numbers import POLAR, Number
+from equipoise.schema.numbers import POLAR, FileNumber
 from equipoise.schema.template import Template
 from equipoise.symbols.scene import Scene
 from equipoise.web.assets import asset
@@ -118,7 +118,7 @@ class Interactive:
         return self.analysis.resolved.motion
 
     @cached_property
-    def outputs(self) -> list[Output]:
+    def outputs(self) -> list[AnalysisOutput]:
         """Those that a script can have, and what all rows have together."""
         outputs = {
             output.name: output
@@ -183,7 +183,7 @@ class Interactive:
             yield from numbers
 
     @cached_property
-    def _candidates(self) -> dict[str, Number]:
+    def _candidates(self) -> dict[str, FileNumber]:
         """Numbers of the model that may be columns, by their paths.
 
         Lengths that have to agree with others, as where joints hold more than the motion needs, are
@@ -324,7 +324,7 @@ class Interactive:
                         "path": str(end),
                         "fixed": points[measure.start],
                         **_unit_content(in_unit("mm")),
-                        "units": _factors(Number(measure.value, "length")),
+                        "units": _factors(FileNumber(measure.value, "length")),
                     }
 
     def _margins(self) -> list[list[str]]:
@@ -346,7 +346,7 @@ def _sized(link: Any) -> str:
     return "length" if link.length is not None else "sides" if link.sides else "points"
 
 
-def _unit(number: Number, unit: str) -> Display:
+def _unit(number: FileNumber, unit: str) -> Display:
     if number.share:
         return Display("%", 100.0)
     if number.dimension is None:
@@ -354,7 +354,7 @@ def _unit(number: Number, unit: str) -> Display:
     return in_unit(unit)
 
 
-def _factors(number: Number) -> dict[str, float]:
+def _factors(number: FileNumber) -> dict[str, float]:
     """SI units in each unit in which a number may be typed."""
     if number.dimension is None:
         return {"%": 0.01} if number.share else {}

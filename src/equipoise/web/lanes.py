@@ -76,7 +76,7 @@ class Lanes(AbstractContextManager["Lanes"]):
         self._stack.close()
 
 
-class Work:
+class PageWork:
     """What is computed for one page.
 
     spent : s of computing that the last answer took.

@@ -8,7 +8,7 @@ from equipoise.errors import EquipoiseError
 from equipoise.web.block import FloatBlock, Values
 from equipoise.web.edits import Computed
 from equipoise.web.figures import told_signals
-from equipoise.web.recorded import Record, compared_with
+from equipoise.web.recorded import MeasuredSignals, compared_with
 from equipoise.web.shaken import SAMPLES
 
 GAUGES = "gauges."
@@ -27,7 +27,9 @@ def charted(output: str) -> bool:
     return output in told_signals()
 
 
-def measured_told(record: Record | None, found: Computed, block: FloatBlock) -> Values | None:
+def measured_told(
+    record: MeasuredSignals | None, found: Computed, block: FloatBlock
+) -> Values | None:
     """A record beside a design: its name and what is to be said; signals go to the block.
 
     ``measured.`` and the name of an output : (N,) SI units, NaN in gaps; what gauges read has as

@@ -10,7 +10,7 @@ from typing import Any
 
 from equipoise.errors import UsageError
 from equipoise.i18n import Note, all_of
-from equipoise.mechanism.kinematics.outline import Pose, length_between, pose_between
+from equipoise.mechanism.kinematics.outline import LinkPlacement, length_between, pose_between
 from equipoise.mechanism.parts.constraint_solver import constrained
 from equipoise.mechanism.parts.constraints import changed_points
 from equipoise.mechanism.parts.element_kinds import PartKind
@@ -65,14 +65,14 @@ def with_constraints_met(before: Sketch, sketch: Sketch) -> Sketch:
     return sketch
 
 
-def _posed(sketch: Sketch, link: str, pose: Pose) -> Sketch:
+def _posed(sketch: Sketch, link: str, pose: LinkPlacement) -> Sketch:
     return replace(sketch, poses={**sketch.poses, link: pose})
 
 
 def _onto(sketch: Sketch, slider: Slider, to: complex) -> complex:
     """The nearest place on the line of a slider, m."""
     through = sketch.places[slider.through]
-    way = Pose(0j, sketch.pose(slider.on).angle + slider.direction).turn
+    way = LinkPlacement(0j, sketch.pose(slider.on).angle + slider.direction).turn
     return through + way * ((to - through) * way.conjugate()).real
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import Any, Literal
 
-from equipoise.keys import Frozen, Kind, Point, Text, innermost, keys_of
+from equipoise.keys import Frozen, Kind, Point, TextKind, innermost, keys_of
 from equipoise.mechanism.parts.couplings import Turning, coupling_kinds, name_of
 from equipoise.mechanism.parts.machine import FRAME, Machine
 from equipoise.mechanism.parts.objectives import JOINTS
@@ -113,11 +113,11 @@ def _fields(value: Frozen) -> Iterator[tuple[str, Kind]]:
         if hasattr(value, key.field):
             yield key.field, key.kind
     if isinstance(value, Turning):
-        yield from ((field, Text(of="link")) for field in MESHING)
+        yield from ((field, TextKind(of="link")) for field in MESHING)
 
 
 def _is_name(kind: Kind | None, what: What) -> bool:
     kind = None if kind is None else innermost(kind)
-    if isinstance(kind, Text):
+    if isinstance(kind, TextKind):
         return kind.of in NAMING[what]
     return isinstance(kind, Point) and kind.named and what == "point"

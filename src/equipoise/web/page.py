@@ -17,7 +17,7 @@ from starlette.websockets import WebSocketDisconnect
 from equipoise.errors import UsageError
 from equipoise.i18n import Note
 from equipoise.web.desk import Desk
-from equipoise.web.lanes import MOMENT, Lanes, Work, give_back
+from equipoise.web.lanes import MOMENT, Lanes, PageWork, give_back
 from equipoise.web.messages import SLOW, Message, makes_way, read
 from equipoise.web.replies import Reply, packed, refused, told, unexpected
 
@@ -45,7 +45,7 @@ class Page:
     """
 
     def __init__(self, socket: WebSocket, desk: Desk, lanes: Lanes) -> None:
-        self.socket, self.desk, self.lanes, self.work = socket, desk, lanes, Work()
+        self.socket, self.desk, self.lanes, self.work = socket, desk, lanes, PageWork()
         self.waiting: deque[Message | UsageError] = deque()
         self.come = asyncio.Event()
         self.closed = False

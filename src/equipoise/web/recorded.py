@@ -48,7 +48,7 @@ class RecordColumn:
 
 
 @dataclass(frozen=True, eq=False)
-class Record:
+class MeasuredSignals:
     """Signals that were measured.
 
     name : of the file.  over : what they stand against.  at : (N,) rad or s.
@@ -60,7 +60,7 @@ class Record:
     columns: tuple[RecordColumn, ...]
 
 
-def record_of_text(name: str, text: str) -> Record:
+def record_of_text(name: str, text: str) -> MeasuredSignals:
     """Read a record from the text of a CSV file.
 
     Raises
@@ -74,7 +74,7 @@ def record_of_text(name: str, text: str) -> Record:
         raise ModelError("", Note("{shown}, {what}", shown=shown, what=error.what)) from error
 
 
-def _record(name: str, text: str) -> Record:
+def _record(name: str, text: str) -> MeasuredSignals:
     rows = rows_of(text)
     line, header = next(rows, (1, []))
     heads = [_head(line, cell) for cell in header]
@@ -106,7 +106,7 @@ def _record(name: str, text: str) -> Record:
         RecordColumn(head[0], head[1], row) for head, row in zip(heads[1:], values[1:], strict=True)
     )
     over: Literal["crank_angle", "time"] = "time" if heads[0][0] in TIMES else "crank_angle"
-    return Record(name, over, values[0], columns)
+    return MeasuredSignals(name, over, values[0], columns)
 
 
 def _head(line: int, cell: str) -> tuple[str, Dimension | None, float]:
@@ -153,7 +153,9 @@ class Compared:
     left_out: tuple[str, ...]
 
 
-def compared_with(record: Record, analysis: Analysis, gauges: Sequence[str] = ()) -> Compared:
+def compared_with(
+    record: MeasuredSignals, analysis: Analysis, gauges: Sequence[str] = ()
+) -> Compared:
     """A record over the crank angles of a machine.
 
     gauges : names of those that a support has, whose readings are no outputs of an analysis.
@@ -215,7 +217,7 @@ def _known(analysis: Analysis, gauges: Sequence[str]) -> dict[str, tuple[str, Di
     return found
 
 
-def _angles(record: Record, analysis: Analysis) -> Array:
+def _angles(record: MeasuredSignals, analysis: Analysis) -> Array:
     """Crank angles of a record, rad."""
     if record.over == "crank_angle":
         return record.at

@@ -16,7 +16,7 @@ from equipoise.web.drawing import ground_of, moves_of, stage_of
 from equipoise.web.edits import Computed
 from equipoise.web.measured import charted, gauges_of
 from equipoise.web.messages import MOST_OUTPUTS, Message
-from equipoise.web.recorded import Record, compared_with, record_of_text
+from equipoise.web.recorded import MeasuredSignals, compared_with, record_of_text
 from equipoise.web.replies import Reply
 from equipoise.web.variants import NOTHING, OPENED, STEP, VARIANT, Variants
 
@@ -35,7 +35,7 @@ class Seen:
     variants: Variants = field(default_factory=Variants)
     last: Computed | None = None
     opened: Computed | None = None
-    record: Record | None = None
+    record: MeasuredSignals | None = None
     ghost: Computed | None = None
     table: dict[str, Any] | None = None
 

@@ -39,7 +39,7 @@ from equipoise.web.history import History, HistoryStep
 from equipoise.web.making import lost, made
 from equipoise.web.messages import MOST_LANGUAGES, Message
 from equipoise.web.openings import opened_example, opened_text, titles, tool_titles
-from equipoise.web.recorded import Record
+from equipoise.web.recorded import MeasuredSignals
 from equipoise.web.replies import Reply, refused
 from equipoise.web.seen import ASKED, Seen
 from equipoise.web.shaken import more, response_of
@@ -70,7 +70,7 @@ class Session:
     before: Computed | None = None
     scale: Scale | None = None
     more_told: tuple[Computed | Incomplete | None, Computed | None] = (None, None)
-    response_told: tuple[Computed | Incomplete | None, Record | None] = (None, None)
+    response_told: tuple[Computed | Incomplete | None, MeasuredSignals | None] = (None, None)
     wanted: tuple[str, ...] = ()
     language: str = "en"
     disk: Disk | None = None

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
-from equipoise.mechanism.kinematics.outline import STILL, MachineDraft, Pose
+from equipoise.mechanism.kinematics.outline import STILL, LinkPlacement, MachineDraft
 from equipoise.mechanism.parts.element_kinds import part_kinds
 from equipoise.mechanism.parts.machine import FRAME, Link, Machine, Vector
 from equipoise.mechanism.parts.shown_units import ShownUnits
@@ -43,8 +43,8 @@ class Sketch(MachineDraft):
         poses = {}
         for name, link in motion.links.items():
             anchor, angle = motion.linkage.anchors[name], float(link.angle[at])
-            arm = Pose(0j, angle).out(own.links[name].points[anchor])
-            poses[name] = Pose(complex(motion.points[anchor].place[at]) - arm, angle)
+            arm = LinkPlacement(0j, angle).out(own.links[name].points[anchor])
+            poses[name] = LinkPlacement(complex(motion.points[anchor].place[at]) - arm, angle)
         rest = {key: getattr(own, key) for key in REST}
         weights = {name: one for name, one in found.design.counterweights.items() if one.mass}
         return cls(own.frame, own.links, poses, own.drive, own.sliders, rest,
@@ -72,7 +72,7 @@ class Sketch(MachineDraft):
         local = clean_place(self.pose(body).into(place), self.size, digits)
         return self.with_points(body, {**self.bodies[body], point: local})
 
-    def with_link(self, name: str, link: Link, pose: Pose) -> Sketch:
+    def with_link(self, name: str, link: Link, pose: LinkPlacement) -> Sketch:
         """One more link."""
         links, poses = {**self.links, name: link}, {**self.poses, name: pose}
         return replace(self, links=links, poses=poses)

@@ -24,7 +24,7 @@ from equipoise.web.figures import charts_of, figures_of, least_of, signals_of
 from equipoise.web.following import extent_of
 from equipoise.web.lacking import forces_lack
 from equipoise.web.measured import measured_told
-from equipoise.web.recorded import Record
+from equipoise.web.recorded import MeasuredSignals
 
 MOST_ORDER = 20
 """Highest order of the spectra."""
@@ -36,7 +36,7 @@ def state_of(
     wanted: Sequence[str] = (),
     against: Computed | None = None,
     arrows_at: str | None = None,
-    record: Record | None = None,
+    record: MeasuredSignals | None = None,
 ) -> tuple[Values, bytes]:
     """Everything that a page draws of a machine.
 

@@ -16,7 +16,7 @@ from equipoise.quantities import in_unit, parse, typeset
 from equipoise.quantities.units import KINDS
 from equipoise.schema.files import printable
 from equipoise.schema.models import taken_along
-from equipoise.schema.numbers import Number, format_share, parse_share
+from equipoise.schema.numbers import FileNumber, format_share, parse_share
 from equipoise.schema.opening import kind_of_text, opened
 from equipoise.schema.template import Template, named_parts
 from equipoise.web.disk import NOT_OF_FILE, Disk
@@ -214,7 +214,7 @@ class ToolDesk:
         told = {"type": "tool", "seq": seq, "name": self.name, "fields": fields, **history}
         return Reply({**told, **content}, data)
 
-    def _numbers(self) -> dict[str, Number]:
+    def _numbers(self) -> dict[str, FileNumber]:
         found = self.template.numbers()
         return {path: one for path, one in found.items() if not path.startswith(NOT_SHOWN)}
 
@@ -255,7 +255,7 @@ def _group(tool: Tool, path: str) -> tuple[str, int]:
     return (say("shaft"), 1) if parts[0] == "shaft" else (parts[0], 0)
 
 
-def _written(number: Number, value: float, unit: str) -> Values:
+def _written(number: FileNumber, value: float, unit: str) -> Values:
     """A number in the unit of its file: as it is typed, and as it is read."""
     if number.share:
         text = format_share(value)

@@ -1,7 +1,7 @@
 """The page's calculation in a browser: Python in WebAssembly, in two workers of one thread each.
 
 `Foreground` answers what takes a moment, one reply a step, so that a newer edit of a drag can take
-the place of an older one.  What takes longer is a `Task`: `Background` computes it in the other
+the place of an older one.  What takes longer is a `SlowTask`: `Background` computes it in the other
 worker, from the design alone, and its replies come back as they are.  Neither knows what a worker
 is: `page/src/site/worker.ts` carries bytes between them and the page.
 """
@@ -48,7 +48,7 @@ copyreg.pickle(MappingProxyType, lambda proxy: (_read_only, (dict(proxy),)))
 
 
 @dataclass(frozen=True)
-class Task:
+class SlowTask:
     """What takes long, with all that it needs of the session.
 
     design : the machine, if the task is about one.
@@ -75,7 +75,7 @@ class Foreground:
         self.tasks: deque[bytes] = deque()
         self.missing: str | None = None
         """A package that has to be loaded before the next step."""
-        self._running: deque[tuple[Task, Computed | None]] = deque()
+        self._running: deque[tuple[SlowTask, Computed | None]] = deque()
         self._message: Message | None = None
         self._replies: Iterator[Reply] | None = None
         self._refused_packages: set[str] = set()
@@ -196,7 +196,7 @@ class Foreground:
     ) -> None:
         session = self.desk.session
         design, other = (None if one is None else one.design for one in (found, against))
-        task = Task(design, other, message, sweep, session.wanted, session.language)
+        task = SlowTask(design, other, message, sweep, session.wanted, session.language)
         self._running.append((task, found))
         self.tasks.append(pickle.dumps(task))
 
@@ -239,7 +239,7 @@ class Background:
         self.missing: str | None = None
         """A package that has to be loaded before the task is begun again."""
         self._refused_packages: set[str] = set()
-        self._task: Task | None = None
+        self._task: SlowTask | None = None
         self._steps: Iterator[tuple[str, bytes]] | None = None
 
     def begin(self, data: Buffer) -> None:
@@ -274,7 +274,7 @@ class Background:
         self._steps = iter([("result", b"")])
         return "reply", packed(refused(seq, error, self._task.language))
 
-    def _run(self, task: Task) -> Iterator[tuple[str, bytes]]:
+    def _run(self, task: SlowTask) -> Iterator[tuple[str, bytes]]:
         session = Session(language=task.language)
         result = b""
         try:

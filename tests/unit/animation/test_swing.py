@@ -11,13 +11,13 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import UsageError
-from equipoise.figures.animation import Moving, Part, animated_svg, laid_out
+from equipoise.figures.animation import Moving, MovingGroup, animated_svg, laid_out
 from equipoise.figures.stage import beyond
 from equipoise.figures.swing import SEEN, in_mode, swinging
 from equipoise.mechanism.parts.support import unit_vector
 from equipoise.symbols.carrier import MOUNT
 from equipoise.symbols.scene import Scene
-from equipoise.vibration.body import Body
+from equipoise.vibration.body import SupportBody
 
 ON_MOUNTS = ("yamashita-rig", "sieve", "exudyn-slider-crank", "walking-transplanter")
 COUNT = 240
@@ -40,14 +40,14 @@ def told_factor(scene: Scene) -> float:
     return float(found[1]) if found else 1.0
 
 
-def through(part: Part, point: complex) -> np.ndarray:
+def through(part: MovingGroup, point: complex) -> np.ndarray:
     """Where a point of a part's own axes is, pixels, (K,)."""
     moves = part.moves
     local = point.real * moves.stretch + 1j * point.imag
     return moves.place + local * np.exp(1j * moves.angle)
 
 
-def with_role(drawn: Moving, role: str) -> list[Part]:
+def with_role(drawn: Moving, role: str) -> list[MovingGroup]:
     return [part for part in drawn.parts if any(one.role == role for one in part.strokes)]
 
 
@@ -159,7 +159,7 @@ def test_a_mode_swings_the_support_and_leaves_the_crank() -> None:
 def test_the_motion_of_a_response_is_what_gauges_read(model: str) -> None:
     machine = eq.load("sieve")
     found = eq.respond(machine, model=model)
-    body = Body(machine)
+    body = SupportBody(machine)
     for name, gauge in machine.support.gauges.items():
         read = replace(found.motion, amplitudes=body.row(gauge) @ found.motion.amplitudes)
         shown = found.gauges[name].displacement

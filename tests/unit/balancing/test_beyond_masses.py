@@ -17,7 +17,7 @@ from equipoise.balancing.balanced import Balanced
 from equipoise.balancing.beyond_masses import Beyond
 from equipoise.balancing.cylinder_sizes import MODULUS
 from equipoise.balancing.first_order import balance_shafts_for
-from equipoise.balancing.flywheels import Flywheel, flywheel_sentences, flywheels_for
+from equipoise.balancing.flywheels import RequiredFlywheel, flywheel_sentences, flywheels_for
 from equipoise.balancing.outcome import helps_told
 from equipoise.balancing.policy import (
     BUCKLING_SAFETY,
@@ -166,7 +166,7 @@ def test_a_flywheel_that_is_there_is_enough() -> None:
     flywheels = beyond("brush-cutter-engine").flywheels
     assert flywheels is not None
     (one,) = flywheels.choices
-    assert isinstance(one, Flywheel)
+    assert isinstance(one, RequiredFlywheel)
     heavy = eq.analyze(machine.with_drive(flywheel=1.1 * one.inertia))
     assert flywheels_for(heavy, assess(heavy)) is None
 

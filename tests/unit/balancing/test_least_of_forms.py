@@ -9,7 +9,7 @@ import pytest
 
 from equipoise.balancing import least_of_forms as module
 from equipoise.balancing.jump_readings import Forms
-from equipoise.balancing.least_of_forms import Part, least_of_forms
+from equipoise.balancing.least_of_forms import FormSum, least_of_forms
 
 Array = np.ndarray
 BOXES, READINGS, SLACK = 4, 9, 1e-6
@@ -21,7 +21,7 @@ def forms(chance: np.random.Generator) -> Forms:
     return Forms(chance.normal(size=(BOXES, READINGS)), chance.normal(size=(BOXES, READINGS, 2)))
 
 
-def value(part: Part, numbers: Array) -> Array:
+def value(part: FormSum, numbers: Array) -> Array:
     """Of one part (N, B), with numbers (N, 2) in every box."""
     found = []
     for x in numbers:
@@ -31,13 +31,13 @@ def value(part: Part, numbers: Array) -> Array:
 
 
 @pytest.fixture(params=[0, 1, 2])
-def parts(request: pytest.FixtureRequest) -> list[Part]:
+def parts(request: pytest.FixtureRequest) -> list[FormSum]:
     """A peak and a sum of two, and a limit that some of the numbers keep."""
     chance = np.random.default_rng(request.param)
     factors = chance.uniform(0.5, 2.0, (2, BOXES))
-    peak = Part((forms(chance),), factors[0])
-    both = Part((forms(chance), forms(chance)), factors[1])
-    limit = Part((forms(chance),), np.ones(BOXES), is_limit=True)
+    peak = FormSum((forms(chance),), factors[0])
+    both = FormSum((forms(chance), forms(chance)), factors[1])
+    limit = FormSum((forms(chance),), np.ones(BOXES), is_limit=True)
     middle = value(limit, np.zeros((1, 2)))[0]
     return [peak, both, replace(limit, factors=1.0 / (0.1 + np.abs(middle)))]
 
@@ -48,12 +48,12 @@ def grid() -> Array:
     return points[np.all(points @ DIRECTIONS.T >= LEAST, axis=1)]
 
 
-def bounded(parts: list[Part]) -> module.Bounded:
+def bounded(parts: list[FormSum]) -> module.Bounded:
     start = np.zeros((BOXES, 2))
     return least_of_forms(parts, LOW, HIGH, start, DIRECTIONS, LEAST, SLACK)
 
 
-def test_nothing_on_a_grid_is_below_it_and_its_numbers_are_the_best(parts: list[Part]) -> None:
+def test_nothing_on_a_grid_is_below_it_and_its_numbers_are_the_best(parts: list[FormSum]) -> None:
     points, found = grid(), bounded(parts)
     total = value(parts[0], points) + value(parts[1], points)
     total[value(parts[2], points) > 1.0] = np.inf
@@ -69,7 +69,7 @@ def test_nothing_on_a_grid_is_below_it_and_its_numbers_are_the_best(parts: list[
 
 
 def test_without_a_solution_it_is_a_bound_all_the_same(
-    parts: list[Part], monkeypatch: pytest.MonkeyPatch
+    parts: list[FormSum], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Nothing rests on the program: any multipliers bound."""
     best = bounded(parts).bounds
@@ -81,7 +81,7 @@ def test_without_a_solution_it_is_a_bound_all_the_same(
     assert np.all(found.bounds <= np.min(total, axis=0))
 
 
-def test_without_numbers_it_is_the_largest(parts: list[Part]) -> None:
+def test_without_numbers_it_is_the_largest(parts: list[FormSum]) -> None:
     none = np.zeros((BOXES, 0))
     fixed = [
         replace(one, groups=tuple(Forms(g.constants, g.slopes[..., :0]) for g in one.groups))

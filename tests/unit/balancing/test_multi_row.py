@@ -13,7 +13,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.balancing.effects import Effects
-from equipoise.balancing.multi_row import Rows
+from equipoise.balancing.multi_row import PhasedRows
 from equipoise.balancing.objectives import of_all_rows
 from equipoise.balancing.phase_bound import CLOSE
 from equipoise.balancing.phasing import choose_phases
@@ -198,7 +198,7 @@ def test_what_is_refused(limit: Limit, sentence: str) -> None:
 def test_torque_of_each_of_several_drives() -> None:
     rows = (Row(0.0, 0.0), Row(np.pi / 2, 0.0))
     machine = replace(eq.load("pick-and-place"), rows=rows)
-    found = Rows(machine).signals(Objective("drives.right crank.torque"))
+    found = PhasedRows(machine).signals(Objective("drives.right crank.torque"))
     own = eq.analyze(machine, 720).forces.drives["right crank"]
     first, second = (row[0, 1:4] for row in found.amplitudes[0])
     np.testing.assert_allclose(second, first, rtol=1e-12)  # phases come with the plan
@@ -207,7 +207,7 @@ def test_torque_of_each_of_several_drives() -> None:
 
 @pytest.mark.parametrize("output", ["bearings.front", "joints.B1"])
 def test_forces_within_a_row_have_no_phase(output: str) -> None:
-    rows = Rows(replace(eq.load("twin-engine"), rows=ROWS))
+    rows = PhasedRows(replace(eq.load("twin-engine"), rows=ROWS))
     with pytest.raises(UsageError, match="acts within one row"):
         rows.signals(Objective(output))
 
@@ -216,4 +216,4 @@ def test_what_another_kind_of_drive_exerts_is_no_output() -> None:
     with pytest.raises(
         ModelError, match=r"no output is called 'drive_torque'; there are .* 'drive_force'"
     ):
-        Rows(eq.load("hydraulic-loader")).signals(Objective("drive_torque"))
+        PhasedRows(eq.load("hydraulic-loader")).signals(Objective("drive_torque"))

@@ -10,7 +10,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.balancing.box_bounds import largest_reading
-from equipoise.balancing.multi_row import Combine, Cost, Rows, RowSignals, Term
+from equipoise.balancing.multi_row import Combine, Cost, PhasedRows, PhaseObjective, RowSignals
 from equipoise.balancing.phase_bound import CLOSE, Improve, prove
 from equipoise.balancing.phase_search import PhaseSearch
 from equipoise.balancing.phasing import choose_phases
@@ -25,7 +25,7 @@ FORCE = Objective("shaking_force")
 def of_amplitudes(*rows: tuple[float, ...]) -> Cost:
     """RMS of a signal of which each row has these amplitudes of the orders 1, 2 ..."""
     amplitudes = np.array([[[[0.0, *row]] for row in rows]], complex)
-    return Cost((Term(FORCE, RowSignals(amplitudes)),))
+    return Cost((PhaseObjective(FORCE, RowSignals(amplitudes)),))
 
 
 def improved(cost: Cost) -> Improve:
@@ -104,7 +104,7 @@ def test_no_grid_is_below_the_bound(case: str, step: float) -> None:
 def test_a_reading_is_the_measure_and_nowhere_more(output: str, measure: str) -> None:
     """Rounding, and for peaks what lies between samples: (n pi / 720)^2 / 2 of each order n."""
     wish = Objective(output, measure)  # type: ignore[arg-type]
-    term = Term(wish, Rows(side_by_side(TYPE_II, [0.0] * 3)).signals(wish))
+    term = PhaseObjective(wish, PhasedRows(side_by_side(TYPE_II, [0.0] * 3)).signals(wish))
     phases = np.random.default_rng(4).uniform(0, 2 * pi, (40, 3))
     values, read, _ = largest_reading(term, term.signals.total(phases))
     readings = np.einsum("bcn,kcn->bkn", read, term.signals.amplitudes[0])

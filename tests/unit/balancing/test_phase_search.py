@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.balancing.multi_row import Rows
+from equipoise.balancing.multi_row import PhasedRows
 from equipoise.balancing.patterns import (
     PATTERNS,
     Pattern,
@@ -98,7 +98,7 @@ def test_arranged_keeps_an_offset_and_takes_a_pattern() -> None:
 def test_lever_times_force_is_the_roll_moment(name: str) -> None:
     """Order by order, on a machine."""
     pattern, spacing = PATTERNS[name], 0.3
-    rows = Rows(arranged(MACHINE, name, spacing))
+    rows = PhasedRows(arranged(MACHINE, name, spacing))
     phases = np.array(pattern.phases)
     roll = np.abs(rows.signals(Objective("roll_moment")).total(phases)[0, 0])
     force = np.abs(rows.signals(Objective("shaking_force.y")).amplitudes[0, 0, 0])
@@ -350,7 +350,7 @@ def test_a_long_cycle_of_few_orders_is_computed_from_these() -> None:
     wheel = replace(machine.links["crank"], points={"L": (0.0, 0.0)}, center_of_mass=(0.01, 0.0))
     turned = eq.Gear("crank", "wheel", teeth=(61, 60))
     long = replace(machine, links={**machine.links, "wheel": wheel}, gears=(turned,))
-    signals = Rows(long).signals(FORCE)
+    signals = PhasedRows(long).signals(FORCE)
     assert signals.turns == 60
     whole = signals.amplitudes.shape[-1]
     assert whole > 1000

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.balancing.multi_row import Rows
+from equipoise.balancing.multi_row import PhasedRows
 from equipoise.balancing.objectives import signals_of
 from equipoise.balancing.problem import Problem
 from equipoise.balancing.told import freedoms
@@ -128,7 +128,7 @@ def test_rows_add_their_own_rocking() -> None:
     for name in ("roll_moment", "yaw_moment"):
         wanted = analysis.summary[f"rows.{name}"].rms
         assert Problem.value_of(machine, Objective(name)) == pytest.approx(wanted, rel=1e-9)
-        by_orders = Rows(machine).signals(Objective(name)).total(np.array([0.0, 0.7]))[0, 0]
+        by_orders = PhasedRows(machine).signals(Objective(name)).total(np.array([0.0, 0.7]))[0, 0]
         square = abs(by_orders[0]) ** 2 + np.sum(np.abs(by_orders[1:]) ** 2) / 2
         assert np.sqrt(square) == pytest.approx(wanted, rel=1e-9)
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from scipy import sparse
 
-from equipoise.balancing.branch_and_bound import Best, Square, minimise
+from equipoise.balancing.branch_and_bound import ProvedSolution, Square, minimise
 from equipoise.balancing.program import Affine, ConeRows, NoSolutionError, Program
 
 CLOSE = 1e-8
@@ -239,7 +239,7 @@ def size_of(program: Program, columns: list[int], factors: list[float], constant
     return size
 
 
-def proved(found: Best, gap: float = 1e-8) -> bool:
+def proved(found: ProvedSolution, gap: float = 1e-8) -> bool:
     return found.bound <= found.value and found.value - found.bound < gap
 
 

@@ -24,7 +24,7 @@ from equipoise.codegen.emit import emit
 from equipoise.codegen.figures import Gathered
 from equipoise.codegen.polynomials import without_calls
 from equipoise.codegen.source import TermSource, on_arrays, pick_from
-from equipoise.codegen.terms import BOTH, Graph, Pair, angle_of, reached, rotation
+from equipoise.codegen.terms import BOTH, Graph, VectorTerm, angle_of, reached, rotation
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.parts.machine import Machine
 from support.batches import by_numpy, every_dyad, wanted_of
@@ -94,7 +94,7 @@ def test_angles_and_rotations_without_calls() -> None:
     """The polynomials are exact as far as a link may be from where that of the base is."""
     rng, graph = np.random.default_rng(1), Graph()
     x, y, angle = (graph.argument(name, BOTH) for name in ("x", "y", "angle"))
-    outputs = without_calls([angle_of(Pair(x, y)), *parts_of(rotation(angle))])
+    outputs = without_calls([angle_of(VectorTerm(x, y)), *parts_of(rotation(angle))])
     assert not {"angle", "cos", "sin"} & {term.op for term in reached(outputs)}
     near, any_angle = rng.uniform(-2 * pi / 3, 2 * pi / 3, 5000), rng.uniform(-100, 100, 5000)
     given = {"x": np.cos(near), "y": np.sin(near), "angle": any_angle}
@@ -104,7 +104,7 @@ def test_angles_and_rotations_without_calls() -> None:
     assert np.max(np.abs(turned[0] + 1j * turned[1] - np.exp(1j * any_angle))) < 3e-14
 
 
-def parts_of(vector: Pair) -> tuple[Any, Any]:
+def parts_of(vector: VectorTerm) -> tuple[Any, Any]:
     return vector.real, vector.imag
 
 

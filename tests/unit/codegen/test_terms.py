@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from equipoise.codegen import terms
 from equipoise.codegen.emission import PYTHON, Lines, boundary
 from equipoise.codegen.source import on_arrays
-from equipoise.codegen.terms import ANGLE, BOTH, DESIGN, Graph, Pair, Term
+from equipoise.codegen.terms import ANGLE, BOTH, DESIGN, Graph, Term, VectorTerm
 
 NAMES = ("a", "b", "c")
 
@@ -38,9 +38,9 @@ def test_what_is_nothing_falls_away() -> None:
     a, b, _ = arguments()
     assert a + 0 is a and a - 0.0 is a and 1 * a is a and -1.0 * a is -a
     assert terms.negative(-a) is a
-    assert 0j * Pair(a, b) != 0 and (0.0 * a, a - a) == (0.0, 0.0)
+    assert 0j * VectorTerm(a, b) != 0 and (0.0 * a, a - a) == (0.0, 0.0)
     assert np.float64(1.0) * a is a
-    vector = (1 + 0j) * Pair(a, b)
+    vector = (1 + 0j) * VectorTerm(a, b)
     assert vector.real is a and vector.imag is b
 
 
@@ -99,7 +99,7 @@ def test_random_programs_give_the_same_numbers(
 
 def test_vectors_are_complex_numbers() -> None:
     a, b, c = arguments()
-    z, w = Pair(a, b), Pair(c, 1.0)
+    z, w = VectorTerm(a, b), VectorTerm(c, 1.0)
     results = [z * w, z + w, z - 2j, 1j * z, z / c, z / w, 1 / w, -z, z.conjugate() * w, abs(z) * w]
     flat = [part for one in results for part in (one.real, one.imag)]
     x, y, u = 0.3, -1.2, 0.7

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.balancing.multi_row import Rows
+from equipoise.balancing.multi_row import PhasedRows
 from equipoise.errors import UsageError
 from equipoise.figures import analysis as of_joints
 from equipoise.figures import analysis as view
@@ -179,7 +179,7 @@ def test_rows_together() -> None:
         ("shaking_moment", mine["shaking_moment"]),
         ("drive_torque", mine["drive_torque"]),
     ):
-        read = Rows(machine).signals(Objective(output))
+        read = PhasedRows(machine).signals(Objective(output))
         expected = Periodic(read.total(phases)[0, 0], read.turns).samples(360)
         np.testing.assert_allclose(values, expected, atol=1e-9 * np.max(np.abs(expected)))
     found = places(forces.polar(analysis).panels[0])

@@ -16,7 +16,7 @@ from equipoise.exposure.weighting import NOMINAL, Weighted
 from equipoise.figures import measured, plot, render
 from equipoise.figures import measured as of_decay
 from equipoise.figures.style import look_of
-from equipoise.figures.view import Scale, ends_of, ticks_of
+from equipoise.figures.view import AxisScale, ends_of, ticks_of
 from equipoise.measured.decay import Decay, identify_decay
 from equipoise.measured.record import simulate_decay
 from equipoise.results.charts import RPM, Axis, Chart, Curve, Panel
@@ -151,7 +151,7 @@ def test_the_record_and_the_line_of_half_swings() -> None:
     ],
 )
 def test_numbers_on_axes(axis: Axis, values: list[float], wanted: tuple[str, str]) -> None:
-    scale = Scale(axis, *ends_of(axis, [values]), 0.0, 300.0)
+    scale = AxisScale(axis, *ends_of(axis, [values]), 0.0, 300.0)
     ticks = ticks_of(scale)
     assert len(ticks) >= 3
     places = [float(scale.of(place)) for place, _ in ticks]

@@ -12,7 +12,7 @@ import pytest
 import equipoise as eq
 from equipoise.cli import run
 from equipoise.figures.planting import charts as planting_charts
-from equipoise.figures.sheet import Labels, Sheet, Text, spread
+from equipoise.figures.sheet import CanvasText, Labels, Sheet, spread
 from equipoise.figures.vector import svg_of
 from equipoise.i18n import speaking
 from equipoise.planting.summary import plant
@@ -109,7 +109,7 @@ def test_texts_without_room() -> None:
     sheet = Sheet(72.0, 72.0)
     labels = Labels(sheet, (0.0, 0.0, 72.0, 72.0))
     labels.reserve(36.0, 36.0, half=100)
-    assert not labels.put(36.0, 36.0, Text("no room", "#000000", optional=True))
+    assert not labels.put(36.0, 36.0, CanvasText("no room", "#000000", optional=True))
     assert not sheet.words
-    assert labels.put(36.0, 36.0, Text("all the same", "#000000"))
+    assert labels.put(36.0, 36.0, CanvasText("all the same", "#000000"))
     assert [words.text for words in sheet.words] == ["all the same"]

@@ -13,7 +13,7 @@ from scipy.interpolate import RectBivariateSpline
 from equipoise.figures import designs, render, studies
 from equipoise.figures.contours import finer, levels_of
 from equipoise.figures.layout import lay_out
-from equipoise.figures.sheet import Stroke
+from equipoise.figures.sheet import CanvasStroke
 from equipoise.figures.style import INK
 from equipoise.mechanism.parts.objectives import Objective
 from equipoise.results.charts import Chart
@@ -194,7 +194,7 @@ def test_what_to_tighten_first_stands_at_the_top_and_shares_are_of_each() -> Non
 def _lines(chart: Chart, width: float) -> list[np.ndarray]:
     """Lines of ink of some width that a chart draws."""
     items = lay_out(chart).items
-    strokes = (one for one in items if isinstance(one, Stroke))
+    strokes = (one for one in items if isinstance(one, CanvasStroke))
     return [line for s in strokes if (s.color, s.width) == (INK, width) for line in s.lines]
 
 

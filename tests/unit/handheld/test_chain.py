@@ -12,7 +12,7 @@ import pytest
 from equipoise.handheld.chain import (
     Chain,
     CondensedStiffness,
-    Pair,
+    NodePair,
     carry,
     count,
     log_determinant,
@@ -55,7 +55,7 @@ class Subject:
             for length, e, g, m, r in self.sections
         ]
         stations = [
-            Pair(*(a + b * s + c * (s * s) for a, b, c in node)) for node in self.polynomials
+            NodePair(*(a + b * s + c * (s * s) for a, b, c in node)) for node in self.polynomials
         ]
         return Chain(segments, stations)
 
@@ -128,7 +128,7 @@ def test_solution(subject: Subject, place: complex) -> None:
     s = place * subject.frequency
     loads = loads_of(1)
     loads[2] = 0
-    pairs = [None if k == 2 else Pair(*row) for k, row in enumerate(loads)]
+    pairs = [None if k == 2 else NodePair(*row) for k, row in enumerate(loads)]
     found = solve(carry(subject.chain(np.array(s))), pairs)
     with mpmath.workdps(40):
         q = mpmath.lu_solve(subject.dense(s), mpmath.matrix(loads.ravel().tolist()))
@@ -151,9 +151,9 @@ def test_loads_balance_at_the_right_end(subject: Subject) -> None:
     """Nothing is right of it, so no force is there."""
     found = solve(
         carry(subject.chain(np.array(0.7j * subject.frequency))),
-        [Pair(*row) for row in loads_of(2)],
+        [NodePair(*row) for row in loads_of(2)],
     )
-    assert found.force[-1] == Pair(0, 0)
+    assert found.force[-1] == NodePair(0, 0)
 
 
 @subjects
@@ -200,7 +200,7 @@ def test_count_is_that_of_negative_eigenvalues(subject: Subject) -> None:
 def _real(chain: Chain) -> Chain:
     """As `count` wants it."""
     segments = [type(one)(*(np.real(part) for part in one)) for one in chain.segments]
-    return Chain(segments, [Pair(*(np.real(part) for part in one)) for one in chain.stations])
+    return Chain(segments, [NodePair(*(np.real(part) for part in one)) for one in chain.stations])
 
 
 @subjects
@@ -234,9 +234,9 @@ def test_a_segment_of_no_length_changes_nothing() -> None:
     s = np.array(0.8j * subject.frequency)
     chain = subject.chain(s)
     nothing = shear_transfer(0.0, 1e-3, 1e-5, s * s, 1e-3 * s * s)
-    free = Pair(np.array(0.0), np.array(0.0))
+    free = NodePair(np.array(0.0), np.array(0.0))
     longer = Chain([chain.segments[0], nothing, *chain.segments[1:]], _with(chain.stations, free))
-    loads: list[Any] = [Pair(*row) for row in loads_of(4)]
+    loads: list[Any] = [NodePair(*row) for row in loads_of(4)]
     wanted, found = solve(carry(chain), loads), solve(carry(longer), _with(loads, None))
     for k in range(NODES):
         one, other = found.motion[k + (k > 1)], wanted.motion[k]
@@ -256,7 +256,7 @@ def _count(chain: Chain) -> int:
 def test_arrays_are_each_number_by_itself() -> None:
     subject = Subject(1, "timoshenko")
     s = subject.frequency * np.array([[0.2j, 0.5j - 0.1, 0.9j], [0.3j, -0.4, 0.8j]])
-    loads = [Pair(*row) for row in loads_of(5)]
+    loads = [NodePair(*row) for row in loads_of(5)]
     whole = solve(carry(subject.chain(s)), loads)
     for at in np.ndindex(2, 3):
         one = solve(carry(subject.chain(s[at])), loads)

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from equipoise.errors import ModelError, ResponseError, UsageError
-from equipoise.handheld.chain import Pair, States
+from equipoise.handheld.chain import NodePair, States
 from equipoise.handheld.frequencies import natural_frequencies
 from equipoise.handheld.model import Absorber, Excitation, Hand, Harness, Station, Tool
 from equipoise.handheld.response import ToolResponse, _check_finite, respond_tool
@@ -322,7 +322,7 @@ def test_on_a_resonance_without_damping() -> None:
     tool = bare(Station("a", 0.0, stiffness=both(400.0)))
     tool = shaken(tool, Excitation("push", "a", force=1.0, ratio=2.0))
     found = respond_tool(tool, np.array([100.0, 150.0]))
-    motion = [Pair(pair.across.copy(), pair.turning) for pair in found.field.states.motion]
+    motion = [NodePair(pair.across.copy(), pair.turning) for pair in found.field.states.motion]
     motion[0].across[0, 1] = np.inf
     field = replace(found.field, states=States(motion, found.field.states.force))
     with pytest.raises(ResponseError, match=r"at 1432\.39 rpm order 2 meets a resonance without"):

@@ -18,6 +18,7 @@ from equipoise.keys import (
     Direction,
     Frozen,
     Key,
+    KeyTable,
     Kind,
     Listing,
     Named,
@@ -26,7 +27,6 @@ from equipoise.keys import (
     Planes,
     Point,
     Quantity,
-    Table,
     Tables,
     Whole,
     all_keys,
@@ -66,7 +66,7 @@ def words_of_keys() -> set[str]:
     found: set[str] = set()
 
     def look(kind: Kind, key: Key | None) -> None:
-        if isinstance(kind, Table):
+        if isinstance(kind, KeyTable):
             for one in all_keys(kind.type).values():
                 look(one.kind, one)
         elif isinstance(kind, Tables | Named | Listing | OneOr | Planes):
@@ -75,7 +75,7 @@ def words_of_keys() -> set[str]:
             found.update([] if key.word else [plain_word(key)])
 
     for document in ("linkage", "tool"):
-        look(Table(document_of(document)), None)
+        look(KeyTable(document_of(document)), None)
     return (found | words_of_forms()) - {"schema"}
 
 

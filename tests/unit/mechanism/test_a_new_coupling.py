@@ -20,7 +20,7 @@ import pytest
 import equipoise as eq
 from equipoise.errors import MobilityError, ModelError
 from equipoise.i18n import Note
-from equipoise.keys import Listing, Quantity, Table, Tables, declared, key
+from equipoise.keys import KeyTable, Listing, Quantity, Tables, declared, key
 from equipoise.mechanism import Gear, Machine
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.checks import Bodies
@@ -103,7 +103,7 @@ class Rollers(Turning):
 class Rolled(Machine):
     """A machine that may have rollers."""
 
-    rollers: tuple[Rollers, ...] = key(Tables(Table(Rollers)), "rollers", default=())
+    rollers: tuple[Rollers, ...] = key(Tables(KeyTable(Rollers)), "rollers", default=())
 
 
 BASE = eq.load("geared-counterweight")

@@ -13,7 +13,7 @@ import pytest
 import equipoise as eq
 from equipoise.errors import ModelError
 from equipoise.i18n import Note
-from equipoise.keys import Table, Tables, Text, declared, key
+from equipoise.keys import KeyTable, Tables, TextKind, declared, key
 from equipoise.mechanism import Machine
 from equipoise.mechanism.checks import FRAME, Bodies, unknown_link
 from equipoise.mechanism.parts.element_kinds import Placed
@@ -45,9 +45,9 @@ class Magnet(ForceElement):
     }
     headings: ClassVar[Mapping[str, tuple[str, str]]] = {"attraction": ("least", "most")}
 
-    link: str = key(Text(of="link"), "the link that it draws", example="rocker")
-    point: str = key(Text(of="point", on="link"), "its point", example="C")
-    to: str = key(Text(of="point"), "the point of the frame that draws it", example="S")
+    link: str = key(TextKind(of="link"), "the link that it draws", example="rocker")
+    point: str = key(TextKind(of="point", on="link"), "its point", example="C")
+    to: str = key(TextKind(of="point"), "the point of the frame that draws it", example="S")
     attraction: float = key("force", "at the distance `reach`", example="5 N", above=0)
     reach: float = key("length", "at which it has that", default=0.1, above=0)
 
@@ -104,7 +104,7 @@ def magnet_sign(one: Magnet, *_: Any) -> Iterator[BodyMark]:
 class Magnetic(Machine):
     """A machine that may have magnets."""
 
-    magnets: tuple[Magnet, ...] = key(Tables(Table(Magnet)), "magnets", default=())
+    magnets: tuple[Magnet, ...] = key(Tables(KeyTable(Magnet)), "magnets", default=())
 
 
 def magnetic(*magnets: Magnet) -> Magnetic:

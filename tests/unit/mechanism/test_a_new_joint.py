@@ -17,7 +17,7 @@ import pytest
 import equipoise as eq
 from equipoise.errors import ModelError
 from equipoise.i18n import Note
-from equipoise.keys import Table, Tables, Text, declared, key, with_fields
+from equipoise.keys import KeyTable, Tables, TextKind, declared, key, with_fields
 from equipoise.mechanism import Machine
 from equipoise.mechanism.parts.element_kinds import Placed
 from equipoise.mechanism.parts.joint_kinds import JointKind, Rider
@@ -53,7 +53,7 @@ class StraightSlot(JointKind):
     }
     headings: ClassVar[Mapping[str, tuple[str, str]]] = {"travel": ("least", "most")}
 
-    through: str = key(Text(of="point", on="on"), "a point of its middle line", example="S")
+    through: str = key(TextKind(of="point", on="on"), "a point of its middle line", example="S")
     direction: float = key("angle", "of that, in the axes of the body", default=0.0)
     shift: float = key("length", "of the line to the left", default=0.0)
 
@@ -88,7 +88,7 @@ class Slotted(Machine):
     """A machine that may have straight slots."""
 
     straight_slots: tuple[StraightSlot, ...] = key(
-        Tables(Table(StraightSlot)), "straight slots", default=()
+        Tables(KeyTable(StraightSlot)), "straight slots", default=()
     )
 
 

@@ -12,7 +12,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import MobilityError, ModelError, RangeError
-from equipoise.mechanism.assembly.steps import Call
+from equipoise.mechanism.assembly.steps import KernelCall
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.parts.machine import FRAME
 from laws.transforms import with_axes
@@ -34,7 +34,7 @@ ANGLES = np.array([0.2, 1.3, 2.9, 4.4])
 def kernels_of(given: eq.Machine) -> list[str]:
     """Dyads, in order of solution."""
     dyads = {kernels.rrr, kernels.rrp, kernels.rpr, kernels.prp, kernels.rpp, kernels.in_ratio}
-    steps = [step for step in eq.mechanism.assemble(given).motion if isinstance(step, Call)]
+    steps = [step for step in eq.mechanism.assemble(given).motion if isinstance(step, KernelCall)]
     return [step.kernel.__name__ for step in steps if step.kernel in dyads]
 
 

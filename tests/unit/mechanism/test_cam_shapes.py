@@ -7,7 +7,13 @@ from math import pi
 import numpy as np
 import pytest
 
-from equipoise.mechanism.assembly.cam_shapes import Array, Shape, Sliding, Swinging, lowest
+from equipoise.mechanism.assembly.cam_shapes import (
+    Array,
+    CamShape,
+    Sliding,
+    SwingingFollower,
+    lowest,
+)
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.formulas.curves import NORMAL, joined, sine
 
@@ -29,7 +35,7 @@ def on_circle(place: Array, radius: float) -> None:
 def test_a_flat_follower_on_a_round_cam_moves_by_a_sine() -> None:
     """Its displacement is e (1 - cos): the cam is a circle about the eccentric centre."""
     law = cos_lift(2 * ECCENTRIC)
-    shape = Shape(TURN, Sliding(-1.0, -(RADIUS - ECCENTRIC), -1.0), law)
+    shape = CamShape(TURN, Sliding(-1.0, -(RADIUS - ECCENTRIC), -1.0), law)
     on_circle(shape.surface, RADIUS)
     np.testing.assert_allclose(shape.radius_of_curvature, RADIUS, rtol=1e-12)
     np.testing.assert_allclose(shape.pressure_angle, 0, atol=1e-15)
@@ -53,7 +59,7 @@ def rod_and_slide(offset: float, rod: float):  # type: ignore[no-untyped-def]
 def test_a_roller_on_a_round_cam_is_a_slider_crank(radius: float) -> None:
     offset = 0.004
     law = rod_and_slide(offset, RADIUS + radius)
-    shape = Shape(TURN, Sliding(1.0, 1j * offset), law, radius)
+    shape = CamShape(TURN, Sliding(1.0, 1j * offset), law, radius)
     on_circle(shape.pitch, RADIUS + radius)
     on_circle(shape.surface, RADIUS)
     on_circle(shape.beside(2 * radius), RADIUS + 2 * radius)
@@ -73,7 +79,7 @@ def test_a_swinging_roller_on_a_round_cam_is_a_four_bar(sense: float) -> None:
         u, w, a = kernels.rrr(e, 1j * e, -e, pivot, 0, 0, rod, arm, -sense)[3:6]
         return sense * np.angle(u), sense * w, sense * a
 
-    shape = Shape(TURN, Swinging(pivot, arm, sense), law, ROLLER)
+    shape = CamShape(TURN, SwingingFollower(pivot, arm, sense), law, ROLLER)
     on_circle(shape.pitch, rod)
     on_circle(shape.surface, RADIUS)
     np.testing.assert_allclose(shape.radius_of_curvature, RADIUS, rtol=1e-10)
@@ -101,7 +107,7 @@ def test_a_swinging_face_on_a_round_cam(sense: float, shift: float) -> None:
         value = np.angle(z) - sense * np.arccos(c)
         return sense * value, sense * rate.imag - lean1, sense * change.imag - lean2
 
-    shape = Shape(TURN, Swinging(pivot, shift + 0.02j, sense, 1.0 + 0j), law)
+    shape = CamShape(TURN, SwingingFollower(pivot, shift + 0.02j, sense, 1.0 + 0j), law)
     on_circle(shape.surface, RADIUS)
     np.testing.assert_allclose(shape.radius_of_curvature, RADIUS, rtol=1e-9)
     arm, normal = shape.contact[0] - pivot, shape.contact[1]
@@ -112,7 +118,7 @@ def test_a_swinging_face_on_a_round_cam(sense: float, shift: float) -> None:
 def test_pressure_angle_of_an_offset_roller() -> None:
     """tan = (y' - e) / (d + y), as textbooks have it."""
     law, offset, rest = NORMAL["cycloidal"]().stretched(2 * pi, 0.02).at, 0.005, 0.04
-    shape = Shape(TURN[:-1], Sliding(1j, rest * 1j + offset), law, ROLLER)
+    shape = CamShape(TURN[:-1], Sliding(1j, rest * 1j + offset), law, ROLLER)
     y, y1, _ = law(TURN[:-1])
     want = np.arctan2(y1 - offset, rest + y)
     np.testing.assert_allclose(shape.pressure_angle, want, atol=1e-14)
@@ -121,7 +127,7 @@ def test_pressure_angle_of_an_offset_roller() -> None:
 def test_radius_under_a_face_is_that_of_textbooks() -> None:
     """rho = r + y + y''."""
     law = NORMAL["4-5-6-7"]().stretched(2 * pi, 0.02).at
-    shape = Shape(TURN[:-1], Sliding(1.0, 0.01, 1.0), law)
+    shape = CamShape(TURN[:-1], Sliding(1.0, 0.01, 1.0), law)
     y, _, y2 = law(TURN[:-1])
     np.testing.assert_allclose(shape.radius_of_curvature, 0.01 + y + y2, atol=1e-15)
 
@@ -130,13 +136,13 @@ def test_the_surface_touches_the_follower_along_the_normal() -> None:
     """The surface's own tangent, by differences, is square to the normal."""
     law, step = NORMAL["modified sine"]().stretched(2 * pi, 0.4).at, 1e-5
     for path, radius in (
-        (Swinging(0.08, -0.05 + 0.02j, -1.0), 0.004),
-        (Swinging(0.08, -0.05 + 0.05j, -1.0, np.exp(2j)), 0.0),
+        (SwingingFollower(0.08, -0.05 + 0.02j, -1.0), 0.004),
+        (SwingingFollower(0.08, -0.05 + 0.05j, -1.0, np.exp(2j)), 0.0),
         (Sliding(1j, 0.04j + 0.003), 0.01),
     ):
         at = np.linspace(0.1, 6, 50)
-        here = Shape(at, path, law, radius)
-        ends = [Shape(at + way, path, law, radius).surface for way in (step, -step)]
+        here = CamShape(at, path, law, radius)
+        ends = [CamShape(at + way, path, law, radius).surface for way in (step, -step)]
         tangent = (ends[0] - ends[1]) * np.exp(1j * at)
         slant = kernels.dot(tangent, here.contact[1]) / abs(tangent)
         np.testing.assert_allclose(slant, 0, atol=1e-8)
@@ -147,7 +153,7 @@ def test_the_sharpest_place_is_closed_in_on() -> None:
     there = NORMAL["cycloidal"]().stretched(1.2, 0.02)
     back = NORMAL["cycloidal"]().stretched(2 * pi - 1.2, -0.02).lifted(0.02)
     law, knots = joined([there, back]).at, np.array([0.0, 1.2])
-    shape = Shape(knots, Sliding(1.0, 0.1, 1.0), law)
+    shape = CamShape(knots, Sliding(1.0, 0.1, 1.0), law)
     radius, angle = lowest(shape, lambda one: one.radius_of_curvature, knots)
     fine = np.linspace(0, 2 * pi, 200001)[:-1]
     assert radius == pytest.approx(float(np.min(0.1 + law(fine)[0] + law(fine)[2])), abs=1e-9)

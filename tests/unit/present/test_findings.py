@@ -11,7 +11,7 @@ import pytest
 import equipoise as eq
 from equipoise.errors import EquipoiseError
 from equipoise.present.findings import Findings, ToolFindings, find
-from equipoise.present.pictures import SECTIONS, Picture, each, pictures
+from equipoise.present.pictures import SECTIONS, LazyPicture, each, pictures
 from surface.running import example_text
 
 
@@ -61,7 +61,7 @@ def test_what_cannot_be_found_is_told_and_the_rest_is_there(tmp_path: Path) -> N
 
 
 @cache
-def pictured(name: str) -> list[Picture]:
+def pictured(name: str) -> list[LazyPicture]:
     return pictures(of(name))
 
 

@@ -33,7 +33,7 @@ from equipoise.present.pages import ReportDocument, page, pdf, printed_grid
 from equipoise.present.tool_summary import tool_tiles
 from equipoise.quantities import showing
 from equipoise.results.analysis import Analysis
-from equipoise.results.blocks import Change, Column, Section, Span, Table, Text, Value
+from equipoise.results.blocks import Column, RelativeChange, ReportSection, Span, Table, Text, Value
 from equipoise.schema.models import load_tool
 from support.chosen import few
 from support.found import found
@@ -80,7 +80,7 @@ def result(name: str) -> Any:
 
 def tables(blocks: Any) -> list[Table]:
     """All tables, those of sections too."""
-    parts = (tables(one.blocks) if isinstance(one, Section) else [one] for one in blocks)
+    parts = (tables(one.blocks) if isinstance(one, ReportSection) else [one] for one in blocks)
     return [one for part in parts for one in part if isinstance(one, Table)]
 
 
@@ -128,7 +128,11 @@ def test_a_notebook_shows_little(name: str) -> None:
 def test_every_result_can_be_set_by_typst(language: str) -> None:
     with speaking(language):
         sections = tuple(
-            Section(f"s{k}", name, tuple(b for b in found().blocks() if not isinstance(b, Section)))
+            ReportSection(
+                f"s{k}",
+                name,
+                tuple(b for b in found().blocks() if not isinstance(b, ReportSection)),
+            )
             for k, name in enumerate(RESULTS)
             for found in [lambda name=name: result(name)]
         )
@@ -251,7 +255,7 @@ def test_units_and_digits() -> None:
 
 def test_what_breaks_a_limit_stands_out(monkeypatch: pytest.MonkeyPatch) -> None:
     """By a word, or by colour where there is colour; numbers stay below each other."""
-    table = table_of(Value(7.0, emphasis="broken"), Value(1.0), Change(1.0, 2.0, "worse"))
+    table = table_of(Value(7.0, emphasis="broken"), Value(1.0), RelativeChange(1.0, 2.0, "worse"))
     sentence = Text("Nobody may be exposed to this.", "broken")
     assert shown([table, sentence]).splitlines()[-5:] == [
         "row 0      7000, over the limit",
@@ -262,7 +266,7 @@ def test_what_breaks_a_limit_stands_out(monkeypatch: pytest.MonkeyPatch) -> None
     ]
     assert [row[1].emphasis for row in grid(table).rows] == ["broken", None, "worse"]
     html = page(
-        ReportDocument("en", "", "", "", (), (), "", (Section("s", "", (table, sentence)),))
+        ReportDocument("en", "", "", "", (), (), "", (ReportSection("s", "", (table, sentence)),))
     )
     assert (
         re.search(r'<td class="strong"[^>]*>\+100\.0', html) and '<p class="strong">Nobody' in html

@@ -27,7 +27,7 @@ from equipoise.quantities.numbers import in_unit
 from equipoise.quantities.units import FACTORS
 from equipoise.results.analysis import ANGLES, order_values
 from equipoise.results.analysis_blocks import display_of_totals
-from equipoise.results.blocks import Block, Many, Section, SvgPicture, Table, Value
+from equipoise.results.blocks import Block, Many, ReportSection, SvgPicture, Table, Value
 from equipoise.signals import highest_at
 from equipoise.vibration.resonance import nearest_loud
 from equipoise.web.edits import solved
@@ -129,10 +129,10 @@ def quantities(text: str) -> Iterator[tuple[float, float]]:
         yield float(digits.replace("−", "-")) / factor, 0.501 * 10**-after / factor
 
 
-def shown_blocks(blocks: Iterable[Block | Section]) -> Iterator[Block | Section]:
+def shown_blocks(blocks: Iterable[Block | ReportSection]) -> Iterator[Block | ReportSection]:
     for block in blocks:
         yield block
-        if isinstance(block, Section):
+        if isinstance(block, ReportSection):
             yield from shown_blocks(block.blocks)
 
 
@@ -151,7 +151,7 @@ def test_every_number_of_cards_and_titles_is_in_the_json(name: str) -> None:
     texts = [f"{one.value} {one.unit}, {one.note}" for one in made.tiles]
     texts += [f"{one.after} {one.unit}" for one in made.tiles if one.after]
     blocks = [*shown_blocks(made.sections)]
-    texts += [one.seen for one in blocks if isinstance(one, Section | SvgPicture)]
+    texts += [one.seen for one in blocks if isinstance(one, ReportSection | SvgPicture)]
     missing = {
         text
         for text in texts

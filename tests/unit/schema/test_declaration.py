@@ -13,7 +13,7 @@ from jsonschema import Draft202012Validator
 from equipoise.errors import ModelError
 from equipoise.handheld import design_plan, shaft, station
 from equipoise.handheld import model as tool
-from equipoise.keys import Frozen, Number, Table, Tables, Text, declared, key, wrong_values
+from equipoise.keys import Frozen, KeyTable, Number, Tables, TextKind, declared, key, wrong_values
 from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.parts import (
     balance,
@@ -93,10 +93,10 @@ DOCUMENTED: dict[str, type[Frozen]] = {
 class Brake(Frozen):
     """What stops the crank; known to this test alone."""
 
-    link: str = key(Text(), "the link that it stops", example="crank")
+    link: str = key(TextKind(), "the link that it stops", example="crank")
     torque: float = key("torque", "that it exerts", example="2 N m", above=0)
     drag: float = key("torque", "of it while it is open", default=0.0, at_least=0)
-    lining: str = key(Text(("organic", "sintered")), "of its pads", default="organic")
+    lining: str = key(TextKind(("organic", "sintered")), "of its pads", default="organic")
     share: float = key(Number(), "of the torque that it keeps when hot", default=1.0, below=1.5)
 
 
@@ -179,7 +179,7 @@ class LossySpring(Spring):
 class LossyMachine(Machine):
     """Machines with such springs."""
 
-    springs: tuple[LossySpring, ...] = key(Tables(Table(LossySpring)), "springs", default=())
+    springs: tuple[LossySpring, ...] = key(Tables(KeyTable(LossySpring)), "springs", default=())
 
 
 SPRING = '\n[[springs]]\nlink = "rocker"\npoint = "C"\nto = "A"\nstiffness = "2 kN/m"\n'

@@ -24,6 +24,7 @@ from equipoise.keys import (
     Flag,
     Frozen,
     Key,
+    KeyTable,
     Kind,
     Listing,
     Named,
@@ -32,9 +33,8 @@ from equipoise.keys import (
     Planes,
     Point,
     Quantity,
-    Table,
     Tables,
-    Text,
+    TextKind,
     Whole,
     Wording,
     all_keys,
@@ -66,7 +66,7 @@ def value_of(kind: Kind, one: Key) -> st.SearchStrategy[Any] | None:
         return st.sampled_from(kind.names) if kind.names else st.integers(kind.least or 0, 500)
     if type(kind) is Number:
         return st.floats(LEAST if one.at_least is None else one.at_least, 10.0).map(float)
-    if isinstance(kind, Text) and kind.names:
+    if isinstance(kind, TextKind) and kind.names:
         return st.sampled_from(kind.names)
     if isinstance(kind, Wording):
         text = st.text("aé語글", min_size=1)
@@ -101,7 +101,7 @@ def tables_of(of: type[Frozen], content: dict[str, Any]) -> Tables_:
 
 
 def _within(kind: Kind, value: Any) -> Tables_:
-    if isinstance(kind, Table) and isinstance(value, dict):
+    if isinstance(kind, KeyTable) and isinstance(value, dict):
         yield from tables_of(kind.type, value)
     elif isinstance(kind, Tables):
         for item in value:

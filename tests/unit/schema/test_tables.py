@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from equipoise import move
 from equipoise.errors import EquipoiseError, ModelError
 from equipoise.handheld.model import Impedance
-from equipoise.keys import ROW, Text, declared, inside
+from equipoise.keys import ROW, TextKind, declared, inside
 from equipoise.keys.csv_tables import CsvTable
 from equipoise.mechanism.parts.field import Soil, SoilTable
 from equipoise.mechanism.parts.force_elements import Motor, MotorTable
@@ -375,7 +375,7 @@ def test_a_table_that_a_class_declares_is_read_written_and_refused() -> None:
 
         depth: tuple[float, ...] = inside(ROW)
         x: tuple[float, ...] = inside(ROW)
-        file: str = inside(Text(), default="", compare=False)
+        file: str = inside(TextKind(), default="", compare=False)
 
     try:
         text = "depth [mm],x [N m]\n20,1\n10,2\n"

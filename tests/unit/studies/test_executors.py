@@ -230,7 +230,7 @@ def test_workers_with_other_versions_are_refused(
 
 
 def test_what_the_study_itself_raises_passes_through(address: str, tmp_path: Path) -> None:
-    task = processes.Task(studies.refuse, b"")
+    task = processes.ChunkTask(studies.refuse, b"")
     for pool in (Threads(task, 1), Cluster(task, address)):
         with closing(pool), pytest.raises(UsageError, match="no study at 0") as caught:
             list(computed(pool, CHUNKS[:1]))

@@ -11,7 +11,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import EquipoiseError
-from equipoise.studies.objective_map import Landscape, SingleValues, Variants, landscape
+from equipoise.studies.objective_map import Landscape, MachineVariants, SingleValues, landscape
 from support.chosen import EXHAUSTIVE
 from surface.running import example_text
 
@@ -135,7 +135,7 @@ def test_many_machines_at_once_are_those_one_by_one(name: str, output: str, meas
     x, y = np.linspace(-0.2, 0.6, 31), np.linspace(0.0, 6.0, 11)
     found = landscape(TEMPLATE(name), dict(zip(paths, (x, y), strict=True)), of, given)
     points = np.stack([one.ravel() for one in np.meshgrid(x, y)], axis=1)
-    single = SingleValues(Variants(TEMPLATE(name), given), of, paths)
+    single = SingleValues(MachineVariants(TEMPLATE(name), given), of, paths)
     some = slice(3, None, 17)
     np.testing.assert_allclose(found.values.ravel()[some], single(points[some]), rtol=1e-9)
     assert np.array_equal(np.isnan(found.values), np.broadcast_to(x < 0, found.values.shape))

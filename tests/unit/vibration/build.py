@@ -10,7 +10,7 @@ import numpy as np
 
 import equipoise as eq
 from equipoise.mechanism.parts.support import Gauge, Mount, Support
-from equipoise.vibration.body import Body
+from equipoise.vibration.body import SupportBody
 
 Array = np.ndarray[Any, Any]
 
@@ -118,9 +118,9 @@ def block(**changes: Any) -> eq.Machine:
     return weightless(eq.load("yamashita-1")).with_support(**{**values, **changes})
 
 
-def body_of(**changes: Any) -> Body:
+def body_of(**changes: Any) -> SupportBody:
     """Make a body of some values of its support; weight 10 kg."""
-    return Body(block(**changes))
+    return SupportBody(block(**changes))
 
 
 def close(found: Any, wanted: Any, tolerance: float) -> None:

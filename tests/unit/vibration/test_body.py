@@ -13,9 +13,9 @@ import equipoise as eq
 from equipoise.errors import ModelError
 from equipoise.mechanism.parts.support import unit_vector
 from equipoise.vibration.body import (
-    Body,
     MountContact,
     Reading,
+    SupportBody,
     at_rest,
     contacts_of,
     moved,
@@ -344,7 +344,7 @@ def test_without_gravity_nothing_needs_to_be_carried() -> None:
 
 def test_no_support() -> None:
     with pytest.raises(ModelError) as caught:
-        _ = Body(eq.load("yamashita-1")).support
+        _ = SupportBody(eq.load("yamashita-1")).support
     assert str(caught.value) == (
         "support: the machine stands on solid ground; add a table [support] with its mass, mounts "
         "and gauges"

@@ -18,7 +18,7 @@ from equipoise.mechanism.parts.support import Row
 from equipoise.signals import Periodic
 from equipoise.vibration.eigen import find_modes
 from equipoise.vibration.forced import respond
-from equipoise.vibration.linear import Excitation, Linear
+from equipoise.vibration.linear import Linear, SupportExcitation
 from equipoise.vibration.resonance import AMPLIFIED, Resonance, resonances
 from equipoise.vibration.response import Mode, Model
 from equipoise.vibration.sweep import sweep_speed
@@ -512,12 +512,12 @@ def test_resonances_take_one_order_each(monkeypatch: pytest.MonkeyPatch) -> None
         size = np.max(np.abs(whole))
         np.testing.assert_allclose(wrenches[:, k], whole[:, place], atol=1e-9 * size)
     speeds_of_wrenches: list[float] = []
-    at = Excitation.at
+    at = SupportExcitation.at
 
-    def counted(self: Excitation, speed: float) -> Periodic:
+    def counted(self: SupportExcitation, speed: float) -> Periodic:
         speeds_of_wrenches.append(speed)
         return at(self, speed)
 
-    monkeypatch.setattr(Excitation, "at", counted)
+    monkeypatch.setattr(SupportExcitation, "at", counted)
     assert len(resonances(linear, 2.0, 40.0)) > 3
     assert len(speeds_of_wrenches) == 1

@@ -10,9 +10,9 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import ModelError, ResponseError
-from equipoise.vibration.body import Body
+from equipoise.vibration.body import SupportBody
 from equipoise.vibration.forced import respond
-from equipoise.vibration.linear import EXCITATION_MODELS, Excitation, ExcitationModel, Linear
+from equipoise.vibration.linear import EXCITATION_MODELS, ExcitationModel, Linear, SupportExcitation
 from unit.vibration.build import SPEED, Gauge, Mount, block, cart, close, rig, springs
 
 MASS, ECCENTRIC, RADIUS = 10.0, 0.2, 0.03
@@ -129,7 +129,7 @@ def test_springs_to_the_support_do_not_shake_it(step: ExcitationModel) -> None:
     )
     theta = np.linspace(0, 6, 9)
     found, wanted = (
-        Excitation(Body(given), step).samples(theta, 15.0)
+        SupportExcitation(SupportBody(given), step).samples(theta, 15.0)
         for given in (machine, machine.with_springs(()))
     )
     close(found, wanted, 1e-12)

@@ -30,7 +30,7 @@ from equipoise.web import session as session_module
 from equipoise.web.balanced import balanced
 from equipoise.web.design import Design
 from equipoise.web.incoming import LONGEST, Incoming
-from equipoise.web.lanes import MOMENT, Lanes, Work
+from equipoise.web.lanes import MOMENT, Lanes, PageWork
 from equipoise.web.openings import opened_example
 from equipoise.web.page import MOST_WAITING
 from equipoise.web.server import FULL, HOST, MOST_PAGES, ORIGIN, POLICY, TOKEN, served
@@ -341,7 +341,7 @@ def test_a_page_does_not_wait_for_what_others_open(
 
 
 def test_a_page_whose_answers_take_long_is_heavy() -> None:
-    work = Work()
+    work = PageWork()
     assert work.timed(lambda: 3) == 3
     assert work.spent < MOMENT
     end = time.thread_time() + 1.5 * MOMENT

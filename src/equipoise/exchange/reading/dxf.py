@@ -12,7 +12,7 @@ from typing import Any
 
 from equipoise.errors import EquipoiseError, ModelError, needed
 from equipoise.exchange.reading.found import Read
-from equipoise.exchange.reading.strokes import WORDS, Drawing, Marks, Ring, Stroke, skeleton
+from equipoise.exchange.reading.strokes import WORDS, Drawing, DrawnLine, Marks, Ring, skeleton
 from equipoise.i18n import Note
 from equipoise.limits import check_memory
 
@@ -138,7 +138,7 @@ def _add(drawing: Drawing, entity: Any, scale: float) -> None:
         if word and word.isprintable():
             drawing.words.append((_place(x, y, scale), word[:100]))
     elif kind == "HATCH":
-        drawing.areas += [Stroke(tuple(_corners(path, scale)), names, True)
+        drawing.areas += [DrawnLine(tuple(_corners(path, scale)), names, True)
                           for path in from_hatch(entity) if len(path)]  # fmt: skip
     elif kind in CURVES:
         if kind == "SPLINE":
@@ -149,7 +149,7 @@ def _add(drawing: Drawing, entity: Any, scale: float) -> None:
         _check_flat(path, entity.dxf.layer)
         places = [*_corners(path, scale)]
         closed = len(places) > 2 and abs(places[-1] - places[0]) < 1e-12 * scale
-        drawing.strokes.append(Stroke(tuple(places[:-1] if closed else places), names, closed))
+        drawing.strokes.append(DrawnLine(tuple(places[:-1] if closed else places), names, closed))
 
 
 def _check_size(spline: Any) -> None:

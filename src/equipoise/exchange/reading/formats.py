@@ -14,7 +14,7 @@ from equipoise.errors import ModelError, UsageError, at_place
 from equipoise.exchange.reading import dxf, linkage2, mjcf, pmks, svg, urdf
 from equipoise.exchange.reading.found import Imported, Read, finished
 from equipoise.exchange.reading.markup import tree_of
-from equipoise.exchange.reading.spatial import Told as Bodies
+from equipoise.exchange.reading.spatial import SpatialOptions as Bodies
 from equipoise.exchange.reading.strokes import Marks
 from equipoise.i18n import Note
 from equipoise.quantities import in_si
@@ -32,7 +32,7 @@ MODELS = ("frame", "pin")
 
 
 @dataclass(frozen=True)
-class Told:
+class ImportOptions:
     """What is told beside the file.  unit : m in a unit of it; `None` as it tells itself."""
 
     marks: Marks
@@ -41,7 +41,7 @@ class Told:
 
 
 @dataclass(frozen=True)
-class Format:
+class ImportFormat:
     """One kind of file.
 
     holds : what is read of it.  endings : of its files.  root : of its XML, where it is XML.
@@ -53,31 +53,67 @@ class Format:
     title: str
     holds: str
     endings: tuple[str, ...]
-    read: Callable[[Any, Told], Read]
+    read: Callable[[Any, ImportOptions], Read]
     root: str = ""
     takes: tuple[str, ...] = ("unit",)
 
 
-FORMATS: Mapping[str, Format] = {
+FORMATS: Mapping[str, ImportFormat] = {
     one.name: one
     for one in (
-        Format("dxf", "DXF drawing", "lines, polylines, circles, hatchings, blocks", (".dxf",),
-               lambda data, told: dxf.read(data, told.marks, told.unit), takes=DRAWN),
-        Format("svg", "SVG drawing", "lines, paths, polygons, circles, groups", (".svg",),
-               lambda root, told: svg.read(root, told.marks, told.unit), "svg", takes=DRAWN),
-        Format("mjcf", "MuJoCo (MJCF)", "bodies, hinges, slides, connect, weld, gears, springs, "
-               "masses of bodies and shapes, the drive", (".xml", ".mjcf"),
-               lambda root, told: mjcf.read(root, told.bodies), "mujoco", MODELS),
-        Format("urdf", "URDF", "links, revolute, continuous, prismatic, planar and fixed joints, "
-               "mimic, masses", (".urdf",),
-               lambda root, told: urdf.read(root, told.bodies), "robot", MODELS),
-        Format("linkage2", "Linkage", "connectors, links, anchors, sliders, the input",
-               (".linkage2", ".linkage"), lambda root, told: linkage2.read(root, told.unit),
-               "linkage2"),
-        Format("pmks", "PMKS+", "joints, links, sliders on the frame, the input", (".pmks",),
-               lambda text, told: pmks.read(text, told.unit)),
+        ImportFormat(
+            "dxf",
+            "DXF drawing",
+            "lines, polylines, circles, hatchings, blocks",
+            (".dxf",),
+            lambda data, told: dxf.read(data, told.marks, told.unit),
+            takes=DRAWN,
+        ),
+        ImportFormat(
+            "svg",
+            "SVG drawing",
+            "lines, paths, polygons, circles, groups",
+            (".svg",),
+            lambda root, told: svg.read(root, told.marks, told.unit),
+            "svg",
+            takes=DRAWN,
+        ),
+        ImportFormat(
+            "mjcf",
+            "MuJoCo (MJCF)",
+            "bodies, hinges, slides, connect, weld, gears, springs, "
+            "masses of bodies and shapes, the drive",
+            (".xml", ".mjcf"),
+            lambda root, told: mjcf.read(root, told.bodies),
+            "mujoco",
+            MODELS,
+        ),
+        ImportFormat(
+            "urdf",
+            "URDF",
+            "links, revolute, continuous, prismatic, planar and fixed joints, mimic, masses",
+            (".urdf",),
+            lambda root, told: urdf.read(root, told.bodies),
+            "robot",
+            MODELS,
+        ),
+        ImportFormat(
+            "linkage2",
+            "Linkage",
+            "connectors, links, anchors, sliders, the input",
+            (".linkage2", ".linkage"),
+            lambda root, told: linkage2.read(root, told.unit),
+            "linkage2",
+        ),
+        ImportFormat(
+            "pmks",
+            "PMKS+",
+            "joints, links, sliders on the frame, the input",
+            (".pmks",),
+            lambda text, told: pmks.read(text, told.unit),
+        ),
     )
-}  # fmt: skip
+}
 """By name."""
 
 
@@ -129,7 +165,7 @@ def import_machine(
             )
         )
     bodies = Bodies(tuple(frame), tuple(pin))
-    told = Told(Marks(tuple(frame), tuple(guide), tuple(link), tolerance), bodies, unit)
+    told = ImportOptions(Marks(tuple(frame), tuple(guide), tuple(link), tolerance), bodies, unit)
     try:
         kind, content = _opened(path)
         _check(kind, told)
@@ -153,7 +189,7 @@ def _titled(read: Read, path: str | os.PathLike[str]) -> Read:
     return replace(read, outline=replace(read.outline, rest=rest))
 
 
-def _check(kind: Format, told: Told) -> None:
+def _check(kind: ImportFormat, told: ImportOptions) -> None:
     """Refuse what would do nothing."""
     marks = told.marks
     given = {"frame": marks.frame, "guide": marks.guide, "link": marks.link,
@@ -171,7 +207,7 @@ def _check(kind: Format, told: Told) -> None:
             )
 
 
-def _opened(path: str | os.PathLike[str]) -> tuple[Format, Any]:
+def _opened(path: str | os.PathLike[str]) -> tuple[ImportFormat, Any]:
     """The kind of a file by its content and its ending, and what is in it."""
     ending = Path(os.fspath(path)).suffix.casefold()
     by_ending = next((one for one in FORMATS.values() if ending in one.endings), None)

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import count
 
-from equipoise.mechanism.kinematics.outline import STILL, MachineDraft, Pose, pose_between
+from equipoise.mechanism.kinematics.outline import STILL, LinkPlacement, MachineDraft, pose_between
 from equipoise.mechanism.parts.machine import FRAME, Link, Slider
 from equipoise.quantities import clean, clean_place
 
@@ -46,7 +46,7 @@ def outline_of(
         block = free("block", made)
         made[block] = Link(points={slot.point: (0.0, 0.0)}, mass=0.0, center_of_mass=(0.0, 0.0),
                            inertia=0.0)  # fmt: skip
-        poses[block] = Pose(places[slot.point], slot.way)
+        poses[block] = LinkPlacement(places[slot.point], slot.way)
         on = (STILL if slot.on == FRAME else poses[slot.on]).angle
         sliders.append(
             Slider(block, slot.point, slot.on, slot.through, clean(slot.way - on, "angle"))
@@ -55,7 +55,7 @@ def outline_of(
     return MachineDraft(still, made, poses, None, tuple(sliders), {"title": title})
 
 
-def _pose(places: Sequence[complex]) -> Pose:
+def _pose(places: Sequence[complex]) -> LinkPlacement:
     """Axes in the first place, x toward the first other one."""
     first = places[0]
     other = next((place for place in places if place != first), first + 1)

@@ -25,7 +25,7 @@ from equipoise.exchange.reading.spatial import (
     Pull,
     Solid,
     Space,
-    Told,
+    SpatialOptions,
     by_euler,
     by_quaternion,
     direction,
@@ -43,7 +43,7 @@ LOST = {"stiffness": "springs", "damping": "damping", "frictionloss": "friction"
 """What joints may have beside, and what it is."""
 
 
-def read(root: Element, told: Told) -> Read:
+def read(root: Element, told: SpatialOptions) -> Read:
     """The machine of a model.
 
     Raises

@@ -9,7 +9,7 @@ from itertools import chain, count
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note
-from equipoise.mechanism.kinematics.outline import STILL, Pose
+from equipoise.mechanism.kinematics.outline import STILL, LinkPlacement
 from equipoise.mechanism.parts.machine import FRAME, Vector
 
 SAME = 1e-9
@@ -23,7 +23,7 @@ class Pinning:
     poses : of every link.  wishes : names that a point should have, by its number.
     """
 
-    poses: dict[str, Pose]
+    poses: dict[str, LinkPlacement]
     points: dict[str, dict[int, Vector]] = field(init=False)
     wishes: dict[int, list[str]] = field(default_factory=dict)
     size: float = 1e-9
@@ -31,7 +31,7 @@ class Pinning:
     def __post_init__(self) -> None:
         self.points = {link: {} for link in (FRAME, *self.poses)}
 
-    def pose(self, link: str) -> Pose:
+    def pose(self, link: str) -> LinkPlacement:
         return STILL if link == FRAME else self.poses[link]
 
     def at(self, link: str, place: complex) -> int | None:

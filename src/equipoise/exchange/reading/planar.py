@@ -20,18 +20,18 @@ from equipoise.exchange.reading.spatial import (
     Loop3,
     Solid,
     Space,
-    Told,
+    SpatialOptions,
     together,
 )
 from equipoise.i18n import Note
-from equipoise.mechanism.kinematics.outline import MachineDraft, Pose
+from equipoise.mechanism.kinematics.outline import LinkPlacement, MachineDraft
 from equipoise.mechanism.parts.machine import FRAME, Link, Slider, Spring
 
 SKEW = 1e-6
 """Of the sine of an angle between axes that are to be parallel: files have six digits at least."""
 
 
-def planar(space: Space, told: Told) -> Read:
+def planar(space: Space, told: SpatialOptions) -> Read:
     """The machine in its plane of motion.
 
     Raises
@@ -169,11 +169,11 @@ class _Flat:
         x, y = self.plane @ place
         return complex(x, y)
 
-    def _pose(self, solid: Solid) -> Pose:
+    def _pose(self, solid: Solid) -> LinkPlacement:
         """Its axes, along the first of its own that lies in the plane."""
         lying = (one for one in solid.axes.turn.T if abs(one @ self.normal) < SKEW)
         way = self.flat(next(lying, self.plane[0]))
-        return Pose(self.flat(solid.axes.origin), phase(way))
+        return LinkPlacement(self.flat(solid.axes.origin), phase(way))
 
     def joined(self) -> Iterator[tuple[Any, ...]]:
         """Pin what is pinned; of each slider link and number of the point, body and number of the

@@ -21,7 +21,7 @@ MOST = 200
 
 
 @dataclass(frozen=True)
-class Told:
+class SpatialOptions:
     """What is told beside a file.
 
     still : bodies that are held still, whatever joints they have.

@@ -46,7 +46,7 @@ LINK = "link "
 
 
 @dataclass(frozen=True)
-class Stroke:
+class DrawnLine:
     """A line with corners; `closed` where it comes back.  places : m.  names : by which it goes."""
 
     places: tuple[complex, ...]
@@ -84,9 +84,9 @@ class Drawing:
     """What is drawn: lines, circles and points, hatched areas, and words where they are."""
 
     title: str
-    strokes: list[Stroke] = field(default_factory=list)
+    strokes: list[DrawnLine] = field(default_factory=list)
     rings: list[Ring] = field(default_factory=list)
-    areas: list[Stroke] = field(default_factory=list)
+    areas: list[DrawnLine] = field(default_factory=list)
     words: list[tuple[complex, str]] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
 
@@ -125,7 +125,7 @@ def skeleton(drawing: Drawing, marks: Marks) -> Read:
 
 
 def _check(drawing: Drawing, marks: Marks) -> None:
-    every: list[Stroke | Ring] = [*drawing.strokes, *drawing.rings, *drawing.areas]
+    every: list[DrawnLine | Ring] = [*drawing.strokes, *drawing.rings, *drawing.areas]
     known = dict.fromkeys(name for one in every for name in one.names)
     for option in ("frame", "guide", "link"):
         for name in getattr(marks, option):
@@ -146,7 +146,7 @@ def _distance(place: complex, start: complex, end: complex) -> float:
     return abs(place - start - min(max(share, 0.0), 1.0) * way)
 
 
-def _named(one: Stroke | Ring, names: Iterable[str]) -> bool:
+def _named(one: DrawnLine | Ring, names: Iterable[str]) -> bool:
     own = {part for name in one.names for part in (name.casefold(), _first(name))}
     return any(name.casefold() in own for name in names)
 
@@ -160,7 +160,7 @@ class _Skeleton:
     def __init__(self, drawing: Drawing, marks: Marks) -> None:
         self.drawing, self.marks = drawing, marks
         frames, guides = marks.frame or FRAMES, marks.guide or GUIDES
-        every: list[Stroke | Ring] = [*drawing.strokes, *drawing.rings]
+        every: list[DrawnLine | Ring] = [*drawing.strokes, *drawing.rings]
         self.grounds = [one for one in every if _named(one, frames)]
         self.guides = [one for one in drawing.strokes if _named(one, guides)]
         taken = {id(one) for one in (*self.grounds, *self.guides)}
@@ -172,7 +172,7 @@ class _Skeleton:
         lines = [one for one in drawing.strokes if id(one) not in taken]
         rings = [one for one in drawing.rings if one not in beside]
         corners = sum(len(one.places) for one in (*lines, *self.grounds, *self.guides)
-                      if isinstance(one, Stroke))  # fmt: skip
+                      if isinstance(one, DrawnLine))  # fmt: skip
         if max(corners, len(rings)) > MOST:
             raise ModelError(
                 "",
@@ -231,7 +231,7 @@ class _Skeleton:
             if all(holders[point] == 1 for point in points):
                 yield f"{name!r} is joined to nothing; leave it out of the drawing, or join it"
 
-    def _carrier(self, guide: Stroke, links: Iterable[str]) -> str:
+    def _carrier(self, guide: DrawnLine, links: Iterable[str]) -> str:
         """What has a guide: the link that its name tells behind "on", else the frame."""
         for name in guide.names:
             _, word, on = name.rpartition(" on ")
@@ -243,7 +243,7 @@ class _Skeleton:
 
     # -- lines and corners ---------------------------------------------------------------------
 
-    def _pivots(self, rings: Iterable[Ring], lines: Sequence[Stroke]) -> list[Ring]:
+    def _pivots(self, rings: Iterable[Ring], lines: Sequence[DrawnLine]) -> list[Ring]:
         """Circles that mark pivots: small ones, the largest of those about one place, and none
         about another pivot, such as a gear, or about a whole link that begins in its middle, such
         as a flywheel.
@@ -258,11 +258,11 @@ class _Skeleton:
                 found = [*(one for one in found if one not in inside), ring]
         return found
 
-    def _swallows(self, ring: Ring, line: Stroke) -> bool:
+    def _swallows(self, ring: Ring, line: DrawnLine) -> bool:
         off = [abs(place - ring.center) for place in line.places]
         return min(off) <= self.near and max(off) <= max(1.01 * ring.radius, self.near)
 
-    def _bodies(self, lines: Sequence[Stroke]) -> Iterator[tuple[list[Stroke], list[int]]]:
+    def _bodies(self, lines: Sequence[DrawnLine]) -> Iterator[tuple[list[DrawnLine], list[int]]]:
         """Strokes of each link, and the numbers of its corners; a line drawn twice is one."""
         groups = [[one for one in lines if _named(one, [name])] for name in self.marks.link]
         grouped = {id(one) for group in groups for one in group}
@@ -305,7 +305,7 @@ class _Skeleton:
         free_names = (name for name in names if name not in found.values())
         return {one: found.get(one) or next(free_names) for one in used}
 
-    def _names(self, links: Sequence[Sequence[Stroke]]) -> Iterator[str]:
+    def _names(self, links: Sequence[Sequence[DrawnLine]]) -> Iterator[str]:
         """The first name that is that of one link alone, or a number."""
         own = [dict.fromkeys(name.removeprefix(LINK) for one in strokes for name in one.names)
                for strokes in links]  # fmt: skip

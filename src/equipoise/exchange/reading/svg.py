@@ -10,7 +10,7 @@ from xml.etree.ElementTree import Element
 from equipoise.errors import ModelError, at_place, needed
 from equipoise.exchange.reading.found import Read
 from equipoise.exchange.reading.markup import called, number, numbers
-from equipoise.exchange.reading.strokes import Drawing, Marks, Ring, Stroke, skeleton
+from equipoise.exchange.reading.strokes import Drawing, DrawnLine, Marks, Ring, skeleton
 from equipoise.i18n import Note
 
 METRES = {"": 0.0254 / 96, "px": 0.0254 / 96, "mm": 1e-3, "cm": 1e-2, "in": 0.0254,
@@ -145,7 +145,7 @@ class _Reader:
             if closed and len(places) > 2 and places[0] == places[-1]:
                 places.pop()
             if len(places) > 1:
-                self.drawing.strokes.append(Stroke(tuple(places), names, closed))
+                self.drawing.strokes.append(DrawnLine(tuple(places), names, closed))
 
     def _corners(self, element: Element) -> Iterator[tuple[list[tuple[float, float]], bool]]:
         """Corners of each line of an element, and whether it comes back."""

@@ -21,7 +21,7 @@ from equipoise.exchange.reading.spatial import (
     Lump,
     Solid,
     Space,
-    Told,
+    SpatialOptions,
     by_euler,
     direction,
 )
@@ -34,7 +34,7 @@ KINDS: dict[str | None, Literal["hinge", "slide"]] = {
 }
 
 
-def read(root: Element, told: Told) -> Read:
+def read(root: Element, told: SpatialOptions) -> Read:
     """The machine of a robot, with all joints at 0.
 
     Raises

@@ -11,7 +11,7 @@ import numpy as np
 from equipoise.i18n import Note
 from equipoise.mechanism.assembly.joints import Structure
 from equipoise.mechanism.assembly.steps import (
-    Call,
+    KernelCall,
     Reaction,
     RunningAngle,
     State,
@@ -176,7 +176,7 @@ class Builder:
         self.points.add(point)
         anchor = self.anchors[body]
         arm = self.arm(body, anchor, point)
-        return [Call(kernels.point, (*p(anchor), *u(body)), (arm,), p(point))]
+        return [KernelCall(kernels.point, (*p(anchor), *u(body)), (arm,), p(point))]
 
     def running_angle(self, body: str) -> list[Step]:
         """Calls that make the running angle of a known body available."""
@@ -226,12 +226,12 @@ class Builder:
             self.missing[joint] = (words, meaning, side)
         return -1.0 if side == words[1] else 1.0
 
-    def hand_over(self, reaction: Reaction) -> Call:
+    def hand_over(self, reaction: Reaction) -> KernelCall:
         """Call that passes a reaction on to the body that exerts it."""
         demand, anchor = demand_names(reaction.by), self.anchors[reaction.by]
         kernel = kernels.transfer if reaction.couple is None else kernels.transfer_couple
         inputs = (*demand, f"p({anchor})", f"p({reaction.at})", *reaction.outputs)
-        return Call(kernel, inputs, (), demand)
+        return KernelCall(kernel, inputs, (), demand)
 
 
 def guide_reaction(guide: Guide, on: str, by: str, at: str) -> Reaction:

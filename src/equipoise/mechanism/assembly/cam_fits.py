@@ -17,10 +17,10 @@ from equipoise.mechanism.assembly.builder import Guide
 from equipoise.mechanism.assembly.cam_shapes import (
     BESIDE,
     Array,
-    Path,
-    Shape,
+    CamShape,
+    FollowerPath,
     Sliding,
-    Swinging,
+    SwingingFollower,
     design,
     lowest,
 )
@@ -62,7 +62,7 @@ class CamFit:
     rest: Any
     sense: float
     face: Any
-    path: Path
+    path: FollowerPath
 
     @property
     def joint(self) -> str:
@@ -75,9 +75,9 @@ class CamFit:
         law = self.cam.law
         return law.curve.knots[:-1] + law.origin
 
-    def shape(self, angle: Array) -> Shape:
+    def shape(self, angle: Array) -> CamShape:
         """The cam under its follower at angles (N,), rad, by which it has turned."""
-        return Shape(angle, self.path, self.cam.law.value, self.cam.roller_radius)
+        return CamShape(angle, self.path, self.cam.law.value, self.cam.roller_radius)
 
 
 def fitted(machine: Machine, joints: Structure, cam: Cam) -> CamFit:
@@ -191,7 +191,7 @@ def _on_pin(machine: Machine, cam: Cam, cam_pin: str, pin: str, where: str) -> C
     turn = (cam.radius * towards - pivot) / arm if face is None else towards / face
     turn = turn / abs(turn)
     normal = None if face is None else towards
-    path = Swinging(pivot, arm * turn, sense, normal)
+    path = SwingingFollower(pivot, arm * turn, sense, normal)
     return CamFit(cam, cam_pin, pin, None, np.angle(turn), sense, face, path)
 
 
@@ -220,7 +220,7 @@ class Demand:
     size : that it has far from 0.  mended : whether another base radius can do something about it.
     """
 
-    value: Callable[[Shape], Array]
+    value: Callable[[CamShape], Array]
     told: Callable[[float, float], Note]
     size: Any = 1.0
     mended: bool = True
@@ -340,7 +340,7 @@ def _demands(cam: Cam) -> Iterator[Demand]:
         )
 
 
-def _blunt(sign: float, shape: Shape) -> Array:
+def _blunt(sign: float, shape: CamShape) -> Array:
     return 1 - sign * shape.curvature * shape.radius
 
 

@@ -13,7 +13,7 @@ from equipoise.mechanism.assembly.cam_fits import CamFit, check_shape, fitted
 from equipoise.mechanism.assembly.joints import Structure
 from equipoise.mechanism.assembly.loops import CouplingLoop, End, Poses
 from equipoise.mechanism.assembly.steps import (
-    Call,
+    KernelCall,
     Reaction,
     Rotation,
     State,
@@ -192,7 +192,7 @@ def _lifted(builder: Builder, _: Structure, fit: CamFit, lift: tuple[str, ...]) 
     steps = builder.reach(cam.carrier, guide.base)
     builder.add({cam.driven: guide.point}, [guide.point])
     outputs = (*p(guide.point), *u(cam.driven))
-    return [*steps, Call(kernels.lifted, inputs, numbers, outputs)]
+    return [*steps, KernelCall(kernels.lifted, inputs, numbers, outputs)]
 
 
 def _swung(builder: Builder, joints: Structure, fit: CamFit, lift: tuple[str, ...]) -> list[Step]:
@@ -204,7 +204,11 @@ def _swung(builder: Builder, joints: Structure, fit: CamFit, lift: tuple[str, ..
     angles = (f"phi({link})", *_turning(link))
     builder.add({link: fit.pin}, [fit.pin])
     builder.running.add(link)
-    return [*steps, Call(kernels.swung, inputs, (fit.rest, fit.sense), angles), Rotation(link)]
+    return [
+        *steps,
+        KernelCall(kernels.swung, inputs, (fit.rest, fit.sense), angles),
+        Rotation(link),
+    ]
 
 
 def _touch(fit: CamFit) -> list[Step]:
@@ -215,18 +219,18 @@ def _touch(fit: CamFit) -> list[Step]:
     if fit.guide is not None:
         along: Any = fit.guide.along
         carrier = f"u({cam.carrier})"
-        towards = Call(kernels.rate_lifted, (carrier, f"y1({name})"), (along,), (rate,))
-        rising = Call(kernels.forth_lifted, (carrier,), (along,), forth)
+        towards = KernelCall(kernels.rate_lifted, (carrier, f"y1({name})"), (along,), (rate,))
+        rising = KernelCall(kernels.forth_lifted, (carrier,), (along,), forth)
     else:
         inputs = (place, f"p({fit.pin})", f"y1({name})")
-        towards = Call(kernels.rate_swung, inputs, (fit.sense,), (rate,))
-        rising = Call(kernels.forth_swung, (pressed, f"p({fit.pin})"), (fit.sense,), forth)
+        towards = KernelCall(kernels.rate_swung, inputs, (fit.sense,), (rate,))
+        rising = KernelCall(kernels.forth_swung, (pressed, f"p({fit.pin})"), (fit.sense,), forth)
     ends, found = (place, f"p({fit.cam_pin})", rate), (contact, f"normal({name})")
     if fit.face is None:
-        return [towards, Call(kernels.touch_round, ends, (cam.roller_radius,), found), rising]
+        return [towards, KernelCall(kernels.touch_round, ends, (cam.roller_radius,), found), rising]
     more = (*ends, f"u({cam.driven})", f"y1({name})")
     sense = fit.sense if fit.guide is None else 0.0
-    return [towards, Call(kernels.touch_flat, more, (fit.face, sense), found), rising]
+    return [towards, KernelCall(kernels.touch_flat, more, (fit.face, sense), found), rising]
 
 
 def _at(cam: Cam) -> str:
@@ -248,7 +252,7 @@ def _forces(builder: Builder, joints: Structure, fit: CamFit) -> tuple[Any, ...]
         return (
             ground,
             push,
-            Call(kernels.lifted_forces, inputs, numbers, (*ground.outputs, *pressed)),
+            KernelCall(kernels.lifted_forces, inputs, numbers, (*ground.outputs, *pressed)),
         )
     ground = pin_reaction(fit.pin, link, builder.carrier_of(joints.pins[fit.pin]))
-    return ground, push, Call(kernels.swung_forces, inputs, (), (*ground.outputs, *pressed))
+    return ground, push, KernelCall(kernels.swung_forces, inputs, (), (*ground.outputs, *pressed))

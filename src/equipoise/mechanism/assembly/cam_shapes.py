@@ -47,7 +47,7 @@ class Ride:
     normal: Any = None
 
 
-class Path(Protocol):
+class FollowerPath(Protocol):
     """How a follower moves in the carrier, by its displacement and the derivatives of that."""
 
     def ride(self, y: Any, y1: Any, y2: Any) -> Ride: ...
@@ -76,7 +76,7 @@ class Sliding:
 
 
 @dataclass(frozen=True)
-class Swinging:
+class SwingingFollower:
     """A follower that turns about `pivot` by `sense` times its displacement.
 
     arm : from the pivot to what rides on the cam, and normal : as of `Ride`, both where the
@@ -100,14 +100,14 @@ class Swinging:
 
 
 @dataclass(frozen=True, eq=False)
-class Shape:
+class CamShape:
     """A cam under its follower, at angles (N,), rad, that it has turned against its carrier.
 
     radius : of the roller, m; 0 of an edge or a flat face.
     """
 
     angle: Array
-    path: Path
+    path: FollowerPath
     law: Law
     radius: float = 0.0
 
@@ -187,11 +187,11 @@ class Shape:
             return 1 / self.radius_of_curvature
         return self.curvature / (1 - self.curvature * self.radius)
 
-    def at(self, angle: Array) -> Shape:
+    def at(self, angle: Array) -> CamShape:
         """The same at other angles."""
         return replace(self, angle=angle)
 
-    def of(self, which: Any) -> Shape:
+    def of(self, which: Any) -> CamShape:
         """One design or some, by number, where those of this are columns."""
         path = replace(self.path, **{k: design(v, which) for k, v in vars(self.path).items()})  # type: ignore[type-var]
         return replace(self, path=path, radius=design(self.radius, which))
@@ -202,7 +202,9 @@ def design(value: Any, which: Any) -> Any:
     return value[which] if np.ndim(value) else value
 
 
-def lowest(shape: Shape, value: Callable[[Shape], Array], knots: Array) -> tuple[float, float]:
+def lowest(
+    shape: CamShape, value: Callable[[CamShape], Array], knots: Array
+) -> tuple[float, float]:
     """Smallest value over a turn of the cam, and the angle (rad) of it.
 
     knots : angles at which the law changes, to both sides of which is looked.

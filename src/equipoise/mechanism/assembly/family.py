@@ -34,7 +34,7 @@ from equipoise.mechanism.assembly.joints import Structure, all_sliders
 from equipoise.mechanism.assembly.linkage import Linkage, ordered
 from equipoise.mechanism.assembly.steps import (
     Array,
-    Call,
+    KernelCall,
     Rotation,
     RunningAngle,
     State,
@@ -80,7 +80,7 @@ class Family:
         steps: list[Step] = []
         for same in zip(*(k.motion for k in self.linkages), strict=True):
             match same[0]:
-                case Call():
+                case KernelCall():
                     steps.append(_stacked(same))
                 case Rotation() as turned:
                     steps.append(turned)
@@ -155,11 +155,11 @@ class Family:
         }
 
 
-def _stacked(calls: Sequence[Any]) -> Call:
+def _stacked(calls: Sequence[Any]) -> KernelCall:
     """The same call of all machines, with columns (P, 1) for parameters."""
     first = calls[0]
     columns = (_beside(values) for values in zip(*(c.parameters for c in calls), strict=True))
-    return Call(first.kernel, first.inputs, tuple(columns), first.outputs)
+    return KernelCall(first.kernel, first.inputs, tuple(columns), first.outputs)
 
 
 def _beside(values: tuple[Any, ...]) -> Any:

@@ -16,7 +16,7 @@ from equipoise.mechanism.assembly.builder import Builder, Group, Guide, guide_re
 from equipoise.mechanism.assembly.joints import Structure, coupling_pins, place_in_file
 from equipoise.mechanism.assembly.loops import CouplingLoop, End, Poses, Rides, Wrench
 from equipoise.mechanism.assembly.steps import (
-    Call,
+    KernelCall,
     Reaction,
     Rotation,
     Step,
@@ -68,7 +68,7 @@ class CarrierJoint:
         return [
             *builder.reach(self.body, self.point),
             *builder.reach(carrier, self.guide.base),
-            Call(kernels.travelled, ends, (self.guide.along,), self.coordinate),
+            KernelCall(kernels.travelled, ends, (self.guide.along,), self.coordinate),
         ]
 
     def moved(self, carrier: str) -> Step:
@@ -77,7 +77,7 @@ class CarrierJoint:
             return Rotation(self.body)
         inputs = (*self.coordinate, *p(self.guide.base), *u(carrier))
         numbers = (self.guide.along, self.guide.turn)
-        return Call(kernels.railed, inputs, numbers, (*p(self.point), *u(self.body)))
+        return KernelCall(kernels.railed, inputs, numbers, (*p(self.point), *u(self.body)))
 
     def reaction(self, by: str) -> Reaction:
         """What the carrier, or the body `by` that carries the pin, exerts on it."""
@@ -124,35 +124,37 @@ class Flank:
         """
         line, name, turn = self.line, self.coupling.name, f"u({self.coupling.carrier})"
         sense, (force, moment) = f"flank({name})", demand_names(self.driven.body)
-        asked = Call(joint_kernels.flank, (moment,), (), (sense,))
+        asked = KernelCall(joint_kernels.flank, (moment,), (), (sense,))
         inputs: tuple[str, ...] = (force, moment, turn, sense)
         outputs = (*ground.outputs, *self.push.outputs, f"T({name})")
         numbers: tuple[Any, ...]
         if isinstance(line, StrandLine):
             numbers = (line.radius, line.across, line.along)
-            return asked, Call(joint_kernels.strand_forces, inputs, numbers, outputs)
+            return asked, KernelCall(joint_kernels.strand_forces, inputs, numbers, outputs)
         pitch = f"p({self.push.at})"
         if isinstance(line, RollingLine):
             place = lever, _ = f"lever({name})", f"slope({name})"
             angles = (f"phi({self.driver.body})", f"phi({self.coupling.carrier})")
             kernel = joint_kernels.rolling_forces
             return (
-                Call(rolled, angles, (line.law, line.centres), place),
-                Call(joint_kernels.pitch_place, (f"p({self.pin})", turn, lever), (), (pitch,)),
+                KernelCall(rolled, angles, (line.law, line.centres), place),
+                KernelCall(
+                    joint_kernels.pitch_place, (f"p({self.pin})", turn, lever), (), (pitch,)
+                ),
                 asked,
-                Call(kernel, (*inputs, *place), (line.radial,), outputs),
+                KernelCall(kernel, (*inputs, *place), (line.radial,), outputs),
             )
-        at = Call(kernels.point, (*p(self.pin), *u(self.coupling.carrier)), (line.lever,),
+        at = KernelCall(kernels.point, (*p(self.pin), *u(self.coupling.carrier)), (line.lever,),
                   p(self.push.at))  # fmt: skip
         if self.driven.guide is None:
             numbers = (line.lever, line.slope)
-            return at, asked, Call(joint_kernels.flank_forces, inputs, numbers, outputs)
+            return at, asked, KernelCall(joint_kernels.flank_forces, inputs, numbers, outputs)
         along = self.driven.guide.along
         inputs = (force, moment, f"p({self.driven.point})", pitch, turn, sense)
         return (
             at,
-            Call(joint_kernels.flank_ahead, (force, turn), (along,), (sense,)),
-            Call(joint_kernels.sliding_forces, inputs, (along, line.slope), outputs),
+            KernelCall(joint_kernels.flank_ahead, (force, turn), (along,), (sense,)),
+            KernelCall(joint_kernels.sliding_forces, inputs, (along, line.slope), outputs),
         )
 
     def group(self, builder: Builder, joints: Structure) -> Group:
@@ -164,13 +166,13 @@ class Flank:
         inputs = (*self.driver.coordinate, f"phi({carrier})", *u(carrier)[1:])
         kernel, numbers = coupling.relation
         state = run(before, dict(builder.now))
-        bare = Call(kernel, inputs, (*numbers, 0.0), driven.coordinate)
+        bare = KernelCall(kernel, inputs, (*numbers, 0.0), driven.coordinate)
         with np.errstate(all="ignore"):  # what cannot come to crank angle 0 is refused later
             offset = coupling.start - at_start(run([bare], state)[driven.coordinate[0]])
         reached = builder.reach(bearer, guide.base if guide else driven.point)
         if guide:
             reached += builder.reach(carrier, self.pin)
-        related = Call(kernel, inputs, (*numbers, offset), driven.coordinate)
+        related = KernelCall(kernel, inputs, (*numbers, offset), driven.coordinate)
         motion = (*before, *reached, related, driven.moved(carrier))
         builder.add({driven.body: driven.point}, [driven.point])
         if not guide:

@@ -26,8 +26,8 @@ from equipoise.mechanism.assembly.builder import (
 )
 from equipoise.mechanism.assembly.joints import Structure
 from equipoise.mechanism.assembly.steps import (
-    Call,
     Kernel,
+    KernelCall,
     Reaction,
     demand_names,
     p,
@@ -78,9 +78,9 @@ def _dyad(
     return Group(
         "dyad",
         (first, second),
-        (*reach, Call(motion[0], (*known,), motion[1], found)),
+        (*reach, KernelCall(motion[0], (*known,), motion[1], found)),
         (
-            Call(kernel, (*places, *demands), numbers, results),
+            KernelCall(kernel, (*places, *demands), numbers, results),
             *(builder.hand_over(reaction) for reaction in reactions[:2]),
         ),
         reactions,

@@ -78,7 +78,7 @@ class Contact(Protocol):
         """The same as an equation; `end` finds points of bodies from their anchors."""
 
 
-class Pushing(Contact, Protocol):
+class PushingContact(Contact, Protocol):
     """A contact whose place and line of action its loop asks for."""
 
     def place(self, poses: Poses) -> Any:
@@ -227,7 +227,7 @@ class CouplingLoop:
     kernel: Callable[..., tuple[Any, ...]]
     numbers: tuple[Any, ...]
     offset: Any
-    contact: Pushing
+    contact: PushingContact
     rides: Rides | None
 
     unknowns: ClassVar[int] = 1

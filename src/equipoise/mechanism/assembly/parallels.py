@@ -18,7 +18,7 @@ from equipoise.errors import ModelError
 from equipoise.i18n import Note
 from equipoise.mechanism.assembly.builder import Builder, Group, Outer
 from equipoise.mechanism.assembly.joints import Structure
-from equipoise.mechanism.assembly.steps import Call, p, planar, u
+from equipoise.mechanism.assembly.steps import KernelCall, p, planar, u
 from equipoise.mechanism.checks import MODE, MODES
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.parts.machine import Machine
@@ -147,5 +147,5 @@ def pointed(builder: Builder, held: list[Outer]) -> Group | None:
         return None
     reach = [step for outer in held for step in builder.reach(outer.body, outer.point)]
     builder.add({link: first})
-    motion = Call(kernels.pointed, (*p(first), *p(second)), (arm,), u(link))
+    motion = KernelCall(kernels.pointed, (*p(first), *p(second)), (arm,), u(link))
     return Group("pointed", (link,), (*reach, motion), (), tuple(one.reaction() for one in held))

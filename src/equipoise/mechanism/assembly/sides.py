@@ -21,7 +21,7 @@ import numpy as np
 from equipoise.errors import EquipoiseError, ModelError, Paste
 from equipoise.i18n import Note, series, to_say
 from equipoise.mechanism.assembly.builder import Builder, Group
-from equipoise.mechanism.assembly.steps import Call, State, initial_state, run
+from equipoise.mechanism.assembly.steps import KernelCall, State, initial_state, run
 from equipoise.mechanism.checks import meant
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.quantities import number
@@ -131,7 +131,7 @@ def chosen(builder: Builder, group: Group, assumed: Mapping[str, tuple[int, str]
 def _with_side(group: Group, side: float) -> Group:
     """A dyad's kernel takes its side as the last of its numbers."""
     *before, call = group.motion
-    assert isinstance(call, Call)
+    assert isinstance(call, KernelCall)
     call = replace(call, parameters=(*call.parameters[:-1], side))
     return replace(group, motion=(*before, call))
 

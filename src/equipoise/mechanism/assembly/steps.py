@@ -38,7 +38,7 @@ class Step(Protocol):
 
 
 @dataclass(frozen=True)
-class Call:
+class KernelCall:
     """outputs = kernel(*inputs, *parameters)."""
 
     kernel: Kernel
@@ -187,7 +187,7 @@ def demand_names(link: str) -> tuple[str, str]:
 
 def tells_flanks(step: Step) -> bool:
     """Whether a step says which flank, or strand, is loaded, and nothing else."""
-    return isinstance(step, Call) and all(name.startswith("flank(") for name in step.outputs)
+    return isinstance(step, KernelCall) and all(name.startswith("flank(") for name in step.outputs)
 
 
 def pin_reaction(point: str, on: str, by: str) -> Reaction:

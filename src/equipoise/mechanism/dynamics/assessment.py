@@ -9,7 +9,7 @@ from math import acos, asin, degrees, isclose, pi, sqrt
 from equipoise.errors import ChangePointError, MotionError, RangeError
 from equipoise.i18n import Note
 from equipoise.mechanism.assembly.linkage import Linkage, assemble
-from equipoise.mechanism.assembly.steps import Call, size_of_links
+from equipoise.mechanism.assembly.steps import KernelCall, size_of_links
 from equipoise.mechanism.checks import bodies_at, numbered
 from equipoise.mechanism.dynamics.forces import assumed_masses, massless
 from equipoise.mechanism.dynamics.statics import statics
@@ -77,7 +77,7 @@ def four_bar(machine: Machine) -> FourBar | None:
     linkage = assemble(machine)
     drive, pivot = machine.drive.link, linkage.pivot
     for group in linkage.groups:
-        if not any(isinstance(s, Call) and s.kernel in BARS for s in group.motion):
+        if not any(isinstance(s, KernelCall) and s.kernel in BARS for s in group.motion):
             continue
         if not linkage.joints.riders.keys().isdisjoint(group.links):  # in a slot, so not of bars
             continue

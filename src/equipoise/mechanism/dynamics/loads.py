@@ -49,7 +49,7 @@ PIECE, NODES = pi / 12, 4
 """Longest piece of a cycle, rad, over which work is summed, and crank angles in it."""
 
 
-class Work(NamedTuple):
+class LoadWork(NamedTuple):
     """What a load does in a whole cycle.
 
     net : its work, J.  both : work that it gives and that it takes, added up, J.
@@ -61,7 +61,7 @@ class Work(NamedTuple):
     largest: float
 
 
-def work_in_cycle(machine: Machine, load: Load) -> Work:
+def work_in_cycle(machine: Machine, load: Load) -> LoadWork:
     """What a load does in a whole cycle.
 
     Gauss's quadrature between its rows, its ends and the angles of a grid, so that what sets in or
@@ -90,7 +90,7 @@ def work_in_cycle(machine: Machine, load: Load) -> Work:
     sizes = [np.hypot(abs(force), torque) for force, torque in ends]
     whole = summed + steady[1] * 2 * pi * cycle.windings[load.link]
     net = float(whole) * (1 if machine.drive.speed >= 0 else -1)
-    return Work(net, float(np.sum(np.abs(parts))), float(np.max(sizes)))
+    return LoadWork(net, float(np.sum(np.abs(parts))), float(np.max(sizes)))
 
 
 def _edges(load: Load, turns: int) -> Array:

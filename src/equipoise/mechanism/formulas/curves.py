@@ -35,7 +35,7 @@ def direction(vector: Any) -> Any:
 
 
 @dataclass(frozen=True, eq=False)
-class Curve:
+class PeriodicCurve:
     """A curve y(x) in K pieces, from 0 to `length`; beyond, it goes on periodically.
 
     knots : (K + 1,) ends of the pieces, from 0 on.
@@ -138,29 +138,29 @@ class Curve:
     def _waved(self) -> bool:
         return bool(np.any(self.waves[:, 0]))
 
-    def summed(self) -> Curve:
+    def summed(self) -> PeriodicCurve:
         """What a curve of polynomials sums up to, from 0 on."""
         powers = np.zeros_like(self.powers)
         powers[:, 1:] = self.powers[:, :-1] / np.arange(1, MOST_POWERS)
-        pieces = Curve(self.knots, powers, self.waves)
+        pieces = PeriodicCurve(self.knots, powers, self.waves)
         ends = pieces.value(np.arange(len(powers)), self._widths, 0)
         powers[1:, 0] = np.cumsum(ends[:-1])
-        return Curve(self.knots, powers, self.waves)
+        return PeriodicCurve(self.knots, powers, self.waves)
 
-    def stretched(self, length: float, rise: float) -> Curve:
+    def stretched(self, length: float, rise: float) -> PeriodicCurve:
         """The same curve over another length, and higher by a factor."""
         exponents = np.arange(MOST_POWERS)
-        return Curve(
+        return PeriodicCurve(
             self.knots * length,
             self.powers * rise / length**exponents,
             self.waves * [rise, 1 / length, 1.0],
         )
 
-    def lifted(self, by: float) -> Curve:
+    def lifted(self, by: float) -> PeriodicCurve:
         """The same curve, higher by a constant."""
         powers = self.powers.copy()
         powers[:, 0] += by
-        return Curve(self.knots, powers, self.waves)
+        return PeriodicCurve(self.knots, powers, self.waves)
 
 
 @dataclass(frozen=True, eq=False)
@@ -171,13 +171,13 @@ class Curves:
     begins, rises : (P, 1) first piece of each in `every`, and its rise.
     """
 
-    one: Curve
-    every: Curve
+    one: PeriodicCurve
+    every: PeriodicCurve
     begins: Array
     rises: Array
 
     @classmethod
-    def of(cls, curves: Sequence[Curve]) -> Curves:
+    def of(cls, curves: Sequence[PeriodicCurve]) -> Curves:
         """Raises a `ValueError` where their knots differ."""
         one = curves[0]
         if any(not np.array_equal(other.knots, one.knots) for other in curves):
@@ -187,7 +187,7 @@ class Curves:
         )
         begins = len(one.powers) * np.arange(len(curves))
         rises = np.array([other.rise for other in curves])
-        return cls(one, Curve(one.knots, powers, waves), begins[:, None], rises[:, None])
+        return cls(one, PeriodicCurve(one.knots, powers, waves), begins[:, None], rises[:, None])
 
     def at(self, x: Any) -> tuple[Array, Array, Array]:
         """y and its two derivatives by x, each as `x`."""
@@ -196,11 +196,11 @@ class Curves:
         return y + self.rises * rounds, y1, y2
 
 
-def joined(curves: Sequence[Curve]) -> Curve:
+def joined(curves: Sequence[PeriodicCurve]) -> PeriodicCurve:
     """Curves one after the other."""
     begins = np.cumsum([0.0, *(one.length for one in curves)])
     knots = [one.knots[:-1] + begin for one, begin in zip(curves, begins, strict=False)]
-    return Curve(
+    return PeriodicCurve(
         np.concatenate([*knots, begins[-1:]]),
         np.concatenate([one.powers for one in curves]),
         np.concatenate([one.waves for one in curves]),
@@ -214,13 +214,13 @@ Run = tuple[float, float, float, bool]
 levels with a straight line between."""
 
 
-def _polynomial(*powers: float) -> Curve:
+def _polynomial(*powers: float) -> PeriodicCurve:
     filled = np.zeros((1, MOST_POWERS))
     filled[0, : len(powers)] = powers
-    return Curve(np.array([0.0, 1.0]), filled, np.zeros((1, 3)))
+    return PeriodicCurve(np.array([0.0, 1.0]), filled, np.zeros((1, 3)))
 
 
-def _accelerated(*runs: Run) -> Curve:
+def _accelerated(*runs: Run) -> PeriodicCurve:
     """The curve from 0 to 1, from rest to rest, whose acceleration has this shape."""
     place = speed = 0.0
     powers, waves = np.zeros((len(runs), MOST_POWERS)), np.zeros((len(runs), 3))
@@ -238,12 +238,12 @@ def _accelerated(*runs: Run) -> Curve:
             place += width * (speed + width * (begin / 2 + width * slope / 6))
             speed += width * (begin + end) / 2
     knots = np.cumsum([0.0, *(run[0] for run in runs)])
-    return Curve(knots / knots[-1], powers / place, waves * [1 / place, 1.0, 1.0])
+    return PeriodicCurve(knots / knots[-1], powers / place, waves * [1 / place, 1.0, 1.0])
 
 
 QUARTER = pi / 2
 _UP, _DOWN = (1 / 8, 0.0, QUARTER, True), (1 / 8, 3 * QUARTER, 4 * QUARTER, True)
-NORMAL: dict[str, Callable[[], Curve]] = {
+NORMAL: dict[str, Callable[[], PeriodicCurve]] = {
     "cycloidal": lambda: _accelerated((1.0, 0.0, 4 * QUARTER, True)),
     "modified sine": lambda: _accelerated(_UP, (3 / 4, QUARTER, 3 * QUARTER, True), _DOWN),
     "modified trapezoid": lambda: _accelerated(
@@ -266,15 +266,15 @@ NORMAL: dict[str, Callable[[], Curve]] = {
 """Motion laws from 0 to 1 over a length of 1, by name."""
 
 
-def sine(low: float, high: float, length: float) -> Curve:
+def sine(low: float, high: float, length: float) -> PeriodicCurve:
     """The sine that rises from `low`, where it rests, to `high` and comes back."""
     powers = np.zeros((1, MOST_POWERS))
     powers[0, 0] = (low + high) / 2
     wave = [[(low - high) / 2, 2 * pi / length, pi / 2]]
-    return Curve(np.array([0.0, length]), powers, np.array(wave))
+    return PeriodicCurve(np.array([0.0, length]), powers, np.array(wave))
 
 
-def spline(knots: Array, values: Array, degree: int) -> Curve:
+def spline(knots: Array, values: Array, degree: int) -> PeriodicCurve:
     """The periodic spline of an odd degree through values (K + 1,) at knots (K + 1,) from 0 on.
 
     All derivatives but the highest go on through the knots, and from the end to the beginning; the
@@ -312,7 +312,7 @@ def spline(knots: Array, values: Array, degree: int) -> Curve:
     )
     powers = np.zeros((count, MOST_POWERS))
     powers[:, : degree + 1] = np.einsum("kic,kc->ki", of_piece, known)
-    return Curve(knots, powers, np.zeros((count, 3)))
+    return PeriodicCurve(knots, powers, np.zeros((count, 3)))
 
 
 def _slope(power: int, order: int) -> float:

@@ -23,7 +23,14 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.mechanism.formulas.curves import MOST_POWERS, Array, Curve, Curves, direction, spline
+from equipoise.mechanism.formulas.curves import (
+    MOST_POWERS,
+    Array,
+    Curves,
+    PeriodicCurve,
+    direction,
+    spline,
+)
 from equipoise.mechanism.formulas.rolling_kernels import half_angle, series_term
 
 Levels = tuple[Array, Array, Array]
@@ -90,7 +97,7 @@ class EccentricCircle:
 class Tabled:
     """The cubic spline through the rows of a table, whose first angle is `origin`."""
 
-    spline: Curve | Curves
+    spline: PeriodicCurve | Curves
     origin: Any
 
     @classmethod
@@ -167,7 +174,7 @@ class RatioTable:
     @classmethod
     def closing(cls, table: Tabled, mean: float) -> RatioTable:
         """The factor with which the ratio has its mean."""
-        assert isinstance(table.spline, Curve)
+        assert isinstance(table.spline, PeriodicCurve)
         whole = table.spline.summed()
         return cls(mean * whole.length / whole.rise, Tabled(whole, table.origin))
 
@@ -221,7 +228,7 @@ class PitchCurve:
         pieces = period * np.sum(weights * factor * radius / (1 + factor * radius), axis=1)
         return cls(mean, curve, factor, knots, np.append(0.0, np.cumsum(pieces)))
 
-    def summed(self) -> tuple[Curve, float]:
+    def summed(self) -> tuple[PeriodicCurve, float]:
         """The driven gear's angle as pieces between the knots, to 1e-12, and where they begin."""
         half = 0.5 * np.diff(self.knots)
         at = np.cos(pi * (np.arange(MOST_POWERS - 1) + 0.5) / (MOST_POWERS - 1))
@@ -230,7 +237,7 @@ class PitchCurve:
         levels = np.linalg.solve(ways, ratio.T).T / half[:, None] ** np.arange(MOST_POWERS - 1)
         powers = np.column_stack([self.sums[:-1], levels / np.arange(1, MOST_POWERS)])
         knots = self.knots - self.knots[0]
-        return Curve(knots, powers, np.zeros((len(powers), 3))), float(self.knots[0])
+        return PeriodicCurve(knots, powers, np.zeros((len(powers), 3))), float(self.knots[0])
 
     def rate(self, x: Any) -> tuple[Any, Any]:
         """The ratio and its derivative."""
@@ -266,7 +273,7 @@ def beside(values: Sequence[Any]) -> Any:
     first = values[0]
     if any(type(one) is not type(first) for one in values):
         raise ValueError(values)
-    if isinstance(first, Curve):
+    if isinstance(first, PeriodicCurve):
         return Curves.of(values)
     if is_dataclass(first) and not isinstance(first, type):
         names = [field.name for field in fields(first)]

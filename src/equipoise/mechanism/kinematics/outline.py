@@ -40,7 +40,7 @@ MESHING = 1e-9
 
 
 @dataclass(frozen=True)
-class Pose:
+class LinkPlacement:
     """Where a link is drawn.
 
     origin : of its axes, in the frame, m.  angle : of its x axis in the frame, rad.
@@ -62,7 +62,7 @@ class Pose:
         return (place - self.origin) * self.turn.conjugate()
 
 
-STILL = Pose()
+STILL = LinkPlacement()
 """Of the frame."""
 
 
@@ -89,7 +89,7 @@ class MachineDraft:
 
     frame: Mapping[str, Vector] = field(default_factory=dict)
     links: Mapping[str, Link] = field(default_factory=dict)
-    poses: Mapping[str, Pose] = field(default_factory=dict)
+    poses: Mapping[str, LinkPlacement] = field(default_factory=dict)
     drive: Drive | None = None
     sliders: tuple[Slider, ...] = ()
     rest: Mapping[str, Any] = field(default_factory=lambda: {"title": TITLE})
@@ -107,7 +107,7 @@ class MachineDraft:
         """Points of the frame and of every link, in their own axes."""
         return {FRAME: self.frame} | {name: link.points for name, link in self.links.items()}
 
-    def pose(self, body: str) -> Pose:
+    def pose(self, body: str) -> LinkPlacement:
         """Where a link, or the frame, is drawn."""
         return STILL if body == FRAME else self.poses[body]
 
@@ -267,9 +267,9 @@ def _way(one: Turning, driver: tuple[float, float], carrier: tuple[float, float]
     return after - before
 
 
-def pose_between(start: complex, end: complex) -> Pose:
+def pose_between(start: complex, end: complex) -> LinkPlacement:
     """Of a link whose x axis points from one place of the frame (m) to another."""
-    return Pose(start, phase(end - start))
+    return LinkPlacement(start, phase(end - start))
 
 
 def length_between(start: complex, end: complex) -> float:

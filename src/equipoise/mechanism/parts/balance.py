@@ -13,7 +13,7 @@ from typing import Any, Literal
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, to_say
-from equipoise.keys import Frozen, Table, Tables, Text, declared, key
+from equipoise.keys import Frozen, KeyTable, Tables, TextKind, declared, key
 from equipoise.mechanism.checks import LONGEST_NAME, Bodies, numbered, too_many, wrong_range
 from equipoise.mechanism.outputs.declaring import Measure
 from equipoise.mechanism.parts.bodies import MATERIALS, material_of
@@ -85,12 +85,17 @@ class SpringChoice(Frozen):
 
     called = to_say("{what} of spring {number} to be chosen")
 
-    link: str = key(Text(of="link"), "name of the link", example="rocker")
+    link: str = key(TextKind(of="link"), "name of the link", example="rocker")
     point: str = key(
-        Text(of="point", on="link"), "its point, not one that is pinned to the frame", example="C"
+        TextKind(of="point", on="link"),
+        "its point, not one that is pinned to the frame",
+        example="C",
     )
     to: str = key(
-        Text(of="point", on="frame"), "point of the frame", example="D2", word=to_say("other point")
+        TextKind(of="point", on="frame"),
+        "point of the frame",
+        example="D2",
+        word=to_say("other point"),
     )
     stiffness: float = key("stiffness", "the most that it may have", example="5 kN/m", above=0)
     free_length: Pair | None = key(
@@ -130,29 +135,31 @@ class Balance(Frozen):
     file_order = ("added_mass", "combine", "phases")
 
     moves: tuple[CenterMove, ...] = key(
-        Tables(Table(CenterMove)), "links whose centre of mass may be moved", default=()
+        Tables(KeyTable(CenterMove)), "links whose centre of mass may be moved", default=()
     )
     masses: tuple[AddedMass, ...] = key(
-        Tables(Table(AddedMass)), "masses that may be added to links", default=()
+        Tables(KeyTable(AddedMass)), "masses that may be added to links", default=()
     )
     geared: tuple[GearedWeight, ...] = key(
-        Tables(Table(GearedWeight)), "counterweights geared to links", default=()
+        Tables(KeyTable(GearedWeight)), "counterweights geared to links", default=()
     )
     shafts: tuple[BalanceShafts, ...] = key(
-        Tables(Table(BalanceShafts)), "pairs of balance shafts", default=()
+        Tables(KeyTable(BalanceShafts)), "pairs of balance shafts", default=()
     )
     springs: tuple[SpringChoice, ...] = key(
-        Tables(Table(SpringChoice)), "springs that may be set", default=()
+        Tables(KeyTable(SpringChoice)), "springs that may be set", default=()
     )
     phases: Phases | None = key(
-        Table(Phases, headed=True), "the phases of rows may be changed", default=None
+        KeyTable(Phases, headed=True), "the phases of rows may be changed", default=None
     )
     objectives: tuple[Objective, ...] = key(
-        Tables(Table(Objective)), "what is to become small", default=()
+        Tables(KeyTable(Objective)), "what is to become small", default=()
     )
-    limits: tuple[Limit, ...] = key(Tables(Table(Limit)), "what must not become larger", default=())
+    limits: tuple[Limit, ...] = key(
+        Tables(KeyTable(Limit)), "what must not become larger", default=()
+    )
     combine: Literal["sum", "squares"] = key(
-        Text(("sum", "squares")),
+        TextKind(("sum", "squares")),
         "several objectives: their weighted sum, or with `squares` the root of the weighted sum of "
         "their squares",
         default="sum",

@@ -20,11 +20,11 @@ from equipoise.keys import (
     Frozen,
     Key,
     Keys,
+    KeyTable,
     Listing,
     Point,
-    Table,
     Tables,
-    Text,
+    TextKind,
     any_of,
     declared,
     key,
@@ -105,7 +105,7 @@ def with_material(table: dict[str, Any], prefix: str = "") -> dict[str, Any]:
 
 def material_key(prefix: str, text: str) -> dict[str, Key]:
     """The key of a material beside that of a density."""
-    kind = Text(suggested=(*MATERIALS,))
+    kind = TextKind(suggested=(*MATERIALS,))
     name = f"{prefix}material"
     known = ", ".join(f"{material} {density:.0f}" for material, density in MATERIALS.items())
     text = f"{text}; densities in kg/m^3: {known}"
@@ -157,7 +157,7 @@ class Body(Frozen):
     }
 
     shape: Form = key(
-        Text((*NEEDS,)),
+        TextKind((*NEEDS,)),
         "`bar`: straight, between two places; `plate`: with corners; `disc` and `ring`: round; "
         "`point`: what is small, or known by its mass and inertia",
         example="bar",
@@ -221,7 +221,7 @@ class Body(Frozen):
         at_least=0,
         why=NO_INERTIA,
     )
-    holes: tuple[Hole, ...] = key(Tables(Table(Hole)), "round holes, all through", default=())
+    holes: tuple[Hole, ...] = key(Tables(KeyTable(Hole)), "round holes, all through", default=())
     plane: float | None = key(
         "length", "z of its middle; that of the link if left out", default=None, example="20 mm"
     )

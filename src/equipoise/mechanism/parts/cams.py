@@ -8,7 +8,7 @@ from typing import Any, ClassVar, Literal
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, to_say
-from equipoise.keys import Conditions, Table, Text, declared, key, not_both
+from equipoise.keys import Conditions, KeyTable, TextKind, declared, key, not_both
 from equipoise.mechanism.checks import FRAME, Bodies, unknown_body, unknown_link, unknown_point
 from equipoise.mechanism.outputs.declared import (
     CONTACT,
@@ -56,29 +56,29 @@ class Cam(Coupling):
     conditions: ClassVar[Conditions] = not_both("lift", "swing")
 
     driver: str = key(
-        Text(of="body"),
+        TextKind(of="body"),
         'the link that bears the cam, or `"frame"` where the carrier turns; pinned to the carrier',
         name="cam",
         example="camshaft",
     )
     driven: str = key(
-        Text(of="link"),
+        TextKind(of="link"),
         "the link that follows; it slides on the carrier or is pinned to it",
         name="follower",
         example="tappet",
     )
     rides: Literal["roller", "flat", "knife"] = key(
-        Text(RIDES),
+        TextKind(RIDES),
         "what of the follower is on the cam: a roller, a flat face, or an edge",
         example="roller",
     )
     point: str = key(
-        Text(of="point", on="follower"),
+        TextKind(of="point", on="follower"),
         "of the follower: the roller's centre, a point of the flat face, or the edge",
         example="R",
     )
     closed_by: Literal["spring", "groove", "ribs"] = key(
-        Text(CLOSURES),
+        TextKind(CLOSURES),
         "what keeps the follower on the cam: springs of this file, which can let go of it; a "
         "groove around the roller; or ribs, that is a second flank for forces away from the cam",
         example="spring",
@@ -90,15 +90,17 @@ class Cam(Coupling):
         example="20 mm",
     )
     roller_radius: float = key("length", "goes with a roller", default=0.0, at_least=0)
-    carrier: str = key(Text(of="body"), "to which both are joined", default=FRAME, example="frame")
+    carrier: str = key(
+        TextKind(of="body"), "to which both are joined", default=FRAME, example="frame"
+    )
     lift: LengthLaw | None = key(
-        Table(LengthLaw, headed=True),
+        KeyTable(LengthLaw, headed=True),
         "displacement of a sliding follower along its guide, away from the cam, over the angle "
         "that the cam has turned against the carrier",
         default=None,
     )
     swing: AngleLaw | None = key(
-        Table(AngleLaw, headed=True),
+        KeyTable(AngleLaw, headed=True),
         "the same of a pinned follower: the angle by which it turns away from the cam",
         default=None,
     )
@@ -109,7 +111,7 @@ class Cam(Coupling):
         default=None,
     )
     side: Literal["left", "right"] = key(
-        Text(LEFT_RIGHT),
+        TextKind(LEFT_RIGHT),
         "of a pinned follower: where its roller, edge or face is, seen from the cam's axis "
         "towards the follower's pivot",
         default="left",

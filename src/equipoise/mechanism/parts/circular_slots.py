@@ -12,7 +12,7 @@ from typing import Any, ClassVar
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, to_say
-from equipoise.keys import Listing, Quantity, Text, declared, key
+from equipoise.keys import Listing, Quantity, TextKind, declared, key
 from equipoise.mechanism.checks import Bodies
 from equipoise.mechanism.parts.element_kinds import Placed
 from equipoise.mechanism.parts.joint_kinds import BEYOND, JointKind, Rider
@@ -41,7 +41,7 @@ class CircularSlot(JointKind):
     }
 
     center: str = key(
-        Text(of="point", on="on"), "a point of that, the centre of the slot", example="S",
+        TextKind(of="point", on="on"), "a point of that, the centre of the slot", example="S",
         word=to_say("centre of the slot"),
     )  # fmt: skip
     radius: float = key("length", "of its middle line", example="60 mm", above=0)

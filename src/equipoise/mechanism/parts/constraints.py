@@ -13,7 +13,7 @@ from typing import Any
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, to_say
-from equipoise.keys import Frozen, Listing, Text, declared, key
+from equipoise.keys import Frozen, Listing, TextKind, declared, key
 from equipoise.mechanism.checks import FRAME, Bodies, unknown
 from equipoise.quantities import told
 
@@ -85,15 +85,15 @@ class Constraint(Frozen):
     file_order = ("kind", "line", "to")
 
     kind: str = key(
-        Text((*MISSES,)),
+        TextKind((*MISSES,)),
         "`equal` lengths; `parallel`, `perpendicular` or `in line`, of one body",
         example="equal",
     )
     line: tuple[str, str] = key(
-        Listing(Text(of="point"), (2,)), "two points of a body", example=["A", "B"]
+        Listing(TextKind(of="point"), (2,)), "two points of a body", example=["A", "B"]
     )
     to: tuple[str, str] = key(
-        Listing(Text(of="point"), (2,)),
+        Listing(TextKind(of="point"), (2,)),
         "two points of a body, those of the other line; of them the second moves first",
         example=["C", "D"],
         word=to_say("other line"),

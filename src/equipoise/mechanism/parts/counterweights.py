@@ -12,13 +12,13 @@ from equipoise.keys import (
     Conditions,
     Frozen,
     Keys,
+    KeyTable,
     Listing,
     Number,
     OneOr,
     Point,
     Quantity,
-    Table,
-    Text,
+    TextKind,
     Whole,
     any_of,
     declared,
@@ -80,9 +80,11 @@ class GearedWeight(Frozen):
     conditions: ClassVar[Conditions] = {"allOf": [*WEIGHT, *GEARED]}
 
     driver: str = key(
-        Text(of="link"), "link that carries the other gear, pinned to the frame", example="rocker"
+        TextKind(of="link"),
+        "link that carries the other gear, pinned to the frame",
+        example="rocker",
     )
-    weight: Weight = key(Table(Weight, flat=True))
+    weight: Weight = key(KeyTable(Weight, flat=True))
     ratio: Pair | None = key(
         OneOr(
             Number(),
@@ -133,12 +135,12 @@ class GearedWeight(Frozen):
         "density", "of both gears, instead of `gear_material`", default=None, above=0
     )
     clear_of: tuple[str, ...] = key(
-        Listing(Text(of="link"), right=Note('a list of names such as ["coupler"]')),
+        Listing(TextKind(of="link"), right=Note('a list of names such as ["coupler"]')),
         "links that the counterweight must not touch",
         default=(),
         example=["coupler"],
     )
-    name: str = key(Text(), "of the new link", default="counterweight")
+    name: str = key(TextKind(), "of the new link", default="counterweight")
 
     @classmethod
     def from_table(cls, given: dict[str, Any]) -> GearedWeight:
@@ -168,9 +170,9 @@ class BalanceShafts(Frozen):
         "of the shaft that is geared to the drive's link and turns against it, and of the other",
         example=[["0 mm", "-60 mm"], ["40 mm", "-60 mm"]],
     )
-    weight: Weight = key(Table(Weight, flat=True))
+    weight: Weight = key(KeyTable(Weight, flat=True))
     name: str = key(
-        Text(), "of the new links, which get `-1` and `-2` behind it", default="balance-shaft"
+        TextKind(), "of the new links, which get `-1` and `-2` behind it", default="balance-shaft"
     )
 
 

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, Protocol, Self
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, to_say
-from equipoise.keys import Frozen, Key, Keys, Listing, Text, declared, inside, key
+from equipoise.keys import Frozen, Key, Keys, Listing, TextKind, declared, inside, key
 from equipoise.keys.declaring import listed_types, once
 from equipoise.mechanism.checks import FRAME, Bodies, unknown_body
 from equipoise.mechanism.formulas.rolling_kernels import followed
@@ -308,7 +308,7 @@ class Turning(Coupling):
     beside: ClassVar[Keys] = {
         "between": Key(
             "between",
-            Listing(Text(of="body"), (2,)),
+            Listing(TextKind(of="body"), (2,)),
             "driver and driven link; the driver is the one that is moved already, and may be "
             '`"frame"` where the carrier turns',
             example=["crank", "wheel"],
@@ -316,10 +316,10 @@ class Turning(Coupling):
     }
     heading: ClassVar[Note]
 
-    driver: str = inside(Text())
-    driven: str = inside(Text())
+    driver: str = inside(TextKind())
+    driven: str = inside(TextKind())
     carrier: str = key(
-        Text(of="body"),
+        TextKind(of="body"),
         "link to which both are pinned",
         default=FRAME,
         example="frame",

@@ -19,7 +19,7 @@ from equipoise.keys import (
     Flag,
     Listing,
     Point,
-    Text,
+    TextKind,
     declared,
     inside,
     key,
@@ -56,7 +56,7 @@ class CurveTable(CsvTable):
 
     x: tuple[float, ...] = inside(ROW)
     y: tuple[float, ...] = inside(ROW)
-    file: str = inside(Text(), default="", compare=False)
+    file: str = inside(TextKind(), default="", compare=False)
 
 
 @declared
@@ -95,9 +95,11 @@ class CurvedSlot(JointKind):
     }
 
     origin: str = key(
-        Text(of="point", on="on"), "a point of that, from which the points of the curve are given",
-        example="S", word=to_say("origin of the curve"),
-    )  # fmt: skip
+        TextKind(of="point", on="on"),
+        "a point of that, from which the points of the curve are given",
+        example="S",
+        word=to_say("origin of the curve"),
+    )
     points_given: tuple[tuple[float, float], ...] = key(
         Listing(
             Point(), (), Note('a list of points such as [["0 mm", "0 mm"], ["40 mm", "25 mm"]]')

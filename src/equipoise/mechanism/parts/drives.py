@@ -11,11 +11,11 @@ from equipoise.keys import (
     NO_INERTIA,
     Conditions,
     Frozen,
+    KeyTable,
     Listing,
     Number,
     Quantity,
-    Table,
-    Text,
+    TextKind,
     declared,
     key,
 )
@@ -58,7 +58,7 @@ class Pushing:
 
 def _between() -> Any:
     return key(
-        Listing(Text(of="point"), (2,)),
+        Listing(TextKind(of="point"), (2,)),
         "points of two bodies that a cylinder without mass drives, by the length between them; at "
         "a pin of several bodies it acts on the first of these",
         default=None,
@@ -68,7 +68,7 @@ def _between() -> Any:
 
 def _slider() -> Any:
     return key(
-        Text(),
+        TextKind(),
         "a sliding joint that is driven instead, by its travel, such as `rod on barrel`",
         default="",
         example="rod on barrel",
@@ -77,7 +77,7 @@ def _slider() -> Any:
 
 def _stroke() -> Any:
     return key(
-        Table(LengthLaw, headed=True),
+        KeyTable(LengthLaw, headed=True),
         "length of the cylinder, or travel of the sliding joint, over the cycle; `speed` tells how "
         "fast the cycle goes on",
         default=None,
@@ -100,7 +100,7 @@ class Drive(Pushing, Frozen):
     }
 
     link: str = key(
-        Text(of="link"),
+        TextKind(of="link"),
         "the driven link; it shares exactly one point with the frame, about which it turns; of a "
         "machine that a cylinder drives a link that does so and whose angle tells the pose",
         example="crank",
@@ -123,7 +123,7 @@ class Drive(Pushing, Frozen):
         example="5 N m",
         at_least=0,
     )
-    motor: Motor | None = key(Table(Motor, headed=True), "what drives it", default=None)
+    motor: Motor | None = key(KeyTable(Motor, headed=True), "what drives it", default=None)
     speeds: tuple[float, ...] = key(
         Listing(Quantity("angular speed"), (2,), Note('a list such as ["150 rpm", "240 rpm"]')),
         "the slowest and the fastest at which the machine runs, in the direction of `speed`; over "
@@ -133,7 +133,7 @@ class Drive(Pushing, Frozen):
         above=0,
     )
     motion: AngleLaw | None = key(
-        Table(AngleLaw, headed=True),
+        KeyTable(AngleLaw, headed=True),
         "how the driven link's angle goes with the crank angle, which turns at `speed`; they are "
         "the same where it is left out",
         default=None,
@@ -190,7 +190,7 @@ class FurtherDrive(Pushing, Frozen):
     }
 
     link: str = key(
-        Text(of="link"),
+        TextKind(of="link"),
         "the driven link; it shares exactly one point with the frame, about which it turns; one "
         "that is pushed may turn about a point of another link",
         example="second crank",
@@ -208,7 +208,7 @@ class FurtherDrive(Pushing, Frozen):
         word=to_say("angle at the start"),
     )
     motion: AngleLaw | None = key(
-        Table(AngleLaw, headed=True),
+        KeyTable(AngleLaw, headed=True),
         "how its angle goes with the crank angle, instead of `ratio` and `start`",
         default=None,
     )

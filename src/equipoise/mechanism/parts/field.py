@@ -17,11 +17,11 @@ from equipoise.keys import (
     Conditions,
     File,
     Frozen,
+    KeyTable,
     Listing,
     Point,
-    Table,
     Tables,
-    Text,
+    TextKind,
     Whole,
     declared,
     inside,
@@ -52,7 +52,7 @@ class SoilTable(CsvTable):
 
     depth: tuple[float, ...] = inside(ROW)
     resistance: tuple[float, ...] = inside(ROW)
-    file: str = inside(Text(), default="", compare=False)
+    file: str = inside(TextKind(), default="", compare=False)
 
 
 @declared
@@ -114,9 +114,11 @@ class PlantingArm(Frozen):
     called = to_say("{what} of planting arm {tip}")
 
     tip: str = key(
-        Text(of="point", on="links"), "point of a moving link that goes into the soil", example="Q"
+        TextKind(of="point", on="links"),
+        "point of a moving link that goes into the soil",
+        example="Q",
     )
-    finger_from: str | None = key(Text(of="point", on="links"), FINGER_FROM, default=None)
+    finger_from: str | None = key(TextKind(of="point", on="links"), FINGER_FROM, default=None)
     release: float | None = key("angle", RELEASE, default=None)
 
 
@@ -136,7 +138,9 @@ class Planting(Frozen):
     }
 
     tip: str = key(
-        Text(of="point", on="links"), "point of a moving link that goes into the soil", example="P"
+        TextKind(of="point", on="links"),
+        "point of a moving link that goes into the soil",
+        example="P",
     )
     forward_speed: float | None = key(
         "speed",
@@ -167,14 +171,14 @@ class Planting(Frozen):
         at_least=1,
     )
     travel: Literal["forward", "backward"] = key(
-        Text(WAYS),
+        TextKind(WAYS),
         "`forward`: the machine drives along x, `backward`: against it",
         default="forward",
     )
     surface: float | None = key(
         "length", "height of the soil's surface in the frame, instead of `depth`", default=None
     )
-    finger_from: str | None = key(Text(of="point", on="links"), FINGER_FROM, default=None)
+    finger_from: str | None = key(TextKind(of="point", on="links"), FINGER_FROM, default=None)
     release: float | None = key("angle", RELEASE, default=None)
     tray: tuple[Vector, Vector] | None = key(
         Listing(Point(), (2,)),
@@ -189,11 +193,11 @@ class Planting(Frozen):
         "acceleration", "the same while the tip is in the soil", default=None, above=0
     )
     soil: Soil | None = key(
-        Table(Soil), "what the soil does to the tip below its surface", default=None
+        KeyTable(Soil), "what the soil does to the tip below its surface", default=None
     )
 
     arms: tuple[PlantingArm, ...] = key(
-        Tables(Table(PlantingArm)),
+        Tables(KeyTable(PlantingArm)),
         "further arms of the same drive, such as the second one of a rotary transplanter",
         default=(),
     )

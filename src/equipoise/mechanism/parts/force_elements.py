@@ -15,11 +15,11 @@ from equipoise.keys import (
     Conditions,
     File,
     Frozen,
+    KeyTable,
     Listing,
     Number,
     Quantity,
-    Table,
-    Text,
+    TextKind,
     declared,
     inside,
     key,
@@ -77,7 +77,7 @@ class LoadTable(CsvTable):
 
     crank_angle: tuple[float, ...] = inside(ROW)
     values: tuple[tuple[float, ...], ...] = inside(Listing(ROW))
-    file: str = inside(Text(), default="", compare=False)
+    file: str = inside(TextKind(), default="", compare=False)
 
     @property
     def span(self) -> float:
@@ -122,9 +122,9 @@ class Load(Frozen):
         },
     }  # fmt: skip
 
-    link: str = key(Text(of="link"), "the loaded link", example="coupler")
+    link: str = key(TextKind(of="link"), "the loaded link", example="coupler")
     point: str | None = key(
-        Text(of="point", on="link"), "where a force acts; not for torques", default=None
+        TextKind(of="point", on="link"), "where a force acts; not for torques", default=None
     )
     force: Vector | None = key(
         Listing(Quantity("force"), (2,)), "along x and y of the frame", default=None
@@ -145,14 +145,14 @@ class Load(Frozen):
         example="force.csv",
     )
     outside: Literal["zero", "hold", "wrap"] | None = key(
-        Text(OUTSIDE),
+        TextKind(OUTSIDE),
         "what acts between the last row of a table and its first one in the next turn, where the "
         "rows do not cover a whole turn: nothing, what the last row has, or a straight line "
         "between both",
         default=None,
     )
     reaction: Literal["frame"] | None = key(
-        Text(("frame",)),
+        TextKind(("frame",)),
         "what bears its opposite, in the same line: the frame, as of gas between a piston and the "
         "cylinder's head, so that it does not shake the machine as a whole; nothing of the machine "
         "where left out",
@@ -190,7 +190,7 @@ class MotorTable(CsvTable):
 
     speed: tuple[float, ...] = inside(ROW)
     torque: tuple[float, ...] = inside(ROW)
-    file: str = inside(Text(), default="", compare=False)
+    file: str = inside(TextKind(), default="", compare=False)
 
 
 @declared
@@ -236,7 +236,7 @@ class Motor(Frozen):
         "inertia", "of its rotor about its own axis", default=0.0, at_least=0, why=NO_INERTIA
     )
     mean_speed: Literal["held", "free"] = key(
-        Text(MEAN_SPEEDS),
+        TextKind(MEAN_SPEEDS),
         "`held`: the motor is so set that the mean speed is the drive's `speed`; `free`: its curve "
         "holds as it is, and the speed follows from it",
         default="held",
@@ -249,13 +249,15 @@ class Motor(Frozen):
         above=0,
     )
     dc: DcMotor | None = key(
-        Table(DcMotor, headed=True), "a direct-current motor, instead of a curve", default=None
+        KeyTable(DcMotor, headed=True), "a direct-current motor, instead of a curve", default=None
     )
     induction: InductionMotor | None = key(
-        Table(InductionMotor, headed=True), "an induction motor, instead of a curve", default=None
+        KeyTable(InductionMotor, headed=True),
+        "an induction motor, instead of a curve",
+        default=None,
     )
     servo: ServoMotor | None = key(
-        Table(ServoMotor, headed=True), "a servo motor, instead of a curve", default=None
+        KeyTable(ServoMotor, headed=True), "a servo motor, instead of a curve", default=None
     )
 
     @property

@@ -15,7 +15,7 @@ from equipoise.keys import (
     Listing,
     Number,
     Quantity,
-    Text,
+    TextKind,
     Whole,
     declared,
     key,
@@ -61,7 +61,7 @@ class GearShape(Frozen):
     conditions: ClassVar[Conditions] = {"allOf": [*map(_of_kind, KINDS)]}
 
     kind: Literal["elliptic", "eccentric", "limacon", "ratio", "radius"] = key(
-        Text((*KINDS,)),
+        TextKind((*KINDS,)),
         "`elliptic` about a focus; `eccentric`, a circle with a driven gear that fits it; "
         "`limacon`, a limaçon of Pascal; `ratio` or `radius`: free, by a table or a Fourier "
         "series of the ratio or of the driver's pitch radius",
@@ -139,7 +139,7 @@ class GearShape(Frozen):
 # -- checks ----------------------------------------------------------------------------------------
 
 
-class Pair(Protocol):
+class MeshingGears(Protocol):
     """What a shape has to know of its gears."""
 
     @property
@@ -154,7 +154,7 @@ Told = tuple[str, Note]
 """A key, and what is wrong with it."""
 
 
-def wrong_shape(shape: GearShape, gears: Pair) -> list[Told]:
+def wrong_shape(shape: GearShape, gears: MeshingGears) -> list[Told]:
     """Everything that is wrong with the shape of gears, whatever curves follow from it."""
     return [*_wrong_keys(shape), *_wrong_table(shape), *_wrong_lobes(shape, gears)]
 
@@ -208,7 +208,7 @@ def _wrong_table(shape: GearShape) -> Iterator[Told]:
         yield "angle", told
 
 
-def _wrong_lobes(shape: GearShape, gears: Pair) -> Iterator[Told]:
+def _wrong_lobes(shape: GearShape, gears: MeshingGears) -> Iterator[Told]:
     ratio, exact = gears.speed_ratio, gears.exact_ratio
     if exact is None or (shape.lobes / exact).denominator != 1:
         told = Note(

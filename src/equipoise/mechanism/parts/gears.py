@@ -14,10 +14,10 @@ from equipoise.keys import (
     Conditions,
     Key,
     Keys,
+    KeyTable,
     Listing,
     Number,
-    Table,
-    Text,
+    TextKind,
     Whole,
     declared,
     inside,
@@ -52,7 +52,7 @@ class Gear(Turning):
     called = to_say("{what} of gear {number}")
     beside: ClassVar[Keys] = {
         **Turning.beside,
-        "mesh": Key("mesh", Text(MESHES), "goes with `teeth`", default=None, shown="external"),
+        "mesh": Key("mesh", TextKind(MESHES), "goes with `teeth`", default=None, shown="external"),
     }
     file_order = ("between", "ratio", "teeth", "mesh")
     conditions: ClassVar[Conditions] = {
@@ -84,10 +84,10 @@ class Gear(Turning):
         example=[20, 40],
         word=to_say("number of teeth"),
     )
-    mesh: Literal["external", "internal"] = inside(Text(MESHES), default="external")
+    mesh: Literal["external", "internal"] = inside(TextKind(MESHES), default="external")
     pressure_angle: float = pressure_angle("the radial part of the tooth force")
     shape: GearShape | None = key(
-        Table(GearShape, headed=True),
+        KeyTable(GearShape, headed=True),
         "pitch curves, where the ratio varies; `ratio` or `teeth` then tell its mean",
         default=None,
     )

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, to_say
-from equipoise.keys import Frozen, Text, declared, key
+from equipoise.keys import Frozen, TextKind, declared, key
 from equipoise.keys.declaring import once
 from equipoise.mechanism.checks import Bodies, Vector, unknown_body, unknown_link, unknown_point
 from equipoise.mechanism.parts.element_kinds import Element, element_kinds
@@ -74,14 +74,14 @@ class JointKind(Element):
     special = "pin in a slot"
     base: ClassVar[str]
 
-    link: str = key(Text(of="link"), "the link that has the pin", example="arm")
-    point: str = key(Text(of="point", on="link"), "its pin", example="P")
+    link: str = key(TextKind(of="link"), "the link that has the pin", example="arm")
+    point: str = key(TextKind(of="point", on="link"), "its pin", example="P")
     on: str = key(
-        Text(of="body"), 'the link that has the slot, or `"frame"`', example="frame",
+        TextKind(of="body"), 'the link that has the slot, or `"frame"`', example="frame",
         word=to_say("other body"),
     )  # fmt: skip
     own_name: str = key(
-        Text(),
+        TextKind(),
         "its name in outputs, and in the table of sides if it is there; `POINT in BODY` if left "
         "out",
         name="label",

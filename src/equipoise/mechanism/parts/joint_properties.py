@@ -11,7 +11,7 @@ from typing import ClassVar
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, key_names, to_say
-from equipoise.keys import Conditions, Frozen, Number, Table, Text, any_of, declared, key
+from equipoise.keys import Conditions, Frozen, KeyTable, Number, TextKind, any_of, declared, key
 from equipoise.mechanism.parts.rolling_bearings import RollingBearing
 
 JOINTS = ("pin", "slider")
@@ -51,7 +51,7 @@ class JointProperties(Frozen):
     }
 
     joint: str = key(
-        Text(),
+        TextKind(),
         "the name of its force in outputs; `joints.B` is a whole pin, of however many links",
         example="joints.B",
     )
@@ -126,7 +126,7 @@ class JointProperties(Frozen):
         above=0,
     )
     bearing: RollingBearing | None = key(
-        Table(RollingBearing), "rolling bearing in the pin, whose life is computed", default=None
+        KeyTable(RollingBearing), "rolling bearing in the pin, whose life is computed", default=None
     )
 
     @property

@@ -19,11 +19,11 @@ from equipoise.keys import (
     Conditions,
     File,
     Frozen,
+    KeyTable,
     Listing,
     Quantity,
-    Table,
     Tables,
-    Text,
+    TextKind,
     Whole,
     declared,
     inside,
@@ -32,7 +32,7 @@ from equipoise.keys import (
 from equipoise.keys.csv_tables import CsvTable
 
 if TYPE_CHECKING:
-    from equipoise.mechanism.formulas.curves import Array, Curve
+    from equipoise.mechanism.formulas.curves import Array, PeriodicCurve
 
 LAWS = ("cycloidal", "modified sine", "modified trapezoid", "3-4-5", "4-5-6-7", "harmonic",
         "s-curve", "trapezoid", "linear")  # fmt: skip
@@ -46,7 +46,7 @@ LENGTHS = Note('a list such as ["0 mm", "5 mm", "20 mm"]')
 
 
 @declared
-class Segment(Frozen):
+class LawSegment(Frozen):
     """A part of a motion from the value before it to another, over an angle of crank or cam."""
 
     called = to_say("{what} of segment {number}")
@@ -60,21 +60,21 @@ class Segment(Frozen):
     )
     to: float
     law: str = key(
-        Text(LAWS),
+        TextKind(LAWS),
         "by which it moves; nothing moves where `to` is the value before",
         default="cycloidal",
     )
 
 
 @declared
-class AngleSegment(Segment):
+class AngleSegment(LawSegment):
     """A part of a motion from the angle before it to another."""
 
     to: float = key("angle", "at its end", word=to_say("angle at the end"), example="30 deg")
 
 
 @declared
-class LengthSegment(Segment):
+class LengthSegment(LawSegment):
     """A part of a motion from the length before it to another."""
 
     to: float = key("length", "at its end", word=to_say("length at the end"), example="20 mm")
@@ -90,7 +90,7 @@ class LawTable(CsvTable):
 
     crank_angle: tuple[float, ...] = inside(ROW)
     values: tuple[float, ...] = inside(ROW)
-    file: str = inside(Text(), default="", compare=False)
+    file: str = inside(TextKind(), default="", compare=False)
 
 
 class AngleTable(LawTable):
@@ -142,7 +142,7 @@ class Law(Frozen):
         default=(),
     )
     spline: Literal["cubic", "quintic"] = key(
-        Text((*SPLINES,)), "through `values`; both come back smoothly", default="cubic"
+        TextKind((*SPLINES,)), "through `values`; both come back smoothly", default="cubic"
     )
     turns: int = key(
         Whole(1, MOST_TURNS), "of the crank in which it comes back; 1 of a cam", default=1
@@ -164,11 +164,11 @@ class Law(Frozen):
         return self.table.crank_angle, self.table.values
 
     @cached_property
-    def curve(self) -> Curve:
+    def curve(self) -> PeriodicCurve:
         """The value over the crank angle from `origin` on."""
         import numpy as np
 
-        from equipoise.mechanism.formulas.curves import NORMAL, Curve, joined, sine, spline
+        from equipoise.mechanism.formulas.curves import NORMAL, PeriodicCurve, joined, sine, spline
 
         if self.between is not None:
             return sine(*self.between, self.period)
@@ -182,7 +182,7 @@ class Law(Frozen):
         before = (self.start, *(one.to for one in self.segments))
         parts = zip(pairwise(before), self.segments, strict=True)
         whole = joined([NORMAL[s.law]().stretched(s.over, b - a).lifted(a) for (a, b), s in parts])
-        return Curve(whole.knots * (self.period / whole.length), whole.powers, whole.waves)
+        return PeriodicCurve(whole.knots * (self.period / whole.length), whole.powers, whole.waves)
 
     @property
     def origin(self) -> float:
@@ -227,8 +227,8 @@ def _start(dimension: Any, word: str) -> Any:
     return key(dimension, "where the first segment begins", default=0.0, word=word)
 
 
-def _segments(kind: type[Segment]) -> Any:
-    return key(Tables(Table(kind)), "parts of the motion, one after the other", default=())
+def _segments(kind: type[LawSegment]) -> Any:
+    return key(Tables(KeyTable(kind)), "parts of the motion, one after the other", default=())
 
 
 def _values(dimension: Any, right: Note) -> Any:

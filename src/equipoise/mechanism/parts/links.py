@@ -13,12 +13,12 @@ from equipoise.keys import (
     NO_INERTIA,
     Conditions,
     Frozen,
+    KeyTable,
     Named,
     Point,
     Quantity,
-    Table,
     Tables,
-    Text,
+    TextKind,
     declared,
     key,
     lacks,
@@ -88,7 +88,7 @@ class Link(Frozen):
         "inertia", "about the centre of mass", default=None, at_least=0, why=NO_INERTIA
     )
     bodies: tuple[Body, ...] = key(
-        Tables(Table(Body)), "what the link is made of, instead of its mass", default=()
+        Tables(KeyTable(Body)), "what the link is made of, instead of its mass", default=()
     )
     length: float | None = key(
         "length",
@@ -106,13 +106,13 @@ class Link(Frozen):
         word=to_say("side {name}"),
     )
     section: LinkSection | None = key(
-        Table(LinkSection, headed=True),
+        KeyTable(LinkSection, headed=True),
         "cross-section and material, by which stress along the link is computed",
         default=None,
     )
     plane: float = key("length", "z of the plane in which it moves", default=0.0)
     planes: Mapping[str, float] = key(
-        Named(Quantity("length"), by=Text(of="point", on="own")),
+        Named(Quantity("length"), by=TextKind(of="point", on="own")),
         "z of points that lie beside that plane, such as the pins of a crankshaft: `planes.B`",
         factory=dict,
         word=to_say("plane of {name}"),

@@ -19,13 +19,13 @@ from equipoise.keys import (
     VERSION,
     Frozen,
     Keys,
+    KeyTable,
     Listing,
     Named,
     ParameterValue,
     Quantity,
-    Table,
     Tables,
-    Text,
+    TextKind,
     Wording,
     changed,
     declared,
@@ -129,20 +129,20 @@ class Machine(Driven, Displayed, Frozen):
                   "duty", "run", "balance")  # fmt: skip
 
     title: str = key(Wording(), "shown in reports", example="Slider-crank")
-    drive: Drive = key(Table(Drive), "the link that is driven")
-    frame: Mapping[str, Vector] = key(Table(Frame), "the part that stands still")
-    links: Mapping[str, Link] = key(Named(Table(Link)), "moving links by name")
+    drive: Drive = key(KeyTable(Drive), "the link that is driven")
+    frame: Mapping[str, Vector] = key(KeyTable(Frame), "the part that stands still")
+    links: Mapping[str, Link] = key(Named(KeyTable(Link)), "moving links by name")
     assembly: Mapping[str, str] = key(
-        Named(Text(SIDES)),
+        Named(TextKind(SIDES)),
         "side on which the inner joint of each dyad lies, by name of the joint; `mode` for all "
         "that close a four-bar of equal opposite sides",
         factory=dict,
     )
-    sliders: tuple[Slider, ...] = key(Tables(Table(Slider)), "sliding joints", default=())
-    gears: tuple[Gear, ...] = key(Tables(Table(Gear)), "pairs of gears", default=())
-    cams: tuple[Cam, ...] = key(Tables(Table(Cam)), "cams with their followers", default=())
+    sliders: tuple[Slider, ...] = key(Tables(KeyTable(Slider)), "sliding joints", default=())
+    gears: tuple[Gear, ...] = key(Tables(KeyTable(Gear)), "pairs of gears", default=())
+    cams: tuple[Cam, ...] = key(Tables(KeyTable(Cam)), "cams with their followers", default=())
     loads: tuple[Load, ...] = key(
-        Tables(Table(Load)), "forces and torques from outside", default=()
+        Tables(KeyTable(Load)), "forces and torques from outside", default=()
     )
     gravity: Vector = key(
         Listing(Quantity("acceleration"), (2,)),
@@ -151,52 +151,52 @@ class Machine(Driven, Displayed, Frozen):
         shown=["0 m/s^2", "-9.80665 m/s^2"],
     )
     position: Position | None = key(
-        Table(Position), "rough position, needed only where dyads do not suffice", default=None
+        KeyTable(Position), "rough position, needed only where dyads do not suffice", default=None
     )
     description: str = key(Wording(), "further text", default="")
     planting: Planting | None = key(
-        Table(Planting), "what a finger does in the field", default=None
+        KeyTable(Planting), "what a finger does in the field", default=None
     )
-    support: Support | None = key(Table(Support), "what carries the linkages", default=None)
+    support: Support | None = key(KeyTable(Support), "what carries the linkages", default=None)
     rows: tuple[Row, ...] = key(
-        Tables(Table(Row)),
+        Tables(KeyTable(Row)),
         "equal linkages on one shaft; the one of this file if left out",
         default=(),
     )
     balance: Balance | None = key(
-        Table("equipoise.mechanism.parts.balance:Balance"),
+        KeyTable("equipoise.mechanism.parts.balance:Balance"),
         "what may be changed to quieten it, and what is to become small",
         default=None,
     )
     springs: tuple[Spring, ...] = key(
-        Tables(Table(Spring)), "linear springs between links, or links and frame", default=()
+        Tables(KeyTable(Spring)), "linear springs between links, or links and frame", default=()
     )
     drives: tuple[FurtherDrive, ...] = key(
-        Tables(Table(FurtherDrive)), "links that are driven besides", default=()
+        Tables(KeyTable(FurtherDrive)), "links that are driven besides", default=()
     )
 
     joints: tuple[JointProperties, ...] = key(
-        Tables(Table(JointProperties)), "properties of single joints", default=()
+        Tables(KeyTable(JointProperties)), "properties of single joints", default=()
     )
     bearings: Mapping[str, Bearing] = key(
-        Named(Table(Bearing)),
+        Named(KeyTable(Bearing)),
         "in which links turn about their pins in the frame, two of each, by name",
         factory=dict,
     )
     units: ShownUnits | None = key(
-        Table(ShownUnits), "in which values are shown, as by `--units`", default=None
+        KeyTable(ShownUnits), "in which values are shown, as by `--units`", default=None
     )
-    belts: tuple[Belt, ...] = key(Tables(Table(Belt)), "toothed belts and chains", default=())
-    racks: tuple[Rack, ...] = key(Tables(Table(Rack)), "racks with their pinions", default=())
+    belts: tuple[Belt, ...] = key(Tables(KeyTable(Belt)), "toothed belts and chains", default=())
+    racks: tuple[Rack, ...] = key(Tables(KeyTable(Rack)), "racks with their pinions", default=())
     torsion_springs: tuple[TorsionSpring, ...] = key(
-        Tables(Table(TorsionSpring)), "springs that turn links against each other", default=()
+        Tables(KeyTable(TorsionSpring)), "springs that turn links against each other", default=()
     )
 
     circular_slots: tuple[CircularSlot, ...] = key(
-        Tables(Table(CircularSlot)), "pins in circular slots", default=()
+        Tables(KeyTable(CircularSlot)), "pins in circular slots", default=()
     )
     curved_slots: tuple[CurvedSlot, ...] = key(
-        Tables(Table(CurvedSlot)), "pins in slots along smooth curves", default=()
+        Tables(KeyTable(CurvedSlot)), "pins in slots along smooth curves", default=()
     )
 
     parameters: Mapping[str, str | float] = key(
@@ -205,21 +205,21 @@ class Machine(Driven, Displayed, Frozen):
         factory=dict,
     )
     constraints: tuple[Constraint, ...] = key(
-        Tables(Table(Constraint)),
+        Tables(KeyTable(Constraint)),
         "what lines of bodies have to be to each other while lengths are edited",
         default=(),
     )
     run: RunPlan | None = key(
-        Table(RunPlan), "start and end of `equipoise run`, where its options say nothing",
+        KeyTable(RunPlan), "start and end of `equipoise run`, where its options say nothing",
         default=None,
     )  # fmt: skip
     duty: tuple[DutyState, ...] = key(
-        Tables(Table(DutyState)),
+        Tables(KeyTable(DutyState)),
         "states in which it works over its life, for the lives of bearings; that of the file alone "
         "where left out",
         default=(),
     )
-    expressions: Mapping[str, str] = inside(Named(Text()), factory=dict)
+    expressions: Mapping[str, str] = inside(Named(TextKind()), factory=dict)
 
     @classmethod
     def from_table(cls, given: dict[str, Any]) -> Machine:

@@ -8,7 +8,18 @@ from typing import Any, ClassVar
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, all_of, to_say
-from equipoise.keys import Conditions, Flag, Frozen, Key, Keys, Point, Quantity, Text, declared, key
+from equipoise.keys import (
+    Conditions,
+    Flag,
+    Frozen,
+    Key,
+    Keys,
+    Point,
+    Quantity,
+    TextKind,
+    declared,
+    key,
+)
 from equipoise.keys import Direction as DirectionKind
 
 Place = tuple[float, float, float]
@@ -104,7 +115,7 @@ class Mount(Frozen):
         Flag(), "it can push only, like a float or a wheel on the ground", default=False
     )
     axis: str | None = key(
-        Text(AXES), "about which it turns back, instead of `point`", default=None
+        TextKind(AXES), "about which it turns back, instead of `point`", default=None
     )
     torsional_stiffness: float = key(
         "torsional stiffness", "about the axis", default=0.0, at_least=0
@@ -151,7 +162,7 @@ class Gauge(Frozen):
         example=["0 mm", "1 m"],
     )
     direction: Direction = key(DirectionKind(), "along which it is read", default=UP)
-    axis: str | None = key(Text(AXES), "about which the rotation is read", default=None)
+    axis: str | None = key(TextKind(AXES), "about which the rotation is read", default=None)
 
     @classmethod
     def from_table(cls, given: dict[str, Any]) -> Gauge:

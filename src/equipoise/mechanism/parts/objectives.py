@@ -10,14 +10,14 @@ from typing import Any, ClassVar, Self
 from equipoise.errors import ModelError, at_place
 from equipoise.i18n import Note, key_names, to_say
 from equipoise.keys import (
+    DependentQuantity,
     Frozen,
     Keys,
+    KeyTable,
     Listing,
     Number,
     Quantity,
-    Table,
-    Text,
-    Told,
+    TextKind,
     declared,
     inside,
     key,
@@ -63,14 +63,14 @@ class Objective(Frozen):
     file_order = ("output", "measure", "orders", "about", "speeds", "weight")
 
     output: str = key(
-        Text(of="output"),
+        TextKind(of="output"),
         "such as `shaking_force.y`, `shaking_force`, `shaking_moment`, `drive_torque`, "
         "`frame_force`, `frame_moment`, `joints.NAME`, `gears.NAME`, `belts.NAME.pull`, "
         "`gauges.NAME`, `roll_moment`, `yaw_moment`, `rocking_moment`",
         example="shaking_moment",
     )
     measure: Measure = key(
-        Text(MEASURES),
+        TextKind(MEASURES),
         "`rms`: root of the mean square; `ripple`: the same about the mean; `peak`: largest size; "
         "`peak_to_peak`: largest minus smallest value; `area`: under the size, over 360 "
         "degrees of crank angle",
@@ -84,7 +84,7 @@ class Objective(Frozen):
         at_least=0,
     )
     about: str | None = key(
-        Text(of="point", on="frame"),
+        TextKind(of="point", on="frame"),
         "point of the frame about which `shaking_moment` or `frame_moment` is taken; the drive's "
         "pivot if left out",
         default=None,
@@ -134,7 +134,7 @@ class Limit(Frozen, RequiredFigure):
     called = to_say("{what} of limit {number}")
     beside: ClassVar[Keys] = RequirementKeys(
         "limits",
-        Told(
+        DependentQuantity(
             right=Note(
                 'give number and unit in quotes, such as "120 N", or a share of the value '
                 'before, such as "80 %"'
@@ -146,7 +146,7 @@ class Limit(Frozen, RequiredFigure):
         example="120 N",
     )
 
-    objective: Objective = key(Table(Objective, flat=True, without=("weight",)))
+    objective: Objective = key(KeyTable(Objective, flat=True, without=("weight",)))
     ratio: float | None = inside(Number(), default=None)
 
     def __init__(

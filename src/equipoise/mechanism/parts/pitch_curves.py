@@ -24,7 +24,7 @@ from equipoise.mechanism.formulas.rolling import (
     Tabled,
     Waves,
 )
-from equipoise.mechanism.parts.gear_shapes import TABLED, GearShape, Pair, Told
+from equipoise.mechanism.parts.gear_shapes import TABLED, GearShape, MeshingGears, Told
 
 MISFIT = 1e-4
 """Share by which a table may miss that its curves close; it is spread over all of it."""
@@ -133,7 +133,7 @@ def closed_table(shape: GearShape, mean: float, distance: float | None) -> GearS
     return replace(shape, **values) if factor else shape
 
 
-def wrong_curve(shape: GearShape, gears: Pair, distance: float | None) -> Iterator[Told]:
+def wrong_curve(shape: GearShape, gears: MeshingGears, distance: float | None) -> Iterator[Told]:
     """What is wrong with the pitch curves that follow; distance : of the axes, if known, m."""
     even = _even(shape)
     if shape.kind in TABLED and (lowest := _lowest(even)) <= 0:
@@ -178,7 +178,7 @@ def can_vary(shape: GearShape) -> bool:
     return not shape.varies or shape.kind in FORMULAS
 
 
-def can_roll(shape: GearShape, gears: Pair) -> Array:
+def can_roll(shape: GearShape, gears: MeshingGears) -> Array:
     """Of which designs (P, 1), whose numbers are columns, the pitch curves roll on each other.
 
     They are looked at closely where they are near to what is wrong, and rings always.

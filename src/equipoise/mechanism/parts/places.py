@@ -8,7 +8,7 @@ from typing import Any
 
 from equipoise.errors import ModelError, UsageError
 from equipoise.i18n import Note, to_say
-from equipoise.keys import Frozen, Named, Point, Quantity, Text, declared, key
+from equipoise.keys import Frozen, Named, Point, Quantity, TextKind, declared, key
 from equipoise.mechanism.checks import FRAME, Bodies, Vector, unknown, unknown_link
 
 
@@ -20,10 +20,10 @@ class Position(Frozen):
         "angle", "at which it holds; 0 where gears are among these links", default=0.0
     )
     points: Mapping[str, Vector] = key(
-        Named(Point(), by=Text(of="point", on="links")), "places in the frame", factory=dict
+        Named(Point(), by=TextKind(of="point", on="links")), "places in the frame", factory=dict
     )
     angles: Mapping[str, float] = key(
-        Named(Quantity("angle"), by=Text(of="link")), "of links in the frame", factory=dict
+        Named(Quantity("angle"), by=TextKind(of="link")), "of links in the frame", factory=dict
     )
 
 

@@ -9,7 +9,7 @@ from typing import Any, ClassVar, Literal
 
 from equipoise.errors import ModelError, MotionError
 from equipoise.i18n import Note, to_say
-from equipoise.keys import Text, declared, key
+from equipoise.keys import TextKind, declared, key
 from equipoise.mechanism.checks import FRAME, Bodies
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.parts.couplings import (
@@ -42,23 +42,23 @@ class Rack(Coupling):
     special = "rack"
     counted = to_say("{count} rack"), to_say("{count} racks")
 
-    pinion: str = key(Text(of="body"), "link that turns", example="rocker")
+    pinion: str = key(TextKind(of="body"), "link that turns", example="rocker")
     rack: str = key(
-        Text(of="link"),
+        TextKind(of="link"),
         "link that slides on the carrier, by a guide of `[[sliders]]` that is `on` the carrier",
         example="rack",
     )
     radius: float = key("length", "pitch radius of the pinion", example="20 mm", above=0)
     side: Literal["left", "right"] = key(
-        Text(HANDS),
+        TextKind(HANDS),
         "on which the pinion is of the rack, seen along the direction of its guide",
         example="left",
     )
     drives: Literal["pinion", "rack"] = key(
-        Text(ENDS), "which of both is moved already", default="pinion"
+        TextKind(ENDS), "which of both is moved already", default="pinion"
     )
     carrier: str = key(
-        Text(of="body"),
+        TextKind(of="body"),
         "link to which the pinion is pinned, and on which the rack slides",
         default=FRAME,
         example="frame",

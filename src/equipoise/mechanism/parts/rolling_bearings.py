@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Literal
 
 from equipoise.i18n import to_say
-from equipoise.keys import Frozen, Number, Text, declared, key
+from equipoise.keys import Frozen, Number, TextKind, declared, key
 
 EXPONENTS = {"ball": 3.0, "roller": 10 / 3}
 """By which a bearing's life falls with its load, ISO 281."""
@@ -24,7 +24,7 @@ class RollingBearing(Frozen):
         "force", "basic static load rating C0", default=None, example="15 kN", above=0
     )
     kind: Literal["ball", "roller"] = key(
-        Text((*EXPONENTS,)), "of its rolling elements: life goes by the load to 3 or 10/3",
+        TextKind((*EXPONENTS,)), "of its rolling elements: life goes by the load to 3 or 10/3",
         default="ball",
     )  # fmt: skip
     load_factor: float = key(Number(), "by which shocks make the load larger", default=1.0, above=0)

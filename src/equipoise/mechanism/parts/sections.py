@@ -13,7 +13,7 @@ from equipoise.keys import (
     Frozen,
     Listing,
     Number,
-    Text,
+    TextKind,
     declared,
     key,
     lacks,
@@ -41,7 +41,7 @@ class LinkSection(Frozen):
     }
 
     between: tuple[str, str] | None = key(
-        Listing(Text(of="point", on="own"), (2,)),
+        Listing(TextKind(of="point", on="own"), (2,)),
         "points of the link, whose line is its axis; those of a link with two where left out",
         default=None,
         example=["B", "C"],

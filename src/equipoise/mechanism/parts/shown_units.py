@@ -7,14 +7,14 @@ from typing import Any, ClassVar, cast
 
 from equipoise.errors import ModelError, UsageError
 from equipoise.i18n import Note
-from equipoise.keys import Frozen, Key, Text, declared, key, keys_of
+from equipoise.keys import Frozen, Key, TextKind, declared, key, keys_of
 from equipoise.mechanism.checks import unknown
 from equipoise.quantities import KINDS, Dimension
 from equipoise.quantities.reading import described, plain_unit, unit_meant
 
 
 def _unit_of(dimension: Dimension) -> Any:
-    return key(Text(tuple(KINDS[dimension].units)), f"of {dimension}", default=None)
+    return key(TextKind(tuple(KINDS[dimension].units)), f"of {dimension}", default=None)
 
 
 @declared
@@ -68,7 +68,7 @@ def _dimension(name: str) -> Dimension:
 
 
 def _units(name: str) -> tuple[str, ...]:
-    return cast(Text, _keys()[name].kind).names
+    return cast(TextKind, _keys()[name].kind).names
 
 
 def _right(name: str, unit: str) -> Note:

@@ -7,7 +7,7 @@ from typing import ClassVar, Protocol
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, to_say
-from equipoise.keys import Frozen, Text, declared, key
+from equipoise.keys import Frozen, TextKind, declared, key
 from equipoise.mechanism.checks import (
     Bodies,
     Vector,
@@ -28,13 +28,13 @@ class Slider(Frozen):
     called = to_say("{what} of the guide of the {link}")
     group: ClassVar[str] = to_say("slider on a straight line")
 
-    link: str = key(Text(of="link"), "the sliding link", example="piston")
-    point: str = key(Text(of="point", on="link"), "its point on the line", example="C")
+    link: str = key(TextKind(of="link"), "the sliding link", example="piston")
+    point: str = key(TextKind(of="point", on="link"), "its point on the line", example="C")
     on: str = key(
-        Text(of="body"), 'the guiding link, or `"frame"`', example="frame", word=to_say("guide")
+        TextKind(of="body"), 'the guiding link, or `"frame"`', example="frame", word=to_say("guide")
     )
     through: str = key(
-        Text(of="point", on="on"),
+        TextKind(of="point", on="on"),
         "a point of the guide on the line",
         example="A",
         word=to_say("point of the guide"),
@@ -42,7 +42,7 @@ class Slider(Frozen):
     direction: float = key("angle", "of the line, in the axes of the guide", example="0 deg")
     angle: float = key("angle", "of the sliding link's x axis, from the line", default=0.0)
     label: str = key(
-        Text(),
+        TextKind(),
         "its name in outputs, `LINK on BODY` if left out; a second guide of the same link on the "
         "same body needs one",
         default="",
@@ -60,7 +60,7 @@ class Bearing(Frozen):
     called = to_say("{what} of bearing {name}")
 
     link: str = key(
-        Text(of="link"), "that turns in it; it has one pin in the frame", example="crank"
+        TextKind(of="link"), "that turns in it; it has one pin in the frame", example="crank"
     )
     plane: float = key("length", "z of its middle", example="-20 mm")
 

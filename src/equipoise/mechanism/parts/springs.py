@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, to_say
-from equipoise.keys import Text, declared, key
+from equipoise.keys import TextKind, declared, key
 from equipoise.mechanism.checks import FRAME, Bodies, unknown, unknown_body, unknown_link
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.parts.element_kinds import Placed
@@ -32,14 +32,14 @@ class Spring(ForceElement):
         "pull": (to_say("smallest pull"), to_say("largest")),
     }
 
-    link: str = key(Text(of="link"), "the link that it pulls", example="rocker")
+    link: str = key(TextKind(of="link"), "the link that it pulls", example="rocker")
     point: str = key(
-        Text(of="point", on="link"),
+        TextKind(of="point", on="link"),
         "its point on the link, not one that is pinned to the frame",
         example="C",
     )
     to: str = key(
-        Text(of="point", on="on"),
+        TextKind(of="point", on="on"),
         "its point on the frame, or on `on`",
         example="S",
         word=to_say("other point"),
@@ -54,7 +54,7 @@ class Spring(ForceElement):
         why=Note("a length cannot be negative, give 0 or more"),
     )
     on: str = key(
-        Text(of="body"), "the body of its other point", default=FRAME, word=to_say("other body")
+        TextKind(of="body"), "the body of its other point", default=FRAME, word=to_say("other body")
     )
 
     @property

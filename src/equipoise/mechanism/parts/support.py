@@ -14,13 +14,13 @@ from equipoise.i18n import Note, all_of, key_names, to_say
 from equipoise.keys import (
     Conditions,
     Frozen,
+    KeyTable,
     Listing,
     Named,
     OneOr,
     Point,
     Quantity,
-    Table,
-    Text,
+    TextKind,
     declared,
     key,
 )
@@ -147,7 +147,7 @@ class Support(Frozen):
     )
     freedoms: tuple[str, ...] = key(
         Listing(
-            Text(FREEDOMS),
+            TextKind(FREEDOMS),
             right=Note('a list such as ["heave", "pitch"]; leave it out for the usual ones'),
         ),
         "how it can move: along x, y, z or about x, y, z; if left out pitch with a pivot, and "
@@ -156,10 +156,10 @@ class Support(Frozen):
         example=["heave", "pitch"],
     )
     mounts: Mapping[str, Mount] = key(
-        Named(Table(Mount)), "springs and dampers by name", factory=dict
+        Named(KeyTable(Mount)), "springs and dampers by name", factory=dict
     )
     gauges: Mapping[str, Gauge] = key(
-        Named(Table(Gauge)), "readings of its motion by name", factory=dict
+        Named(KeyTable(Gauge)), "readings of its motion by name", factory=dict
     )
 
     @property

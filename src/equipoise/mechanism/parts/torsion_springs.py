@@ -14,7 +14,7 @@ from equipoise.keys import (
     File,
     Listing,
     Quantity,
-    Text,
+    TextKind,
     declared,
     inside,
     key,
@@ -45,7 +45,7 @@ class TorsionTable(CsvTable):
 
     angle: tuple[float, ...] = inside(ROW)
     torque: tuple[float, ...] = inside(ROW)
-    file: str = inside(Text(), default="", compare=False)
+    file: str = inside(TextKind(), default="", compare=False)
 
 
 @declared
@@ -76,9 +76,9 @@ class TorsionSpring(ForceElement):
         "torque": (to_say("smallest torque"), to_say("largest")),
     }
 
-    link: str = key(Text(of="link"), "the link that it turns", example="rocker")
+    link: str = key(TextKind(of="link"), "the link that it turns", example="rocker")
     on: str = key(
-        Text(of="body"),
+        TextKind(of="body"),
         "the body on which its other end is held",
         default=FRAME,
         word=to_say("other body"),

@@ -12,11 +12,11 @@ from equipoise.keys import (
     Conditions,
     Frozen,
     Keys,
+    KeyTable,
     Listing,
     Point,
     Quantity,
-    Table,
-    Text,
+    TextKind,
     any_of,
     declared,
     key,
@@ -79,7 +79,7 @@ class Weight(Frozen):
     file_order = ("shape", "radius", "inner_radius", "thickness", "material", "density")
 
     shape: Shape = key(
-        Text(SHAPES),
+        TextKind(SHAPES),
         "`any`: however it is spread in its room; `point`: in one point; `disc`: a round plate "
         "anywhere in the room; `ring` and `sector`: about the centre",
         default="any",
@@ -127,14 +127,14 @@ class AddedMass(Frozen):
     called = to_say("{what} of added mass {number}")
     conditions: ClassVar[Conditions] = {"allOf": [*WEIGHT]}
 
-    link: str = key(Text(of="link"), "name of the link", example="crank")
+    link: str = key(TextKind(of="link"), "name of the link", example="crank")
     at: str = key(
-        Text(of="point", on="link"),
+        TextKind(of="point", on="link"),
         "point of the link, the centre of the room",
         example="A",
         word=to_say("centre"),
     )
-    weight: Weight = key(Table(Weight, flat=True))
+    weight: Weight = key(KeyTable(Weight, flat=True))
 
 
 @declared
@@ -149,7 +149,7 @@ class CenterMove(Frozen):
         "dependentSchemas": {"center": {"properties": {"x": False, "y": False}}},
     }
 
-    link: str = key(Text(of="link"), "a link with a mass", example="coupler")
+    link: str = key(TextKind(of="link"), "a link with a mass", example="coupler")
     x: Pair | None = key(
         RANGE,
         "lowest and highest, in the link's axes; without limit if left out",
