@@ -67,8 +67,8 @@ def export(
         )
     if language not in LANGUAGES:
         names = ", ".join(LANGUAGES)
-        what = Note("got {language!r}; give one of {names}", language=language, names=names)
-        raise UsageError(at_place("language", what))
+        wrong = Note("got {language!r}; give one of {names}", language=language, names=names)
+        raise UsageError(at_place("language", wrong))
     if isinstance(what, Store):
         write_designs(what, path, kept=kept)
         return ()

@@ -8,7 +8,7 @@ from itertools import combinations, zip_longest
 import numpy as np
 
 from equipoise.symbols.looks import EDGE
-from equipoise.symbols.scene import Body, Scene
+from equipoise.symbols.scene import LinkOutline, Scene
 from equipoise.symbols.shapes import Array, off_outline
 
 COVERED = 0.25
@@ -44,7 +44,7 @@ def _stacks(scene: Scene, k: int) -> list[list[str]]:
     return [*found.values()]
 
 
-def _covers(scene: Scene, one: Body, other: Body, k: int) -> bool:
+def _covers(scene: Scene, one: LinkOutline, other: LinkOutline, k: int) -> bool:
     """Whether links of one shape that turn alike cover each other."""
     turned = scene.angles[one.name] - scene.angles[other.name]
     if len(one.outline) != len(other.outline) or np.ptp(turned) > ALIKE:

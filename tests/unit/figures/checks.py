@@ -12,7 +12,7 @@ import pytest
 
 from equipoise.figures import layout
 from equipoise.figures.layout import lay_out
-from equipoise.figures.sheet import Item, Sheet, Stroke, Words, box_of
+from equipoise.figures.sheet import CanvasStroke, Item, Sheet, Words, box_of
 from equipoise.figures.style import PAPER, DrawingStyle, look_of
 from equipoise.figures.vector import svg_of
 from equipoise.figures.view import View
@@ -124,7 +124,7 @@ def bars_afloat(laid: Laid) -> Iterator[Fault]:
         panel = view.panel
         ups = {"x": panel.y, "y": panel.x}
         if any(ups[bars.across].scale == "log" for bars in panel.bars):
-            filled = [one for one in items if isinstance(one, Stroke) and one.fill]
+            filled = [one for one in items if isinstance(one, CanvasStroke) and one.fill]
             colors = {
                 look_of(role).inside for bars in panel.bars for role in (bars.role, *bars.roles)
             }
