@@ -143,8 +143,8 @@ def _of_linkage(found: Findings, language: str, command: str, together: bool) ->
 
 
 def _not_said(
-    blocks: Iterable[Block | Section], summary: Iterable[SummaryAnswer]
-) -> Iterator[Block | Section]:
+    blocks: Iterable[Block | ReportSection], summary: Iterable[SummaryAnswer]
+) -> Iterator[Block | ReportSection]:
     """Blocks but for texts that the summary has already."""
     said_there = {sentence for answer in summary for sentence in answer.sentences}
     for block in blocks:
