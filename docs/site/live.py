@@ -9,7 +9,6 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from equipoise import EquipoiseError, examples, export, load
-from equipoise.i18n import speaking
 
 
 def write_live(into: Path, languages: Iterable[str]) -> set[str]:
@@ -23,8 +22,7 @@ def write_live(into: Path, languages: Iterable[str]) -> set[str]:
         folder.mkdir(parents=True)
         for name in examples("linkage"):
             try:
-                with speaking(language):
-                    export(load(name), folder / f"{name}.html")
+                export(load(name), folder / f"{name}.html", language=language)
             except EquipoiseError:
                 continue  # of this machine no script can be written
             names.add(name)
