@@ -24,8 +24,8 @@ def room(name: str) -> Any:
 def names_of(names: Iterable[Any]) -> str:
     """The first of some names, and that there are more."""
     listed = [*map(str, names)]
-    more = ["..."] if len(listed) > MOST_NAMES else []
-    return ", ".join([*listed[:MOST_NAMES], *more])
+    labels = ["..."] if len(listed) > MOST_NAMES else []
+    return ", ".join([*listed[:MOST_NAMES], *labels])
 
 
 def brief(value: Any) -> str:
@@ -46,9 +46,9 @@ class Brief:
     """Base of dataclasses of arrays and other large values, whose `repr` is one line."""
 
     def __repr__(self) -> str:
-        own = (one.name for one in fields(cast("Any", self)) if one.repr)
-        told = ", ".join(f"{name}={brief(getattr(self, name))}" for name in own)
-        return f"{type(self).__name__}({told})"
+        own = (item.name for item in fields(cast("Any", self)) if item.repr)
+        text = ", ".join(f"{name}={brief(getattr(self, name))}" for name in own)
+        return f"{type(self).__name__}({text})"
 
 
 class Displayed(Brief):

@@ -112,8 +112,8 @@ class EquipoiseError(Exception):
         """What IPython and notebooks show: its traceback, and below it where there is more."""
         shell = import_module("IPython").get_ipython()
         shown = shell.InteractiveTB.structured_traceback(type(self), self, self.__traceback__)
-        more = self.explained_by
-        return [*shown, *([f"more: {more}"] if more else [])]
+        explained_by = self.explained_by
+        return [*shown, *([f"more: {explained_by}"] if explained_by else [])]
 
     def with_paste(self, paste: Paste | None) -> Self:
         """The same error, with lines that can be pasted into the file."""
@@ -314,8 +314,8 @@ MOST_SHOWN = 20
 def unknown(given: str, known: Iterable[str], kind: str) -> Note:
     """Say that a name is unknown, and what would be right."""
     names = list(known)
-    near = meant(given, names)
-    hint = near or Note("there are {names}", names=_listed(names))
+    note = meant(given, names)
+    hint = note or Note("there are {names}", names=_listed(names))
     what = kind if isinstance(kind, Note) else Note(kind)
     return Note("no {kind} is called {given!r}; {hint}", kind=what, given=given, hint=hint)
 
@@ -326,8 +326,14 @@ def meant(given: str, names: Sequence[str]) -> Note | None:
 
     by_form = {form_of(name): name for name in reversed(names)}
     form = form_of(given)
-    near = [name for name in get_close_matches(form, by_form, 5, 0.5) if _is_misspelt(form, name)]
-    return Note("did you mean {name!r}?", name=by_form[near[0]]) if near else None
+    matching_get_close_matches = [
+        name for name in get_close_matches(form, by_form, 5, 0.5) if _is_misspelt(form, name)
+    ]
+    return (
+        Note("did you mean {name!r}?", name=by_form[matching_get_close_matches[0]])
+        if matching_get_close_matches
+        else None
+    )
 
 
 SHORTEST = 2

@@ -127,10 +127,10 @@ def open_file(path: str | os.PathLike[str], within: str | os.PathLike[str] | Non
             return _opened_in(inside, flags)
     if roots is None:
         return os.open(path, flags)
-    found = _real(path, roots)
-    if found is None:
+    pair = _real(path, roots)
+    if pair is None:
         raise OutsideError
-    return _opened_in(found, flags)
+    return _opened_in(pair, flags)
 
 
 def _opened_in(place: tuple[Path, str], flags: int) -> int:
@@ -149,10 +149,10 @@ def open_folder(path: str | os.PathLike[str]) -> Folder:
     roots = _readable_roots()
     if roots is None:
         return Folder.at(path)
-    found = _real(path, roots)
-    if found is None:
+    pair = _real(path, roots)
+    if pair is None:
         raise OutsideError
-    folder, name = found
+    folder, name = pair
     return Folder.at(folder).folder(name)
 
 

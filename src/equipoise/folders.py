@@ -70,10 +70,10 @@ class Folder:
         """A folder in it; itself for ``.``."""
         if name == ".":
             return self
-        found = self
+        below = self
         for part in _parts(name):
-            found = found._below(part)
-        return found
+            below = below._below(part)
+        return below
 
     def _below(self, name: str) -> Folder:
         path = self.path / name
@@ -106,13 +106,13 @@ class Folder:
     def entries(self) -> Iterator[tuple[str, os.stat_result]]:
         """What lies in it: name, and what it is; of a link what the link is."""
         if self._descriptor is None:
-            with os.scandir(self.path) as found:
-                yield from ((one.name, one.stat(follow_symlinks=False)) for one in found)
+            with os.scandir(self.path) as scandir:
+                yield from ((item.name, item.stat(follow_symlinks=False)) for item in scandir)
             return
         readable = os.open(".", os.O_RDONLY | os.O_DIRECTORY, dir_fd=self._descriptor)
         try:
-            with os.scandir(readable) as found:
-                yield from ((one.name, one.stat(follow_symlinks=False)) for one in found)
+            with os.scandir(readable) as scandir:
+                yield from ((item.name, item.stat(follow_symlinks=False)) for item in scandir)
         finally:
             os.close(readable)
 

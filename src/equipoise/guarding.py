@@ -27,8 +27,8 @@ def _is_number(value: Any) -> bool:
 
 def _may_be_numbers(value: Any) -> bool:
     """Functions look at what they take for numbers themselves, some of one for several."""
-    one = type(value)
-    return value is None or any(hasattr(one, name) for name in ("__iter__", "__float__"))
+    item = type(value)
+    return value is None or any(hasattr(item, name) for name in ("__iter__", "__float__"))
 
 
 def _is_list(value: Any) -> bool:
@@ -65,10 +65,10 @@ def attach(package: str, file: str) -> Names:
     find, names, every = attach_stub(package, file)
 
     def __getattr__(name: str) -> Any:
-        found = find(name)
-        if isfunction(found):
-            found = vars(sys.modules[package])[name] = guarded(found)
-        return found
+        function = find(name)
+        if isfunction(function):
+            function = vars(sys.modules[package])[name] = guarded(function)
+        return function
 
     return __getattr__, names, every
 
@@ -89,7 +89,7 @@ def _guarded(function: Callable[..., Any]) -> Callable[..., Any]:
         return function
     name, declared = function.__name__, signature(function)
     parameters = declared.parameters
-    plain = [place for place, one in parameters.items() if one.kind in NAMED]
+    plain = [place for place, parameter in parameters.items() if parameter.kind in NAMED]
     required = {place for place in plain if parameters[place].default is Parameter.empty}
     in_order = [place for place in plain if parameters[place].kind is not Parameter.KEYWORD_ONLY]
     accepted: set[tuple[str, type]] = set()
@@ -105,7 +105,7 @@ def _guarded(function: Callable[..., Any]) -> Callable[..., Any]:
                 continue
             parameter = parameters[place]
             each = value if parameter.kind is Parameter.VAR_POSITIONAL else (value,)
-            for wrong in filter(None, (_wrong(one, parameter, function) for one in each)):
+            for wrong in filter(None, (_wrong(item, parameter, function) for item in each)):
                 raise CallError(f"{name}: {place}: {wrong}")
             if place in plain and not hasattr(value, "ndim"):  # of arrays the shape matters
                 accepted.add((place, type(value)))
@@ -123,8 +123,10 @@ def bound(
     ------
     UsageError : there is no such parameter, or one is missing.
     """
-    known = [one for one in declared.parameters if one != "self"]
-    takes_any = any(one.kind is Parameter.VAR_KEYWORD for one in declared.parameters.values())
+    known = [parameter for parameter in declared.parameters if parameter != "self"]
+    takes_any = any(
+        parameter.kind is Parameter.VAR_KEYWORD for parameter in declared.parameters.values()
+    )
     for given in () if takes_any else kwargs:
         if given not in known:
             raise CallError(f"{name}: {unknown(given, known, 'parameter')}")
@@ -136,8 +138,8 @@ def bound(
 
 def _wrong(value: Any, parameter: Parameter, function: Callable[..., Any]) -> str:
     """What is wrong with a value; empty where it may be what is declared."""
-    kinds = [one.strip() for one in str(parameter.annotation).split("|")]
-    classes = {one.__name__ for one in type(value).__mro__}
+    kinds = [part.strip() for part in str(parameter.annotation).split("|")]
+    classes = {item.__name__ for item in type(value).__mro__}
     wanted = []
     for kind in kinds:
         accepts, words = PLAIN.get(kind) or PLAIN.get(kind.partition("[")[0]) or (None, "")
@@ -160,16 +162,16 @@ def _wrong(value: Any, parameter: Parameter, function: Callable[..., Any]) -> st
 
 def _choices(kind: str, function: Callable[..., Any]) -> list[str]:
     """Texts that there are of an alias such as ``Literal["a", "b"]``; which, the function tells."""
-    found = getattr(getattr(function, "__globals__", {}).get(kind), "__args__", ())
-    return [repr(one) for one in found] if all(isinstance(one, str) for one in found) else []
+    result = getattr(getattr(function, "__globals__", {}).get(kind), "__args__", ())
+    return [repr(item) for item in result] if all(isinstance(item, str) for item in result) else []
 
 
 def _is_class(kind: str, function: Callable[..., Any]) -> bool:
     """Whether a name is that of a class of ours that values are made of."""
     if not kind.isidentifier():
         return False
-    found = getattr(function, "__globals__", {}).get(kind) or next(_public(kind), None)
-    return isclass(found) and not getattr(found, "_is_protocol", False)
+    value = getattr(function, "__globals__", {}).get(kind) or next(_public(kind), None)
+    return isclass(value) and not getattr(value, "_is_protocol", False)
 
 
 def _public(kind: str) -> Iterator[Any]:
@@ -184,7 +186,7 @@ def keyworded(cls: Any) -> Any:
     """Let a constructor say which keyword is none of its own, which costs nothing where all are;
     methods that give a changed object are guarded as functions are.
     """
-    for name in [one for one in vars(cls) if one.startswith("with_")]:
+    for name in [var for var in vars(cls) if var.startswith("with_")]:
         setattr(cls, name, _guarded(getattr(cls, name)))
     make = cls.__init__
 

@@ -33,9 +33,9 @@ def memory_limit() -> int:
     text = os.environ.get(VARIABLE, "")
     if not text.strip():
         return USUAL
-    found = re.fullmatch(r"\s*([0-9.]+)\s*([kmgt]?)(i?)b?\s*", text, re.IGNORECASE)
+    match = re.fullmatch(r"\s*([0-9.]+)\s*([kmgt]?)(i?)b?\s*", text, re.IGNORECASE)
     try:
-        size = float(found[1]) * (BINARY if found[3] else UNITS)[found[2].lower()] if found else 0.0
+        size = float(match[1]) * (BINARY if match[3] else UNITS)[match[2].lower()] if match else 0.0
     except ValueError:
         size = 0.0
     if not 1 <= size < sys.maxsize:
@@ -60,7 +60,7 @@ def limit_process() -> None:
     import resource
 
     soft, hard = resource.getrlimit(resource.RLIMIT_DATA)
-    ends = [limit, *(one for one in (soft, hard) if one != resource.RLIM_INFINITY)]
+    ends = [limit, *(item for item in (soft, hard) if item != resource.RLIM_INFINITY)]
     resource.setrlimit(resource.RLIMIT_DATA, (min(ends), hard))
 
 
@@ -136,7 +136,7 @@ def out_of_memory(error: MemoryError) -> UsageError:
 
 def size_text(size: float) -> str:
     """Bytes in words."""
-    unit = next((one for one in ("GiB", "MiB") if size >= BINARY[one[0].lower()]), "KiB")
+    unit = next((name for name in ("GiB", "MiB") if size >= BINARY[name[0].lower()]), "KiB")
     return f"{size / BINARY[unit[0].lower()]:.3g} {unit}"
 
 

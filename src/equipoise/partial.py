@@ -151,12 +151,12 @@ def made(folder: str | os.PathLike[str]) -> None:
     path, whole = Path(folder).absolute(), _waiting.get()
     check_written(path)
     check_link(path)
-    missing = [one for one in (path, *path.parents) if not one.exists()]
+    missing = [parent for parent in (path, *path.parents) if not parent.exists()]
     os.makedirs(folder, exist_ok=True)
     hold_folder(path)
     if whole is not None:
-        for one in reversed(missing):  # the innermost goes first
-            whole.stack.callback(_remove_empty, one)
+        for item in reversed(missing):  # the innermost goes first
+            whole.stack.callback(_remove_empty, item)
 
 
 def afterwards(act: Callable[[], None]) -> None:

@@ -63,13 +63,13 @@ def highest_at(values: Array, smooth: bool = True) -> Array:
         if smooth:  # of the few that are near, those that no neighbour exceeds
             where = np.nonzero(near)
             k, count = where[-1], values.shape[-1]
-            row, one = where[:-1], values[where]
+            row, value = where[:-1], values[where]
             before = np.where(k > 0, values[(*row, k - 1)], -np.inf)
             after = np.where(k < count - 1, values[(*row, (k + 1) % count)], -np.inf)
             least, steady = rounding[..., 0][row], (high - low <= rounding)[..., 0][row]
-            near[where] = (one >= np.maximum(before, after) - least) | steady
-    found: Array = np.where(near.any(axis=-1), near.argmax(axis=-1), values.argmax(axis=-1))
-    return found
+            near[where] = (value >= np.maximum(before, after) - least) | steady
+    numbers: Array = np.where(near.any(axis=-1), near.argmax(axis=-1), values.argmax(axis=-1))
+    return numbers
 
 
 def first_below(angle: Array, values: Array, limit: float) -> float | None:
@@ -150,7 +150,7 @@ def figures_of_each(
     high_at, low_at = crank_angle[shown][highest_at(whole)]
     peak_at = place_of_peak(high, -low, high_at, low_at)
     rows = (average, rms, np.maximum(high, low), peak_at, high, high_at, -low, low_at)
-    return [Figures(*one) for one in np.array(rows).T.tolist()]
+    return [Figures(*item) for item in np.array(rows).T.tolist()]
 
 
 def place_of_peak(high: Array, low: Array, high_at: Array, low_at: Array) -> Array:
@@ -158,8 +158,8 @@ def place_of_peak(high: Array, low: Array, high_at: Array, low_at: Array) -> Arr
     and smallest values (M,) and their crank angles (M,).
     """
     equal = np.abs(high + low) <= EQUAL * (high - low)
-    one = np.where(high >= -low, high_at, low_at)
-    return np.asarray(np.where(equal, np.minimum(high_at, low_at), one))
+    values = np.where(high >= -low, high_at, low_at)
+    return np.asarray(np.where(equal, np.minimum(high_at, low_at), values))
 
 
 @dataclass(frozen=True, eq=False)
@@ -240,14 +240,14 @@ class JumpSampling:
     def periodic(self, samples: Array) -> Periodic:
         """Samples (..., N) by order."""
         weighted = samples * self.shares
-        found = np.empty((*samples.shape[:-1], self.orders + 1), complex)
+        values = np.empty((*samples.shape[:-1], self.orders + 1), complex)
         theta = -1j / self.turns * self.crank_angle
         waves = np.exp(np.outer(theta, np.arange(min(ORDERS_AT_ONCE, self.orders + 1))))
         for begin in range(0, self.orders + 1, ORDERS_AT_ONCE):
             some = (weighted * np.exp(begin * theta)) @ waves  # of order begin, and those after it
-            found[..., begin : begin + some.shape[-1]] = some[..., : self.orders + 1 - begin]
-        found[..., 1:] *= 2
-        return Periodic(found, self.turns)
+            values[..., begin : begin + some.shape[-1]] = some[..., : self.orders + 1 - begin]
+        values[..., 1:] *= 2
+        return Periodic(values, self.turns)
 
     def amplitude(self, samples: Array, place: int) -> Array:
         """The amplitude (...) of one order of `periodic`, by its place."""
@@ -335,10 +335,10 @@ class Periodic(Brief):
         Orders above the last that exceeds `scale` times the largest are rounding, and left out; so
         is order N / 2, whose phase N samples cannot tell.
         """
-        found = harmonics(samples, (np.shape(samples)[-1] - 1) // 2)
-        sizes = np.max(np.abs(found), axis=tuple(range(found.ndim - 1)), initial=0.0)
+        values = harmonics(samples, (np.shape(samples)[-1] - 1) // 2)
+        sizes = np.max(np.abs(values), axis=tuple(range(values.ndim - 1)), initial=0.0)
         above = np.flatnonzero(sizes > scale * np.max(sizes))
-        return cls(found[..., : (int(above[-1]) if above.size else 0) + 1], turns)
+        return cls(values[..., : (int(above[-1]) if above.size else 0) + 1], turns)
 
     def without_rounding(self, scale: float = 1e-14) -> Periodic:
         """The signals without orders that are a share of the largest of each signal at most.

@@ -119,7 +119,7 @@ def beside(found: Balanced, machine: Machine) -> Balanced:
     advice, aims = found.advice, found.plan.objectives
     if advice is None:
         return found
-    before = dict(zip((one.name for one in aims), Problem.values_of(machine, aims), strict=True))
+    before = dict(zip((aim.name for aim in aims), Problem.values_of(machine, aims), strict=True))
     objectives = {name: (before[name], after) for name, (_, after) in found.objectives.items()}
     judged = replace(found, original=machine, objectives=objectives)
     old, new = assessed(machine), assessed(found.machine)
@@ -134,7 +134,7 @@ def beside(found: Balanced, machine: Machine) -> Balanced:
 
 
 def _saving(before: AssessedMachine, found: Balanced) -> Saving:
-    pairs = {one: found.objectives[one.name] for one in found.plan.objectives}
+    pairs = {objective: found.objectives[objective.name] for objective in found.plan.objectives}
     return before.saving(pairs, found.gain)
 
 
@@ -148,11 +148,11 @@ class _Adviser:
         self.machine, self.own, self.solve = machine, own, solve
         self.before = assessed(machine)
         self.known: dict[tuple[Objective, ...], list[float]] = {}
-        values = self.values(tuple(one.objective for one in own.limits))
+        values = self.values(tuple(limit.objective for limit in own.limits))
         limits = zip(own.limits, values, strict=True)
         self.watched = (
             *watched_of(self.before),
-            *(HeadlineLimit((one.objective,), one.most(value)) for one, value in limits),
+            *(HeadlineLimit((item.objective,), item.most(value)) for item, value in limits),
         )
 
     def advised(self) -> Balanced:
@@ -161,15 +161,15 @@ class _Adviser:
         """
         tried: list[Balanced] = []
         for objectives in self.aims():
-            found = [*self.remedies(replace(self.own, objectives=objectives))]
-            tried += found
-            if good := [one for one in found if one.helps]:
+            items = [*self.remedies(replace(self.own, objectives=objectives))]
+            tried += items
+            if good := [item for item in items if item.helps]:
                 most = max(map(_score, good))
-                best = next(one for one in good if _score(one) >= ENOUGH_OF_BEST * most)
+                best = next(item for item in good if _score(item) >= ENOUGH_OF_BEST * most)
                 return self.with_more_room(replace(best, tried=tuple(tried)))
         if not tried:
             return self.unchanged()
-        first = [one for one in tried if one.plan.objectives == tried[0].plan.objectives]
+        first = [item for item in tried if item.plan.objectives == tried[0].plan.objectives]
         best = max(first, key=lambda one: one.gain)
         return self.with_more_room(replace(best, tried=tuple(tried)))
 
@@ -177,16 +177,16 @@ class _Adviser:
         """With the best counterweight of twice the room that is assumed, where it is worth it."""
         plan = replace(self.own, objectives=found.plan.objectives)
         least = _score(found) + LEAST_GAIN if found.helps else 0.0
-        more = [
-            MoreRoom(one, room.at, assumed, room.assumed)
+        more_rooms = [
+            MoreRoom(balanced, room.at, assumed, room.assumed)
             for link in pivots_of(self.machine)
             if any(room.is_limited_by_assumption for room in rooms_about(self.machine, link))
             for assumed in [room_about(self.machine, link).assumed]
             for room in rooms_about(self.machine, link, larger=2.0)
-            for one in self.first_good(self.counterweights(plan, (room,)))
-            if one.helps and _score(one) >= least and _radius_of(one) > assumed
+            for balanced in self.first_good(self.counterweights(plan, (room,)))
+            if balanced.helps and _score(balanced) >= least and _radius_of(balanced) > assumed
         ]
-        best = max(more, key=lambda one: _score(one.remedy), default=None)
+        best = max(more_rooms, key=lambda one: _score(one.remedy), default=None)
         return replace(found, with_room=best)
 
     def values(self, objectives: tuple[Objective, ...]) -> list[float]:
@@ -200,20 +200,20 @@ class _Adviser:
         if self.own.objectives:
             yield self.own.objectives
             return
-        large = [one for one in self.before.headline if _is_aim(one)]
-        gauges = [one for one in large if one.output.startswith(GAUGES)]
+        large = [item for item in self.before.headline if _is_aim(item)]
+        gauges = [item for item in large if item.output.startswith(GAUGES)]
         if gauges and (aims := self.loud_gauges):
             yield aims
-        for one in large:
-            if one not in gauges:
-                output = one.output.removeprefix(ROWS)
-                yield (Objective(output, "rms" if one.is_shaking else "ripple"),)
+        for entry in large:
+            if entry not in gauges:
+                output = entry.output.removeprefix(ROWS)
+                yield (Objective(output, "rms" if entry.is_shaking else "ripple"),)
 
     def remedies(self, plan: Balance) -> Iterator[Balanced]:
         """What is tried, the simplest first; nothing more where half of the aim is gone."""
-        for one in self._each(plan):
-            yield one
-            if one.helps and one.gain >= ENOUGH_OF_BEST:
+        for item in self._each(plan):
+            yield item
+            if item.helps and item.gain >= ENOUGH_OF_BEST:
                 return  # of which nothing brings twice as much
 
     def _each(self, plan: Balance) -> Iterator[Balanced]:
@@ -232,12 +232,14 @@ class _Adviser:
         rows = PhasedRows(self.machine)
         try:
             moved = [
-                one for one in plan.objectives if PhaseObjective(one, rows.signals(one)).influenced
+                objective
+                for objective in plan.objectives
+                if PhaseObjective(objective, rows.signals(objective)).influenced
             ]
             free = replace(plan, phases=Phases(), objectives=tuple(moved))
-            found = self.judged(_in_whole_degrees(self.solve(self.machine, free)))
-            yield found
-            if twist := _twists_of(found):
+            judged = self.judged(_in_whole_degrees(self.solve(self.machine, free)))
+            yield judged
+            if twist := _twists_of(judged):
                 limited = replace(free, limits=(*free.limits, *twist))
                 level = _in_whole_degrees(self.solve(self.machine, limited))
                 scope = (Note("without couples between the rows"), *level.scope)
@@ -251,16 +253,18 @@ class _Adviser:
         if not comparison.influences:
             return
         if len(rooms) == 1 and not rooms[0].beside:
-            off = (with_hole(self.machine, rooms[0], one) for one in best_holes(comparison))
-            yield from self.first_good((*one, plan) for one in off)
-            off = (with_cut(self.machine, rooms[0], one) for one in best_cuts(comparison))
-            yield from self.first_good((*one, plan) for one in off)
+            off = (
+                with_hole(self.machine, rooms[0], best_hole) for best_hole in best_holes(comparison)
+            )
+            yield from self.first_good((*item, plan) for item in off)
+            off = (with_cut(self.machine, rooms[0], best_cut) for best_cut in best_cuts(comparison))
+            yield from self.first_good((*item, plan) for item in off)
         yield from self.first_good(self.counterweights(plan, rooms))
 
     def comparison(self, plan: Balance, rooms: tuple[Room, ...]) -> Comparison:
         """Shapes in some rooms beside each other."""
         aims = plan.objectives
-        values = {one.name: value for one, value in zip(aims, self.values(aims), strict=True)}
+        values = {aim.name: value for aim, value in zip(aims, self.values(aims), strict=True)}
         aim = self.before.largest_aim(aims)
         asked = bool(self.own.objectives)
         return Comparison(self.machine, plan, rooms, self.watched, aim, values, asked)
@@ -286,10 +290,10 @@ class _Adviser:
         """The first that is worth building, with what is proved of it; else the first."""
         first: Balanced | None = None
         for machine, changes, plan in remedies:
-            found = self.judged(self.result(machine, changes, plan))
-            first = first or found
-            if found.helps:
-                yield self.proved(found)
+            judged = self.judged(self.result(machine, changes, plan))
+            first = first or judged
+            if judged.helps:
+                yield self.proved(judged)
                 return
         if first is not None and first.gain >= NOTICED:
             yield first
@@ -298,15 +302,15 @@ class _Adviser:
         """A changed machine beside the one that it comes from."""
         aims = plan.objectives
         pairs = zip(aims, self.values(aims), Problem.values_of(machine, aims), strict=True)
-        objectives = {one.name: (old, new) for one, old, new in pairs}
+        objectives = {item.name: (old, new) for item, old, new in pairs}
         shares = [new / old if old else float(new > 0) for old, new in objectives.values()]
         cost = plan.combined(shares)
         limits = self.own.limits
-        asked = tuple(one.objective for one in limits)
+        asked = tuple(limit.objective for limit in limits)
         reached = zip(limits, self.values(asked), Problem.values_of(machine, asked), strict=True)
         prices = {
-            one.name: Price(one.most(old), new, 0.0, unit_of(one.objective, machine))
-            for one, old, new in reached
+            item.name: Price(item.most(old), new, 0.0, unit_of(item.objective, machine))
+            for item, old, new in reached
         }
         method = Note("comparison of shapes")
         return Balanced(
@@ -320,8 +324,8 @@ class _Adviser:
         saving = _saving(self.before, found)
         limits = tuple(
             limit
-            for one in self.watched
-            for limit in one.limits(found.gain, saving.excess, saving.steadies)
+            for item in self.watched
+            for limit in item.limits(found.gain, saving.excess, saving.steadies)
             if not limit.objective.output.startswith(GAUGES)
         )
         kept = (Note("where no headline figure gets worse"),)
@@ -380,11 +384,11 @@ class _Adviser:
     @cached_property
     def loud_gauges(self) -> tuple[Objective, ...]:
         """What those gauges read that are loud beside the loudest, each against its limit."""
-        read = {one.output: one.excess for one in self.before.headline
-                if one.output.startswith(GAUGES)}  # fmt: skip
+        read = {item.output: item.excess for item in self.before.headline
+                if item.output.startswith(GAUGES)}  # fmt: skip
         least = QUIET_GAUGE * max(read.values(), default=0.0)
         aims = gauge_aims(self.machine)
-        return tuple(one for one in aims if read.get(one.output, least) >= least)
+        return tuple(aim for aim in aims if read.get(aim.output, least) >= least)
 
     @cached_property
     def mounts(self) -> ResonantMounts | None:
@@ -392,7 +396,7 @@ class _Adviser:
         aims = self.loud_gauges
         if not aims:
             return None
-        speeds = {speed for one in aims for speed in one.speeds} or {self.machine.drive.speed}
+        speeds = {speed for aim in aims for speed in aim.speeds} or {self.machine.drive.speed}
         before, plan = self.values(aims), Balance(objectives=aims)
 
         def gain(machine: Machine) -> float:
@@ -403,15 +407,15 @@ class _Adviser:
 
     def keeps_limits(self, found: Balanced) -> bool:
         """Whether the limits that the file gives are kept."""
-        return all(one.used <= one.at_most * (1 + ROUNDING) for one in found.prices.values())
+        return all(price.used <= price.at_most * (1 + ROUNDING) for price in found.prices.values())
 
     def unchanged(self) -> Balanced:
         """The machine as it is, where nothing that could be tried acts on what is large."""
         objectives = next(self.aims(), headline_objectives(self.before.headline))
         plan = replace(self.own, objectives=objectives)
-        found = self.result(self.machine, (), plan)
+        result = self.result(self.machine, (), plan)
         headline = self.before.headline
-        return replace(found, advice=Advice(headline, headline, (), False, self.beyond))
+        return replace(result, advice=Advice(headline, headline, (), False, self.beyond))
 
 
 def _in_whole_degrees(found: Balanced) -> Balanced:
@@ -456,7 +460,7 @@ def _score(found: Balanced) -> float:
 
 def _radius_of(found: Balanced) -> float:
     """Of the largest piece that is added, m."""
-    pieces = (piece for one in found.changes for piece in one.values.get("pieces", ()))
+    pieces = (piece for change in found.changes for piece in change.values.get("pieces", ()))
     return max((float(piece["outer_radius"]) for piece in pieces), default=0.0)
 
 
@@ -490,10 +494,10 @@ def _moved(machine: Machine, plan: Balance) -> Iterator[Objective]:
     rows = PhasedRows(machine) if plan.phases is not None else None
     weights = replace(plan, phases=None)
     problem = None if weights.changes_nothing else Problem.of(machine, weights)
-    for one in plan.objectives:
-        turned = rows is None or PhaseObjective(one, rows.signals(one)).influenced
-        if turned and (problem is None or problem.moves(one)):
-            yield one
+    for objective in plan.objectives:
+        turned = rows is None or PhaseObjective(objective, rows.signals(objective)).influenced
+        if turned and (problem is None or problem.moves(objective)):
+            yield objective
 
 
 def running_speeds(machine: Machine, linear: Linear) -> tuple[float, ...]:
@@ -510,9 +514,9 @@ def running_speeds(machine: Machine, linear: Linear) -> tuple[float, ...]:
         return (drive.speed,)
     slow, fast = drive.range
     loud = sorted(resonances(linear, slow, fast), key=lambda one: -one.share)
-    near = [one.speed for one in loud if one.avoid is not None and one.share >= LOUD]
-    found = {drive.speed, slow, (slow + fast) / 2, fast, *near[:MOST_RESONANCES]}
-    return tuple(sorted((one for one in found if _is_steady(linear, one)), key=abs))
+    speeds = [item.speed for item in loud if item.avoid is not None and item.share >= LOUD]
+    result = {drive.speed, slow, (slow + fast) / 2, fast, *speeds[:MOST_RESONANCES]}
+    return tuple(sorted((item for item in result if _is_steady(linear, item)), key=abs))
 
 
 def _is_steady(linear: Linear, speed: float) -> bool:

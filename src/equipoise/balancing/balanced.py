@@ -207,28 +207,28 @@ class Balanced(Result):
         """
         old, new = self._shaking
         names = self._figures_of(self.plan.objectives)
-        return {**self.objectives, **{one: (old[name], new[name]) for one, name in names.items()}}
+        return {**self.objectives, **{item: (old[name], new[name]) for item, name in names.items()}}
 
     @cached_property
     def limits(self) -> dict[str, Price]:
         """The price of each limit by its name, and what is used of it as `after` has it."""
-        names = self._figures_of(one.objective for one in self.plan.limits)
-        own = {one: self._shaking[1][names[one]] for one in self.prices if one in names}
-        return {**self.prices, **{one: replace(self.prices[one], used=own[one]) for one in own}}
+        names = self._figures_of(limit.objective for limit in self.plan.limits)
+        own = {price: self._shaking[1][names[price]] for price in self.prices if price in names}
+        return {**self.prices, **{item: replace(self.prices[item], used=own[item]) for item in own}}
 
     def _figures_of(self, asked: Iterable[Objective]) -> dict[str, str]:
         """Names of the figures before and after that objectives are, by the objective's name."""
         both = self._shaking[0].keys() & self._shaking[1].keys()
         rows = len(self.original.rows)
-        found = {one.name: compared.figure_of(one, rows, both) for one in asked}
-        return {one: name for one, name in found.items() if name is not None}
+        figures = {item.name: compared.figure_of(item, rows, both) for item in asked}
+        return {item: name for item, name in figures.items() if name is not None}
 
     @cached_property
     def worse(self) -> tuple[compared.Worse, ...]:
         """Every figure that got larger by more than 1 %, the important ones first."""
-        each = {one: self.objectives[one.name] for one in self.plan.objectives}
-        own = (one for one in each if one.speeds or one.about or one.orders)
-        return compared.worse_of(*self._shaking, {one: each[one] for one in own})
+        each = {objective: self.objectives[objective.name] for objective in self.plan.objectives}
+        own = (item for item in each if item.speeds or item.about or item.orders)
+        return compared.worse_of(*self._shaking, {item: each[item] for item in own})
 
     @property
     def gain(self) -> float:
@@ -253,16 +253,18 @@ class Balanced(Result):
         """
         from equipoise.balancing.sensitivity import known_outputs, sensitivities
 
-        asked = dict.fromkeys(one.output for one in self.plan.objectives)
+        asked = dict.fromkeys(objective.output for objective in self.plan.objectives)
         asked |= {f"{name}.{axis}": None for name in asked for axis in "xy"}
         known = known_outputs(self.original)
-        found = {name: sensitivities(self.original, name) for name in asked if name in known}
-        return {name: one.to_dict(signals=False) for name, one in found.items()}
+        by_name = {name: sensitivities(self.original, name) for name in asked if name in known}
+        return {name: item.to_dict(signals=False) for name, item in by_name.items()}
 
     @property
     def units(self) -> dict[str, str]:
         """SI unit of each objective and limit."""
-        names = {one.name: unit_of(one, self.original) for one in self.plan.objectives}
+        names = {
+            objective.name: unit_of(objective, self.original) for objective in self.plan.objectives
+        }
         return names | {name: price.unit for name, price in self.prices.items()}
 
     def columns(self) -> list[tuple[str, str, Array]]:
@@ -277,9 +279,9 @@ class Balanced(Result):
         for name, machine in machines.items():
             motion = move(machine, angles, acceleration=0.0)
             columns += [
-                (f"{one.name}.{name}", one.unit, one.values)
-                for one in AnalysisOutputs(Analysis(motion, forces(motion))).ordered
-                if one.declared.compared
+                (f"{item.name}.{name}", item.unit, item.values)
+                for item in AnalysisOutputs(Analysis(motion, forces(motion))).ordered
+                if item.declared.compared
             ]
         return columns
 
@@ -359,8 +361,8 @@ class Balanced(Result):
             "list of `figure`, `before`, `after`: every figure that got larger by more than 1 %, "
             "the important ones first",
             read=lambda found: [
-                {"figure": one.objective.name, "before": one.before, "after": one.after}
-                for one in found.worse
+                {"figure": worse.objective.name, "before": worse.before, "after": worse.after}
+                for worse in found.worse
             ],
         ),
         "equivalent_speeds": ResultOutput(
@@ -395,15 +397,15 @@ class Balanced(Result):
             "`crank_angle`: figures [against their yardsticks](balancing.md#without-a-plan), the "
             "largest ratio first; `figure` is its path in the summary of `analyze`, or in the "
             "output of `respond` for gauges",
-            read=lambda found: [one.to_dict() for one in found.advice.before],
+            read=lambda found: [item.to_dict() for item in found.advice.before],
             present="advice",
         ),
         "tried": ResultOutput(
             "there: list of `gain`, `worth`, `changes`: what was tried, the share of the aims that "
             "each takes away, and whether it is offered",
             read=lambda found: [
-                {"gain": one.gain, "worth": one.helps, "changes": _changes(one)}
-                for one in found.tried
+                {"gain": item.gain, "worth": item.helps, "changes": _changes(item)}
+                for item in found.tried
             ],
             present="advice",
         ),
@@ -433,7 +435,8 @@ def result_of(machine: Machine, plan: Balance, found: Solution) -> Balanced:
         plan=plan,
         changes=(*found.meshes, *chain.from_iterable(each)),
         objectives={
-            one.name: (old[one.name], problem.value_of(new, one)) for one in plan.objectives
+            objective.name: (old[objective.name], problem.value_of(new, objective))
+            for objective in plan.objectives
         },
         cost=problem.cost_of(new),
         bound=best.bound,
@@ -501,7 +504,7 @@ def _over_pins(found: Solution) -> Iterator[Note]:
             center = complex(*change.values["center"])
             points = found.machine.links[change.link].points
             pins = [name for name, at in points.items() if len(bodies.get(name, ())) > 1
-                    and any(covers(one, center, complex(*at)) for one in pieces)]  # fmt: skip
+                    and any(covers(piece, center, complex(*at)) for piece in pieces)]  # fmt: skip
             if pins:
                 yield Note(
                     "the plate on {link} lies over pin {pins}: put it in a plane of its own, or "

@@ -171,7 +171,7 @@ def counterbalance_for(
     links and load.
     """
     machine, motion = analysis.machine, analysis.resolved.motion
-    torque = next((one for one in entries if one.is_torque and one.is_large), None)
+    torque = next((entry for entry in entries if entry.is_torque and entry.is_large), None)
     gravity = -machine.gravity[1]
     throw = throw_of(analysis)
     if torque is None or not machine.has_crank or motion.speed**2 * throw > SLOW_CRANK * gravity:
@@ -219,9 +219,12 @@ def first_answers(
     if gain is not None:
         more_arms = beyond.spaced is not None and beyond.spaced.gain >= gain
         return frozenset({"spaced"} if more_arms else ())
-    if beyond.transmission is not None and any(one.is_nearly_dead for one in entries):
+    if beyond.transmission is not None and any(entry.is_nearly_dead for entry in entries):
         return frozenset({"transmission"})
-    aim = next((one for one in entries if one.is_large and (one.is_shaking or one.is_torque)), None)
+    aim = next(
+        (entry for entry in entries if entry.is_large and (entry.is_shaking or entry.is_torque)),
+        None,
+    )
     names = FIRST.get(aim.yardstick_kind, ()) if aim is not None else ()
     given = {name for name in names if getattr(beyond, name) is not None}
     is_half = beyond.piston is not None and beyond.piston.is_half

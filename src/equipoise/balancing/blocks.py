@@ -123,7 +123,7 @@ def _large(found: Balanced) -> Facts:
     """What is large on an advised machine."""
     assert found.advice is not None
     large, few = large_figures(found.advice)
-    lines = tuple(sentence(one, found.original.crank_turns) for one in few)
+    lines = tuple(sentence(item, found.original.crank_turns) for item in few)
     largest = to_say("What is large, each beside its own yardstick")
     nearest = to_say("What comes nearest to its yardstick")
     return Facts(say(largest if large else nearest), lines)
@@ -131,12 +131,12 @@ def _large(found: Balanced) -> Facts:
 
 def _aims(found: Balanced) -> Iterator[str]:
     """What was made small, before and after."""
-    for one, (before, after) in found.aims.items():
-        what = objective_named(one, len(found.original.rows))
+    for item, (before, after) in found.aims.items():
+        what = objective_named(item, len(found.original.rows))
         unit = display(
-            DIMENSIONS.get(si_unit(one, found.original)),
+            DIMENSIONS.get(si_unit(item, found.original)),
             [before, after],
-            shown_unit(si_unit(one, found.original)),
+            shown_unit(si_unit(item, found.original)),
         )
         yield say(
             "{what}: {before} → {after} {unit} ({change})",
@@ -183,9 +183,9 @@ BEFORE_AFTER = (to_say("before"), to_say("after"), to_say("change"))
 def objectives_table(found: Balanced) -> Table:
     """What was made small, before and after."""
     rows: list[tuple[Cell, ...]] = []
-    for one, (before, after) in found.aims.items():
-        unit = si_unit(one, found.original)
-        name = objective_named(one, len(found.original.rows))
+    for item, (before, after) in found.aims.items():
+        unit = si_unit(item, found.original)
+        name = objective_named(item, len(found.original.rows))
         pair = (quantity(before, unit), quantity(after, unit, before))
         rows.append(
             (name, *pair, RelativeChange(before, after, worse_if(after > (1 + WORSE) * before)))
@@ -234,7 +234,7 @@ def _kin(unit: str) -> str:
 
 
 def _prices(found: Balanced) -> Table:
-    named = {one.name: objective_named(one.objective) for one in found.plan.limits}
+    named = {limit.name: objective_named(limit.objective) for limit in found.plan.limits}
     rows: list[tuple[Cell, ...]] = []
     for name, price in found.limits.items():
         unit = found.units[name]
@@ -264,8 +264,8 @@ def _shown(unit: str) -> tuple[float, str]:
     dimension = DIMENSIONS.get(unit)
     if dimension is None:
         return 1.0, unit
-    told = display(dimension, (), shown_unit(unit) or unit)
-    return told.factor, told.unit
+    text = display(dimension, (), shown_unit(unit) or unit)
+    return text.factor, text.unit
 
 
 FASTER = 10.0
@@ -275,7 +275,11 @@ faster, tells no more than that next to nothing is left."""
 
 def _speeds(found: Balanced) -> Iterator[tuple[Cell, ...]]:
     most = FASTER * abs(found.original.drive.speed)
-    speeds = {name: one for name, one in found.equivalent_speeds.items() if abs(one) <= most}
+    speeds = {
+        name: equivalent_speed
+        for name, equivalent_speed in found.equivalent_speeds.items()
+        if abs(equivalent_speed) <= most
+    }
     several = any(name.startswith(ROWS) for name in speeds)
     for name, speed in speeds.items():
         if name.startswith(f"{ROWS}shaking_") if several else name.count(".") == 1:
@@ -290,10 +294,10 @@ LATERAL = {"roll_moment": to_say("roll moment"), "yaw_moment": to_say("yaw momen
 def phasing_blocks(found: Phasing) -> Iterator[Block]:
     """Rows with their phases, what is left of the shaking force and how it twists."""
     yield rows_table(found.machine)
-    told = [f"{order:.4g}" for order in found.remaining]
-    if told:
-        orders = say(", ").join(told[:MOST_ORDERS])
-        more = len(told) - MOST_ORDERS
+    texts = [f"{order:.4g}" for order in found.remaining]
+    if texts:
+        orders = say(", ").join(texts[:MOST_ORDERS])
+        more = len(texts) - MOST_ORDERS
         orders = say("{orders} and higher ones", orders=orders) if more > 0 else orders
         yield Text(say("Orders of the shaking force that are left: {orders}.", orders=orders))
     else:

@@ -80,8 +80,8 @@ class Numbers:
     @property
     def directions(self) -> tuple[Array, Array]:
         """The cuts' directions (I, K), and their least (I,)."""
-        found = np.array([one for one, _ in self.cuts]).reshape(len(self.cuts), len(self.low))
-        return found, np.array([least for _, least in self.cuts])
+        result = np.array([item for item, _ in self.cuts]).reshape(len(self.cuts), len(self.low))
+        return result, np.array([least for _, least in self.cuts])
 
 
 @dataclass(frozen=True, eq=False)
@@ -177,11 +177,11 @@ class Bounder:
         values, reading = self._combined(readings[:count])
         worth, priced, impossible = values, reading, np.zeros(len(values), bool)
         limits = zip(self.cost.limits, self.prices, readings[count:], strict=True)
-        for term, price, (value, one) in limits:
-            lost, _, _ = self._over(boxes, one * turning[:, None], 0 * pushed)
+        for term, price, (value, item) in limits:
+            lost, _, _ = self._over(boxes, item * turning[:, None], 0 * pushed)
             impossible |= value - lost > term.scale * (1 + SMALL)
             worth = worth + price * (value / term.scale - 1)
-            priced = priced + price / term.scale * one
+            priced = priced + price / term.scale * item
         lost, bends, slopes = self._over(boxes, priced * turning[:, None], pushed)
         bounds = np.maximum(worth - lost, boxes.bounds)
         if any(self.prices):
@@ -208,9 +208,9 @@ class Bounder:
             low = np.maximum(value - lost, 0.0)
             middles.append(value)
             if (jump := self.jumps.get(place)) is not None:
-                found = jump.over(boxes.middles, halves)
-                low, bends = np.maximum(low, found.bounds), found.losses
-                middles[-1] = np.maximum(value, found.values)
+                over = jump.over(boxes.middles, halves)
+                low, bends = np.maximum(low, over.bounds), over.losses
+                middles[-1] = np.maximum(value, over.values)
             lows.append(low)
             drops += bends / self.cost.measured[place].scale
         apart = self.cost.of(lows)
@@ -240,24 +240,24 @@ class Bounder:
                 if len(groups) == 1:
                     groups = (groups[0].with_more(form),)
             values.append(value)
-            here.append(sum(np.max(one.at(boxes.numbers), axis=1) for one in groups))
+            here.append(sum(np.max(item.at(boxes.numbers), axis=1) for item in groups))
             parts.append(FormSum(groups, np.full(len(value), 1.0 / term.scale), place >= terms))
             losses += lost / term.scale
         shares = self._shares(self.cost.factors[:, None] * values[:terms])
         for place, share in enumerate(shares):
             parts[place] = replace(parts[place], factors=share * self.cost.factors[place])
         ends = boxes.low, boxes.high, boxes.numbers
-        found = least_of_forms(parts, *ends, *self.numbers.directions, SMALL)
-        bounds, cost = np.maximum(found.bounds, boxes.bounds), self.cost.of(values)
+        bounded = least_of_forms(parts, *ends, *self.numbers.directions, SMALL)
+        bounds, cost = np.maximum(bounded.bounds, boxes.bounds), self.cost.of(values)
         # what the phases' sides lose at these numbers, and what the numbers' sides lose beyond it
         above, beyond = cost - self.cost.of(here), self.cost.of(here) - bounds
         widest = np.argmax(losses + TINY * halves * (np.arange(self.cost.rows) > 0), axis=1)
         by_number = self.cost.rows + np.argmax(
-            np.abs(found.slopes) * (boxes.high - boxes.low), axis=1
+            np.abs(bounded.slopes) * (boxes.high - boxes.low), axis=1
         )
         of_phases = (above >= beyond) | (len(self.numbers.low) == 0)
-        boxes = replace(boxes, numbers=found.numbers, bounds=bounds)
-        return replace(boxes, widest=np.where(of_phases, widest, by_number)), cost, found.slopes
+        boxes = replace(boxes, numbers=bounded.numbers, bounds=bounds)
+        return replace(boxes, widest=np.where(of_phases, widest, by_number)), cost, bounded.slopes
 
     def _form(self, boxes: Boxes, turned: Array) -> tuple[Forms, Array]:
         """A reading, turned to the middles (B, 1 + K, m, N), as a form over boxes (B,); and how far
@@ -271,7 +271,7 @@ class Bounder:
         least[..., 0] = most[..., 0] = middle[..., 0]  # row 1 is not moved
         whole = _with_one(boxes.numbers)[..., None]
         drops = np.sum(whole * middle - np.minimum(whole * least, whole * most), axis=1)
-        least, most = (np.sum(one, axis=2)[:, None] for one in (least, most))
+        least, most = (np.sum(item, axis=2)[:, None] for item in (least, most))
         return linear_forms(least, most, boxes.low, boxes.high), drops
 
     def _each(self, totals: list[Array]) -> list[tuple[PhaseObjective, Array, Array]]:
@@ -322,7 +322,7 @@ class Bounder:
     def _amplitudes(self) -> list[Array]:
         """Of each term as it is, and by each number, (1 + K, V, m, C, N)."""
         pairs = zip(self.cost.measured, self.numbers.columns, strict=True)
-        return [np.concatenate([one.signals.amplitudes[None], more]) for one, more in pairs]
+        return [np.concatenate([item.signals.amplitudes[None], more]) for item, more in pairs]
 
     @cached_property
     def _orders(self) -> Array:
@@ -342,11 +342,11 @@ class Bounder:
         whole = np.einsum("bj,bjvcn->bvcn", _with_one(boxes.numbers), total)
         values, readings, loudest = largest_reading(term, whole)
         if amplitudes.shape[1] == 1:
-            found = np.einsum("bcn,jkcn->bjkn", readings, amplitudes[:, 0], optimize=True)
+            result = np.einsum("bcn,jkcn->bjkn", readings, amplitudes[:, 0], optimize=True)
         else:
-            found = np.einsum("bcn,jbkcn->bjkn", readings, amplitudes[:, loudest])
-        missing = len(self._orders) - found.shape[-1]
-        return values, np.pad(found, ((0, 0),) * 3 + ((0, missing),))
+            result = np.einsum("bcn,jbkcn->bjkn", readings, amplitudes[:, loudest])
+        missing = len(self._orders) - result.shape[-1]
+        return values, np.pad(result, ((0, 0),) * 3 + ((0, missing),))
 
     def _combined(self, readings: list[tuple[Array, Array]]) -> tuple[Array, Array]:
         """The cost (B,), and the reading (B, 1 + K, m, N) of it."""
@@ -354,7 +354,7 @@ class Bounder:
         shares = self._shares(parts)
         factors = shares * self.cost.factors[:, None]
         pairs = zip(factors, readings, strict=True)
-        reading = sum(factor[:, None, None, None] * one for factor, (_, one) in pairs)
+        reading = sum(factor[:, None, None, None] * item for factor, (_, item) in pairs)
         return np.sum(shares * parts, axis=0), np.asarray(reading)
 
     def _shares(self, parts: Array) -> Array:
@@ -400,8 +400,8 @@ class Bounder:
             here = np.einsum("bj,bjvcn->bvcn", _with_one(x), total)
             size = np.sqrt(np.sum(np.abs(here) ** 2 * term.shares, axis=(2, 3)))
             places, loudest = np.arange(len(x)), np.argmax(size, axis=1)
-            one = (total[places, :, loudest] * np.sqrt(term.shares)).reshape(*total.shape[:2], -1)
-            grams.append((one.conj() @ np.swapaxes(one, 1, 2)).real)
+            item = (total[places, :, loudest] * np.sqrt(term.shares)).reshape(*total.shape[:2], -1)
+            grams.append((item.conj() @ np.swapaxes(item, 1, 2)).real)
             sizes.append(np.maximum(size[places, loudest], SMALL * term.scale))
         parts = self.cost.factors[:, None] * sizes[: len(self.cost.terms)]
         factors = self._shares(parts) * self.cost.factors[:, None]
@@ -445,7 +445,7 @@ def _read_in_time(term: PhaseObjective, total: Array) -> tuple[Array, Array]:
     step = max(1, AT_ONCE // (total[0].size + total[0, ..., 0].size * count)) if len(total) else 1
     if len(total) > step:
         parts = [_read_in_time(term, total[k : k + step]) for k in range(0, len(total), step)]
-        sizes, readings = (np.concatenate(one) for one in zip(*parts, strict=True))
+        sizes, readings = (np.concatenate(part) for part in zip(*parts, strict=True))
         return sizes, readings
     values = Periodic(total, turns).samples(count)
     if area:
@@ -456,14 +456,14 @@ def _read_in_time(term: PhaseObjective, total: Array) -> tuple[Array, Array]:
 
     def at(places: Array) -> tuple[Array, Array]:
         """Values (B, V, C) at crank angles (B, V), and their waves (B, V, 1, K + 1)."""
-        found = np.take_along_axis(values, places[..., None, None], axis=-1)[..., 0]
+        result = np.take_along_axis(values, places[..., None, None], axis=-1)[..., 0]
         theta = places * (2 * np.pi * turns / count)
-        return found, np.exp(1j * np.multiply.outer(theta, term.signals.orders))[..., None, :]
+        return result, np.exp(1j * np.multiply.outer(theta, term.signals.orders))[..., None, :]
 
     if values.shape[2] > 1:
-        found, wave = at(np.argmax(np.sum(values**2, axis=2), axis=-1))
-        sizes = np.linalg.norm(found, axis=-1)
-        return sizes, (found / np.maximum(sizes, TINY)[..., None])[..., None] * wave
+        outcome, wave = at(np.argmax(np.sum(values**2, axis=2), axis=-1))
+        sizes = np.linalg.norm(outcome, axis=-1)
+        return sizes, (outcome / np.maximum(sizes, TINY)[..., None])[..., None] * wave
     (high, rising), (low, falling) = (
         at(pick(values[..., 0, :], axis=-1)) for pick in (np.argmax, np.argmin)
     )

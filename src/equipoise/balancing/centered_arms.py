@@ -79,7 +79,7 @@ def centered_arms_for(
         after = assess(analyze(changed, acceleration=0.0), None) if arms else ()
     except EquipoiseError:  # a joint that the weight of an arm held
         return None
-    values = [abs(one.value) for one in after if one.family == largest.family]
+    values = [abs(item.value) for item in after if item.family == largest.family]
     if not values or (gain := 1 - values[0] / abs(largest.value)) < WORTH_NAMING:
         return None
     label = largest.label.said()
@@ -94,17 +94,17 @@ def _arms_of(machine: Machine) -> dict[str, str]:
     """Links that are joined to others at one pin alone, which moves, and that pin."""
     joined = {name for name, bodies in bodies_at(machine.bodies).items() if len(bodies) > 1}
     least = NOTHING * size_of_links(machine)
-    found, moments = dict[str, str](), dict[str, float]()
+    result, moments = dict[str, str](), dict[str, float]()
     for name, link in machine.links.items():
         pins = [point for point in link.points if point in joined]
-        guided = any(name in (one.link, one.on) for one in machine.sliders)
+        guided = any(name in (slider.link, slider.on) for slider in machine.sliders)
         if len(pins) != 1 or pins[0] in machine.frame or guided or link.bodies:
             continue
         away = _distance(link, pins[0])
         if away > least:
-            found[name], moments[name] = pins[0], (link.mass or 0.0) * away
+            result[name], moments[name] = pins[0], (link.mass or 0.0) * away
     most = max(moments.values(), default=0.0)
-    return {name: pin for name, pin in found.items() if moments[name] >= MINOR * most}
+    return {name: pin for name, pin in result.items() if moments[name] >= MINOR * most}
 
 
 def _distance(link: Link, pin: str) -> float:

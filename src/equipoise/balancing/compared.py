@@ -68,28 +68,28 @@ def worse_of(
             pairs[Objective(output, measure)] = (old, after.get(name, 0.0))  # type: ignore[arg-type]
     largest: dict[str, float] = {}
     usual: dict[str, float] = {}
-    for one, pair in pairs.items():
-        unit = _unit(one)
+    for item, pair in pairs.items():
+        unit = _unit(item)
         usual[unit] = max(usual.get(unit, 0.0), pair[0])
         largest[_kin(unit)] = max(largest.get(_kin(unit), 0.0), *pair)
-    found = []
-    for one, (old, new) in pairs.items():
-        unit = _unit(one)
+    result = []
+    for item, (old, new) in pairs.items():
+        unit = _unit(item)
         if new > (1 + WORSE) * old and new > FAINT * largest[_kin(unit)]:
             there = old if old > FAINT * new else 0.0
             scale = old if old > SMALL * usual[unit] else usual[unit]
-            weight = 0.0 if _is_part(one) else (new - old) / scale if scale else float("inf")
-            found.append(Worse(one, _group_of(one.output), there, new, weight))
+            weight = 0.0 if _is_part(item) else (new - old) / scale if scale else float("inf")
+            result.append(Worse(item, _group_of(item.output), there, new, weight))
     # to nine digits, so that rounding does not decide between figures that grew alike, as peak and
     # peak to peak of a signal that reaches as far up as down
-    found.sort(key=lambda one: (IMPORTANT.index(one.group), -round(one.growth, 9)))
-    seen: dict[tuple[str, tuple[float, ...], str | None], Worse] = {}
-    for grown in found:
+    result.sort(key=lambda one: (IMPORTANT.index(one.group), -round(one.growth, 9)))
+    worses: dict[tuple[str, tuple[float, ...], str | None], Worse] = {}
+    for grown in result:
         aim = grown.objective
         key = aim.output, aim.speeds, aim.about
-        most = seen.setdefault(key, grown)
-        seen[key] = replace(most, weight=max(most.weight, grown.weight))
-    return tuple(seen.values())
+        most = worses.setdefault(key, grown)
+        worses[key] = replace(most, weight=max(most.weight, grown.weight))
+    return tuple(worses.values())
 
 
 def _is_part(one: Objective) -> bool:
@@ -120,15 +120,15 @@ def merged(plan: Balance, values: Mapping[str, Pair]) -> dict[Objective, Pair]:
     """
 
     groups: dict[Objective, list[Objective]] = {}
-    for one in plan.objectives:
-        groups.setdefault(replace(one, speeds=(), weight=1.0), []).append(one)
-    found: dict[Objective, Pair] = {}
+    for objective in plan.objectives:
+        groups.setdefault(replace(objective, speeds=(), weight=1.0), []).append(objective)
+    by_name: dict[Objective, Pair] = {}
     for first, *others in groups.values():
-        speeds = tuple(speed for one in (first, *others) for speed in one.speeds)
-        pairs = [values[one.name] for one in (first, *others)]
+        speeds = tuple(speed for item in (first, *others) for speed in item.speeds)
+        pairs = [values[item.name] for item in (first, *others)]
         old, new = (max(each) for each in zip(*pairs, strict=True))
-        found[replace(first, speeds=speeds)] = (old, new)
-    return found
+        by_name[replace(first, speeds=speeds)] = (old, new)
+    return by_name
 
 
 def figure_of(one: Objective, rows: int, figures: Collection[str]) -> str | None:
@@ -153,9 +153,9 @@ def figures_of(machine: Machine) -> dict[str, float]:
     """
     analysis = analyze(machine, acceleration=0.0)
     figures = {"mass": machine.mass}
-    for one in analysis.outputs:
-        for measure in one.declared.compared if one.declared.is_of_row else ():
-            figures[f"{one.name}.{measure}"] = _measured(analysis, one, measure)
+    for output in analysis.outputs:
+        for measure in output.declared.compared if output.declared.is_of_row else ():
+            figures[f"{output.name}.{measure}"] = _measured(analysis, output, measure)
     return figures | _of_rows(analysis) | _of_support(machine)
 
 
@@ -170,8 +170,8 @@ def _of_rows(analysis: Analysis) -> dict[str, float]:
     """Figures of all rows together, where there are several; 0 where the rows cancel."""
     rows, figures = PhasedRows(analysis.machine), {}
     for output in analysis.outputs:
-        one = output.declared
-        for measure in one.compared if one.needs == "rows" else ():
+        item = output.declared
+        for measure in item.compared if item.needs == "rows" else ():
             objective = Objective(output.name.removeprefix(ROWS), measure)
             term = PhaseObjective(objective, rows.signals(objective))
             value = term.without_rounding(_measured(analysis, output, measure))
@@ -201,7 +201,7 @@ def planting_of(machine: Machine) -> dict[str, float]:
     if machine.planting is None:
         return {}
     try:
-        found = plant(machine).figures
+        figures = plant(machine).figures
     except EquipoiseError:  # a tip that never reaches the soil has no figures, and still shakes
         return {}
-    return {f"planting.{name}": value for name, value in found.items()}
+    return {f"planting.{name}": value for name, value in figures.items()}

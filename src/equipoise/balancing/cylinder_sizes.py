@@ -131,7 +131,7 @@ def cylinder_for(analysis: Analysis, entries: tuple[FigureAssessment, ...]) -> C
     shared = near & far
     pivot = next(iter(shared)) if len(shared) == 1 else ""
     levers = [*_longer(analysis, force, drive.between, pivot)] if pivot else []
-    built = [one for one, fits in levers if fits]
+    built = [item for item, fits in levers if fits]
     return Cylinder(
         push=float(max(np.max(force), 0.0)), pull=float(max(-np.min(force), 0.0)),
         closed=closed, open=most, pressure=CYLINDER_PRESSURE, bore=bore, rod=rod,
@@ -182,8 +182,8 @@ def _longer(
     pins = [points[at].place - points[pivot].place for at in ends]
     before = float(np.max(np.abs(force)))
     moment = force * _arm(*pins)
-    for k, more in product(range(2), LONGER_LEVERS):
-        moved = [pin * (more if j == k else 1.0) for j, pin in enumerate(pins)]
+    for k, longer_lever in product(range(2), LONGER_LEVERS):
+        moved = [pin * (longer_lever if j == k else 1.0) for j, pin in enumerate(pins)]
         length = np.abs(moved[1] - moved[0])
         needed = moment / _arm(*moved)
         most, sizes = float(np.max(np.abs(needed))), _sized(needed, length)

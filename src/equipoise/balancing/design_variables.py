@@ -263,8 +263,8 @@ class FreeSpring(DesignVariables):
         """Force (2, N) on the link's point, of a unit of each number."""
         choice = self.choice
         units = self._units * np.array([1.0, -1.0])
-        found = spring_units(motion, choice.link, choice.point, choice.to)
-        return np.asarray(found * units[:, None])
+        values = spring_units(motion, choice.link, choice.point, choice.to)
+        return np.asarray(values * units[:, None])
 
     def spring(self, numbers: Array) -> Spring | None:
         """The spring, or None where there is to be none."""

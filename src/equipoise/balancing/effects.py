@@ -98,8 +98,8 @@ class Signal:
         """With its amplitudes (..., N), as `np.fft` orders them, changed; real if it was."""
 
         def changed(values: Array) -> Array:
-            found = np.fft.ifft(change(np.fft.fft(values)))
-            return found if np.iscomplexobj(values) else found.real
+            ifft = np.fft.ifft(change(np.fft.fft(values)))
+            return ifft if np.iscomplexobj(values) else ifft.real
 
         return Signal(changed(self.start), changed(self.columns), self.turns)
 
@@ -111,8 +111,8 @@ class Signal:
         def changed(values: Array) -> Array:
             if np.iscomplexobj(values):
                 return np.asarray(changed(values.real) + 1j * changed(values.imag))
-            found = sampling.periodic(values)
-            turned = Periodic(found.amplitudes * factors(found.orders), found.turns)
+            periodic = sampling.periodic(values)
+            turned = Periodic(periodic.amplitudes * factors(periodic.orders), periodic.turns)
             return turned.values(sampling.crank_angle)
 
         return replace(self, start=changed(self.start), columns=changed(self.columns))
@@ -140,10 +140,10 @@ class Effects:
         self.motion = resolved(usual)
         self.count = sum(part.count for part in parts)
         ends = np.cumsum([part.count for part in parts]).tolist()
-        places = [slice(end - one.count, end) for one, end in zip(parts, ends, strict=True)]
+        places = [slice(end - part.count, end) for part, end in zip(parts, ends, strict=True)]
         each = list(zip(parts, places, strict=True))
-        self.masses = [(one, rows) for one, rows in each if not isinstance(one, FreeSpring)]
-        self.springs = [(one, rows) for one, rows in each if isinstance(one, FreeSpring)]
+        self.masses = [(item, rows) for item, rows in each if not isinstance(item, FreeSpring)]
+        self.springs = [(item, rows) for item, rows in each if isinstance(item, FreeSpring)]
 
     def at(self, speed: float) -> Effects:
         """The same at another speed, rad/s."""
@@ -169,20 +169,20 @@ class Effects:
         ------
         UsageError : there is no such output.
         """
-        one, item = self._declared(output)
+        declared, item = self._declared(output)
         pole = in_frame(self.machine.frame, self.motion.linkage.pivot if about is None else about)
         start, columns = (
-            one.component(one.vector(Found(self.motion, forces_of(self, pole)), item))
+            declared.component(declared.vector(Found(self.motion, forces_of(self, pole)), item))
             for forces_of in (Present, UnitResponse)
         )
         return Signal(start, self.full(columns), self.motion.turns, self.motion.sampling)
 
     def _declared(self, output: str) -> tuple[Declared, str]:
         joints = self.start.joints
-        for one, item in matches(output):
-            known = item in (joints if one.group == "joints" else one.members(self.machine))
-            if one.is_of_row and not one.reason and known:
-                return one, item
+        for entry, item in matches(output):
+            known = item in (joints if entry.group == "joints" else entry.members(self.machine))
+            if entry.is_of_row and not entry.reason and known:
+                return entry, item
         if output.startswith("joints."):
             refuse_unbounded(self.motion.linkage, output)
             raise UsageError(unknown(output.removeprefix("joints."), joints, "joint"))
@@ -229,8 +229,8 @@ class Effects:
         """Mass, first moment and inertia about the link's anchor of each number, (count, 1)."""
         anchor = complex(*self.machine.links[part.link].points[self.start.anchor(part.link)])
         mass, x, y, inertia = part.effect.T[:, :, None]
-        found = kernels.about(mass, x + 1j * y, inertia, anchor)
-        return found[0], found[1], found[2]
+        about = kernels.about(mass, x + 1j * y, inertia, anchor)
+        return about[0], about[1], about[2]
 
     @cached_property
     def solved(self) -> Pass:
@@ -239,16 +239,16 @@ class Effects:
         links = self.machine.links
         demands = {link: (np.zeros_like(force), np.zeros_like(moment)) for link in links}
         for part, rows in self.masses:
-            for whole, one, other in zip(
+            for whole, demand, other in zip(
                 demands[part.link], self.inertia, self.weight, strict=True
             ):
-                whole[rows] = one[rows] + other[rows]
+                whole[rows] = demand[rows] + other[rows]
         for spring, rows in self.springs:
-            held = [(spring.link, spring.choice.point, spring.pulls(self.motion), 0.0)]
-            for whole, one in zip(
-                demands[spring.link], demands_of(self.motion, held)[spring.link], strict=True
+            pairs = [(spring.link, spring.choice.point, spring.pulls(self.motion), 0.0)]
+            for whole, demand in zip(
+                demands[spring.link], demands_of(self.motion, pairs)[spring.link], strict=True
             ):
-                whole[rows] = one
+                whole[rows] = demand
         return reactions(self.motion, demands, self.flanks)
 
     @cached_property

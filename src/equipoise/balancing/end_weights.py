@@ -43,7 +43,7 @@ def end_weights_for(analysis: Analysis, entries: tuple[FigureAssessment, ...]) -
     and the rest asks for |A| / (w^2 L) at the distance L.
     """
     machine, motion, outputs = analysis.machine, analysis.motion, analysis.outputs
-    large = any(one.is_large and one.yardstick_kind == "bearings" for one in entries)
+    large = any(entry.is_large and entry.yardstick_kind == "bearings" for entry in entries)
     if len(machine.rows) < 2 or not large or not machine.has_crank:
         return None
     x, y = (outputs[name].values for name in ("rows.roll_moment", "rows.yaw_moment"))

@@ -149,7 +149,7 @@ def balance_shafts_for(
 
     The unbalances are |A| / w^2 and |B| / w^2.
     """
-    force = next((one for one in entries if one.output == "shaking_force"), None)
+    force = next((entry for entry in entries if entry.output == "shaking_force"), None)
     if force is None or not analysis.machine.has_crank or force.ratio < WORTH_SHAFTS:
         return None
     first = FirstOrder.of_shaking_force(analysis)
@@ -170,7 +170,7 @@ def piston_balance_for(
     which a counterweight for the share b leaves 1 - 2 b.
     """
     machine = analysis.machine
-    force = next((one for one in entries if one.output == "shaking_force"), None)
+    force = next((entry for entry in entries if entry.output == "shaking_force"), None)
     direction = _stroke_of(machine)
     large = force is not None and force.is_large
     if not large or direction is None or not machine.has_crank or len(machine.rows) > 1:
@@ -201,7 +201,7 @@ def _stroke_of(machine: Machine) -> float | None:
     """Direction (rad) of the one link that slides on the frame, driven by a crank with a rod or a
     slot between them; None of other machines.
     """
-    guided = {one.link: one.direction for one in machine.sliders if one.on == "frame"}
+    guided = {slider.link: slider.direction for slider in machine.sliders if slider.on == "frame"}
     is_plain = len(guided) == 1 and len(machine.links) <= CRANK_ROD_PISTON
     return next(iter(guided.values())) if is_plain else None
 

@@ -103,7 +103,7 @@ def flywheels_for(analysis: Analysis, entries: tuple[FigureAssessment, ...]) -> 
     do.
     """
     machine, motion = analysis.machine, analysis.resolved.motion
-    large = (one for one in entries if one.is_swing_about_mean and one.is_large)
+    large = (entry for entry in entries if entry.is_swing_about_mean and entry.is_large)
     if (entry := next(large, None)) is None or not machine.has_crank:
         return None
     output = analysis.outputs[entry.output]
@@ -112,7 +112,9 @@ def flywheels_for(analysis: Analysis, entries: tuple[FigureAssessment, ...]) -> 
     choices: list[RequiredFlywheel] = []
     for share in (STEADY,) if power < 0 else (STEADY, COARSE):
         missing = _missing(machine, share)
-        ratios = [one.ratio for one in choices] or _ratios(machine)  # all on one shaft, to compare
+        ratios = [choice.ratio for choice in choices] or _ratios(
+            machine
+        )  # all on one shaft, to compare
         each = (_disc_of(analysis, missing, share, ratio) for ratio in ratios)
         choices += [*filter(None, each)][:1] if missing else []
     if not choices:
@@ -199,7 +201,7 @@ def flywheel_sentences(found: Flywheels, crank: str, links: float) -> Iterator[s
             "Flywheel on a shaft {ratio} times as fast as {crank}, which the file does not give "
             "and the machine would need: {discs}."
         )
-        discs = say("; ").join(_disc(one, links) for one in same)
+        discs = say("; ").join(_disc(item, links) for item in same)
         template = on_crank if ratio == 1 else assumed if is_assumed else on_motor
         yield say(template, crank=crank, ratio=f"{ratio:.4g}", discs=discs)
     if _lets_swing(found.choices):
@@ -218,7 +220,7 @@ def _shaft(one: RequiredFlywheel) -> tuple[float, bool]:
 
 
 def _lets_swing(choices: Iterable[RequiredFlywheel]) -> bool:
-    return any(one.fluctuation > STEADY for one in choices)
+    return any(choice.fluctuation > STEADY for choice in choices)
 
 
 def _disc(one: RequiredFlywheel, links: float) -> str:

@@ -136,10 +136,10 @@ class GearSearch(DesignProblem):
         return replace(self._lightest(), gears_left=tried < everything)
 
     def _with(self, choice: Choice) -> WithShafts:
-        made = self.start
+        with_shafts = self.start
         for gearing, mesh in zip(self.gearings, choice, strict=True):
-            made = made.with_gears(gearing, mesh)
-        return made
+            with_shafts = with_shafts.with_gears(gearing, mesh)
+        return with_shafts
 
     def with_numbers(self, start: Choice, numbers: Array) -> Choice | None:
         """Gears with other numbers of `ranges`; None where a counterweight hits a link."""
@@ -157,7 +157,7 @@ class GearSearch(DesignProblem):
 
     def cost(self, choice: Choice) -> float:
         """Cost with these gears, not closely where others cost less; infinite where none do."""
-        least = min((one.best.value for _, one in self.found), default=LARGE)
+        least = min((item.best.value for _, item in self.found), default=LARGE)
         try:
             solution = self._with(choice).solved(None, least)
         except UsageError as error:
@@ -173,13 +173,13 @@ class GearSearch(DesignProblem):
 
     def _lightest(self) -> Solution:
         """The lightest of those that cost least."""
-        least = min(one.best.value for _, one in self.found)
+        least = min(item.best.value for _, item in self.found)
         ties = {
-            choice: one.problem.mass_added(one.numbers)
-            for choice, one in self.found
-            if one.best.value <= least + TIE
+            choice: item.problem.mass_added(item.numbers)
+            for choice, item in self.found
+            if item.best.value <= least + TIE
         }
-        equal = sorted(ties, key=lambda choice: [(one.ratio, one.direction) for one in choice])
+        equal = sorted(ties, key=lambda choice: [(item.ratio, item.direction) for item in choice])
         light = sorted(equal, key=ties.__getitem__)[:LIGHT_TIES]
         tried = dict.fromkeys([*equal[:: max(1, len(equal) // MOST_TIES)], *light])
         lightest = min(
@@ -194,7 +194,7 @@ class GearSearch(DesignProblem):
         return replace(
             lightest,
             method=method,
-            best=replace(lightest.best, nodes=sum(one.best.nodes for _, one in self.found)),
+            best=replace(lightest.best, nodes=sum(item.best.nodes for _, item in self.found)),
             ties=len(equal),
             weighed=len(tried),
         )

@@ -56,7 +56,7 @@ class Mesh:
 def geared_range(geared: GearedWeight) -> bool:
     """Whether ratio or direction may be any number between two, of which some are tried."""
     ranges = (geared.ratio, geared.direction)
-    return any(one is not None and one[0] < one[1] for one in ranges)
+    return any(item is not None and item[0] < item[1] for item in ranges)
 
 
 class Gearing:
@@ -97,20 +97,20 @@ class Gearing:
     def ranges(self) -> dict[str, tuple[float, float]]:
         """What may be any number between two: ratio, direction."""
         ratio, direction = self.geared.ratio, self.geared.direction
-        found = {}
+        pairs = {}
         if ratio is not None and ratio[0] < ratio[1] and not self.turns_fully:
-            found["ratio"] = ratio
+            pairs["ratio"] = ratio
         if direction is not None and direction[0] < direction[1]:
-            found["direction"] = direction
-        return found
+            pairs["direction"] = direction
+        return pairs
 
     def meshes(self) -> list[Mesh]:
         """Choices to try: pairs of teeth, or ratios over the range."""
-        found = list(self._choices())
-        if not found:
+        async_iterator = list(self._choices())
+        if not async_iterator:
             raise UsageError(self._why_none())
-        clear = [mesh for mesh in found if self.is_clear(mesh)]
-        if not clear and (hit := self._hit(found[0])):
+        clear = [mesh for mesh in async_iterator if self.is_clear(mesh)]
+        if not clear and (hit := self._hit(async_iterator[0])):
             raise UsageError(hit)
         return clear
 
@@ -276,10 +276,10 @@ def nearest(motion: Motion, link: str, place: complex) -> float:
     """How near a link's points, and the lines between them, come to a place over a turn, m."""
     points = [motion.points[name].place for name in motion.machine.links[link].points]
     least = min(float(np.min(np.abs(p - place))) for p in points)
-    for one, other in combinations(points, 2):
-        along = other - one
-        share = np.real((place - one) * np.conj(along)) / np.maximum(np.abs(along) ** 2, 1e-300)
-        foot = one + np.clip(share, 0.0, 1.0) * along
+    for point, other in combinations(points, 2):
+        along = other - point
+        share = np.real((place - point) * np.conj(along)) / np.maximum(np.abs(along) ** 2, 1e-300)
+        foot = point + np.clip(share, 0.0, 1.0) * along
         least = min(least, float(np.min(np.abs(foot - place))))
     return least
 

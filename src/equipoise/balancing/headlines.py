@@ -102,17 +102,17 @@ class AssessedMachine:
         """Moments that were as good as nothing, and are larger now than what is saved."""
         for new in after.headline:
             if new.is_shaking and new.dimension == "torque":
-                was, made = (_rms(one.analysis, new.output) for one in (self, after))
+                was, made = (_rms(item.analysis, new.output) for item in (self, after))
                 if was <= COUPLE_FROM_NOTHING * made and made - was > saving.moment_against(new):
                     yield _before(self.headline, new), new
 
     def aims(self, objectives: Iterable[Objective]) -> Iterator[tuple[Objective, FigureAssessment]]:
         """Aims that are headline figures, and these."""
-        entries = {one.output: one for one in self.headline}
-        for one in objectives:
-            for name in (f"{ROWS}{one.output}", one.output):
+        entries = {item.output: item for item in self.headline}
+        for objective in objectives:
+            for name in (f"{ROWS}{objective.output}", objective.output):
                 if name in entries:
-                    yield one, entries[name]
+                    yield objective, entries[name]
                     break
 
     def largest_aim(self, objectives: Iterable[Objective]) -> FigureAssessment | None:
@@ -127,18 +127,18 @@ class AssessedMachine:
         aim = self.largest_aim(objectives)
         if aim is None or not aim.ratio:
             return 1.0
-        new = next((one for one in after.headline if one.family == aim.family), None)
+        new = next((item for item in after.headline if item.family == aim.family), None)
         return 1.0 if new is None else 1 - _ratio(aim, new) / aim.ratio
 
     def saving(self, objectives: Mapping[Objective, tuple[float, float]], gain: float) -> Saving:
         """What a remedy takes away of aims, each before and after in SI units."""
         gone = [
-            (objectives[one][0] - objectives[one][1], entry)
-            for one, entry in self.aims(objectives)
+            (objectives[item][0] - objectives[item][1], entry)
+            for item, entry in self.aims(objectives)
             if entry.is_shaking
         ]
-        forces = [(value, one.yardstick) for value, one in gone if one.dimension == "force"]
-        moments = [value for value, one in gone if one.dimension == "torque"]
+        forces = [(value, item.yardstick) for value, item in gone if item.dimension == "force"]
+        moments = [value for value, item in gone if item.dimension == "torque"]
         force, yardstick = max(forces, default=(None, 0.0))
         largest = self.largest_aim(objectives)
         excess = 0.0 if largest is None else largest.excess
@@ -164,13 +164,13 @@ def worse_headlines(before: Assessment, after: Assessment, saving: Saving) -> Pa
 
 def _before(before: Assessment, new: FigureAssessment) -> FigureAssessment:
     """The figure of the same family before; 0 where there was none."""
-    same = (one for one in before if one.family == new.family)
+    same = (item for item in before if item.family == new.family)
     return next(same, replace(new, value=0.0, ratio=0.0))
 
 
 def worse_parts(before: Assessment, after: Assessment, saving: Saving) -> Iterator[Pair]:
     """Single joints and components that grew by more than they may, each before and after."""
-    old = {one.figure: one for one in before}
+    old = {item.figure: item for item in before}
     for new in after:
         was = old.get(new.figure)
         if was is not None and _ratio(was, new) > allowed_ratio(was, saving, PART_GROWTH):
@@ -240,19 +240,21 @@ class HeadlineLimit:
     ) -> Iterator[Limit]:
         """Limits of a plan where a share of aims of an excess is gone."""
         at_most = float(self.most(np.array(gain), excess, steadies))
-        yield from (Limit(one, at_most=at_most) for one in self.objectives)
+        yield from (Limit(objective, at_most=at_most) for objective in self.objectives)
 
 
 def watched_of(found: AssessedMachine) -> Iterator[HeadlineLimit]:
     """Figures that masses change, and the most that they may become."""
-    for one in found.headline:
-        if one.output.startswith(GAUGES):
-            yield from _watched_gauge(found.analysis.machine, one)
+    for part in found.headline:
+        if part.output.startswith(GAUGES):
+            yield from _watched_gauge(found.analysis.machine, part)
             continue
-        members = [out.name for out in found.analysis.outputs if out.declared.name == one.family[0]]
-        yield from _watched(one, members, HEADLINE_GROWTH)
-    for one in found.parts:
-        yield from _watched(one, [one.output], PART_GROWTH)
+        members = [
+            out.name for out in found.analysis.outputs if out.declared.name == part.family[0]
+        ]
+        yield from _watched(part, members, HEADLINE_GROWTH)
+    for part in found.parts:
+        yield from _watched(part, [part.output], PART_GROWTH)
 
 
 def _watched(one: FigureAssessment, outputs: list[str], growth: float) -> Iterator[HeadlineLimit]:
@@ -272,12 +274,12 @@ def _watched_gauge(machine: Machine, one: FigureAssessment) -> Iterator[Headline
 
 def headline_objectives(entries: Assessment) -> tuple[Objective, ...]:
     """The largest figure that can be an objective; the shaking force where there is none."""
-    for one in entries:
-        known, measure = declared(one.output), one.figure.rpartition(".")[2]
-        gauge = one.output.startswith(GAUGES)
+    for entry in entries:
+        known, measure = declared(entry.output), entry.figure.rpartition(".")[2]
+        gauge = entry.output.startswith(GAUGES)
         if gauge:
-            return (Objective(one.output, "ripple"),)
+            return (Objective(entry.output, "ripple"),)
         if known is not None and not known[0].reason and measure in MEASURES:
-            name = one.output.removeprefix(ROWS)
+            name = entry.output.removeprefix(ROWS)
             return (Objective(name, measure),)
     return (Objective("shaking_force"),)

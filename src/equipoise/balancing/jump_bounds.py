@@ -65,7 +65,7 @@ class JumpBounds:
             for k in range(0, len(middles), step)
         ]
         names = ("bounds", "values", "losses")
-        return BoxExtremes(*(np.concatenate([getattr(one, n) for one in parts]) for n in names))
+        return BoxExtremes(*(np.concatenate([getattr(part, n) for part in parts]) for n in names))
 
     def _over(self, middles: Array, halves: Array) -> BoxExtremes:
         # (B, k, i): of row i behind row k
@@ -75,8 +75,8 @@ class JumpBounds:
         reach[:, each, each] = 0.0
         rough = self._rough(ahead, reach)
         high, low = (
-            self._closely(halves, ahead, reach, one, sign)
-            for one, sign in zip(rough, SIGNS, strict=True)
+            self._closely(halves, ahead, reach, item, sign)
+            for item, sign in zip(rough, SIGNS, strict=True)
         )
         if self.measure == "peak_to_peak":
             both = [a + b for a, b in zip(high, low, strict=True)]
@@ -184,7 +184,7 @@ def _doubled(bins: Array, pick: Any) -> Array:
     levels = [bins]
     while 2 ** len(levels) <= count:
         levels.append(pick(levels[-1], np.roll(levels[-1], -(2 ** (len(levels) - 1)), axis=1)))
-    return np.array([np.concatenate([one, one], axis=1) for one in levels])
+    return np.array([np.concatenate([level, level], axis=1) for level in levels])
 
 
 @dataclass(frozen=True, eq=False)
@@ -253,7 +253,7 @@ class CubicPieces:
         each = [self.extremes(np.full(bins, k), *ends) for k in range(len(self.cubics))]
         return tuple(
             np.lib.stride_tricks.sliding_window_view(
-                _doubled(np.array([one[which] for one in each]), pick), bins, axis=2
+                _doubled(np.array([item[which] for item in each]), pick), bins, axis=2
             )
             for which, pick in enumerate((np.minimum, np.maximum))
         )  # type: ignore[return-value]
@@ -273,9 +273,9 @@ class CubicPieces:
         level = np.log2(np.maximum(between, 1)).astype(int)
         from_first = (first + 1) % count
         from_last = (first + 1 + between - 2**level) % count
-        found = []
+        result = []
         for table, pick in zip(self._tables, (np.minimum, np.maximum), strict=True):
             ends = pick.reduce(np.concatenate([of_first, of_last]), axis=0)
             inner = pick(table[level, row, from_first], table[level, row, from_last])
-            found.append(np.where(between > 0, pick(ends, inner), ends))
-        return found[0], found[1]
+            result.append(np.where(between > 0, pick(ends, inner), ends))
+        return result[0], result[1]

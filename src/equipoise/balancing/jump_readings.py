@@ -102,9 +102,9 @@ class JumpReadings:
     def over(self, middles: Array, halves: Array) -> BoxExtremes:
         """Bounds over boxes of phases alone, with middles and half sides (B, m), rad."""
         none = np.zeros((len(middles), 0))
-        found = self.readings(middles, halves, none, none, none)
-        bounds = np.sum([np.max(one.constants, axis=1) for one in found.groups], axis=0)
-        return BoxExtremes(bounds, found.values, found.losses)
+        readings = self.readings(middles, halves, none, none, none)
+        bounds = np.sum([np.max(item.constants, axis=1) for item in readings.groups], axis=0)
+        return BoxExtremes(bounds, readings.values, readings.losses)
 
     def readings(
         self, middles: Array, halves: Array, numbers: Array, low: Array, high: Array
@@ -118,11 +118,13 @@ class JumpReadings:
         of_one = 2 * self._leading * self._bins * len(self._functions[0])
         step = max(1, 4 * AT_ONCE // of_one)
         parts = [
-            self._some(*(one[k : k + step] for one in (middles, halves, shares, low, high)))
+            self._some(*(item[k : k + step] for item in (middles, halves, shares, low, high)))
             for k in range(0, len(middles), step)
         ]
         groups = tuple(
-            Forms(*(np.concatenate([getattr(one, name) for one in some]) for name in vars(some[0])))
+            Forms(
+                *(np.concatenate([getattr(item, name) for item in some]) for name in vars(some[0]))
+            )
             for some in zip(*(part.groups for part in parts), strict=True)
         )
         values, losses = (
@@ -161,9 +163,9 @@ class JumpReadings:
         places = start.curves[0][0].x
         rows = range(len(start.curves))
         cubics = [
-            one.curves[row][0].c[..., c]
+            jumping_row.curves[row][0].c[..., c]
             for row in rows
-            for one in self.designs.each
+            for jumping_row in self.designs.each
             for c in range(start.curves[row][0].c.shape[-1])
         ]
         return CubicPieces(places[:-1], np.diff(places), np.array(cubics))
@@ -253,7 +255,7 @@ class JumpReadings:
         bound = np.zeros((*ahead.shape[:2], count))
         for row, functions in enumerate(self._functions):
             for (j, c), function in np.ndenumerate(functions):
-                at = [(level[..., row], function, one[..., row] % count) for one in (first, last)]
+                at = [(level[..., row], function, item[..., row] % count) for item in (first, last)]
                 low = np.minimum(least[at[0]], least[at[1]])
                 high = np.maximum(most[at[0]], most[at[1]])
                 factor = factors[0][..., j, c]
@@ -305,7 +307,7 @@ class JumpReadings:
         own = np.arange(ahead.shape[2]) == leader[..., None]
         beside = (far + SLACK)[..., None, None]
         least, most = self.pieces.extremes(which, where - beside, where + beside)
-        least, most = (np.where(own[..., None, None], here, one) for one in (least, most))
+        least, most = (np.where(own[..., None, None], here, item) for item in (least, most))
         total = np.einsum("bamjc,bj->bac", here, shares)
         along = np.full_like(total, sign)
         if self._is_vector:

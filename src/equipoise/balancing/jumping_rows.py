@@ -68,7 +68,7 @@ class JumpingRows:
         parts = np.split(values, np.cumsum([len(x) for x in pieces])[:-1])
         splines = [CubicSpline(x, y) for x, y in zip(pieces, parts, strict=True)]
         places = np.concatenate([*(x[:-1] for x in pieces), [period]])
-        coefficients = np.concatenate([one.c for one in splines], axis=1)
+        coefficients = np.concatenate([spline.c for spline in splines], axis=1)
         curves = []
         for row in range(coefficients.shape[2]):
             curve = PPoly(coefficients[:, :, row], places, extrapolate="periodic")
@@ -166,10 +166,10 @@ class JumpingRows:
             bend = before - 2 * here + after
             way = np.divide(before - after, 2 * bend, out=np.zeros_like(bend), where=bend < 0)
             moved = theta + width * np.clip(way, -1.0, 1.0)
-            found = self._sum(phases[owner], moved[:, None], sign)[:, 0]
-            found = np.where(self._at_jump(phases[owner], moved), -np.inf, found)
-            theta = np.where(found > reached, moved, theta)
-            reached = np.maximum(found, reached)
+            result = self._sum(phases[owner], moved[:, None], sign)[:, 0]
+            result = np.where(self._at_jump(phases[owner], moved), -np.inf, result)
+            theta = np.where(result > reached, moved, theta)
+            reached = np.maximum(result, reached)
         return owner, theta, reached
 
     def _skip_jumps(self, phases: Array, values: Array) -> None:
@@ -261,7 +261,7 @@ class JumpingDesigns:
         start, curves = self.each[0], []
         for row, (curve, _) in enumerate(start.curves):
             pairs = zip(numbers.tolist(), self.each[1:], strict=True)
-            cubics = curve.c + sum(number * one.curves[row][0].c for number, one in pairs)
+            cubics = curve.c + sum(number * item.curves[row][0].c for number, item in pairs)
             whole = PPoly(cubics, curve.x, extrapolate="periodic")
             curves.append((whole, whole.derivative()))
         return replace(start, curves=tuple(curves))

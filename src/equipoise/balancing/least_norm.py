@@ -82,20 +82,20 @@ def least_moments(machine: Machine, links: Sequence[str], free: Sequence[str] = 
             raise UsageError(
                 Note("{name} has mass 0 and so no first moment; give it a mass", name=name)
             )
-    found = conditions(machine)
+    result = conditions(machine)
     places = [
-        found.parameters.index((link, moment))
+        result.parameters.index((link, moment))
         for link in names
         for moment in ("moment_x", "moment_y")
     ]
-    sizes = np.abs(found.coefficients * parameter_scales(machine))  # of each condition's terms
+    sizes = np.abs(result.coefficients * parameter_scales(machine))  # of each condition's terms
     scale = np.max(sizes, axis=1) * (machine.mass or 1.0)
-    rows, right = found.coefficients[:, places] / scale[:, None], -found.residuals / scale
+    rows, right = result.coefficients[:, places] / scale[:, None], -result.residuals / scale
     costed = 2 * len(links)
     x = _least(rows[:, :costed], rows[:, costed:], right)
     rest = np.abs(rows @ x - right)
     if rest.size and np.max(rest) > MET:
-        worst = found.sentences[int(np.argmax(rest))]
+        worst = result.sentences[int(np.argmax(rest))]
         raise UsageError(
             Note(
                 "first moments of {names} cannot meet {worst}; name more links",

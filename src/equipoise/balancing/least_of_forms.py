@@ -117,19 +117,19 @@ def _solved(
     ends = np.full((*cost.shape, 2), (-np.inf, np.inf))
     ends[:, :count] = (0.0, 1.0)
     ends[:, count + groups :, 0] = 0.0
-    found = linprog(
+    result = linprog(
         cost.ravel(),
         sparse.block_diag(matrix, format="csr"),
         np.concatenate(right, axis=1).ravel(),
         bounds=ends.reshape(-1, 2),
         method="highs",
     )
-    if found.x is None or found.ineqlin.marginals is None:
+    if result.x is None or result.ineqlin.marginals is None:
         return None
-    numbers = low + width * np.clip(found.x.reshape(boxes, -1)[:, :count], 0.0, 1.0)
-    prices = np.maximum(-found.ineqlin.marginals.reshape(boxes, -1), 0.0)
-    each = np.split(prices, np.cumsum([one.shape[1] for one in blocks])[:-1], axis=1)
-    return numbers, [one[:, 0] for one in each[groups:-1]], each[:groups], each[-1]
+    numbers = low + width * np.clip(result.x.reshape(boxes, -1)[:, :count], 0.0, 1.0)
+    prices = np.maximum(-result.ineqlin.marginals.reshape(boxes, -1), 0.0)
+    each = np.split(prices, np.cumsum([block.shape[1] for block in blocks])[:-1], axis=1)
+    return numbers, [item[:, 0] for item in each[groups:-1]], each[:groups], each[-1]
 
 
 def _rows(

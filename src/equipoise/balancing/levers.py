@@ -32,22 +32,22 @@ OWN = dict.fromkeys(OF_ROWS, "rocking_moment")
 
 def signals_of_row(motion: Motion) -> Array:
     """Signals of one linkage (8, N), in the order told above."""
-    found, nothing = forces(motion), np.zeros(len(motion.crank_angle))
-    shaking, frame = found.shaking_force, found.frame_force
+    result, nothing = forces(motion), np.zeros(len(motion.crank_angle))
+    shaking, frame = result.shaking_force, result.frame_force
     rocking = (nothing, nothing)
     if motion.machine.has_planes:
-        rocking = (found.across.rocking_moment.x, found.across.rocking_moment.y)
-    moments = found.shaking_moment, found.frame_moment
+        rocking = (result.across.rocking_moment.x, result.across.rocking_moment.y)
+    moments = result.shaking_moment, result.frame_moment
     return np.stack([shaking.x, shaking.y, moments[0], frame.x, frame.y, moments[1], *rocking])
 
 
 def lever(motion: Motion, output: str, row: Row, about: str | None) -> Array:
     """Rows (C, 8) by which an output of all rows reads the signals of one of them."""
     if output in OF_ROWS:
-        found = np.zeros((1, ROCKING + 2))
-        found[0, :2] = moment_of_row(output, row, 0j, UNIT[0][:2], np.zeros(2))
-        found[0, ROCKING + OF_ROWS.index(output)] = 1.0
-        return found
+        values = np.zeros((1, ROCKING + 2))
+        values[0, :2] = moment_of_row(output, row, 0j, UNIT[0][:2], np.zeros(2))
+        values[0, ROCKING + OF_ROWS.index(output)] = 1.0
+        return values
     first = FRAME if output.startswith("frame") else SHAKING
     kind = output.removeprefix("frame_").removeprefix("shaking_")
     whole = np.eye(ROCKING + 2)[first : first + 3]

@@ -83,7 +83,7 @@ class Conditions(Result):
 
     @property
     def sentences(self) -> tuple[str, ...]:
-        return tuple(f"{one.text} = 0" for one in self.readings)
+        return tuple(f"{parameter_sum.text} = 0" for parameter_sum in self.readings)
 
     @property
     def without_effect(self) -> tuple[tuple[str, str], ...]:
@@ -240,14 +240,14 @@ def _without_noise(kept: Array, grouping: Array, columns: Array) -> Array:
     lost by it.
     """
     noise = ROUNDING * np.linalg.norm(pinv(kept), axis=1)
-    found = grouping.copy()
+    values = grouping.copy()
     for k, column in enumerate(columns.T):
         used = np.abs(grouping[:, k]) > noise
         fitted: Any = lstsq(kept[:, used], column, rcond=None)[0] if np.any(used) else []
         if np.linalg.norm(kept[:, used] @ fitted - column) <= ROUNDING:
-            found[:, k] = 0.0
-            found[used, k] = fitted
-    return found
+            values[:, k] = 0.0
+            values[used, k] = fitted
+    return values
 
 
 # -- what is shown ---------------------------------------------------------------------------------
@@ -275,8 +275,8 @@ def conditions_blocks(*found: Conditions, verdict: Sequence[str] = ()) -> Iterat
             "of the link"
         )
     )
-    for one in found:
-        yield _conditions(one)
+    for item in found:
+        yield _conditions(item)
     if verdict:
         title = say("By the links' own masses, none of them lighter than now")
         yield Facts(title, tuple(verdict))
@@ -284,15 +284,18 @@ def conditions_blocks(*found: Conditions, verdict: Sequence[str] = ()) -> Iterat
 
 def _conditions(found: Conditions) -> Block:
     subject = say(" and ").join(map(output_named, found.outputs))
-    told = {"what": subject, "wanted": say(WANTED[found.kind, found.crank])}
+    text = {"what": subject, "wanted": say(WANTED[found.kind, found.crank])}
     if not found.count:
-        return Text(say("Conditions for {what} to be {wanted}: none, it always is.", **told))
-    now = [one.factor * float(k) for one, k in zip(found.readings, found.residuals, strict=True)]
+        return Text(say("Conditions for {what} to be {wanted}: none, it always is.", **text))
+    now = [
+        parameter_sum.factor * float(k)
+        for parameter_sum, k in zip(found.readings, found.residuals, strict=True)
+    ]
     rows = tuple(
-        (f"{one.words} = 0", Value(unit.factor * value), unit.unit)
-        for one, value in zip(found.readings, now, strict=True)
-        for dimension, usual in [SHOWN[one.unit]]
+        (f"{parameter_sum.words} = 0", Value(unit.factor * value), unit.unit)
+        for parameter_sum, value in zip(found.readings, now, strict=True)
+        for dimension, usual in [SHOWN[parameter_sum.unit]]
         for unit in [display(dimension, now, usual)]
     )
-    title = say("Conditions for {what} to be {wanted}", **told)
+    title = say("Conditions for {what} to be {wanted}", **text)
     return Table(title, (Column(""), Column(say("now")), Column("")), rows)

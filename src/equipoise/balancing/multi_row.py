@@ -114,8 +114,8 @@ class PhasedRows:
         for problem in wrong_objective(where, objective, self.machine):
             raise problem
         output = objective.output
-        one = output_of(output, self.machine)
-        if one.group not in OF_ALL or one.needs == "planes":
+        declared = output_of(output, self.machine)
+        if declared.group not in OF_ALL or declared.needs == "planes":
             raise UsageError(
                 Note(
                     "{output} acts within one row, so that no phase changes it; choose an "
@@ -124,7 +124,7 @@ class PhasedRows:
                 )
             )
         if output.startswith(GAUGES):
-            found = self._gauge(output.removeprefix(GAUGES), objective.speeds)
+            row_signals = self._gauge(output.removeprefix(GAUGES), objective.speeds)
         else:
             rows, signal = rows_of(self.machine), self._alike(output) or self._one
             levers = np.ones((len(rows), 1, 1))
@@ -140,8 +140,8 @@ class PhasedRows:
 
                 bends = bends_of(self.machine, signal.turns)
                 jumping = JumpingRows.of(at, jumps, signal.turns, bends)
-            found = RowSignals(amplitudes, signal.turns, jumping)
-        return found.kept(objective.orders)
+            row_signals = RowSignals(amplitudes, signal.turns, jumping)
+        return row_signals.kept(objective.orders)
 
     @cached_property
     def _motion(self) -> Motion:
@@ -152,20 +152,22 @@ class PhasedRows:
         """Signals of one row (8, K + 1), each cut off where its own rounding begins."""
         motion = self._motion
         rows = signals_of_row(motion)
-        each = [motion.periodic(one).without_rounding().amplitudes for one in rows]
+        each = [motion.periodic(row).without_rounding().amplitudes for row in rows]
         return Periodic(_padded(each), motion.turns)
 
     def _alike(self, output: str) -> Periodic | None:
         """A signal (1, K + 1) that is the same wherever its row is, such as the drive torque."""
-        one = output_of(output, self.machine)
-        if one.needs == "rows" or one.about or one.part:
+        declared = output_of(output, self.machine)
+        if declared.needs == "rows" or declared.about or declared.part:
             return None
         return self._motion.periodic(self._read(output, self._motion)).without_rounding()
 
     def _read(self, output: str, motion: Motion) -> Array:
         """An output (1, N) of one row that is the same wherever the row is."""
-        one = output_of(output, self.machine)
-        return one.values(Analysis(motion, forces(motion)), one.item_of(output) or "")[None]
+        declared = output_of(output, self.machine)
+        return declared.values(Analysis(motion, forces(motion)), declared.item_of(output) or "")[
+            None
+        ]
 
     def _gauge(self, name: str, speeds: Sequence[float]) -> RowSignals:
         chosen_model(self.machine, None, False)  # refuses a machine without a support
@@ -178,10 +180,10 @@ class PhasedRows:
 
 def _padded(each: Sequence[Array]) -> Array:
     """Amplitudes (..., K + 1) of unequal K as one array, the short ones filled up with 0."""
-    count = max(found.shape[-1] for found in each)
+    count = max(result.shape[-1] for result in each)
     whole = np.zeros((len(each), *each[0].shape[:-1], count), complex)
-    for row, found in zip(whole, each, strict=True):
-        row[..., : found.shape[-1]] = found
+    for row, outcome in zip(whole, each, strict=True):
+        row[..., : outcome.shape[-1]] = outcome
     return whole
 
 
@@ -330,7 +332,7 @@ class Cost:
         """Combined value (...) of the values (...) of all terms, and of all limits."""
         parts = [factor * np.asarray(x) for factor, x in zip(self.factors, values, strict=False)]
         over = zip(self.limits, values[len(parts) :], strict=False)
-        beyond = sum(PENALTY * np.maximum(np.asarray(x) / one.scale - 1, 0.0) for one, x in over)
+        beyond = sum(PENALTY * np.maximum(np.asarray(x) / item.scale - 1, 0.0) for item, x in over)
         if self.combine == "sum" or len(parts) == 1:
             return np.asarray(sum(parts) + beyond)
         return np.asarray(np.sqrt(sum(part**2 for part in parts)) + beyond)
@@ -338,7 +340,9 @@ class Cost:
     @property
     def smoothed(self) -> Cost:
         """A cost that is nowhere larger, of terms that do not jump."""
-        terms, limits = (tuple(one.smoothed for one in some) for some in (self.terms, self.limits))
+        terms, limits = (
+            tuple(item.smoothed for item in some) for some in (self.terms, self.limits)
+        )
         return replace(self, terms=terms, limits=limits)
 
     @property

@@ -55,12 +55,12 @@ def signals_of(effects: Effects, objective: Objective, near: Near) -> list[Signa
     """Signals whose largest measure an objective is: one for each speed at which it is read."""
     output, machine = objective.output, effects.machine
     if output.startswith(GAUGES):
-        found = _gauge_signals(effects, objective, near)
+        signals = _gauge_signals(effects, objective, near)
     elif output in OF_ROWS or (len(machine.rows) > 1 and not output.startswith(WITHIN)):
-        found = [of_all_rows(effects, output, objective.about)]
+        signals = [of_all_rows(effects, output, objective.about)]
     else:
-        found = [effects.signal(output, objective.about)]
-    return [signal.kept(objective.orders) for signal in found]
+        signals = [effects.signal(output, objective.about)]
+    return [signal.kept(objective.orders) for signal in signals]
 
 
 def of_all_rows(effects: Effects, output: str, about: str | None = None) -> Signal:
@@ -68,14 +68,14 @@ def of_all_rows(effects: Effects, output: str, about: str | None = None) -> Sign
     rows = effects.machine.rows
     if effects.motion.sampling is None:
         each = of_rows_alone(effects, output, about)
-        turned = [one.ahead_by(row.phase) for one, row in zip(each, rows, strict=True)]
+        turned = [item.ahead_by(row.phase) for item, row in zip(each, rows, strict=True)]
     else:  # at each row's own crank angles
         by_phase = {
             phase: of_rows_alone(effects.of_row(phase), output, about)
             for phase in {row.phase for row in rows}
         }
         turned = [by_phase[row.phase][k] for k, row in enumerate(rows)]
-    start, columns = sum(one.start for one in turned), sum(one.columns for one in turned)
+    start, columns = sum(item.start for item in turned), sum(item.columns for item in turned)
     return replace(turned[0], start=np.asarray(start), columns=np.asarray(columns))
 
 
@@ -85,21 +85,21 @@ def of_rows_alone(effects: Effects, output: str, about: str | None = None) -> li
     if axis in {"x", "y"} and kind:
         part = np.real if axis == "x" else np.imag
         whole = of_rows_alone(effects, kind, about)
-        return [replace(one, start=part(one.start), columns=part(one.columns)) for one in whole]
+        return [replace(item, start=part(item.start), columns=part(item.columns)) for item in whole]
     machine = effects.machine
     force = effects.signal("frame_force" if output.startswith("frame") else "shaking_force")
-    one = force.divided(np.inf)
+    divided = force.divided(np.inf)
     if output not in OWN or machine.has_planes:
-        one = effects.signal(OWN.get(output, output))
+        divided = effects.signal(OWN.get(output, output))
     if not output.endswith("_moment"):
-        return [one] * len(machine.rows)
-    found = []
+        return [divided] * len(machine.rows)
+    signals = []
     for row in machine.rows:
         arm = arm_of(machine, effects.motion, row, about)
-        there = moment_of_row(output, row, arm, force.start, one.start)
-        by_number = moment_of_row(output, row, arm, force.columns, one.columns)
-        found.append(replace(one, start=there, columns=by_number))
-    return found
+        there = moment_of_row(output, row, arm, force.start, divided.start)
+        by_number = moment_of_row(output, row, arm, force.columns, divided.columns)
+        signals.append(replace(divided, start=there, columns=by_number))
+    return signals
 
 
 # -- gauges of the support -------------------------------------------------------------------------
@@ -153,7 +153,7 @@ def read(
 
 def supports_more(effects: Effects, machine: Machine) -> bool:
     """Whether what the support has to carry depends on the numbers."""
-    return any(np.any(one) for one in _by_numbers(effects, Near(machine).linear))
+    return any(np.any(by_number) for by_number in _by_numbers(effects, Near(machine).linear))
 
 
 @lru_cache(maxsize=2)  # all gauges and speeds ask for the same
@@ -178,13 +178,13 @@ def _by_numbers(effects: Effects, linear: Linear) -> tuple[Array, Array]:
         for row in part.effect:
             share = STEP * own[0] / max(whole[0], float(np.max(np.abs(row[:3]), initial=0.0)))
             ends = (own + share * row, own - share * row)
-            one, other = (Linear.of(with_parameters(padded, part.link, e)) for e in ends)
-            mass.append((one.mass - other.mass) / (2 * share))
-            stiffness.append((one.stiffness - other.stiffness) / (2 * share))
-    found = np.array(mass), np.array(stiffness)
-    for columns, everything in zip(found, (start.mass, start.stiffness), strict=True):
+            item, other = (Linear.of(with_parameters(padded, part.link, e)) for e in ends)
+            mass.append((item.mass - other.mass) / (2 * share))
+            stiffness.append((item.stiffness - other.stiffness) / (2 * share))
+    pair = np.array(mass), np.array(stiffness)
+    for columns, everything in zip(pair, (start.mass, start.stiffness), strict=True):
         columns[np.abs(columns) <= ROUNDING * np.max(np.abs(everything))] = 0.0
-    return found
+    return pair
 
 
 def _wrench(effects: Effects, linear: Linear, rows: Sequence[Row]) -> Periodic:
@@ -201,11 +201,11 @@ def _wrench(effects: Effects, linear: Linear, rows: Sequence[Row]) -> Periodic:
         rocking = np.vstack([still, effects.signal("rocking_moment").columns])
     moments = _moments(effects, linear)
     signals = np.stack([forces.real, forces.imag, moments, rocking.real, rocking.imag])
-    one = effects.motion.periodic(signals)
-    flat, total = one.amplitudes.reshape(5, -1), Periodic(np.zeros((6, 1, 1)), one.turns)
+    periodic = effects.motion.periodic(signals)
+    flat, total = periodic.amplitudes.reshape(5, -1), Periodic(np.zeros((6, 1, 1)), periodic.turns)
     for place in rows:
-        here = excitation.about_reference(flat, place).reshape(6, *one.amplitudes.shape[1:])
-        total = total + Periodic(here, one.turns).shifted(place.phase)
+        here = excitation.about_reference(flat, place).reshape(6, *periodic.amplitudes.shape[1:])
+        total = total + Periodic(here, periodic.turns).shifted(place.phase)
     return total
 
 
@@ -225,18 +225,18 @@ def read_rows(linear: Linear, reading: Array, speed: float) -> Array:
     symmetric, so that the answer to the reading itself serves all rows.
     """
     linear.motion(speed)  # refuses what resonates, or drives the support away
-    one = linear.excitation.of_one(speed)
-    impedance = linear.impedance(one.orders[1:] * speed)
+    of_one = linear.excitation.of_one(speed)
+    impedance = linear.impedance(of_one.orders[1:] * speed)
     along = np.broadcast_to(reading[:, None], (len(impedance), len(reading), 1))
-    answer = np.zeros((6, len(one.orders)), complex)
+    answer = np.zeros((6, len(of_one.orders)), complex)
     answer[linear.body.free, 1:] = np.linalg.solve(impedance, along)[..., 0].T
     rows = rows_of(linear.excitation.machine)
-    found = np.zeros((len(rows), len(one.orders)), complex)
+    values = np.zeros((len(rows), len(of_one.orders)), complex)
     for k, row in enumerate(rows):
-        wrench = one.amplitudes.copy()
+        wrench = of_one.amplitudes.copy()
         wrench[3:] += np.cross((*row.offset, row.lateral), wrench[:3].T).T
-        found[k] = np.sum(answer * wrench, axis=0)
-    return found
+        values[k] = np.sum(answer * wrench, axis=0)
+    return values
 
 
 # -- measures --------------------------------------------------------------------------------------
@@ -305,7 +305,7 @@ def bound_measure(
     """
     if measure in {"peak", "peak_to_peak"}:
         signal = signal.shown
-    count, one = len(signal.start), Affine.fixed(1.0)
+    count, fixed = len(signal.start), Affine.fixed(1.0)
     value = Affine(signal.columns.T, numbers, signal.start)
     if measure in {"rms", "ripple"}:
         matrix, vector = mean_square_rows(signal, measure)
@@ -326,7 +326,7 @@ def bound_measure(
         high, low = program.numbers(2)
         for place, sign in ((high, -1.0), (low, 1.0)):
             program.gradually(ConeRows("nonnegative", Affine.of(place, 1.0) + sign * value))
-        program.nonnegative(bound - Affine.of([high, low], [1.0, 1.0]), name, one)
+        program.nonnegative(bound - Affine.of([high, low], [1.0, 1.0]), name, fixed)
     else:
         from scipy import sparse
 
@@ -335,7 +335,7 @@ def bound_measure(
         for sign in (1.0, -1.0):
             factors = sparse.hstack([each, sign * value.factors])
             program.nonnegative(Affine(factors, columns, sign * value.constant))
-        program.nonnegative(bound - Affine.of(sizes, signal.angles), name, one)
+        program.nonnegative(bound - Affine.of(sizes, signal.angles), name, fixed)
 
 
 def _beside(bound: Affine, count: int, inner: Affine) -> Affine:

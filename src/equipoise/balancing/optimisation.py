@@ -87,8 +87,8 @@ def solve_plan(machine: Machine, plan: Balance, progress: Progress | None = None
     """The best of all choices of gears, with the best numbers for these."""
     start = WithShafts(machine, plan, machine)
     for shafts in plan.shafts:
-        base, more = with_shafts(start.base, shafts)
-        start = replace(start, base=base, weights=(*start.weights, *more))
+        base, added_weights = with_shafts(start.base, shafts)
+        start = replace(start, base=base, weights=(*start.weights, *added_weights))
     if not plan.geared:
         return start.solved(progress)
     return GearSearch(start, progress).run()
@@ -97,10 +97,10 @@ def solve_plan(machine: Machine, plan: Balance, progress: Progress | None = None
 def balance_rows(machine: Machine, plan: Balance, progress: Progress | None = None) -> Balanced:
     """Choose the phases of a machine's rows; together with masses where the plan frees these."""
     assert plan.phases is not None
-    told = progress or (lambda done, most: None)
+    text = progress or (lambda done, most: None)
     linkage, solution = replace(plan, phases=None), None
     scope: tuple[Note, ...] = ()
-    limits = tuple(one for one in plan.limits if not one.objective.output.startswith(WITHIN))
+    limits = tuple(limit for limit in plan.limits if not limit.objective.output.startswith(WITHIN))
     search = PhaseSearch(machine, plan.objectives, plan.phases, plan.combine, limits)
     method = Note("branch and bound over all phases of the rows")
     if linkage.changes_nothing:
@@ -117,21 +117,21 @@ def balance_rows(machine: Machine, plan: Balance, progress: Progress | None = No
                 raise
             first = None
         problem = Problem.of(machine, linkage) if first is None else first.problem
-        together = JointPhaseMassOptimizer(problem, search)
-        solution, phasing = together.run(first, told)
+        joint_phase_mass_optimizer = JointPhaseMassOptimizer(problem, search)
+        solution, phasing = joint_phase_mass_optimizer.run(first, text)
         method = Note("branch and bound over all phases of the rows and all masses")
-        scope = together.scope
-    found = in_phases(machine, plan, phasing, method, scope)
+        scope = joint_phase_mass_optimizer.scope
+    balanced = in_phases(machine, plan, phasing, method, scope)
     if solution is None:
-        return found
+        return balanced
     changed = result_of(machine, plan, solution)
     after = replace(search, machine=changed.machine)
     return replace(
         changed,
-        changes=(*changed.changes, *found.changes),
+        changes=(*changed.changes, *balanced.changes),
         objectives={
-            one.objective.name: (one.value_at(search.present), after.value_of(one.objective))
-            for one in search.cost.terms
+            term.objective.name: (term.value_at(search.present), after.value_of(term.objective))
+            for term in search.cost.terms
         },
         bound=min(phasing.bound, changed.cost),
         method=method,

@@ -55,11 +55,11 @@ def helps_told(balanced: Balanced) -> Iterator[str]:
         whole = balanced.advice is not None or len(pieces) > 1  # two points cannot be left out
         yield say("{sentence}.", sentence="; ".join([first, *pieces]) if whole else first)
     yield from _heavy(balanced)
-    for one, (before, after) in balanced.aims.items():
-        unit = shown_in(unit_of(one, balanced.original), [before])
+    for item, (before, after) in balanced.aims.items():
+        unit = shown_in(unit_of(item, balanced.original), [before])
         yield say(
             "{what}: {before} → {after} {unit} ({change}).",
-            what=capital(objective_named(one, len(balanced.original.rows))),
+            what=capital(objective_named(item, len(balanced.original.rows))),
             before=unit.text(before, digits=3),
             after=unit.text(after, before, 3),
             unit=unit.name,
@@ -99,11 +99,11 @@ def nothing_told(found: Balanced) -> Iterator[str]:
         yield from why_nothing(found)
         yield from sentences_beyond_masses(found)
         return
-    for one, (before, _) in found.aims.items():
-        unit = shown_in(unit_of(one, found.original), [before])
+    for item, (before, _) in found.aims.items():
+        unit = shown_in(unit_of(item, found.original), [before])
         yield say(
             "{what}, {value} {unit}, is {already}.",
-            what=capital(objective_named(one, len(found.original.rows))),
+            what=capital(objective_named(item, len(found.original.rows))),
             value=unit.text(before, digits=3),
             unit=unit.name,
             already=good_already(found),
@@ -136,7 +136,7 @@ MOST_LARGE, MOST_WORSE = 3, 2
 
 def large_figures(advice: Advice) -> tuple[bool, list[FigureAssessment]]:
     """Whether anything is large; and what is, or else what comes nearest to its yardstick."""
-    large = [one for one in advice.before if one.is_large][:MOST_LARGE]
+    large = [item for item in advice.before if item.is_large][:MOST_LARGE]
     return bool(large), large or [*advice.before[:1]]
 
 
@@ -145,8 +145,8 @@ def large_sentences(advice: Advice, crank_turns: bool) -> Iterator[str]:
     large, few = large_figures(advice)
     template = to_say("Large here: {figure}.")
     nearest = to_say("What comes nearest to its yardstick: {figure}.")
-    for one in few:
-        yield say(template if large else nearest, figure=sentence(one, crank_turns))
+    for item in few:
+        yield say(template if large else nearest, figure=sentence(item, crank_turns))
 
 
 def reasons_to_leave(found: Balanced) -> Iterator[str]:
@@ -243,7 +243,9 @@ def beside_the_aim(found: Balanced) -> Iterator[str]:
     """
     assert found.advice is not None
     pairs = [*_before_and_after(found.advice)]
-    aims = {f"{rows}{one.output}" for one in found.plan.objectives for rows in ("", ROWS)}
+    aims = {
+        f"{rows}{objective.output}" for objective in found.plan.objectives for rows in ("", ROWS)
+    }
     fallen = [_from_to(was, new) for was, new in pairs
               if was.is_large and was.output not in aims and not was.output.startswith(GAUGES)
               and abs(new.value) <= (1 - FALLEN) * abs(was.value)
@@ -251,10 +253,10 @@ def beside_the_aim(found: Balanced) -> Iterator[str]:
     if fallen:
         yield say("That also brings down {figures}.", figures=listed(fallen))
     poor = found.advice.beyond.transmission
-    for one in _left(found.advice)[:1]:
-        if poor is not None and one.yardstick_kind == "transmission":
+    for item in _left(found.advice)[:1]:
+        if poor is not None and item.yardstick_kind == "transmission":
             break
-        yield say("Large after that: {figure}.", figure=sentence(one, found.original.crank_turns))
+        yield say("Large after that: {figure}.", figure=sentence(item, found.original.crank_turns))
     if poor is not None:
         yield transmission_sentence(poor, found.original.crank_turns)
 
@@ -265,8 +267,8 @@ def large_besides(found: Balanced) -> Iterator[str]:
     """
     assert found.advice is not None
     told_of = found.advice.beyond.transmission is not None
-    others = [one for one in _left(found.advice)[1:]
-              if not (told_of and one.yardstick_kind == "transmission")]  # fmt: skip
+    others = [item for item in _left(found.advice)[1:]
+              if not (told_of and item.yardstick_kind == "transmission")]  # fmt: skip
     if others:
         figures = listed(map(_valued, others[: MOST_LARGE - 1]))
         yield say("Large besides: {figures}.", figures=figures)
@@ -275,11 +277,11 @@ def large_besides(found: Balanced) -> Iterator[str]:
 def _left(advice: Advice) -> list[FigureAssessment]:
     """What is large after a change, the largest first, against the yardstick before."""
     left = (_against(new, was) for was, new in _before_and_after(advice))
-    return sorted((one for one in left if one.is_large), key=lambda one: -one.excess)
+    return sorted((item for item in left if item.is_large), key=lambda one: -one.excess)
 
 
 def _before_and_after(advice: Advice) -> Iterator[tuple[FigureAssessment, FigureAssessment]]:
-    old = {one.family: one for one in advice.before}
+    old = {item.family: item for item in advice.before}
     yield from ((old.get(new.family, new), new) for new in advice.after)
 
 
@@ -311,17 +313,17 @@ def _from_to(was: FigureAssessment, new: FigureAssessment) -> str:
 
 def _with_more_room(found: Balanced) -> Iterator[str]:
     """What a counterweight would do where there is more room than is assumed."""
-    if (more := found.with_room) is not None:
-        assumed, wanted = display("length", [more.assumed, more.wanted]), more.wanted
+    if (with_room := found.with_room) is not None:
+        assumed, wanted = display("length", [with_room.assumed, with_room.wanted]), with_room.wanted
         yield say(
             "The room about {at} is assumed, from the lengths of the links, to reach {assumed}: "
             "with {wanted} there, {remedy} would take {gain} % off with {mass}.",
-            at=more.at,
-            assumed=assumed.with_unit(assumed.text(more.assumed, digits=2)),
+            at=with_room.at,
+            assumed=assumed.with_unit(assumed.text(with_room.assumed, digits=2)),
             wanted=assumed.with_unit(assumed.text(wanted, digits=2)),
-            remedy=remedy_named(more.remedy),
-            mass=told(more.remedy.added_mass, "mass", digits=3),
-            gain=percent(more.remedy.gain, 0),
+            remedy=remedy_named(with_room.remedy),
+            mass=told(with_room.remedy.added_mass, "mass", digits=3),
+            gain=percent(with_room.remedy.gain, 0),
         )
 
 
@@ -336,7 +338,7 @@ def remedy_named(found: Balanced) -> str:
         return say("phases {phases} of the rows", phases=phases[0])
     remedy = listed(freedoms(found.plan))
     for kind in ("beside", "beside_links"):
-        beside = {name: None for one in found.changes for name in one.values.get(kind, ())}
+        beside = {name: None for item in found.changes for name in item.values.get(kind, ())}
         if beside:
             return in_its_plane(remedy, {kind: beside})
     return remedy
@@ -379,7 +381,9 @@ def _fall_of_figure(found: Balanced) -> str | None:
     own = found.original.balance
     if not is_worth(found.gain, share) or (own is not None and own.objectives):
         return None
-    outputs = {f"{rows}{one.output}" for one in found.plan.objectives for rows in ("", ROWS)}
+    outputs = {
+        f"{rows}{objective.output}" for objective in found.plan.objectives for rows in ("", ROWS)
+    }
     pairs = ((was, new) for was, new in _before_and_after(found.advice) if was.output in outputs)
     for was, new in pairs:
         gone = 1 - abs(new.value / was.value)
@@ -404,7 +408,7 @@ def advice_blocks(found: Balanced) -> Iterator[Block]:
         yield from map(Text, sentences_beyond_masses(found))
     for aims, same in groupby(found.tried, key=aims_told):
         rows: tuple[tuple[Cell, ...], ...] = tuple(
-            (remedy_named(one), RelativeChange(1.0, 1 - one.gain), why_not(one)) for one in same
+            (remedy_named(item), RelativeChange(1.0, 1 - item.gain), why_not(item)) for item in same
         )
         columns = (Column(say("remedy")), Column(say("change")), Column(say("why not")))
         title = say("What was tried to make smaller {aims}", aims=aims)

@@ -64,7 +64,7 @@ class Front(Result):
         """Name, unit and values of both objectives, and of the added mass."""
         masses = np.array([point.added_mass for point in self.points])
         both = zip((self.first, self.second), self.values.T, strict=True)
-        columns = [(one.name, unit_of(one, self.original), values) for one, values in both]
+        columns = [(item.name, unit_of(item, self.original), values) for item, values in both]
         return [*columns, ("added mass", "kg", masses)]
 
     def to_dict(self) -> dict[str, Any]:
@@ -74,7 +74,7 @@ class Front(Result):
             "title": self.original.title,
             "first": self.first.name,
             "second": self.second.name,
-            "before": {one.name: Problem.value_of(self.original, one) for one in both},
+            "before": {item.name: Problem.value_of(self.original, item) for item in both},
             "points": [
                 {
                     "first": first,
@@ -116,7 +116,7 @@ def trade_off(
         raise UsageError(
             Note("{name} cannot be traded against itself; give another objective", name=first.name)
         )
-    ends = [balance(machine, replace(plan, objectives=(one,))) for one in (first, second)]
+    ends = [balance(machine, replace(plan, objectives=(item,))) for item in (first, second)]
     ends[1] = _least_of_both(machine, plan, first, ends[1])
     low, high = (Problem.value_of(end.machine, first) for end in ends)
     before = ends[0].objectives[first.name][0] or 1.0
@@ -128,17 +128,17 @@ def trade_off(
                 name_2=second.name,
             )
         )
-    found = []
+    result = []
     share = np.linspace(0.0, 1.0, points) ** 2  # closer together near low, where the curve is steep
     values = low + (high - low) * (TOUCH + (1 - TOUCH) * share)
     for done, value in enumerate(values.tolist(), 1):
         limit = Limit(first, at_most=value)
         asked = replace(plan, objectives=(second,), limits=(*plan.limits, limit))
-        found.append(balance(machine, asked) if done < points else ends[1])
+        result.append(balance(machine, asked) if done < points else ends[1])
         if progress is not None:
             progress(done, points)
-    both = [[Problem.value_of(one.machine, which) for which in (first, second)] for one in found]
-    return Front(machine, first, second, tuple(found), np.array(both))
+    both = [[Problem.value_of(item.machine, which) for which in (first, second)] for item in result]
+    return Front(machine, first, second, tuple(result), np.array(both))
 
 
 def _least_of_both(machine: Machine, plan: Balance, first: Objective, least: Balanced) -> Balanced:
@@ -147,16 +147,16 @@ def _least_of_both(machine: Machine, plan: Balance, first: Objective, least: Bal
     before, after = least.objectives[second.name]
     limit = Limit(second, at_most=after + HELD * before)
     try:
-        found = balance(machine, replace(plan, objectives=(first,), limits=(*plan.limits, limit)))
+        result = balance(machine, replace(plan, objectives=(first,), limits=(*plan.limits, limit)))
     except UsageError:  # as near to the least as that, there may be no room to move
         return least
-    if Problem.value_of(found.machine, first) >= Problem.value_of(least.machine, first):
+    if Problem.value_of(result.machine, first) >= Problem.value_of(least.machine, first):
         return least
-    value = Problem.value_of(found.machine, second)
+    value = Problem.value_of(result.machine, second)
     return replace(
         least,  # whose bound is that of the second objective
-        machine=found.machine,
-        changes=found.changes,
+        machine=result.machine,
+        changes=result.changes,
         objectives={second.name: (before, value)},
         cost=least.cost * value / after if after else least.cost,
     )
@@ -171,7 +171,7 @@ def front_blocks(found: Front) -> Iterator[Block]:
         for label, unit in zip(labels, units, strict=True)
     ]
     values = (column.tolist() for _, _, column in found.columns())
-    rows = tuple(tuple(Value(one, 1e-9) for one in row) for row in zip(*values, strict=True))
+    rows = tuple(tuple(Value(item, 1e-9) for item in row) for row in zip(*values, strict=True))
     yield Table(say("Trade-off"), tuple(columns), rows)
     yield Text(
         say(

@@ -155,15 +155,15 @@ def patterns_for(rows: int) -> tuple[Pattern, ...]:
     """
     if rows < 2:
         raise UsageError(Note("got {rows} rows; give two at least", rows=rows))
-    found = [pattern for pattern in PATTERNS.values() if pattern.rows == rows]
+    patterns = [pattern for pattern in PATTERNS.values() if pattern.rows == rows]
     if rows >= 8 and not rows & (rows - 1):
-        found.append(halved(rows))
+        patterns.append(halved(rows))
     if rows not in {2, 4}:  # where they are printed already
-        found.append(Pattern(f"{rows} evenly spread", tuple((k, rows) for k in range(rows))))
+        patterns.append(Pattern(f"{rows} evenly spread", tuple((k, rows) for k in range(rows))))
     if rows >= 6 and rows % 2 == 0:
         half = [(k, rows // 2) for k in range(rows // 2)]
-        found.append(Pattern(f"{rows} mirrored", (*half, *half[::-1])))
-    return tuple(found)
+        patterns.append(Pattern(f"{rows} mirrored", (*half, *half[::-1])))
+    return tuple(patterns)
 
 
 def pattern_named(name: str) -> Pattern:
@@ -211,12 +211,19 @@ def pattern_blocks(machine: Machine, rows: int, spacing: float) -> Iterator[Bloc
     yield Text(say("{rows} rows, {apart} from row to row", rows=rows, apart=apart))
     patterns, unit = patterns_for(rows), display("angle")
     phases = [
-        (one.name, " ".join(fixed(unit, p, 1).removesuffix(".0") for p in one.phases), one.source)
-        for one in patterns
+        (
+            pattern.name,
+            " ".join(fixed(unit, p, 1).removesuffix(".0") for p in pattern.phases),
+            pattern.source,
+        )
+        for pattern in patterns
     ]
     heads = ("", f"{say('phases of the rows')}, {unit.unit}", say("printed by Yamashita et al. in"))
     yield Table(say("Patterns"), tuple(map(Column, heads)), tuple(phases))
-    left = [(one.name, one.left, say("yes") if one.twists else say("no")) for one in patterns]
+    left = [
+        (pattern.name, pattern.left, say("yes") if pattern.twists else say("no"))
+        for pattern in patterns
+    ]
     heads = ("", say("orders left, of how many rows"), say("twist"))
     title = say("What is left, up to the order from which it repeats")
     yield Table(title, tuple(map(Column, heads)), tuple(left))
@@ -226,8 +233,11 @@ def pattern_blocks(machine: Machine, rows: int, spacing: float) -> Iterator[Bloc
     )
     together = replace(patterns[0], name=say("all in phase"), parts=((0, 1),) * rows)
     figures: tuple[tuple[Cell, ...], ...] = tuple(
-        (one.name, *(_of_all(arranged(machine, one, spacing), output) for output in outputs))
-        for one in (together, *patterns)
+        (
+            pattern.name,
+            *(_of_all(arranged(machine, pattern, spacing), output) for output in outputs),
+        )
+        for pattern in (together, *patterns)
     )
     yield Table(say("Figures of this machine; RMS"), (Column(""), *columns), figures)
 

@@ -100,8 +100,8 @@ class _PhaseSearch:
                 self.numbers.cut(slopes[np.argmin(cut.bounds)])
                 if np.min(values) < least - BETTER * self.cost.whole:
                     place = np.argmin(values)
-                    found, value = self.improve(cut.middles[place], float(values[place]))
-                    best, least = (found, value) if value < least else (best, least)
+                    result, value = self.improve(cut.middles[place], float(values[place]))
+                    best, least = (result, value) if value < least else (best, least)
             boxes = boxes.of(order[batch:]).with_more(cut)
             closed = (boxes.bounds >= least - room) | (np.max(boxes.halvings, axis=1) > HALVINGS)
             left = min(left, float(np.min(boxes.bounds[closed], initial=np.inf)))
@@ -118,9 +118,11 @@ class _PhaseSearch:
         """All phases and numbers, as one box."""
         middles = np.full((1, self.cost.rows), self.bounder.half)
         middles[:, 0] = 0.0
-        ends, one = self.numbers, np.zeros(1)
+        ends, values = self.numbers, np.zeros(1)
         low, high, start = ends.low[None], ends.high[None], ends.start[None]
-        return Boxes(middles, np.zeros(middles.shape, int), low, high, start, one, one.astype(int))
+        return Boxes(
+            middles, np.zeros(middles.shape, int), low, high, start, values, values.astype(int)
+        )
 
     def _halves(self, boxes: Boxes) -> Boxes:
         """Boxes cut in two, of which those are left out in which nothing is allowed.
@@ -142,21 +144,21 @@ class _PhaseSearch:
         twice = boxes.of(np.tile(each, 2))
         middles = np.vstack([boxes.middles - step, boxes.middles + step])
         numbers = np.clip(twice.numbers, low, high)
-        found = Boxes(
+        result = Boxes(
             middles, np.vstack([halvings] * 2), low, high, numbers, twice.bounds, twice.widest
         )
-        return found.of(self._possible(found))
+        return result.of(self._possible(result))
 
     def _possible(self, boxes: Boxes) -> Array:
         """Whether boxes (B,) hold anything that is allowed, and nothing that others hold too."""
-        halves, found = self.bounder.half / 2.0**boxes.halvings, np.ones(len(boxes.bounds), bool)
-        for one, other in self._ordered:
-            low = boxes.middles[:, one] - halves[:, one]
-            found &= low < boxes.middles[:, other] + halves[:, other]
+        halves, values = self.bounder.half / 2.0**boxes.halvings, np.ones(len(boxes.bounds), bool)
+        for item, other in self._ordered:
+            low = boxes.middles[:, item] - halves[:, item]
+            values &= low < boxes.middles[:, other] + halves[:, other]
         for direction, least in self.numbers.cuts:
             most = np.sum(np.maximum(direction * boxes.low, direction * boxes.high), axis=1)
-            found &= most >= least - ROUNDING
-        return found
+            values &= most >= least - ROUNDING
+        return values
 
     @cached_property
     def _ordered(self) -> list[tuple[int, int]]:

@@ -102,15 +102,15 @@ class PhaseGrid:
         done = 0
         few = max(1, SAMPLED_CHUNK // self.cost.terms[0].signals.turns)
         for chunk in self._chunks(few if sampled else CHUNK):
-            found = self.cost.of([judge(chunk) for judge in judges])
-            levels, costs = np.vstack([levels, chunk]), np.concatenate([costs, found])
+            value = self.cost.of([judge(chunk) for judge in judges])
+            levels, costs = np.vstack([levels, chunk]), np.concatenate([costs, value])
             if len(costs) > KEPT:
                 best = np.argpartition(costs, KEPT)[:KEPT]
                 levels, costs = levels[best], costs[best]
             done += len(chunk)
             progress(done)
-        found = levels[np.argsort(costs, kind="stable")] * self.step
-        return np.asarray(found)
+        value = levels[np.argsort(costs, kind="stable")] * self.step
+        return np.asarray(value)
 
     def _chunks(self, size: int) -> Iterator[Array]:
         """Numbers of steps (B, m) of all arrangements, some at a time."""
@@ -150,7 +150,7 @@ class PhaseGrid:
         theta = np.arange(self._samples) * (2 * np.pi / self._samples)
         if term.jumping is None:
             turned = term.signals.turned(phases)
-            samples = np.stack([synthesis(one, theta).astype(np.float32) for one in turned])
+            samples = np.stack([synthesis(item, theta).astype(np.float32) for item in turned])
         else:  # (levels, 1, m, C, samples), as the other
             angles = np.broadcast_to(theta * term.signals.turns, (self.levels, self._samples))
             samples = np.transpose(term.jumping.each(phases, angles), (1, 0, 3, 2))[:, None]
@@ -160,10 +160,10 @@ class PhaseGrid:
             values = np.asarray(sum(samples[levels[:, k], :, k] for k in range(self.cost.rows)))
             values = values[:, :, 0] if values.shape[2] == 1 else np.linalg.norm(values, axis=2)
             high, low = np.max(values, axis=-1), np.min(values, axis=-1)
-            found = high - low if term.measure == "peak_to_peak" else np.maximum(high, -low)
+            value = high - low if term.measure == "peak_to_peak" else np.maximum(high, -low)
             if term.measure == "area":
-                found = 2 * np.pi * np.mean(np.abs(values), axis=-1)
-            return np.asarray(np.max(found, axis=1), float)
+                value = 2 * np.pi * np.mean(np.abs(values), axis=-1)
+            return np.asarray(np.max(value, axis=1), float)
 
         return judge
 
@@ -174,7 +174,7 @@ def alike(cost: Cost, more: Sequence[Array] = ()) -> list[list[int]]:
     more : amplitudes (K, V, m, C, N) in which they must be alike as well.
     """
     signals = [term.signals.amplitudes[..., 1:] for term in cost.measured]
-    signals += [one[..., 1:] for each in more for one in each]
+    signals += [item[..., 1:] for each in more for item in each]
     tops = [np.max(np.abs(a)) for a in signals]
     groups: list[list[int]] = []
     for k in range(cost.rows):
@@ -190,14 +190,14 @@ def alike(cost: Cost, more: Sequence[Array] = ()) -> list[list[int]]:
 
 def sorted_choices(levels: int, count: int) -> Array:
     """All rising choices (R, count) of `count` numbers below `levels`, with repetition."""
-    found = np.arange(levels, dtype=np.int64)[:, None]
+    values = np.arange(levels, dtype=np.int64)[:, None]
     for _ in range(count - 1):
-        last = found[:, -1]
+        last = values[:, -1]
         many = levels - last
         first = np.repeat(np.cumsum(many) - many, many)
         added = np.arange(int(many.sum())) - first + np.repeat(last, many)
-        found = np.hstack([np.repeat(found, many, axis=0), added[:, None]])
-    return found
+        values = np.hstack([np.repeat(values, many, axis=0), added[:, None]])
+    return values
 
 
 def distinct(found: Array, period: float, apart: Sequence[float], most: int) -> Array:

@@ -67,8 +67,8 @@ def polished(cost: Cost, phases: Array, step: float, after: Step = lambda: None)
         phases = _compass(cost, phases, step, after)
         better = _better(cost, phases, _by_tops(cost, phases, step, after))
         return _compass(cost, better, step / 8, after)
-    found = _newton(cost, phases, after) if cost.smooth else _by_tops(cost, phases, step, after)
-    return _better(cost, phases, found)
+    newton = _newton(cost, phases, after) if cost.smooth else _by_tops(cost, phases, step, after)
+    return _better(cost, phases, newton)
 
 
 def _better(cost: Cost, phases: Array, found: Array) -> Array:
@@ -87,7 +87,7 @@ def _compass(cost: Cost, phases: Array, size: float, after: Step) -> Array:
     free, chance = len(phases) - 1, np.random.default_rng(1)
     each = np.eye(free)
     pairs = [a + sign * b for k, a in enumerate(each) for b in each[:k] for sign in (1, -1)]
-    known = np.vstack([each, *(one[None] for one in pairs)])
+    known = np.vstack([each, *(pair[None] for pair in pairs)])
     best, here = phases, float(cost.values(phases))
     for _ in range(MOST_MOVES):
         if size <= FINEST:
@@ -176,10 +176,10 @@ def _by_tops(cost: Cost, phases: Array, step: float, after: Step) -> Array:
     """Linear programs, which cross from one set of tops to another, then curved ones."""
     best = _linear_programs(cost, phases, step, after)
     for _ in range(CURVED):
-        found = _curved(cost, best, after)
-        if not cost.values(found) < cost.values(best) * (1 - GAIN):
+        values = _curved(cost, best, after)
+        if not cost.values(values) < cost.values(best) * (1 - GAIN):
             break
-        best = found
+        best = values
     return best
 
 
@@ -209,16 +209,16 @@ def _step(cost: Cost, phases: Array, region: float) -> tuple[Array, float]:
     """
     from scipy.optimize import linprog
 
-    found = [Tops.of(term, phases).pieces(phases) for term in cost.measured]
-    now = np.array([np.max(values) for values, _ in found])
+    items = [Tops.of(term, phases).pieces(phases) for term in cost.measured]
+    now = np.array([np.max(values) for values, _ in items])
     weights, unit = _weights(cost, now), np.where(now > 0, now, 1.0)
     free = len(phases) - 1
-    rows = _below(found, unit)
+    rows = _below(items, unit)
     rows[:, :free] *= region
     result = linprog(
         np.concatenate([np.zeros(free), weights * unit]),
         rows,
-        -np.concatenate([values for values, _ in found]),
+        -np.concatenate([values for values, _ in items]),
         bounds=[(-1.0, 1.0)] * free + _kept(cost, unit),
     )
     if result.x is None:
@@ -250,13 +250,13 @@ def _curved(cost: Cost, phases: Array, after: Step) -> Array:
         return at_phases(np.concatenate([phases[:1], phases[1:] + x[:free]]))
 
     def room(x: Array) -> Array:
-        found = zip(pieces(x), x[free:] * unit, unit, strict=True)
-        return np.concatenate([(most - values) / scale for (values, _), most, scale in found])
+        result = zip(pieces(x), x[free:] * unit, unit, strict=True)
+        return np.concatenate([(most - values) / scale for (values, _), most, scale in result])
 
     def slopes(x: Array) -> Array:
-        found = pieces(x)
-        scale = np.repeat(unit, [len(values) for values, _ in found])
-        return np.asarray(-_below(found, unit) / scale[:, None])
+        result = pieces(x)
+        scale = np.repeat(unit, [len(values) for values, _ in result])
+        return np.asarray(-_below(result, unit) / scale[:, None])
 
     def total(x: Array) -> float:
         return float(cost.of(list(x[free:] * unit)))
@@ -288,7 +288,7 @@ def _pieces_at(tops: list[Tops], known: dict[bytes, list[Pieces]], phases: Array
 
 def _weights(cost: Cost, now: Array) -> Array:
     """Slope of the combined value by that of each term, and of each limit where it is passed."""
-    factors, beyond = cost.factors, [PENALTY / one.scale for one in cost.limits]
+    factors, beyond = cost.factors, [PENALTY / limit.scale for limit in cost.limits]
     if cost.combine == "squares":
         parts = factors * now[: len(factors)]
         factors = factors * parts / max(float(np.linalg.norm(parts)), TINY)
@@ -297,7 +297,7 @@ def _weights(cost: Cost, now: Array) -> Array:
 
 def _least(cost: Cost) -> Array:
     """Values of terms and limits below which it is all the same."""
-    return np.array([0.0] * len(cost.terms) + [one.scale for one in cost.limits])
+    return np.array([0.0] * len(cost.terms) + [limit.scale for limit in cost.limits])
 
 
 def _kept(cost: Cost, unit: Array) -> list[tuple[float, None]]:
@@ -321,8 +321,10 @@ class Tops:
         """All tops at phases (m,), rad."""
         if (jumping := term.jumping) is not None:
             return cls(term, ((jumping.anchors(phases, 1.0), jumping.anchors(phases, -1.0)),))
-        signals = [Periodic(one, term.signals.turns) for one in term.signals.total(phases)]
-        return cls(term, tuple((_looked_for(one, 1), _looked_for(one, -1)) for one in signals))
+        signals = [Periodic(item, term.signals.turns) for item in term.signals.total(phases)]
+        return cls(
+            term, tuple((_looked_for(signal, 1), _looked_for(signal, -1)) for signal in signals)
+        )
 
     def pieces(self, phases: Array) -> Pieces:
         """Values (P,) whose largest is the term's, and their slopes (P, m) by the phases (m,)."""
@@ -332,8 +334,8 @@ class Tops:
             low = jumping.followed(phases, second[0], second[1], -1.0)
             return self._of_ends(high, low, jumping.is_vector)
         turned = self.term.signals.turned(phases)
-        found = [self._of_speed(*each) for each in zip(turned, self.places, strict=True)]
-        return np.concatenate([v for v, _ in found]), np.vstack([s for _, s in found])
+        values = [self._of_speed(*each) for each in zip(turned, self.places, strict=True)]
+        return np.concatenate([v for v, _ in values]), np.vstack([s for _, s in values])
 
     def _of_speed(self, turned: Array, places: tuple[Array, Array]) -> Pieces:
         """The same at one speed, from the amplitudes (m, C, K + 1) of all rows."""
@@ -395,8 +397,8 @@ def _levelled(total: Periodic, sign: int) -> Periodic:
     """The one signal whose tops are looked for: the only component, or a vector's squared length;
     turned over for bottoms (sign -1).
     """
-    one = total if len(total.amplitudes) == 1 else squared(total)
-    return Periodic(sign * one.amplitudes.reshape(1, -1), total.turns)
+    item = total if len(total.amplitudes) == 1 else squared(total)
+    return Periodic(sign * item.amplitudes.reshape(1, -1), total.turns)
 
 
 def _looked_for(total: Periodic, sign: int) -> Array:

@@ -113,8 +113,8 @@ class PhaseSearch:
     @cached_property
     def present(self) -> Array:
         """Phases (m,) of the machine as it is."""
-        found = np.array([row.phase for row in self.machine.rows])
-        return np.asarray(found - found[0])
+        values = np.array([row.phase for row in self.machine.rows])
+        return np.asarray(values - values[0])
 
     @cached_property
     def rows(self) -> PhasedRows:
@@ -188,12 +188,12 @@ class PhaseSearch:
         if not self.cost.smooth:
             order = np.argsort(self.cost.values(cells), kind="stable")
             cells = distinct(cells[order], self.cost.period, [self.step / 2], MOST_KINKED)
-        most, found = most_steps(self.cost), [self.present]
+        most, presents = most_steps(self.cost), [self.present]
         for k, phases in enumerate(cells):  # of long cycles each takes seconds, or a minute
             after = stepped(progress, k * most, most, len(cells) * most)
-            found.append(self.polished(phases, after))
+            presents.append(self.polished(phases, after))
         progress(len(cells) * most, len(cells) * most)
-        return np.array(found)
+        return np.array(presents)
 
     def polished(self, phases: Array, after: Step = lambda: None) -> Array:
         """Phases (m,) of the least next to these, on the grid where they nearly are."""
@@ -206,8 +206,8 @@ class PhaseSearch:
         """
         if not self.cost.values(phases) < known:
             return phases, np.inf
-        found = self.polished(phases)
-        return found, float(self.cost.values(found))
+        values = self.polished(phases)
+        return values, float(self.cost.values(values))
 
     def _starts(self, progress: Progress) -> Array:
         """The best cells (S, m) of the grid; and the present and the equally spaced phases."""
@@ -265,8 +265,8 @@ class PhaseSearch:
         lateral = np.array([row.lateral for row in self.machine.rows])
         twist = Twist(self.force, lateral, alike(self.cost))
         laid = [twist.swapped(phases) for phases in good]
-        found = laid[first_least(np.array([float(twist.of(phases)[0]) for phases in laid]))]
-        return np.asarray((found - found[0]) % self.cost.period)
+        result = laid[first_least(np.array([float(twist.of(phases)[0]) for phases in laid]))]
+        return np.asarray((result - result[0]) % self.cost.period)
 
 
 def with_phases(machine: Machine, phases: Array, period: float) -> Machine:

@@ -113,12 +113,12 @@ class PhasesWithProof:
         """The details are the phases (m,) and their `PhaseProof`."""
         search = problem.search
         pool = search.pool(problem.progress)
-        found = search.best(pool)
-        known = float(search.cost.values(found))
-        proof = prove(search.cost, found, search.improved, least=known, progress=problem.progress)
-        if proof.phases is not found:
-            found = search.best(np.vstack([pool, proof.phases]))
-        return DesignSolution(found[None, 1:] / search.cost.period, details=(found, proof))
+        best = search.best(pool)
+        known = float(search.cost.values(best))
+        proof = prove(search.cost, best, search.improved, least=known, progress=problem.progress)
+        if proof.phases is not best:
+            best = search.best(np.vstack([pool, proof.phases]))
+        return DesignSolution(best[None, 1:] / search.cost.period, details=(best, proof))
 
 
 def choose_phases(
@@ -153,13 +153,13 @@ def choose_phases(
     solution = solve(PhaseProblem(search, progress or (lambda done, total: None)))
     if solution.details is None:  # it proves nothing: no cost is below 0
         pool = np.vstack([search.present, PhaseProblem(search).values_of(solution.places)])
-        found = search.best(pool)
-        proof = PhaseProof(found, 0.0, 0, False)
+        best = search.best(pool)
+        proof = PhaseProof(best, 0.0, 0, False)
     else:
-        found, proof = solution.details
+        best, proof = solution.details
     for term in search.cost.limits:
-        if term.value_at(found) > term.scale * (1 + KEPT):
-            least = f"{term.value_at(found):.4g} {unit_of(term.objective, machine)}"
+        if term.value_at(best) > term.scale * (1 + KEPT):
+            least = f"{term.value_at(best):.4g} {unit_of(term.objective, machine)}"
             raise UsageError(
                 Note(
                     "no phases keep the {name} within its limit; the best found leave {least}",
@@ -167,7 +167,7 @@ def choose_phases(
                     least=least,
                 )
             )
-    return phasing_of(search, found, proof)
+    return phasing_of(search, best, proof)
 
 
 def phasing_of(search: PhaseSearch, found: Array, proof: PhaseProof) -> Phasing:
@@ -178,7 +178,7 @@ def phasing_of(search: PhaseSearch, found: Array, proof: PhaseProof) -> Phasing:
     varying = (Objective(output, "ripple") for output in OF_ROWS)
     lateral = [PhaseObjective(wish, search.rows.signals(wish)) for wish in varying]
     before, after = (
-        {one.objective.name: one.value_at(at) for one in cost.terms} for at in (present, found)
+        {term.objective.name: term.value_at(at) for term in cost.terms} for at in (present, found)
     )
     left = np.max(np.abs(force.total(found)[0]), axis=0)[1:]
     loudest = float(np.max(np.abs(force.amplitudes), initial=0.0)) * len(found)
@@ -190,7 +190,8 @@ def phasing_of(search: PhaseSearch, found: Array, proof: PhaseProof) -> Phasing:
         combined=(float(cost.of([*before.values()])), float(cost.of([*after.values()]))),
         remaining=tuple(force.orders[1:][left > SURVIVES * loudest].tolist()),
         lateral={
-            one.objective.output: (one.value_at(present), one.value_at(found)) for one in lateral
+            item.objective.output: (item.value_at(present), item.value_at(found))
+            for item in lateral
         },
         combinations=0 if grid is None else grid.count,
         step=search.step if grid is None else grid.step,

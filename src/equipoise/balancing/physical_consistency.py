@@ -95,8 +95,8 @@ class ConsistentMasses:
         massless = [link for link, own in zip(self.links, self.mass, strict=True) if own == 0]
         traces = [link for link in massless if SMALL < added[link] <= TRACE]
         least = TRACE if traces else SMALL
-        found = {link: more * self.unit for link, more in added.items() if more > least}
-        return found | dict.fromkeys(sorted(traces), 0.0)
+        by_name = {link: more * self.unit for link, more in added.items() if more > least}
+        return by_name | dict.fromkeys(sorted(traces), 0.0)
 
     def by_points(self) -> bool:
         """Whether links without moments of inertia could meet the conditions.
@@ -137,11 +137,11 @@ class ConsistentMasses:
         for bounded in (False, True):
             program, y = self._combinations(bounded)
             try:
-                found = program.solve().x[y]
+                result = program.solve().x[y]
             except NoSolutionError:
                 continue
             for share in SUSPECT:
-                combination = self._tidied(found, share)
+                combination = self._tidied(result, share)
                 size = float(np.max(np.abs(combination)))
                 if size <= SMALL:  # all of it is what the solver leaves of zero
                     continue
@@ -164,10 +164,10 @@ class ConsistentMasses:
         factors = self.rows.T.reshape(count, len(QUANTITIES), -1)
         for k, (own, less) in enumerate(zip(factors, lost, strict=True)):
             light, slow = prices[k : k + 1], prices[count + k : count + k + 1]
-            one = np.ones(len(light))
-            program.nonnegative(Affine.of([*y, less, *light], [[*own[MASS], -1.0, *one]]))
+            values = np.ones(len(light))
+            program.nonnegative(Affine.of([*y, less, *light], [[*own[MASS], -1.0, *values]]))
             program.rotated(
-                Affine.of([*y, *slow], [[*own[INERTIA], *one]]),
+                Affine.of([*y, *slow], [[*own[INERTIA], *values]]),
                 Affine.of(less, 1.0),
                 Affine.of(y, own[[X, Y]] / 2),
             )
@@ -325,9 +325,9 @@ def _answer(machine: Machine, effects: ParameterEffects, what: str) -> Answer:
     added = masses.least_added()
     if added is not None:
         return Answer(what, True, added, True, None)
-    proof, points, found = None, masses.by_points(), masses.contradiction()
-    if found is not None:
-        row, least = found
+    proof, points, pair = None, masses.by_points(), masses.contradiction()
+    if pair is not None:
+        row, least = pair
         read = reading(machine, row, signed=True)
         proof = Proof(row * read.factor, read, least * read.factor, read.unit)
     return Answer(what, False, None, points, proof)
@@ -348,11 +348,11 @@ def _possible(what: str, added: Mapping[str, float]) -> str:
 def _impossible(what: str, proof: Proof | None, points: bool) -> str:
     if proof is None:
         return f"The {what} can at best be approached, by ever larger masses or moments of inertia."
-    told = proof.reading.words
+    words = proof.reading.words
     dimension, _ = SHOWN[proof.unit]
     unit = display(dimension, [proof.least], SI[dimension])
     because = (
-        f"The {what} cannot be made zero: {told} would have to be 0, but is at least "
+        f"The {what} cannot be made zero: {words} would have to be 0, but is at least "
         f"{unit.factor * proof.least:.4g} {unit.unit} with masses and moments of inertia no "
         "smaller than now"
     )

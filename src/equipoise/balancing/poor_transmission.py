@@ -76,9 +76,9 @@ def poor_transmission_for(
     as_it_is : of the machine with other masses, whose lengths are the same.
     """
     poor = (
-        one
-        for one in entries
-        if one.yardstick_kind == "transmission" and one.ratio >= POOR_TRANSMISSION
+        entry
+        for entry in entries
+        if entry.yardstick_kind == "transmission" and entry.ratio >= POOR_TRANSMISSION
     )
     worst = next(poor, None)
     if worst is None or worst.crank_angle is None:
@@ -109,7 +109,7 @@ def _mended(motion: Motion, joint: str) -> Mending | None:
     """
     machine = motion.machine
     before = _worst_angles(motion)
-    found: list[tuple[float, Mending]] = []
+    pairs: list[tuple[float, Mending]] = []
     for link, between in _lengths(machine, joint):
         for share in LENGTH_CHANGES:
             changed, length = _with_length(machine, link, between, share)
@@ -123,8 +123,8 @@ def _mended(motion: Motion, joint: str) -> Mending | None:
             if others and gain >= LEAST_MENDED:
                 enough = after[joint] >= TRANSMISSION
                 score = 1 - abs(share) if enough else after[joint] - TRANSMISSION
-                found.append((score, (link, between, share, length, after[joint])))
-    return max(found, key=lambda one: one[0], default=(0.0, None))[1]
+                pairs.append((score, (link, between, share, length, after[joint])))
+    return max(pairs, key=lambda one: one[0], default=(0.0, None))[1]
 
 
 def _worst_angles(motion: Motion) -> dict[str, float]:

@@ -61,8 +61,8 @@ class Affine:
         if isinstance(self.factors, np.ndarray):
             row, column = np.nonzero(self.factors)
             return row, self.columns[column], self.factors[row, column]
-        found = self.factors.tocoo()
-        return found.row, self.columns[found.col], found.data
+        tocoo = self.factors.tocoo()
+        return tocoo.row, self.columns[tocoo.col], tocoo.data
 
     def of_rows(self, places: Array) -> Affine:
         """Some of the rows."""
@@ -75,7 +75,7 @@ class Affine:
         both = [self.factors, other.factors]
         if len(self.constant) != len(other.constant):
             count = max(len(self.constant), len(other.constant))
-            both = [np.broadcast_to(one, (count, one.shape[1])) for one in both]
+            both = [np.broadcast_to(item, (count, item.shape[1])) for item in both]
         columns = np.concatenate([self.columns, other.columns])
         return Affine(np.concatenate(both, axis=1), columns, self.constant + other.constant)
 
@@ -223,10 +223,10 @@ class Program:
 
     def solve(self) -> ProgramSolution:
         """Solve; raises `NoSolutionError` where there is none."""
-        found = self._solve()
+        program_solution = self._solve()
         for _ in range(MOST_ROUNDS):
-            cuts = [*self._broken(found.x)]
-            cuts += [block for cutter in self.cutters for block in cutter(found.x)]
+            cuts = [*self._broken(program_solution.x)]
+            cuts += [block for cutter in self.cutters for block in cutter(program_solution.x)]
             if not cuts:
                 break
             self._cut(cuts)
@@ -234,8 +234,8 @@ class Program:
                 again = self._solve()  # of less freedom, so that the bound before still holds
             except StalledError:  # constraints that hardly differ; what is broken is little
                 break
-            found = replace(again, bound=max(found.bound, again.bound))
-        return found
+            program_solution = replace(again, bound=max(program_solution.bound, again.bound))
+        return program_solution
 
     def _cut(self, cuts: list[ConeRows]) -> None:
         """Add blocks; those that belong to a place take the place of the last of the same name."""

@@ -48,8 +48,8 @@ class ParameterTerm:
             return "" if f"{self.size:.5g}" == "1" else f"{self.size:.5g} ", ""
         length = 1 / (self.size**0.5 if self.quantity == "inertia" else self.size)
         unit = display("length", [length])
-        told = f"{unit.factor * length:.5g} {unit.unit}"
-        return "", f" / ({told})^2" if self.quantity == "inertia" else f" / {told}"
+        text = f"{unit.factor * length:.5g} {unit.unit}"
+        return "", f" / ({text})^2" if self.quantity == "inertia" else f" / {text}"
 
 
 @dataclass(frozen=True)
@@ -74,7 +74,9 @@ class ParameterSum:
         return self._sum(lambda term: say(WORDS[term.quantity], name=term.link))
 
     def _sum(self, named: Callable[[ParameterTerm], str]) -> str:
-        parts = [f"{one.sign} {one.around[0]}{named(one)}{one.around[1]}" for one in self.terms]
+        parts = [
+            f"{term.sign} {term.around[0]}{named(term)}{term.around[1]}" for term in self.terms
+        ]
         first = parts[0].removeprefix("+ ")
         return " ".join([f"-{first[2:]}" if first.startswith("- ") else first, *parts[1:]])
 

@@ -93,7 +93,7 @@ class Shapes:
 def sectors(shapes: Sequence[Sector]) -> Shapes:
     """Masses, first moments and inertias of sectors of steel plate."""
     outer, inner, thick, way, width = (
-        np.array([getattr(one, name) for one in shapes], float)
+        np.array([getattr(shape, name) for shape in shapes], float)
         for name in ("outer", "inner", "thickness", "direction", "width")
     )
     half, plate = np.radians(width) / 2, STEEL * thick
@@ -137,27 +137,27 @@ class Comparison:
             AddedMass(room.link, room.at, Weight("any", radius=1.0, plane=room.plane))
             for room in self.rooms
         )
-        limits = tuple(limit for one in self.watched for limit in one.limits())
+        limits = tuple(limit for item in self.watched for limit in item.limits())
         asked = Problem.of(self.machine, replace(self.plan, masses=free, limits=limits))
         return replace(asked, counts=self.before)
 
     @cached_property
     def _signals(self) -> dict[str, list[Signal]]:
         """Of each objective and headline figure, in SI units, at fewer crank angles."""
-        found = {}
+        by_name = {}
         for name, every in self.problem.unscaled.items():
-            signals = [one.on_grid for one in every]
-            steps = [max(1, len(one.start) // (SAMPLES * one.turns)) for one in signals]
-            found[name] = [
-                Signal(one.start[::step], one.columns[:, ::step], one.turns)
-                for one, step in zip(signals, steps, strict=True)
+            signals = [item.on_grid for item in every]
+            steps = [max(1, len(signal.start) // (SAMPLES * signal.turns)) for signal in signals]
+            by_name[name] = [
+                Signal(signal.start[::step], signal.columns[:, ::step], signal.turns)
+                for signal, step in zip(signals, steps, strict=True)
             ]
-        return found
+        return by_name
 
     @cached_property
     def influences(self) -> bool:
         """Whether a mass about the pivots changes any aim."""
-        return any(self.problem.moves(one) for one in self.plan.objectives)
+        return any(self.problem.moves(objective) for objective in self.plan.objectives)
 
     def numbers_of(self, each: Sequence[Shapes]) -> Array:
         """Numbers (M, K) of the problem, from one shape for each room."""
@@ -173,7 +173,7 @@ class Comparison:
     def gains(self, numbers: Array) -> Array:
         """Share (M,) of the aims that is gone."""
         goals = self.plan.objectives
-        costs = [self._values(one, numbers) / self.problem.scale(one) for one in goals]
+        costs = [self._values(goal, numbers) / self.problem.scale(goal) for goal in goals]
         whole = np.array(self.plan.factors)[:, None] * np.array(costs)
         squares = self.plan.combine == "squares"
         together = np.hypot.reduce(whole) if squares else np.sum(whole, axis=0)
@@ -184,8 +184,8 @@ class Comparison:
         """The headline figure of the aims; None of gauges, whose velocity is no signal here, and of
         aims that are no headline figure.
         """
-        entries = (one for one in self.watched if one.entry is not None)
-        return next((one for one in entries if one.entry == self.aim), None)
+        entries = (item for item in self.watched if item.entry is not None)
+        return next((entry for entry in entries if entry.entry == self.aim), None)
 
     def figure_gains(self, numbers: Array) -> Array:
         """Share (M,) of the headline figure of the aims that is gone, in its measure."""
@@ -193,7 +193,7 @@ class Comparison:
         if figure is None or self.asked:
             return np.ones(len(numbers))
         both = np.vstack([np.zeros((1, numbers.shape[1])), numbers])
-        values = np.max([self._values(one, both) for one in figure.objectives], axis=0)
+        values = np.max([self._values(objective, both) for objective in figure.objectives], axis=0)
         return np.asarray(1 - values[1:] / values[0])
 
     def harmless(self, numbers: Array, gain: Array) -> Array:
@@ -203,7 +203,7 @@ class Comparison:
         steadies = self.aim is not None and not self.aim.is_shaking
         for figure in self.watched:
             left = np.flatnonzero(fine)
-            most = [self._values(one, numbers[left]) for one in figure.objectives]
+            most = [self._values(objective, numbers[left]) for objective in figure.objectives]
             fine[left] = np.max(most, axis=0) <= figure.most(gain[left], excess, steadies)
         return fine
 
@@ -224,11 +224,11 @@ class Comparison:
         Those that are worth it and do no harm, as far as this linear look tells; where none is,
         that which gains most alone.
         """
-        mass = np.sum([np.maximum(one.mass, 0.0) for one in shapes], axis=0)
+        mass = np.sum([np.maximum(shape.mass, 0.0) for shape in shapes], axis=0)
         light = np.flatnonzero(mass <= most_mass)
         if not light.size:
             return []
-        numbers = self.numbers_of([one.subset(light) for one in shapes])
+        numbers = self.numbers_of([shape.subset(light) for shape in shapes])
         gain, share = self.gains(numbers), mass[light] / (self.machine.mass or 1.0)
         score = gain - MASS_PRICE * share
         order = np.argsort(-score, kind="stable")
@@ -237,12 +237,12 @@ class Comparison:
         fair = is_worth(gain, share, least=least)
         figure[fair] = self.figure_gains(numbers[fair])
         worth = order[is_worth(gain, share, figure, least)[order]]
-        found: list[int] = []
+        counts: list[int] = []
         for some in np.array_split(worth, 1 + len(worth) // CHUNK):
-            found += some[self.harmless(numbers[some], gain[some])].tolist()
-            if len(found) >= FEW:
+            counts += some[self.harmless(numbers[some], gain[some])].tolist()
+            if len(counts) >= FEW:
                 break
-        best = found[:FEW] or [int(np.argmax(gain))]
+        best = counts[:FEW] or [int(np.argmax(gain))]
         return [(float(score[k]), int(light[k])) for k in best]
 
 
@@ -299,7 +299,7 @@ def _ranked(
     """Score and sectors, one for each room, of those that are free."""
     turns = [180 * k * opposite for k in range(len(comparison.rooms))]
     each = [
-        [replace(one, direction=_turned(one.direction + turn)) for one in shapes]
+        [replace(shape, direction=_turned(shape.direction + turn)) for shape in shapes]
         if turn
         else shapes
         for turn in turns
@@ -307,23 +307,23 @@ def _ranked(
     free = np.ones(len(shapes), bool)
     for room, own in zip(comparison.rooms, each, strict=True):
         free &= _free(room, own)
-    kept = [[one for one, fits in zip(own, free, strict=True) if fits] for own in each]
+    kept = [[item for item, fits in zip(own, free, strict=True) if fits] for own in each]
     if not kept[0]:
         return []
-    found = comparison.ranked([sectors(own) for own in kept], most_mass)
-    return [(score, tuple(own[k] for own in kept)) for score, k in found]
+    ranked = comparison.ranked([sectors(own) for own in kept], most_mass)
+    return [(score, tuple(own[k] for own in kept)) for score, k in ranked]
 
 
 def _free(room: Room, shapes: list[Sector]) -> Array:
-    found = np.zeros(len(shapes), bool)
+    values = np.zeros(len(shapes), bool)
     groups: dict[tuple[float, float], list[int]] = {}
-    for k, one in enumerate(shapes):
-        groups.setdefault((one.inner, one.outer), []).append(k)
+    for k, shape in enumerate(shapes):
+        groups.setdefault((shape.inner, shape.outer), []).append(k)
     for (inner, outer), places in groups.items():
         way = np.array([float(shapes[k].direction) for k in places])
         width = np.array([float(shapes[k].width) for k in places])
-        found[places] = room.is_free(inner, outer, way, width)
-    return found
+        values[places] = room.is_free(inner, outer, way, width)
+    return values
 
 
 def _turned(degrees: int) -> int:
@@ -359,8 +359,8 @@ def with_sectors(
     """The machine with a sector in each room, and what that changes."""
     changes = []
     for room, shape in zip(rooms, shapes, strict=True):
-        one = sectors([shape])
-        mass, moment, inertia = float(one.mass[0]), complex(one.moment[0]), float(one.inertia[0])
+        item = sectors([shape])
+        mass, moment, inertia = float(item.mass[0]), complex(item.moment[0]), float(item.inertia[0])
         center = complex(*machine.links[room.link].points[room.at])
         place = center + moment / mass
         own = inertia - abs(moment) ** 2 / mass
@@ -399,16 +399,16 @@ def with_sectors(
 def _passing(room: Room, shape: Sector) -> dict[str, object]:
     """Pins, or links where no pin is, for which a sector needs the plane of its own."""
     for kind, ways in (("beside", room.beside), ("beside_links", room.beside_links)):
-        near = [name for name, way in ways.items() if way < shape.outer + room.clearance]
-        if near:
-            return {kind: near}
+        matching_ways = [name for name, way in ways.items() if way < shape.outer + room.clearance]
+        if matching_ways:
+            return {kind: matching_ways}
     return {}
 
 
 def _with_masses_of(machine: Machine, name: str, link: Link) -> Machine:
     """The machine with the masses of another link of the same points, which moves as before."""
     fields = ("bodies",) if link.bodies else ("mass", "center_of_mass", "inertia")
-    return machine.with_link(name, **{one: getattr(link, one) for one in fields})
+    return machine.with_link(name, **{item: getattr(link, item) for item in fields})
 
 
 # -- holes -----------------------------------------------------------------------------------------
@@ -442,10 +442,10 @@ def best_holes(comparison: Comparison) -> Iterator[DrilledHole]:
 
 def _taken(link: Link, holes: Sequence[DrilledHole]) -> Shapes:
     """What holes take off, below 0."""
-    plates = [link.bodies[one.body] for one in holes]
+    plates = [link.bodies[hole.body] for hole in holes]
     thick = np.array([(body.thickness or 0.0) * (body.density or 0.0) for body in plates])
-    radius = np.array([one.radius for one in holes])
-    place = np.array([one.place for one in holes])
+    radius = np.array([hole.radius for hole in holes])
+    place = np.array([hole.place for hole in holes])
     mass = -thick * pi * radius**2
     return Shapes(holes, mass, mass * place, mass * (np.abs(place) ** 2 + radius**2 / 2))
 
@@ -476,7 +476,7 @@ def _grid(edges: Sequence[tuple[list[complex], float]]) -> Iterator[complex]:
     reach = abs(size)
     xs = [c.real + s for c in corners for s in (-reach, reach)]
     ys = [c.imag + s for c in corners for s in (-reach, reach)]
-    for x, y in product(*(_steps(min(one), max(one)) for one in (xs, ys))):
+    for x, y in product(*(_steps(min(item), max(item)) for item in (xs, ys))):
         yield complex(x, y)
 
 
@@ -488,8 +488,8 @@ def _steps(low: float, high: float) -> list[float]:
 def _drillable(body: Body, link: Link, place: complex, clear: float) -> bool:
     """Whether a circle lies within a body, and away from its holes."""
     apart = all(
-        abs(complex(place_of(one.at, link.points)) - place) > clear + one.radius
-        for one in body.holes
+        abs(complex(place_of(hole.at, link.points)) - place) > clear + hole.radius
+        for hole in body.holes
     )
     return apart and all(fits(place, clear, edge) for edge in outlines(body, link.points))
 
@@ -558,7 +558,7 @@ def best_cuts(comparison: Comparison) -> Iterator[tuple[complex, float]]:
             items.append((complex(radius * way), mass))
     if not items:
         return
-    places, masses = (np.array(one) for one in zip(*items, strict=True))
+    places, masses = (np.array(item) for item in zip(*items, strict=True))
     taken = Shapes(items, -masses, -masses * places, -masses * np.abs(places) ** 2)
     yield from (items[k] for _, k in comparison.ranked([taken], np.inf))
 

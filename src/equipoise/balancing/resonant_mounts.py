@@ -86,14 +86,14 @@ def resonant_mounts_for(
     ModelError, ResponseError : nothing holds the support, or there is no steady state.
     """
     linear = Linear.of(machine)
-    beside = _loud_beside(linear, speeds)
-    if not beside:
+    pairs = _loud_beside(linear, speeds)
+    if not pairs:
         return None
-    resonance, speed = max(beside, key=lambda pair: pair[0].share)
-    names = _strained(linear, [one for one in beside if _is_near(one[0], resonance)])
+    resonance, speed = max(pairs, key=lambda pair: pair[0].share)
+    names = _strained(linear, [item for item in pairs if _is_near(item[0], resonance)])
     tried = [*_tried(machine, speeds, names, gain)]
     most = max((gone for gone, _ in tried), default=0.0)
-    enough = (one for one in tried if one[0] >= ENOUGH_OF_BEST * most)
+    enough = (item for item in tried if item[0] >= ENOUGH_OF_BEST * most)
     gone, factor = next(enough, (0.0, None))
     edges = _amplified_between(linear.modes[resonance.mode - 1].damping_ratio)
     assert edges is not None
@@ -126,16 +126,16 @@ def _loud_beside(
     drive = linear.body.machine.drive
     ends = [end for speed in speeds for end in around(drive, speed)]
     low, high = min(ends, key=abs), max(ends, key=abs)  # else the loudest may lie outside
-    loud = [one for one in resonances(linear, low, high) if one.is_loud]
+    loud = [resonance for resonance in resonances(linear, low, high) if resonance.is_loud]
     slowest, fastest = min(map(abs, speeds)), max(map(abs, speeds))
-    beside = []
-    for one in loud:
-        near = speeds[int(np.argmin([abs(np.log(speed / one.speed)) for speed in speeds]))]
-        inside = slowest <= abs(one.speed) <= fastest
-        edges = _amplified_between(linear.modes[one.mode - 1].damping_ratio, times)
-        if edges is not None and (inside or edges[0] < near / one.speed < edges[1]):
-            beside.append((one, near))
-    return beside
+    pairs = []
+    for item in loud:
+        near = speeds[int(np.argmin([abs(np.log(speed / item.speed)) for speed in speeds]))]
+        inside = slowest <= abs(item.speed) <= fastest
+        edges = _amplified_between(linear.modes[item.mode - 1].damping_ratio, times)
+        if edges is not None and (inside or edges[0] < near / item.speed < edges[1]):
+            pairs.append((item, near))
+    return pairs
 
 
 def _is_near(one: Resonance, other: Resonance) -> bool:
@@ -145,7 +145,7 @@ def _is_near(one: Resonance, other: Resonance) -> bool:
 def _strained(linear: Linear, met: Sequence[tuple[Resonance, float]]) -> tuple[str, ...]:
     """Mounts that have enough of the energy of any mode that is met, in the order of the file."""
     body = linear.body
-    found = set[str]()
+    result = set[str]()
     for resonance, _ in met:
         shape = linear.modes[resonance.mode - 1].shape
         energy = {
@@ -154,8 +154,8 @@ def _strained(linear: Linear, met: Sequence[tuple[Resonance, float]]) -> tuple[s
             if linear.rest.carries(name, mount)
         }
         whole = sum(energy.values())
-        found |= {name for name, one in energy.items() if one >= SHARE_OF_ENERGY * whole > 0}
-    return tuple(name for name in body.support.mounts if name in found)
+        result |= {name for name, item in energy.items() if item >= SHARE_OF_ENERGY * whole > 0}
+    return tuple(name for name in body.support.mounts if name in result)
 
 
 def _tried(
@@ -181,15 +181,15 @@ def _tried(
 
 def _scaled(mounts: Mapping[str, Mount], names: Sequence[str], factor: float) -> dict[str, Mount]:
     """Mounts of which some are so many times as stiff and damp."""
-    found = dict(mounts)
+    by_name = dict(mounts)
     for name in names:
-        one = found[name]
-        fields = ("stiffness", "damping") if one.axis is None else (
+        item = by_name[name]
+        fields = ("stiffness", "damping") if item.axis is None else (
             "torsional_stiffness", "torsional_damping")  # fmt: skip
-        known = {field: getattr(one, field) for field in fields}
+        known = {field: getattr(item, field) for field in fields}
         changed = {field: factor * value for field, value in known.items() if value}
-        found[name] = replace(one, **changed)
-    return found
+        by_name[name] = replace(item, **changed)
+    return by_name
 
 
 # -- sentences -------------------------------------------------------------------------------------

@@ -102,13 +102,13 @@ class Room:
 
 def pivots_of(machine: Machine) -> dict[str, str]:
     """Links that turn about one point of the frame, the driven one first, and that point."""
-    found = {
+    by_name = {
         name: pins[0]
         for name, link in machine.links.items()
         if len(pins := [point for point in link.points if point in machine.frame]) == 1
     }
     drive = machine.drive.link
-    return {name: found[name] for name in sorted(found, key=lambda name: name != drive)}
+    return {name: by_name[name] for name in sorted(by_name, key=lambda name: name != drive)}
 
 
 def rooms_about(machine: Machine, link: str, larger: float = 1.0) -> Iterator[Room]:
@@ -256,12 +256,12 @@ class _Surroundings:
 
 def _nearer(tracks: Iterable[tuple[str, Array]], pivot: complex, most: float) -> dict[str, float]:
     """How near what goes along tracks comes to a pivot, by name, where that is nearer than most."""
-    found = dict[str, float]()
+    values = dict[str, float]()
     for name, track in tracks:
         way = float(np.min(np.abs(track - pivot)))
         if way < most:
-            found[name] = min(way, found.get(name, way))
-    return found
+            values[name] = min(way, values.get(name, way))
+    return values
 
 
 def _assumed(motion: Motion, link: str, at: str) -> float:
@@ -284,15 +284,17 @@ def _swept(motion: Motion, at: str) -> float:
     """Farthest that any point or centre of mass of a link comes from a pivot, m."""
     machine = motion.machine
     pivot = complex(*machine.frame[at])
-    tracks = [motion.points[point].place for one in machine.links.values() for point in one.points]
-    centers = {name: one.center_of_mass for name, one in machine.links.items()}
-    tracks += [_track(motion, name, complex(*one)) for name, one in centers.items() if one]
+    tracks = [
+        motion.points[point].place for link in machine.links.values() for point in link.points
+    ]
+    centers = {name: link.center_of_mass for name, link in machine.links.items()}
+    tracks += [_track(motion, name, complex(*center)) for name, center in centers.items() if center]
     return max(float(np.max(np.abs(track - pivot))) for track in tracks)
 
 
 def _through_every_plane(machine: Machine) -> set[str]:
     """Pins and shafts of the frame, and pins that are guided along it."""
-    return {*machine.frame, *(one.point for one in machine.sliders if one.on == "frame")}
+    return {*machine.frame, *(slider.point for slider in machine.sliders if slider.on == "frame")}
 
 
 def rooms_of_planes(machine: Machine) -> Iterator[tuple[Room, Room]]:
@@ -305,14 +307,14 @@ def rooms_of_planes(machine: Machine) -> Iterator[tuple[Room, Room]]:
         planes = sorted({*machine.links[link].planes.values(), *_planes_at(machine, link)})
         if len(planes) < 2:
             continue
-        held = [one.plane for one in machine.bearings.values() if one.link == link]
+        held = [bearing.plane for bearing in machine.bearings.values() if bearing.link == link]
         gap = min(b - a for a, b in pairwise(planes)) / 2
         low = max((z for z in held if z < planes[0]), default=planes[0] - 2 * gap)
         high = min((z for z in held if z > planes[-1]), default=planes[-1] + 2 * gap)
         ends = ((planes[0] + low) / 2, (planes[-1] + high) / 2)
         most = min(planes[0] - low, high - planes[-1]) / 2
         rooms = [room_about(machine, link, plane) for plane in ends]
-        first, second = (replace(one, most_thick=min(one.most_thick, most)) for one in rooms)
+        first, second = (replace(room, most_thick=min(room.most_thick, most)) for room in rooms)
         yield first, second
 
 
@@ -373,7 +375,7 @@ def _bodies(
         if name == link or (not known and own.points.keys() & other.points.keys()):
             continue
         tracks = []
-        solids: list[Body | None] = [one for one in other.bodies if one.shape != "point"]
+        solids: list[Body | None] = [body for body in other.bodies if body.shape != "point"]
         for body in solids or [None]:
             there = other.plane if body is None or body.plane is None else body.plane
             across = 0.0 if body is None else body.thickness or body.outer_diameter or 0.0
@@ -388,14 +390,14 @@ def _bodies(
 def _slots(motion: Motion, link: str) -> list[Array]:
     """Where slots of a link go, as long as what slides in them needs."""
     tracks = []
-    for one in motion.machine.sliders:
-        if one.on != link:
+    for slider in motion.machine.sliders:
+        if slider.on != link:
             continue
-        turned = np.exp(1j * (motion.links[link].angle + one.direction))
-        seen = motion.points[one.point].place - motion.points[one.through].place
+        turned = np.exp(1j * (motion.links[link].angle + slider.direction))
+        seen = motion.points[slider.point].place - motion.points[slider.through].place
         along = np.real(seen / turned)
-        way = np.exp(1j * one.direction)
-        start = complex(*motion.machine.links[link].points[one.through])
+        way = np.exp(1j * slider.direction)
+        start = complex(*motion.machine.links[link].points[slider.through])
         ends = (complex(start + way * end) for end in (np.min(along), np.max(along)))
         tracks += [_track(motion, link, place) for place in _between(*ends)]
     return tracks
@@ -406,7 +408,7 @@ def _wheels(motion: Motion, link: str, at: str) -> tuple[list[float], list[Array
     places on other gears and pulleys.
     """
     machine, own, others = motion.machine, list[float](), list[Array]()
-    angles = {name: float(one.angle[0]) for name, one in motion.links.items()}
+    angles = {name: float(link.angle[0]) for name, link in motion.links.items()}
     for wheel in wheels_of(motion.linkage.joints, machine.bodies, angles):
         if (wheel.link, wheel.center) == (link, at):
             curve = wheel.curve
@@ -441,8 +443,8 @@ def outline_of(link: Link, body: Body | None) -> Iterator[complex]:
     """
     if body is None:
         points = [complex(*point) for point in link.points.values()]
-        for one, other in combinations(points, 2):
-            yield from _between(one, other)
+        for corner, other in combinations(points, 2):
+            yield from _between(corner, other)
         if len(points) == 1:
             yield points[0]
         return
@@ -451,8 +453,8 @@ def outline_of(link: Link, body: Body | None) -> Iterator[complex]:
             turned = 2 * np.pi * np.arange(CIRCLE_SAMPLES) / CIRCLE_SAMPLES
             yield from (corners[0] + abs(radius) * np.exp(1j * turned)).tolist()
             continue
-        for one, other in zip(corners, [*corners[1:], corners[0]], strict=True):
-            yield from _between(one, other)
+        for corner, other in zip(corners, [*corners[1:], corners[0]], strict=True):
+            yield from _between(corner, other)
 
 
 def _between(one: complex, other: complex) -> Iterator[complex]:
@@ -496,7 +498,7 @@ def reach_of(machine: Machine, link: str) -> float:
 def _most_thick(machine: Machine, link: str, reach: float) -> float:
     """Thickest plate that a link can carry, m."""
     bodies = machine.links[link].bodies
-    own = max((one.thickness or one.outer_diameter or 0.0 for one in bodies), default=0.0)
+    own = max((body.thickness or body.outer_diameter or 0.0 for body in bodies), default=0.0)
     return float(
         min(THICKNESS_OF_REACH * reach, THICKNESS_OF_LINK * own or THICKEST_PLATE, THICKEST_PLATE)
     )

@@ -135,19 +135,19 @@ class JointPhaseMassOptimizer:
         start = self._cost(known.solution, 0.0)
         paid, scales = known.solution.best.prices, map(self.problem.scale, self._measured)
         most = zip(self._measured, scales, self._scales, strict=True)
-        prices = tuple(max(paid.get(one.name, 0.0), 0.0) * at / scale for one, scale, at in most)
+        prices = tuple(max(paid.get(item.name, 0.0), 0.0) * at / scale for item, scale, at in most)
         count = len(start.terms)
         prices = prices[count:]
-        found = prove(
+        phase_proof = prove(
             start, known.phases, self._improved, numbers, known.cost, CLOSE, prices, progress
         )
-        if found.complete or not start.limits:
-            return found
+        if phase_proof.complete or not start.limits:
+            return phase_proof
         # Without limits more rows may be alike, which leaves fewer boxes.
         free, numbers = replace(start, limits=()), numbers.of_terms(count)
         best = self.best.cost
-        other = prove(free, found.phases, _no_better, numbers, best, CLOSE, progress=progress)
-        return other if other.bound > found.bound else found
+        other = prove(free, phase_proof.phases, _no_better, numbers, best, CLOSE, progress=progress)
+        return other if other.bound > phase_proof.bound else phase_proof
 
     def _laid_out(self, proof: PhaseProof) -> tuple[Solution, Phasing]:
         """The best, with equal rows swapped against twist."""
@@ -157,8 +157,8 @@ class JointPhaseMassOptimizer:
         machine = solution.machine.with_rows(rows)
         # what counts is as before all changes
         after = replace(self.search, machine=machine, known_cost=self._cost(solution))
-        found = after.best(np.vstack([after.present, self.best.phases]))
-        phasing = phasing_of(after, found, proof)
+        best = after.best(np.vstack([after.present, self.best.phases]))
+        phasing = phasing_of(after, best, proof)
         return replace(solution, machine=phasing.machine), phasing
 
     def _improved(self, phases: Array, cost: float) -> tuple[Array, float]:
@@ -200,8 +200,8 @@ class JointPhaseMassOptimizer:
     def _turned(self, phases: Array) -> Problem:
         """The problem with rows in phases (m,) relative to row 1; what was before stays."""
         start, like = (
-            with_phases(one, phases, self.period)
-            for one in (self.problem.start, self.problem.machine)
+            with_phases(item, phases, self.period)
+            for item in (self.problem.start, self.problem.machine)
         )
         counts = self.problem.before
         return replace(self.problem, start=start, close=Near(like), counts=counts, known=None)
@@ -224,7 +224,7 @@ class JointPhaseMassOptimizer:
     @cached_property
     def _measured(self) -> list[Objective]:
         """Objectives, and limits of what phases change."""
-        limits = [one.objective for one in self.problem.plan.limits]
+        limits = [limit.objective for limit in self.problem.plan.limits]
         return [
             *self.problem.plan.objectives,
             *(o for o in limits if not o.output.startswith(WITHIN)),
@@ -237,12 +237,12 @@ class JointPhaseMassOptimizer:
         """
         if not self._bent:
             return self._of_any
-        return [of_each_row(self.problem.effects, one, Near(near)) for one in self._measured]
+        return [of_each_row(self.problem.effects, item, Near(near)) for item in self._measured]
 
     @cached_property
     def _jumping(self) -> list[JumpingDesigns | None]:
         """Of each: the rows as functions of the crank angle, where forces jump."""
-        return [jumping_designs(self.problem.effects, one) for one in self._measured]
+        return [jumping_designs(self.problem.effects, item) for item in self._measured]
 
     @property
     def _bent(self) -> bool:
@@ -253,28 +253,28 @@ class JointPhaseMassOptimizer:
     def _of_any(self) -> list[Array]:
         """The same where the support carries the same."""
         problem = self.problem
-        return [of_each_row(problem.effects, one, problem.close) for one in self._measured]
+        return [of_each_row(problem.effects, item, problem.close) for item in self._measured]
 
     @cached_property
     def _scales(self) -> list[float]:
         """Value of each objective that counts as one, and each limit."""
         problem = self.problem
         most = [
-            one.most(problem.before[one.name])
-            for one in problem.plan.limits
-            if one.objective in self._measured[len(problem.plan.objectives) :]
+            limit.most(problem.before[limit.name])
+            for limit in problem.plan.limits
+            if limit.objective in self._measured[len(problem.plan.objectives) :]
         ]
         return [*map(problem.scale, problem.plan.objectives), *most]
 
     def _cost(self, solution: Solution, share: float = 1.0) -> Cost:
         """The cost as a function of phases, for a share of the numbers of a solution."""
         terms, numbers = [], share * np.concatenate(solution.numbers)
-        near = self._amplitudes(solution.machine)
-        each_term = zip(self._measured, self._scales, near, self._jumping, strict=True)
-        for one, scale, each, designs in each_term:
+        columns = self._amplitudes(solution.machine)
+        each_term = zip(self._measured, self._scales, columns, self._jumping, strict=True)
+        for item, scale, each, designs in each_term:
             whole = each[0] + np.tensordot(numbers, each[1:], 1)
             jumping = None if designs is None else designs.at(numbers)
-            terms.append(PhaseObjective(one, RowSignals(whole, self.turns, jumping), scale))
+            terms.append(PhaseObjective(item, RowSignals(whole, self.turns, jumping), scale))
         count = len(self.problem.plan.objectives)
         return Cost(tuple(terms[:count]), self.problem.plan.combine, tuple(terms[count:]))
 
@@ -304,8 +304,8 @@ class JointPhaseMassOptimizer:
         def least(direction: Array) -> float:
             asked = program.copy()
             asked.cost = dict(zip(wanted, direction.tolist(), strict=True))
-            found = asked.solve()
-            return found.bound - ROUNDING * (1 + abs(found.bound))
+            result = asked.solve()
+            return result.bound - ROUNDING * (1 + abs(result.bound))
 
         ends = np.eye(len(used))
         low, high = np.array([least(e) for e in ends]), -np.array([least(-e) for e in ends])
@@ -322,8 +322,8 @@ def _no_better(phases: Array, _: float) -> tuple[Array, float]:
 
 def _counting_alike(problem: Problem, search: PhaseSearch) -> Problem:
     """The problem, with every value before as it counts where phases are searched."""
-    terms = {one.objective.name: one.scale for one in search.cost.terms}
-    limits = {one.objective.name: one.value_at(search.present) for one in search.cost.limits}
+    terms = {term.objective.name: term.scale for term in search.cost.terms}
+    limits = {limit.objective.name: limit.value_at(search.present) for limit in search.cost.limits}
     return replace(problem, counts={**problem.before, **limits, **terms})
 
 
@@ -353,15 +353,15 @@ def of_each_row(effects: Effects, objective: Objective, near: Near) -> Array:
     """
     if objective.output.startswith(GAUGES):
         linear, row = reading_of(objective, near)
-        rows = [replace(one, phase=0.0) for one in near.machine.rows]
+        rows = [replace(row, phase=0.0) for row in near.machine.rows]
         speeds = objective.speeds or (effects.machine.drive.speed,)
-        each = [[read(effects, linear, row, v, None, [one]) for one in rows] for v in speeds]
+        each = [[read(effects, linear, row, v, None, [item]) for item in rows] for v in speeds]
     else:
         each = [of_rows_alone(effects, objective.output, objective.about)]
-    found = [[one.kept(objective.orders) for one in rows] for rows in each]
-    samples = np.array([[np.vstack([one.start, one.columns]) for one in rows] for rows in found])
+    values = [[row.kept(objective.orders) for row in rows] for rows in each]
+    samples = np.array([[np.vstack([row.start, row.columns]) for row in rows] for rows in values])
     parts = [samples.real, samples.imag] if np.iscomplexobj(samples) else [samples]
     whole = np.moveaxis(np.stack(parts, axis=2), 3, 0)
-    if (sampling := found[0][0].sampling) is not None:
+    if (sampling := values[0][0].sampling) is not None:
         return sampling.periodic(whole).without_rounding().amplitudes
-    return Periodic.of(whole, found[0][0].turns).without_rounding().amplitudes
+    return Periodic.of(whole, values[0][0].turns).without_rounding().amplitudes

@@ -98,8 +98,8 @@ class Sensitivities(Result):
     @property
     def ranked(self) -> tuple[Sensitivity, ...]:
         """Those with an effect, the largest of a change of 1 % first."""
-        found = [one for one in self.by_name.values() if one.has_effect]
-        return tuple(sorted(found, key=lambda one: -one.percent))
+        values = [item for item in self.by_name.values() if item.has_effect]
+        return tuple(sorted(values, key=lambda one: -one.percent))
 
     def __getitem__(self, name: str) -> Sensitivity:
         """One of them, by a name such as ``coupler.center_x``."""
@@ -111,13 +111,13 @@ class Sensitivities(Result):
         """Everything as plain data, in SI units and rad; with its arrays or without."""
         rows = {
             name: {
-                **({"values": one.values} if signals else {}),
-                "rms": one.rms,
-                "percent": one.percent,
-                "has_effect": one.has_effect,
-                "no_effect_at": one.no_effect_at,
+                **({"values": sensitivity.values} if signals else {}),
+                "rms": sensitivity.rms,
+                "percent": sensitivity.percent,
+                "has_effect": sensitivity.has_effect,
+                "no_effect_at": sensitivity.no_effect_at,
             }
-            for name, one in self.by_name.items()
+            for name, sensitivity in self.by_name.items()
         }
         angles = {"crank_angle": self.crank_angle} if signals else {}
         return {"output": self.output, **angles, "sensitivities": rows}
@@ -126,11 +126,11 @@ class Sensitivities(Result):
 def known_outputs(machine: Machine) -> list[str]:
     """Names of a machine's outputs that are one number, and linear in the masses, on the whole."""
     return [
-        one.name
-        for one in DECLARED.values()
-        if one.is_of_row
-        and not (one.reason or one.is_family or one.is_vector)
-        and one.members(machine)
+        item.name
+        for item in DECLARED.values()
+        if item.is_of_row
+        and not (item.reason or item.is_family or item.is_vector)
+        and item.members(machine)
     ]
 
 
@@ -169,7 +169,9 @@ def sensitivities(
     size, mass = machine_size(machine), machine.mass or 1.0
     effects = np.max(np.abs(values), axis=1)
     scales = {"mass": mass, "inertia": mass * size**2}
-    effects = effects * np.tile([scales.get(one, size) for one in changes], len(machine.links))
+    effects = effects * np.tile(
+        [scales.get(change, size) for change in changes], len(machine.links)
+    )
     nothing = effects <= NOTHING * np.max(effects)  # which is only rounding
     values[nothing] = 0.0
     rms_of_each = np.where(nothing, 0.0, np.sqrt(pieces.mean(np.square(whole)))).tolist()
@@ -184,7 +186,9 @@ def sensitivities(
 
 def _changes(output: str) -> list[str]:
     """Those of `CHANGES` that an output may depend on."""
-    return [one for one in CHANGES if one != "center_z" or DECLARED[output].needs == "planes"]
+    return [
+        change for change in CHANGES if change != "center_z" or DECLARED[output].needs == "planes"
+    ]
 
 
 def _derivatives(motion: Motion, output: str) -> Array:
@@ -200,15 +204,15 @@ def _derivatives(motion: Motion, output: str) -> Array:
 
 def _derivatives_of(motion: Motion, output: str) -> Array:
     """Derivatives as of `_derivatives`, at all crank angles at once."""
-    one, links = DECLARED[output], motion.machine.links
-    columns = one.component(one.vector(Found(motion, regressor(motion))))
+    item, links = DECLARED[output], motion.machine.links
+    columns = item.component(item.vector(Found(motion, regressor(motion))))
     flat, across = np.split(columns, [len(QUANTITIES) * len(links)])
     of_links = flat.reshape(len(links), len(QUANTITIES), -1)
-    found = list(map(_by_change, links.values(), of_links))
+    async_iterator = list(map(_by_change, links.values(), of_links))
     if len(across):
         beside = across.reshape(len(links), len(ACROSS), -1)
-        found = list(map(_beside, links.values(), found, beside))
-    return np.concatenate(found)
+        async_iterator = list(map(_beside, links.values(), async_iterator, beside))
+    return np.concatenate(async_iterator)
 
 
 def _beside(link: Link, flat: Array, columns: Array) -> Array:
@@ -259,11 +263,11 @@ def _sign_changes(motion: Motion, output: str, values: Array) -> list[Array]:
         return _derivatives(there, output)[which, each][None]
 
     low = k * step
-    found = roots(signal, low[None], low[None] + step)[0]
-    sides = [np.abs(signal(found[None] + way)[0]) for way in (-BESIDE, BESIDE)]
+    root = roots(signal, low[None], low[None] + step)[0]
+    sides = [np.abs(signal(root[None] + way)[0]) for way in (-BESIDE, BESIDE)]
     smooth = np.minimum(*sides) <= JUMP * np.max(np.abs(values), axis=1)[which]
-    found = np.mod(found, period)
-    return [np.sort(found[smooth & (which == row)]) for row in range(len(values))]
+    root = np.mod(root, period)
+    return [np.sort(root[smooth & (which == row)]) for row in range(len(values))]
 
 
 def sensitivities_blocks(found: Sensitivities, zero: float = 0.0) -> Iterator[Block]:
@@ -272,13 +276,13 @@ def sensitivities_blocks(found: Sensitivities, zero: float = 0.0) -> Iterator[Bl
         yield Text(say("theta: crank angle from {angle}", angle=angle(zero)))
     rows: list[tuple[Cell, ...]] = []
     turned = display("angle")
-    for one in found.ranked:
-        dimension, usual, word = CHANGES[one.change]
+    for entry in found.ranked:
+        dimension, usual, word = CHANGES[entry.change]
         unit = display(dimension, (), usual)
-        shifted = np.sort(np.mod(one.no_effect_at - zero, 2 * np.pi * found.turns))
+        shifted = np.sort(np.mod(entry.no_effect_at - zero, 2 * np.pi * found.turns))
         places = say(", ").join(fixed(turned, at, 1) for at in shifted) or say("never")
-        size = Value(one.rms / unit.factor)
-        rows.append((one.link, say(word), size, unit.unit, Value(one.percent), places))
+        size = Value(entry.rms / unit.factor)
+        rows.append((entry.link, say(word), size, unit.unit, Value(entry.percent), places))
     kind = DECLARED[found.output].dimension
     columns = (
         Column(say("link")),
@@ -300,9 +304,9 @@ def sensitivities_blocks(found: Sensitivities, zero: float = 0.0) -> Iterator[Bl
         )
     )
     still = [
-        f"{one.link} ({say(CHANGES[one.change][2])})"
-        for one in found.by_name.values()
-        if not one.has_effect
+        f"{item.link} ({say(CHANGES[item.change][2])})"
+        for item in found.by_name.values()
+        if not item.has_effect
     ]
     if still:
         yield Text(say("No effect at any crank angle: {names}", names=say(", ").join(still)))

@@ -67,24 +67,24 @@ def solve_problem(
     above : of several problems, the least cost so far.
     """
     problem = _begun(problem)
-    found = _solve_once(problem, progress, above)
+    solution = _solve_once(problem, progress, above)
     bent = problem.reads_gauges and problem.supports_more
     if not bent and not problem.flips:
-        return found
-    cost, limits_gauges = problem.cost_of(found.machine), bool(_gauged(problem))
+        return solution
+    cost, limits_gauges = problem.cost_of(solution.machine), bool(_gauged(problem))
     for _ in range(ROUNDS):
-        near = problem.near(found.numbers)
+        near = problem.near(solution.numbers)
         towards = _solve_once(near, progress)
         if limits_gauges:  # which are kept where they are read, not a step before
-            pairs = zip(found.numbers, towards.numbers, strict=True)
+            pairs = zip(solution.numbers, towards.numbers, strict=True)
             apart = max(float(np.max(np.abs(a - b), initial=0.0)) for a, b in pairs)
             better = towards if apart > SETTLED else None
         else:
-            better = _on_the_way(near, found, towards, cost)
+            better = _on_the_way(near, solution, towards, cost)
         if better is None:
-            return replace(found, best=towards.best)
-        found, cost = better, problem.cost_of(better.machine)
-    return found
+            return replace(solution, best=towards.best)
+        solution, cost = better, problem.cost_of(better.machine)
+    return solution
 
 
 def _begun(problem: Problem) -> Problem:
@@ -95,8 +95,8 @@ def _begun(problem: Problem) -> Problem:
     gauged = _gauged(problem)
     if not gauged or not problem.supports_more:
         return problem
-    others = tuple(one for one in problem.plan.limits if one not in gauged)
-    objectives = tuple(one.objective for one in gauged)
+    others = tuple(limit for limit in problem.plan.limits if limit not in gauged)
+    objectives = tuple(item.objective for item in gauged)
     plan = replace(problem.plan, objectives=objectives, limits=others)
     first = replace(problem, plan=plan, counts=None, known=None)
     return problem.near(solve_problem(first).numbers)
@@ -104,7 +104,7 @@ def _begun(problem: Problem) -> Problem:
 
 def _gauged(problem: Problem) -> list[Limit]:
     """Limits of what gauges read."""
-    return [one for one in problem.plan.limits if one.objective.output.startswith("gauges.")]
+    return [limit for limit in problem.plan.limits if limit.objective.output.startswith("gauges.")]
 
 
 def _on_the_way(
@@ -113,7 +113,7 @@ def _on_the_way(
     """A solution between two that costs less than the first; None where there is none."""
     for share in SHARES:
         pairs = zip(found.numbers, towards.numbers, strict=True)
-        numbers = problem.tightened([(1 - share) * one + share * two for one, two in pairs])
+        numbers = problem.tightened([(1 - share) * item + share * two for item, two in pairs])
         machine = problem.machine_with(numbers)
         if problem.cost_of(machine) < cost - STILL:
             return replace(towards, numbers=numbers, machine=machine)
@@ -141,8 +141,8 @@ def _solve_once(problem: Problem, progress: Progress | None, above: float = inf)
         raise infeasibility(problem) from None
     numbers = _split(problem, best.x) if above < inf else _lightest_numbers(problem, best)
     numbers = problem.lightened(numbers)
-    one = best.nodes == 1
-    method = Note("cone program") if one else Note("branch and bound")
+    holds = best.nodes == 1
+    method = Note("cone program") if holds else Note("branch and bound")
     return Solution(problem, best, numbers, problem.machine_with(numbers), method)
 
 
@@ -153,10 +153,10 @@ def _split(problem: Problem, x: Array) -> list[Array]:
 
 def _lightest_numbers(problem: Problem, best: ProvedSolution) -> list[Array]:
     """Of the numbers that are as good, those that add the least mass."""
-    found = _split(problem, best.x)
+    arrays = _split(problem, best.x)
     masses, units = problem.added_masses(problem.built.places)
     if not len(masses) or (problem.reads_gauges and not problem.leaves_masses_open):
-        return found
+        return arrays
     program = best.program.copy()
     terms = np.array(list(program.cost))
     weights = np.array([program.cost[int(term)] for term in terms])
@@ -165,9 +165,9 @@ def _lightest_numbers(problem: Problem, best: ProvedSolution) -> list[Array]:
     try:
         lighter = _split(problem, program.solve().x)
     except NoSolutionError:  # as near to the best as that, there may be no room to move
-        return found
+        return arrays
     worse = problem.cost_at(lighter) - best.value
-    return lighter if worse <= WORSE * problem.whole else found
+    return lighter if worse <= WORSE * problem.whole else arrays
 
 
 def closed_form(problem: Problem) -> list[Array] | None:
@@ -176,7 +176,10 @@ def closed_form(problem: Problem) -> list[Array] | None:
     squared = plan.combine == "squares" or len(plan.objectives) == 1
     if plan.limits or not squared or plan.added_mass is not None:
         return None
-    if any(one.measure not in {"rms", "ripple"} or len(one.speeds) > 1 for one in plan.objectives):
+    if any(
+        objective.measure not in {"rms", "ripple"} or len(objective.speeds) > 1
+        for objective in plan.objectives
+    ):
         return None
     free, given = [], []
     for part in problem.parts:
@@ -189,9 +192,9 @@ def closed_form(problem: Problem) -> list[Array] | None:
             given[-1][0] = part.weight.mass / part.mass_unit
     if not free:
         return None
-    found = _least_squares(problem, np.concatenate(free), np.concatenate(given))
+    values = _least_squares(problem, np.concatenate(free), np.concatenate(given))
     counts = np.cumsum([part.count for part in problem.parts])
-    return None if found is None else problem.tightened(np.split(found, counts[:-1]))
+    return None if values is None else problem.tightened(np.split(values, counts[:-1]))
 
 
 def _free_numbers(part: DesignVariables) -> tuple[int, int] | None:
@@ -212,16 +215,16 @@ def _least_squares(problem: Problem, free: Array, given: Array) -> Array | None:
     """
     matrices, vectors = [], []
     lifts = ~free & (given == 0)
-    for one, factor in zip(problem.plan.objectives, problem.plan.factors, strict=True):
-        (signal,) = problem.signals[one.name]
+    for objective, factor in zip(problem.plan.objectives, problem.plan.factors, strict=True):
+        (signal,) = problem.signals[objective.name]
         if np.max(np.abs(signal.columns[lifts]), initial=0.0) > WITHOUT_EFFECT:
             return None  # an inertia that grows with the square of a place
-        matrix, vector = mean_square_rows(signal, one.measure)
+        matrix, vector = mean_square_rows(signal, objective.measure)
         matrices.append(factor * matrix[:, free])
         vectors.append(factor * (vector + matrix @ given))
-    found = given.copy()
-    found[free] = lstsq(np.concatenate(matrices), -np.concatenate(vectors), rcond=None)[0]
-    return found
+    values = given.copy()
+    values[free] = lstsq(np.concatenate(matrices), -np.concatenate(vectors), rcond=None)[0]
+    return values
 
 
 MOST_LIMITS = 40
@@ -234,14 +237,14 @@ def infeasibility(problem: Problem) -> UsageError:
     names = program.names
     if program.without(set(names)).feasible():
         clash = _infeasible_subset(program) if len(names) <= MOST_LIMITS else names
-        told = all_of([_limit_in_words(problem, name) for name in clash], commas=True)
+        sentence = all_of([_limit_in_words(problem, name) for name in clash], commas=True)
         alone = len(clash) == 1
         which = Note("this limit cannot be met") if alone else Note("these limits clash")
         return UsageError(
             Note(
                 "{which}: {told}; {way_out}",
                 which=which,
-                told=told,
+                told=sentence,
                 way_out=_way_out(problem, clash),
             )
         )
@@ -293,10 +296,10 @@ def _way_out(problem: Problem, clash: list[str]) -> Note:
         return Note("allow more of one of them")
     least /= relaxed.factors[0]
     unit = unit_of(limit.objective, problem.machine)
-    told = {"name": limit.name, "least": least, "unit": unit}
-    found = Note("{name} can become {least:.4g} {unit} at the least", **told)
+    text = {"name": limit.name, "least": least, "unit": unit}
+    note = Note("{name} can become {least:.4g} {unit} at the least", **text)
     if len(clash) == 1:
-        return found
+        return note
     if len(clash) == 2:
-        return Note("{found} while the other is kept", found=found)
-    return Note("{found} while the others are kept", found=found)
+        return Note("{found} while the other is kept", found=note)
+    return Note("{found} while the others are kept", found=note)

@@ -58,11 +58,11 @@ def spaced_arms_for(
     least_excess : of the shaking force, from which arms are looked at.
     """
     machine = analysis.machine
-    force = next((one for one in entries if one.output == "shaking_force"), None)
+    force = next((entry for entry in entries if entry.output == "shaking_force"), None)
     others = [link for name, link in machine.links.items() if name != machine.drive.link]
-    held = any(point in machine.frame for link in others for point in link.points)
-    held |= any(one.on == "frame" for one in machine.sliders)
-    if force is None or force.excess < least_excess or held or machine.rows or not others:
+    is_so = any(point in machine.frame for link in others for point in link.points)
+    is_so |= any(slider.on == "frame" for slider in machine.sliders)
+    if force is None or force.excess < least_excess or is_so or machine.rows or not others:
         return None
     if not machine.has_crank or not machine.crank_turns:
         return None
@@ -84,9 +84,9 @@ def _arms(analysis: Analysis, entries: tuple[FigureAssessment, ...], count: int)
     every = analyze(analysis.machine.with_rows(rows), acceleration=0.0).summary
     gain = 1 - every["rows.shaking_force"].rms / analysis.summary["shaking_force"].rms
     swings: list[float | None] = [None, None]
-    torque = next((one.output for one in entries if one.is_torque and one.is_large), None)
+    torque = next((entry.output for entry in entries if entry.is_torque and entry.is_large), None)
     if torque is not None:
-        swings = [_swing(one) for one in (analysis.summary[torque], every[f"rows.{torque}"])]
+        swings = [_swing(item) for item in (analysis.summary[torque], every[f"rows.{torque}"])]
     before, after = swings if None not in swings else (None, None)
     return SpacedArms(count, float(gain), before, after)
 

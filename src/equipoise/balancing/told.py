@@ -49,7 +49,7 @@ def capital(text: str) -> str:
 def worse_told(found: Balanced) -> Iterator[str]:
     """Every figure that got larger by more than 1 %, a sentence for each group of outputs."""
     for group, ones in groupby(found.worse, key=lambda one: one.group):
-        figures = say("; ").join(_grown(found, one) for one in ones)
+        figures = say("; ").join(_grown(found, item) for item in ones)
         yield say(
             "In exchange these become larger, {group}: {figures}.",
             group=say(GROUPS[group]),
@@ -65,7 +65,7 @@ def worst_told(found: Balanced) -> Iterator[str]:
     """In one sentence the figures that grew most."""
     worse = sorted(found.worse, key=lambda one: -one.growth)
     if worse:
-        figures = [_grown(found, one) for one in worse[:MOST_WORST]]
+        figures = [_grown(found, item) for item in worse[:MOST_WORST]]
         if more := len(worse) - len(figures):
             figures.append(say("and {count} more", count=more))
         yield say("In exchange these become larger: {figures}.", figures=say("; ").join(figures))
@@ -144,7 +144,7 @@ def scope_of(found: Balanced) -> str:
 def aims_told(found: Balanced) -> str:
     """What was made small, and at which speed."""
     rows, aims = len(found.original.rows), [*found.aims]
-    told = _gauges_named(aims) or listed(objective_named(one, rows) for one in aims)
+    text = _gauges_named(aims) or listed(objective_named(aim, rows) for aim in aims)
     if len(aims) > 1:
         ways = {
             "sum": to_say("the sum, each over its value before, of {aims}"),
@@ -152,18 +152,18 @@ def aims_told(found: Balanced) -> str:
                 "the root of the sum of squares, each over its value before, of {aims}"
             ),
         }
-        told = say(ways[found.plan.combine], aims=told)
-    if all(one.speeds for one in aims):
-        return told
+        text = say(ways[found.plan.combine], aims=text)
+    if all(aim.speeds for aim in aims):
+        return text
     speed = brief(abs(found.original.drive.speed) / PER_RPM)
-    return say("{aims} at {speed} rpm", aims=told, speed=speed)
+    return say("{aims} at {speed} rpm", aims=text, speed=speed)
 
 
 def _gauges_named(aims: list[Objective]) -> str:
     """Several gauges that are read alike, in short; nothing where they are not."""
-    names = [one.output.removeprefix("gauges.") for one in aims]
-    same = {replace(one, output="", weight=1.0) for one in aims}
-    if len(aims) < 2 or len(same) > 1 or any(map(eq, names, (one.output for one in aims))):
+    names = [aim.output.removeprefix("gauges.") for aim in aims]
+    same = {replace(aim, output="", weight=1.0) for aim in aims}
+    if len(aims) < 2 or len(same) > 1 or any(map(eq, names, (aim.output for aim in aims))):
         return ""
     first = objective_named(replace(aims[0], output="gauges.{}"))
     return first.replace("{}", listed(names))

@@ -75,9 +75,9 @@ class AddedWeight(DesignVariables):
     def lightened(self, numbers: Array, matters: Array) -> Array:
         if self.weight.mass is not None or matters[0] or not isfinite(self.weight.radius):
             return numbers
-        found = np.array(numbers)
-        found[0] = min(self._least_mass(numbers, matters), float(numbers[0]))
-        return self.tightened(found, matters)
+        values = np.array(numbers)
+        values[0] = min(self._least_mass(numbers, matters), float(numbers[0]))
+        return self.tightened(values, matters)
 
     def _least_mass(self, numbers: Array, matters: Array) -> float:
         """The least mass, scaled, of the same moment, and of the same inertia where it matters."""
@@ -125,15 +125,15 @@ class AddedWeight(DesignVariables):
         return Note(RADII[self.name.template], **self.name.values)
 
     def bounds(self, numbers: Array) -> list[Bound]:
-        found, mass = [], float(numbers[0]) * self.mass_unit
+        result, mass = [], float(numbers[0]) * self.mass_unit
         if self.weight.at_most is not None:
-            found.append(Bound(self.name, self.weight.at_most, mass, "kg"))
+            result.append(Bound(self.name, self.weight.at_most, mass, "kg"))
         if self.weight.shape in {"any", "point"} and isfinite(self.weight.radius) and mass:
             _, sx, sy, inertia = self._about_center(numbers)
             spread = sqrt(max(inertia / mass, 0.0))
             used = spread if self.weight.shape == "any" else hypot(sx, sy) / mass
-            found.append(Bound(self._radius_name, self.weight.radius, used, "m"))
-        return found
+            result.append(Bound(self._radius_name, self.weight.radius, used, "m"))
+        return result
 
     def stopped(self, numbers: Array) -> Note | None:
         given = self.weight.mass is not None or self.weight.at_most is not None
@@ -276,22 +276,22 @@ class AddedWeight(DesignVariables):
         return abs(self._bound(m)[0]) / self._per_angle**2
 
     def tightened(self, numbers: Array, matters: Array) -> Array:
-        found = np.array(numbers) if numbers[0] > NOTHING else np.zeros(self.count)
+        values = np.array(numbers) if numbers[0] > NOTHING else np.zeros(self.count)
         at = {name: k for k, name in enumerate(self.names)}
-        m = float(found[0])
+        m = float(values[0])
         if self.weight.shape == "sector" and m > 0:
             most = self._bound(min(m, self._full))[0]
-            found[1:] *= min(1.0, most / max(float(np.hypot(*found[1:])), 1e-300))
+            values[1:] *= min(1.0, most / max(float(np.hypot(*values[1:])), 1e-300))
         for lift, y in (("qx", "x"), ("qy", "y")):
             if lift in at:
-                found[at[lift]] = found[at[y]] ** 2 / m if m > 0 else 0.0
+                values[at[lift]] = values[at[y]] ** 2 / m if m > 0 else 0.0
         if "own" in at:
-            found[at["own"]] = m**2
+            values[at["own"]] = m**2
         if "i" in at:
-            least = (found[1] ** 2 + found[2] ** 2) / m if m > 0 else 0.0
-            spread = float(found[at["i"]]) - least > SPREAD * m  # or it is told as one point
-            found[at["i"]] = found[at["i"]] if spread and matters[at["i"]] else least
-        return found
+            least = (values[1] ** 2 + values[2] ** 2) / m if m > 0 else 0.0
+            spread = float(values[at["i"]]) - least > SPREAD * m  # or it is told as one point
+            values[at["i"]] = values[at["i"]] if spread and matters[at["i"]] else least
+        return values
 
     def changes(self, numbers: Array) -> list[Change]:
         mass, sx, sy, inertia = self._about_center(numbers)

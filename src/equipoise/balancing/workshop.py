@@ -176,7 +176,7 @@ def in_short(change: Change) -> Iterator[str]:
     link, values = change.link, dict(change.values)
     first = next(sentences(change))
     pieces = values.get("pieces", ())
-    if not pieces or any(one["shape"] == "point" for one in pieces):
+    if not pieces or any(piece["shape"] == "point" for piece in pieces):
         yield from sentences(change) if len(pieces) > 1 else [first]
         return
     for piece in pieces:
@@ -327,7 +327,7 @@ def phases_told(phases: Sequence[float]) -> str:
     """Phases of rows (rad) with their unit behind the last."""
     *others, last = phases
     return ", ".join(
-        [*(direction_named(one, named=False) for one in others), direction_named(last)]
+        [*(direction_named(item, named=False) for item in others), direction_named(last)]
     )
 
 

@@ -211,16 +211,16 @@ def _signs_of_life(given: Sequence[str]) -> Iterator[None]:
     ended, begun = Event(), monotonic()
 
     def tell() -> None:
-        wait, told = SIGN, begun
-        while not ended.wait(max(told + wait - monotonic(), 0.0)):
+        wait, value = SIGN, begun
+        while not ended.wait(max(value + wait - monotonic(), 0.0)):
             progress = sys.modules.get("equipoise.cli.progress")
-            if progress is not None and progress.last_line() > told:
-                told = progress.last_line()
+            if progress is not None and progress.last_line() > value:
+                value = progress.last_line()
                 continue
             share = "" if progress is None else progress.so_far()
             words = f"still computing, {monotonic() - begun:.0f} s"
             print("; ".join(filter(None, [words, share])), file=sys.stderr)
-            wait, told = min(2 * wait, RAREST), monotonic()
+            wait, value = min(2 * wait, RAREST), monotonic()
 
     thread = Thread(target=tell, daemon=True)
     thread.start()

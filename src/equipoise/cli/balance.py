@@ -79,19 +79,19 @@ def balance(
     with counted("step") as progress:
         solve = partial(optimisation.balance, progress=progress)
         asked = freed.any or objective or limit
-        found = solve(machine, plan) if asked else advice.advise(machine, solve)
+        balanced = solve(machine, plan) if asked else advice.advise(machine, solve)
     for option, path in {"--out": out, "--drawing": drawing}.items():
-        if path is not None and not found.helps:
-            _refuse(found, option)
-    sheets = None if drawing is None else _drawn(found, drawing)
+        if path is not None and not balanced.helps:
+            _refuse(balanced, option)
+    sheets = None if drawing is None else _drawn(balanced, drawing)
 
     def save() -> Iterator[str]:
         if out is not None:
-            yield from _save(found, out)
+            yield from _save(balanced, out)
         if drawing is not None and sheets is not None:
             yield from _save_drawing(drawing, *sheets)
 
-    return replace(CommandResult.of(found), save=save)
+    return replace(CommandResult.of(balanced), save=save)
 
 
 def _refuse(found: Balanced, option: str) -> None:
@@ -196,14 +196,14 @@ def conditions(machine: LinkageFile, /, *, speed: Speed = None) -> CommandResult
     from equipoise.balancing.physical_consistency import feasibility
 
     driven = at_speed(machine, speed)
-    found = {kind: balancing.conditions(driven, kind) for kind in balancing.KINDS}
+    by_name = {kind: balancing.conditions(driven, kind) for kind in balancing.KINDS}
     able = feasibility(driven)
     return CommandResult(
         lambda: balancing.conditions_blocks(
-            *found.values(), verdict=[one.reason for one in able.answers]
+            *by_name.values(), verdict=[answer.reason for answer in able.answers]
         ),
         lambda: {
-            **{kind: one.to_dict() for kind, one in found.items()},
+            **{kind: item.to_dict() for kind, item in by_name.items()},
             "verdict": able.to_dict(),
         },
     )
@@ -232,8 +232,8 @@ def sensitivities(
     machine = at_speed(machine, speed)
     check_moving(machine)
     with blaming("OUTPUT"):
-        found = sensitivity.sensitivities(machine, output)
-    return CommandResult.of(found, zero=crank_zero or 0.0)
+        result = sensitivity.sensitivities(machine, output)
+    return CommandResult.of(result, zero=crank_zero or 0.0)
 
 
 @app.command
@@ -264,5 +264,5 @@ def arrangements(
     check_moving(driven)
     return CommandResult(
         lambda: pattern_blocks(driven, rows, spacing),
-        lambda: {"patterns": [one.to_dict() for one in patterns_for(rows)]},
+        lambda: {"patterns": [pattern.to_dict() for pattern in patterns_for(rows)]},
     )

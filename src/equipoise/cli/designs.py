@@ -56,23 +56,23 @@ def best(
     if chosen.out is not None:
         check_new(study_of(store).model.base(), chosen.out)
     ways: Any = dict.fromkeys(by or ()) | dict.fromkeys(largest or (), "largest")
-    found = of_stores.best(store, most, ways, nearest=outputs.plot is not None)
-    first = int(found.designs[0]) if chosen.design is None else chosen.design
+    result = of_stores.best(store, most, ways, nearest=outputs.plot is not None)
+    first = int(result.designs[0]) if chosen.design is None else chosen.design
     model = None if chosen.out is None else machine_of(store, first)
     title, units = store.title, units_in(store)
 
     def charts() -> Mapping[str, Picture]:
         owner = owner_of(store)
         own = None if owner is None else own_of(owner)
-        return best_charts(found, title, units, store, own)
+        return best_charts(result, title, units, store, own)
 
-    columns = columns_of(found.numbers, found.values, found.outputs, found.figures)
+    columns = columns_of(result.numbers, result.values, result.outputs, result.figures)
     source = Note('the study "{title}"', title=title)
     return CommandResult(
-        lambda: found.blocks(outputs=store.wishes, units=units),
-        lambda: {"title": title, **found.to_dict()},
+        lambda: result.blocks(outputs=store.wishes, units=units),
+        lambda: {"title": title, **result.to_dict()},
         title=title,
-        columns=lambda: _columns(found.designs, columns, store.units),
+        columns=lambda: _columns(result.designs, columns, store.units),
         pictures=charts,
         save=lambda: _save(model, chosen.out, first, source),
     )
@@ -110,8 +110,8 @@ def search(
         check_new(study.model.base(), chosen.out)
     size, turns = search_size(study, population, generations)
     units = units_of(study)
-    with swept(units) as told, Watched(study, told, computers) as watched:
-        found = search(
+    with swept(units) as text, Watched(study, text, computers) as watched:
+        result = search(
             study,
             population=size,
             generations=turns,
@@ -119,20 +119,20 @@ def search(
             progress=lambda *_: watched.tell(size * turns),
             compute=watched,
         )
-    chosen.check(0, len(found.values) - 1)
-    number, made_of = chosen.design or 0, found.study
-    model = None if chosen.out is None else found.machine(number)
+    chosen.check(0, len(result.values) - 1)
+    number, made_of = chosen.design or 0, result.study
+    model = None if chosen.out is None else result.machine(number)
     own = cache(lambda: own_of(made_of))
-    columns = columns_of(made_of.paths, found.values, made_of.names, found.figures)
+    columns = columns_of(made_of.paths, result.values, made_of.names, result.figures)
     source = Note(
-        'a search of the study "{title}", seed {seed}', title=made_of.title, seed=found.seed
+        'a search of the study "{title}", seed {seed}', title=made_of.title, seed=result.seed
     )
     return CommandResult(
-        lambda: found.blocks(units=units, own=own()),
-        found.to_dict,
+        lambda: result.blocks(units=units, own=own()),
+        result.to_dict,
         made_of,
-        columns=lambda: _columns(range(len(found.values)), columns, _si_units(made_of)),
-        pictures=lambda: searched_charts(found, units, own()),
+        columns=lambda: _columns(range(len(result.values)), columns, _si_units(made_of)),
+        pictures=lambda: searched_charts(result, units, own()),
         save=lambda: _save(model, chosen.out, number, source),
     )
 
@@ -160,14 +160,14 @@ def _columns(
     """Columns of designs as name, unit and values; the form is that of `export`."""
     import numpy as np
 
-    told = [(name, units.get(name) or "", values) for name, values in columns.items()]
-    return [("design", "", np.array([*designs])), *told]
+    items = [(name, units.get(name) or "", values) for name, values in columns.items()]
+    return [("design", "", np.array([*designs])), *items]
 
 
 def _si_units(study: Study) -> dict[str, str]:
     """SI unit of each number and output that has one, as a store tells it."""
     from equipoise.quantities import SI
 
-    kinds: dict[str, Any] = {one.path: one.dimension for one in study.vary}
+    kinds: dict[str, Any] = {item.path: item.dimension for item in study.vary}
     kinds |= {output.name: output.dimension for output in study.outputs}
     return {name: SI[kind] for name, kind in kinds.items() if kind}

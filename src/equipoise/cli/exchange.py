@@ -79,28 +79,28 @@ def export(
     if out is None:
         raise UsageError(at_place("--out", Note("missing; give the name of a file")))
     with blaming("--out" if format is None else "--format"):
-        one = format_of(out, format, of_store=os.path.isdir(file) or file.endswith(STORE))
+        item = format_of(out, format, of_store=os.path.isdir(file) or file.endswith(STORE))
         if os.path.exists(file) or file in bundled():
-            check_kind(one, of_store=os.path.isdir(file))
-    if not one.worded:
+            check_kind(item, of_store=os.path.isdir(file))
+    if not item.worded:
         other = language if language != "en" else None
-        refuse_idle(Note("a file of {title} has no sentences", title=one.title), language=other)
-    if one.of_store:
-        why = Note("a file of {title} holds the designs of a store", title=one.title)
+        refuse_idle(Note("a file of {title} has no sentences", title=item.title), language=other)
+    if item.of_store:
+        why = Note("a file of {title} holds the designs of a store", title=item.title)
         refuse_idle(why, at=at or None, balanced=balanced)
-        check_link_loads(one, prefix="--", link=link, angles=angles)
+        check_link_loads(item, prefix="--", link=link, angles=angles)
         return CommandResult(save=lambda: _designs(file, out, kept))
     refuse_idle(Note("it goes with a store"), kept=kept)
-    check_link_loads(one, prefix="--", link=link, angles=angles)
+    check_link_loads(item, prefix="--", link=link, angles=angles)
     if angles is not None and at is not None:
         raise UsageError(Note("--at and --angles were given; give one of them"))
-    if not one.posed:
-        why = Note("a file of {title} is the same at every crank angle", title=one.title)
+    if not item.posed:
+        why = Note("a file of {title} is the same at every crank angle", title=item.title)
         refuse_idle(why, at=at or None)
     machine = load_linkage(file)
     check_result_file("--out", out, sources_of(machine, file))
     what = _balanced(machine) if balanced else machine
-    parts = write(what, out, one.name, crank_angle=at, link=link, angles=angles, language=language)
+    parts = write(what, out, item.name, crank_angle=at, link=link, angles=angles, language=language)
     notes = [f"note: the file leaves out {part}" for part in parts]
     return CommandResult(save=lambda: [*notes, wrote(out)])
 

@@ -51,9 +51,9 @@ def _lists() -> Iterator[Block]:
     from equipoise.results.blocks import Table, Text
     from equipoise.schema import topics
 
-    errors = ((topic, one.title) for topic, one in topics.errors().items())
+    errors = ((topic, error.title) for topic, error in topics.errors().items())
     yield Table.of("Errors and their cures", ("", ""), errors)
-    tables = ((topic, _about(one)) for topic, one in topics.tables().items())
+    tables = ((topic, _about(table)) for topic, table in topics.tables().items())
     yield Table.of("Tables of files", ("", ""), tables)
     yield Text(f"Terms: {', '.join(topics.terms())}.")
 

@@ -43,19 +43,19 @@ def check(file: AnyFile, /) -> CommandResult:
     from equipoise.schema.documents import load
     from equipoise.schema.files import printable
 
-    found = load(file)
+    result = load(file)
 
     def blocks() -> Iterator[Block]:
-        if isinstance(found, Tool):
-            return checks.tool_blocks(found, printable(file))
-        if isinstance(found, Machine):
-            return checks.machine_blocks(found)
+        if isinstance(result, Tool):
+            return checks.tool_blocks(result, printable(file))
+        if isinstance(result, Machine):
+            return checks.machine_blocks(result)
         from equipoise.present.check_study import study_blocks
         from equipoise.schema.study_units import units_of
 
-        return study_blocks(found, units_of(found), file)
+        return study_blocks(result, units_of(result), file)
 
-    return CommandResult(blocks, owner=found)
+    return CommandResult(blocks, owner=result)
 
 
 @command()

@@ -115,7 +115,7 @@ def tool(
     """
     from equipoise.handheld.sweep import default_answers
 
-    swept = any(one is not None for one in (respond, speeds, at, outputs.csv))
+    swept = any(item is not None for item in (respond, speeds, at, outputs.csv))
     chosen = {"modes": modes, "respond": swept, "exposure": exposure or duration is not None}
     names = [name for name, is_chosen in chosen.items() if is_chosen]
     check_belonging("--modes", modes or not names, number=number)
@@ -145,8 +145,8 @@ class Asked:
         """Lowest and highest speed of the engine, rad/s."""
         from equipoise.handheld.sweep import default_speeds
 
-        told = self.range or default_speeds(self.tool)
-        if told is None:
+        pair = self.range or default_speeds(self.tool)
+        if pair is None:
             raise ModelError(
                 "operation",
                 Note(
@@ -155,7 +155,7 @@ class Asked:
                     range=RANGE,
                 ),
             )
-        return told
+        return pair
 
     @cached_property
     def speeds(self) -> np.ndarray[Any, Any]:
@@ -231,8 +231,8 @@ def _result(
     from equipoise.results.headline import look_at_next
 
     def values() -> Mapping[str, Any]:
-        told = {name: one for part in parts for name, one in part.to_dict().items()}
-        return {"title": tool.title, **({key: told} if key else told)}
+        by_name = {name: item for part in parts for name, item in part.to_dict().items()}
+        return {"title": tool.title, **({key: by_name} if key else by_name)}
 
     def headline(alone: bool) -> Iterator[Block | ReportSection]:
         for part in reversed(parts):  # the hands before the shaft
@@ -312,8 +312,8 @@ def vary(
         )
     with blaming("CHANGE"):
         values = np.linspace(low, high, VALUES)
-        found = vary_tool(tool, station, key, values, number or MODES)
-    return _result(tool, [found], found.charts, "variation")
+        variation = vary_tool(tool, station, key, values, number or MODES)
+    return _result(tool, [variation], variation.charts, "variation")
 
 
 @app.command
@@ -339,16 +339,16 @@ def sensitivities(
 
     band = tool.design.speeds if speeds is None and tool.design is not None else speeds
     ends = Asked(tool, range=band).ends
-    found = tool_sensitivities(tool, np.linspace(*ends, BAND))
+    by_name = tool_sensitivities(tool, np.linspace(*ends, BAND))
 
     def values() -> Mapping[str, Any]:
-        told: dict[str, dict[str, float]] = {}
-        for (station, key), slope in found.items():
-            told.setdefault(station, {})[key] = slope
-        return {"title": tool.title, "sensitivities": told}
+        numbers: dict[str, dict[str, float]] = {}
+        for (station, key), slope in by_name.items():
+            numbers.setdefault(station, {})[key] = slope
+        return {"title": tool.title, "sensitivities": numbers}
 
     return CommandResult(
-        lambda: chain(summary_blocks(tool), sensitivity_blocks(tool, found, ends)), values
+        lambda: chain(summary_blocks(tool), sensitivity_blocks(tool, by_name, ends)), values
     )
 
 
@@ -372,10 +372,10 @@ def design(
     if out is not None:
         check_new(tool, out)
     with counted("search") as progress:
-        found = design_tool(tool, progress)
+        tool_design = design_tool(tool, progress)
 
     def save() -> list[str]:
         following = f"; next: equipoise tool {out}"
-        return [] if out is None else write_model(found.better, out, what_next=following)
+        return [] if out is None else write_model(tool_design.better, out, what_next=following)
 
-    return replace(_result(tool, [found], found.charts, "design"), save=save)
+    return replace(_result(tool, [tool_design], tool_design.charts, "design"), save=save)

@@ -21,7 +21,7 @@ class Laid:
 
     def __call__(self, console: Console, options: ConsoleOptions, panel: HelpPanel) -> None:
         """Print a panel of commands, arguments or options."""
-        entries = [_entry(one) for one in panel.entries]
+        entries = [_entry(entry) for entry in panel.entries]
         self._usual(console, options, panel.copy(entries=entries))
 
     def render_usage(self, console: Console, options: ConsoleOptions, usage: Any) -> None:

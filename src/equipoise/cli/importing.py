@@ -89,7 +89,7 @@ def import_file(
     from equipoise.schema.files import write
 
     path = out or ""  # FILE.toml where none is given
-    found = import_machine(
+    imported = import_machine(
         file,
         crank=crank or "",
         speed=speed,
@@ -101,12 +101,12 @@ def import_file(
         unit=unit,
     )
     if shown.units:
-        found = found.shown_in(shown.units)
-    check_new(found.outline.machine(), path)
+        imported = imported.shown_in(shown.units)
+    check_new(imported.outline.machine(), path)
 
     def save() -> list[str]:
-        write(path, found.text(), replace=False)
+        write(path, imported.text(), replace=False)
         return [wrote(path)]
 
-    title = str(found.outline.rest["title"])
-    return CommandResult(found.blocks, owner=found.machine, title=title, save=save)
+    title = str(imported.outline.rest["title"])
+    return CommandResult(imported.blocks, owner=imported.machine, title=title, save=save)

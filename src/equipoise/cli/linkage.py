@@ -105,15 +105,17 @@ def analyze(
     place = None if about is None else place_in(machine, about)
     analysis = analyzed(machine, angles, speed, acceleration, place)
     further = {} if orders is None else {"by_order": order_values(analysis, orders, zero)}
-    held = None if dwell is None else analysis.dwells(*dwell)
-    further |= {} if held is None else {"dwells": {name: vars(one) for name, one in held.items()}}
+    dwells = None if dwell is None else analysis.dwells(*dwell)
+    further |= (
+        {} if dwells is None else {"dwells": {name: vars(item) for name, item in dwells.items()}}
+    )
     with blaming("--output"):
-        chosen = [one.name for one in analysis.outputs.chosen(output or ())]
-    answer = CommandResult.of(analysis, orders=orders, zero=zero, outputs=chosen, dwells=held)
+        chosen = [item.name for item in analysis.outputs.chosen(output or ())]
+    answer = CommandResult.of(analysis, orders=orders, zero=zero, outputs=chosen, dwells=dwells)
     return replace(
         answer,
         values=lambda: analysis.to_dict(split, chosen) | further,
-        headline=None if orders is not None or chosen or held is not None else answer.headline,
+        headline=None if orders is not None or chosen or dwells is not None else answer.headline,
         save=lambda: () if csv is None else write_text(csv, to_csv(analysis, chosen)),
     )
 
@@ -199,10 +201,10 @@ def respond(
             count = speeds or sweep.SPEEDS
             over_speed = sweep.sweep_speed(machine, ends[0], ends[1], model, drive, count, progress)
         return CommandResult.of(over_speed)
-    found = forced.respond(machine, ends[0] if ends else None, model, drive)
+    result = forced.respond(machine, ends[0] if ends else None, model, drive)
     return replace(
-        CommandResult.of(found),
-        blocks=lambda: found.blocks(others=None if drive else _others(machine, found)),
+        CommandResult.of(result),
+        blocks=lambda: result.blocks(others=None if drive else _others(machine, result)),
     )
 
 

@@ -102,13 +102,15 @@ def decay(
         value, torsional, text = stiffness
         _check_stiffness(text, torsional, record.kind == "angle" or arm is not None, spring_arm)
     with blaming(printable(csv)):
-        found = identify_decay(record, value, arm=arm, spring_arm=spring_arm, confidence=confidence)
+        result = identify_decay(
+            record, value, arm=arm, spring_arm=spring_arm, confidence=confidence
+        )
     title = printable(os.path.basename(csv))
     return CommandResult(
-        found.blocks,
-        found.to_dict,
+        result.blocks,
+        result.to_dict,
         title=title,
-        pictures=lambda: pictures.decay_charts(found, title),
+        pictures=lambda: pictures.decay_charts(result, title),
     )
 
 
@@ -241,15 +243,15 @@ def exposure(
         "bands": bands,
         "periodic": periodic,
     }
-    told = [each for text in inputs for each in _told(text, options, gauge or ())]
+    values = [each for text in inputs for each in _told(text, options, gauge or ())]
     if idle is not None and racing is not None:
-        told.append(TaskInput("idling and racing", equivalent(idle, racing)))
-    if not told:
+        values.append(TaskInput("idling and racing", equivalent(idle, racing)))
+    if not values:
         raise UsageError(Note('give a value, "7.4 m/s^2 for 2.5 h", or the path of a CSV file'))
-    _check_options(told, options)
-    if gauge and not any(each.weighted for each in told):
+    _check_options(values, options)
+    if gauge and not any(each.weighted for each in values):
         raise UsageError(Note("--gauge belongs to a response of gauges; give one, or leave it out"))
-    return _answer(_timed(told, duration or []))
+    return _answer(_timed(values, duration or []))
 
 
 def _answer(told: list[TaskInput]) -> CommandResult:
@@ -299,11 +301,11 @@ def _told(text: str, options: Mapping[str, bool], gauges: Sequence[str]) -> list
             raise UsageError(
                 Note('got {text!r}; say for how long a day, as in "7.4 m/s^2 for 2.5 h"', text=text)
             )
-    found = read_accelerations(text, gauges)
-    if isinstance(found, Accelerations):
-        weighted = _weighted(text, found, options)
+    accelerations = read_accelerations(text, gauges)
+    if isinstance(accelerations, Accelerations):
+        weighted = _weighted(text, accelerations, options)
         return [TaskInput(os.path.basename(text), weighted.a_hv, None, weighted)]
-    return [TaskInput(task.name, task.acceleration, task.duration) for task in found]
+    return [TaskInput(task.name, task.acceleration, task.duration) for task in accelerations]
 
 
 def _weighted(path: str, found: Accelerations, options: Mapping[str, bool]) -> Weighted:

@@ -81,7 +81,9 @@ if TYPE_CHECKING:
     NamedFile: TypeAlias = str
 else:
     LINKAGE = LoadedFile("schema.models.load_linkage", example="yamashita-1", in_parts=True)
-    PLANTING, SUPPORT = (replace(LINKAGE, example=one) for one in ("transplanter", "yamashita-rig"))
+    PLANTING, SUPPORT = (
+        replace(LINKAGE, example=name) for name in ("transplanter", "yamashita-rig")
+    )
     TOOL = LoadedFile("schema.models.load_tool", example="brush-cutter", in_parts=True)
     STUDY = LoadedFile("schema.studies.load_study", example="study-of-lengths")
     STORE = LoadedFile("studies.store.open_store", "schema.study_units.owner_of")

@@ -96,19 +96,19 @@ def plot(
     from equipoise.schema.files import write_all
 
     folder, kind = pictures.of(file), pictures.format
-    found = find(file, speed=speed, swings=True)
-    if isinstance(found, ToolFindings):
+    result = find(file, speed=speed, swings=True)
+    if isinstance(result, ToolFindings):
         refuse_idle(Note("a tool has no crank angles"), at=at, output=output)
     written = list[str]()
-    with pictures.showing(found.owner):
-        chosen = _outputs(found, output) if output else _chosen(each(found, at), only)
+    with pictures.showing(result.owner):
+        chosen = _outputs(result, output) if output else _chosen(each(result, at), only)
         for picture in chosen:
             name = f"{picture.name}.{kind}"
             write_all(folder, {name: render(picture.draw(), kind)})
             written.append(f"{os.path.join(folder, name)}  {picture.caption}")
-    swings = getattr(found, "swings", None)
+    swings = getattr(result, "swings", None)
     notes = [] if swings is None else [f"note: {swings}"]
-    notes += [f"{part}: left out, {why}" for part, why in found.failed.items()]
+    notes += [f"{part}: left out, {why}" for part, why in result.failed.items()]
     return CommandResult(
         lines=lambda: written,
         save=lambda: [*notes, wrote_pictures(len(chosen), folder)],
@@ -124,7 +124,7 @@ def _outputs(found: Any, names: Sequence[str]) -> list[LazyPicture]:
 
     names = list(dict.fromkeys(names))
     with blaming("--output"):
-        caption = ", ".join(one.label() for one in found.analysis.outputs.chosen(names))
+        caption = ", ".join(item.label() for item in found.analysis.outputs.chosen(names))
     return [
         LazyPicture("outputs", "motion", caption, partial(outputs_chart, found.analysis, names))
     ]
@@ -134,13 +134,13 @@ def _chosen(pictures: Iterable[LazyPicture], only: Sequence[str] | None) -> list
     """Those that are wanted; what comes after the last of them is not computed."""
     if only is None:
         return list(pictures)
-    found: dict[str, LazyPicture] = {}
+    lazy_pictures: dict[str, LazyPicture] = {}
     for picture in pictures:
-        found[picture.name] = picture
-        if found.keys() >= {*only}:
-            return [found[name] for name in dict.fromkeys(only)]
-    missing = next(name for name in only if name not in found)
-    raise UsageError(at_place("--only", unknown(missing, found, "picture")))
+        lazy_pictures[picture.name] = picture
+        if lazy_pictures.keys() >= {*only}:
+            return [lazy_pictures[name] for name in dict.fromkeys(only)]
+    missing = next(name for name in only if name not in lazy_pictures)
+    raise UsageError(at_place("--only", unknown(missing, lazy_pictures, "picture")))
 
 
 @app.command(name="map")
@@ -193,12 +193,12 @@ def landscape(
     if speed is not None:
         numbers["drive.speed"] = speed
     with counted("machine") as progress:
-        found = studies.landscape(
+        result = studies.landscape(
             model, dict(both), objective, numbers, progress, **vars(computers)
         )
     with pictures.showing(model.base()):
-        lines = write_pictures({"landscape": drawn_map(found)}, folder, pictures.format)
-        written = os.path.join(folder, f"landscape.{pictures.format}"), told_best(found)
+        lines = write_pictures({"landscape": drawn_map(result)}, folder, pictures.format)
+        written = os.path.join(folder, f"landscape.{pictures.format}"), told_best(result)
     return CommandResult(lines=lambda: written, save=lambda: lines)
 
 

@@ -122,9 +122,9 @@ class _Log:
         if monotonic() - self.start < self.next and not last:
             return
         self.wait()
-        told = step()
-        more = (f"{name}: {text}" for name, text in told.more.items() if text)
-        line = "; ".join([", ".join(filter(None, [told.share, told.at])), *more])
+        statement = step()
+        more = (f"{name}: {text}" for name, text in statement.more.items() if text)
+        line = "; ".join([", ".join(filter(None, [statement.share, statement.at])), *more])
         with suppress(OSError):  # who does not want to read it gets the result all the same
             print(line, file=sys.stderr)
 
@@ -155,10 +155,10 @@ class _Bar:
 
         if self.step is None:
             return self.bar
-        told = self.step()
-        total = told.total if told.done else None
-        self.bar.update(self.task, completed=told.done, total=total, share=told.share, at=told.at)
-        lines = (Text(f"{name}: {text}") for name, text in told.more.items() if text)
+        step = self.step()
+        total = step.total if step.done else None
+        self.bar.update(self.task, completed=step.done, total=total, share=step.share, at=step.at)
+        lines = (Text(f"{name}: {text}") for name, text in step.more.items() if text)
         return Group(self.bar, *lines)
 
 
@@ -194,18 +194,18 @@ def generations() -> Iterator[Callable[[int, int, float], None]]:
 @contextmanager
 def swept(units: Mapping[str, Unit]) -> Iterator[Callable[[Progress], None]]:
     """Yield what many designs tell how far they are; `units` are those of the objectives."""
-    seen: list[Progress] = []
+    progresses: list[Progress] = []
     with _shown() as show:
 
         def tell(progress: Progress) -> None:
-            seen[:] = [progress]
+            progresses[:] = [progress]
             at = monotonic()
             if progress.done < progress.total:
                 show(lambda: _on_the_way(progress, units, monotonic() - at), False)
 
         yield tell
-        if seen:
-            show(lambda: _in_the_end(seen[0], units), True)
+        if progresses:
+            show(lambda: _in_the_end(progresses[0], units), True)
 
 
 class Watched:
@@ -270,9 +270,9 @@ def _best_and_failures(name: str, progress: Progress, units: Mapping[str, Unit])
     from equipoise.quantities import number
     from equipoise.studies.blocks import unit_in
 
-    told = ((unit_in(units, output), value) for output, value in progress.best.items())
+    text = ((unit_in(units, output), value) for output, value in progress.best.items())
     best = (
-        f"{unit.called} {number(unit.of_si(value))} {unit.name}".strip() for unit, value in told
+        f"{unit.called} {number(unit.of_si(value))} {unit.name}".strip() for unit, value in text
     )
     failures = (f"{what} {count}" for what, count in progress.failures.items())
     return {name: ", ".join(best), "failed": ", ".join(failures)}

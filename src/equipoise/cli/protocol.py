@@ -183,20 +183,20 @@ class Workers:
         import anyio
 
         async with self.long if long else self.short:
-            process, told = self.waiting.pop() if self.waiting else await self._start(), b""
+            process, sketch = self.waiting.pop() if self.waiting else await self._start(), b""
             try:
                 if not self.waiting:  # so that the next call need not wait for imports
                     self.waiting.append(await self._start())
-                told = await _asked(process, ToolCall(name, given, str(self.folder)))
+                sketch = await _asked(process, ToolCall(name, given, str(self.folder)))
             finally:
-                if told and not long and len(self.waiting) < SHORT_CALLS:
+                if sketch and not long and len(self.waiting) < SHORT_CALLS:
                     self.waiting.append(process)
                 else:
                     with anyio.CancelScope(shield=True):
                         await _end(process)
-        if not told:
+        if not sketch:
             return ToolReply(DIED.format(status=process.returncode), {}, (), wrong=True)
-        return ToolReply(**json.loads(told))
+        return ToolReply(**json.loads(sketch))
 
     async def _start(self) -> Process:
         import anyio

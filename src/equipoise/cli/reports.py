@@ -130,11 +130,11 @@ def animate(
     if mode is not None:
         scene = _in_mode(machine, mode, count)
     else:
-        found = analyze(machine, count)
-        scene, notes = _swinging(found, exaggerate)
-        options["arrow"] = ForceArrow.of(found) if force else None
+        result = analyze(machine, count)
+        scene, notes = _swinging(result, exaggerate)
+        options["arrow"] = ForceArrow.of(result) if force else None
     if trace is None:
-        options["traced"] = () if mode is not None else followed(found.motion)
+        options["traced"] = () if mode is not None else followed(result.motion)
     write(name, _animated(scene, machine.title, kind, options))
     return CommandResult(save=lambda: [*notes, wrote(name)])
 
@@ -250,8 +250,8 @@ def _animated(scene: Scene, title: str, kind: str, options: dict[str, Any]) -> s
     from equipoise.figures import film
 
     draw = film.gif if kind == "gif" else film.mp4
-    with counted("frame") as told:
-        return draw(scene, told=told, **options)
+    with counted("frame") as text:
+        return draw(scene, told=text, **options)
 
 
 # -- the report ------------------------------------------------------------------------------------
@@ -286,8 +286,8 @@ def report(
 
     check(paths, language)
 
-    found = find(file, speed=rate)
-    document = build(found, language, _command(file, language, speed), together=True)
+    result = find(file, speed=rate)
+    document = build(result, language, _command(file, language, speed), together=True)
     write_document(document, paths)
 
     def lines() -> Iterator[str]:

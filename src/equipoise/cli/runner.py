@@ -217,7 +217,7 @@ class Command:
     def signature(self) -> Signature:
         """What the command line takes."""
         groups = set(map(_name, self.groups))
-        own = (one for one in self._own.values() if one.name not in groups)
+        own = (item for item in self._own.values() if item.name not in groups)
         added = (
             Parameter(_name(group), Parameter.KEYWORD_ONLY, default=group(), annotation=group)
             for group in self.groups
@@ -234,8 +234,8 @@ class Command:
         bound.apply_defaults()
         given = bound.arguments
         marks = {name: getattr(hint, "__metadata__", ()) for name, hint in hints.items()}
-        outputs = next((one for one in given.values() if isinstance(one, Shown)), Shown())
-        length = next((one for one in given.values() if isinstance(one, Length)), None)
+        outputs = next((item for item in given.values() if isinstance(item, Shown)), Shown())
+        length = next((item for item in given.values() if isinstance(item, Length)), None)
         _check_belonging({**vars(outputs), **given}, marks)
         owner, file, read = None, "", list[str]()
         for name, source in _marked(marks, LoadedFile):
@@ -250,8 +250,8 @@ class Command:
             del given[name]
         language = next((given[option] for option, _ in _marked(marks, Spoken)), "en")
         with naming(file) if file else nullcontext(), speaking(language), outputs.showing(owner):
-            found = self.function(*bound.args, **bound.kwargs)
-        answer = found if isinstance(found, CommandResult) else CommandResult.of(found)
+            function = self.function(*bound.args, **bound.kwargs)
+        answer = function if isinstance(function, CommandResult) else CommandResult.of(function)
         owner = owner if answer.owner is None else answer.owner
         return FinishedCommand(answer, outputs, length, owner, file, language)
 
@@ -277,7 +277,7 @@ def command(
         about = {
             **{"__name__": function.__name__, "__doc__": function.__doc__, "declared": declared},
             **{"__wrapped__": function, "__signature__": declared.signature},
-            "__annotations__": {name: one.annotation for name, one in taken},
+            "__annotations__": {name: item.annotation for name, item in taken},
         }
         for name, value in about.items():
             setattr(run, name, value)
@@ -310,7 +310,7 @@ def _name(group: type[Shown | Length]) -> str:
 def _marked(marks: Mapping[str, tuple[object, ...]], kind: type[T]) -> Iterator[tuple[str, T]]:
     """Names of what the command takes that have a mark of a kind, with that."""
     for name, ones in marks.items():
-        yield from ((name, one) for one in ones if isinstance(one, kind))
+        yield from ((name, item) for item in ones if isinstance(item, kind))
 
 
 def _check_belonging(given: Mapping[str, Any], marks: Mapping[str, tuple[object, ...]]) -> None:
@@ -328,7 +328,7 @@ def _check_places(
 ) -> None:
     """Columns must have a place to go, and take none of what is read or written besides."""
     others = [given[name] for name, _ in _marked(marks, OtherFile)]
-    others += [one.out for one in given.values() if isinstance(one, Chosen)]
+    others += [item.out for item in given.values() if isinstance(item, Chosen)]
     tables = {f"--{name}": given[name] for name, _ in _marked(marks, ResultFile)}
     if isinstance(outputs, Outputs):
         tables["--csv"] = outputs.csv

@@ -78,11 +78,11 @@ def _computed(work: Callable[..., Store], path: str, units: dict[str, Unit]) -> 
 
     last: list[Progress] = []
     with _going_on(path):
-        with swept(units) as told:
+        with swept(units) as text:
 
             def tell(progress: Progress) -> None:
                 last[:] = [progress]
-                told(progress)
+                text(progress)
 
             store = work(progress=tell)
         (end,) = last
@@ -104,10 +104,10 @@ def _charts(store: Store, units: dict[str, Unit]) -> Mapping[str, Picture]:
     from equipoise.studies.selection import best
 
     aimed = any(output.make for output in store.wishes)
-    found = best(store, TOLD, None if aimed else {store.outputs[0]: None}, nearest=True)
+    result = best(store, TOLD, None if aimed else {store.outputs[0]: None}, nearest=True)
     owner = owner_of(store)
     own = None if owner is None else own_of(owner)
-    return best_charts(found, store.title, units, store, own, aimed)
+    return best_charts(result, store.title, units, store, own, aimed)
 
 
 @contextmanager
@@ -130,11 +130,11 @@ def _summary(store: Store, last: Progress) -> Summary:
     outputs, title = store.wishes, store.title
     aimed = any(output.make for output in outputs)
     try:
-        found = best(store, TOLD, None if aimed else {store.numbers[0]: None})
+        result = best(store, TOLD, None if aimed else {store.numbers[0]: None})
     except NothingBestError as error:  # no design keeps every limit, or none has figures
         return Summary(title, store, outputs, last.failures, 0, None, error.reason)
-    kept = found.kept
-    return Summary(title, store, outputs, last.failures, kept, found if aimed else None, "")
+    kept = result.kept
+    return Summary(title, store, outputs, last.failures, kept, result if aimed else None, "")
 
 
 def _values(summary: Summary, last: Progress) -> dict[str, Any]:
@@ -180,13 +180,13 @@ def tolerance(
     units = units_of(study)
     with (
         blaming_by_place({} if designs is None else given),
-        swept(units) as told,
-        Watched(study, told, computers) as watched,
+        swept(units) as text,
+        Watched(study, text, computers) as watched,
     ):
-        found = of_study(study, progress=lambda _, total: watched.tell(total), compute=watched)
+        result = of_study(study, progress=lambda _, total: watched.tell(total), compute=watched)
     return CommandResult(
-        lambda: found.blocks(units=units),
-        found.to_dict,
+        lambda: result.blocks(units=units),
+        result.to_dict,
         study,
-        pictures=lambda: tolerance_charts(found, units),
+        pictures=lambda: tolerance_charts(result, units),
     )

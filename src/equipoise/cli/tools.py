@@ -79,9 +79,15 @@ class CommandTool:
     @cached_property
     def arguments(self) -> dict[str, Argument]:
         """What it takes, by the names that programs give."""
-        found: ArgumentCollection = self.command.assemble_argument_collection(parse_docstring=True)
-        named = {one.name: one for one in found if one.name != "*" and one.name not in HIDDEN}
-        return {key.lstrip("-").replace("-", "_").lower(): one for key, one in named.items()}
+        argument_collection: ArgumentCollection = self.command.assemble_argument_collection(
+            parse_docstring=True
+        )
+        named = {
+            item.name: item
+            for item in argument_collection
+            if item.name != "*" and item.name not in HIDDEN
+        }
+        return {key.lstrip("-").replace("-", "_").lower(): item for key, item in named.items()}
 
     @property
     def help(self) -> str:
@@ -91,16 +97,18 @@ class CommandTool:
     @property
     def writes(self) -> bool:
         """Whether it can write files."""
-        options = (one for key, one in self.arguments.items() if not _is_positional(one))
-        return any(one.parameter.metavar in WRITTEN for one in options)
+        options = (
+            argument for key, argument in self.arguments.items() if not _is_positional(argument)
+        )
+        return any(option.parameter.metavar in WRITTEN for option in options)
 
     def schema(self) -> Schema:
         """JSON Schema of what it takes."""
-        properties = {key: _schema(one) for key, one in self.arguments.items()}
+        properties = {key: _schema(argument) for key, argument in self.arguments.items()}
         for key, value in USUAL.items():
             if key in properties and _allows(self.arguments[key], value):
                 properties[key]["default"] = value
-        required = [key for key, one in self.arguments.items() if one.required]
+        required = [key for key, argument in self.arguments.items() if argument.required]
         return {
             "type": "object",
             "properties": properties | ({"overwrite": OVERWRITE} if self.writes else {}),
@@ -125,7 +133,7 @@ class CommandTool:
             assert finished is not None  # as of every command that is declared
             values = finished.values
             lines = finished.write()
-            text = finished.text + "".join(f"{one}\n" for one in lines)
+            text = finished.text + "".join(f"{line}\n" for line in lines)
         short = values if given.get("json") is True else _short(values)
         return CommandOutput(text, short, tuple(fence.written))
 
@@ -140,11 +148,11 @@ class CommandTool:
         for key, value in {**self._usual(given), **given}.items():
             if key not in known:
                 raise UsageError(unknown(key, known, "parameter"))
-            for one in value if isinstance(value, list) else [value]:
-                if isinstance(one, str):
-                    fence.check_name(key, one)
-                if key != "overwrite" and one is not None and one is not False:
-                    self._add(key, one, options, places)
+            for item in value if isinstance(value, list) else [value]:
+                if isinstance(item, str):
+                    fence.check_name(key, item)
+                if key != "overwrite" and item is not None and item is not False:
+                    self._add(key, item, options, places)
         return [*self.words, *options, "--", *places]
 
     def _add(self, key: str, value: Any, options: list[str], places: list[str]) -> None:
@@ -158,14 +166,16 @@ class CommandTool:
         """What is meant where nothing is given; a kind of pictures only where some are drawn."""
         drawn = "plot" in given or "plot" not in self.arguments
         named = ((key, self.arguments.get(key), value) for key, value in USUAL.items())
-        return {key: value for key, one, value in named if drawn and one and _allows(one, value)}
+        return {key: value for key, item, value in named if drawn and item and _allows(item, value)}
 
 
 def tools() -> dict[str, CommandTool]:
     """Every command that is of use to a program, by its tool's name."""
-    found = (one for name in sorted(app.resolved_commands()) for one in _below((name,), app[name]))
-    declared = ((one, declared_of(one.command.default_command)) for one in found)
-    return {one.name: one for one, what in declared if what is not None and what.tool}
+    result = (
+        item for name in sorted(app.resolved_commands()) for item in _below((name,), app[name])
+    )
+    declared = ((item, declared_of(item.command.default_command)) for item in result)
+    return {item.name: item for item, what in declared if what is not None and what.tool}
 
 
 def _below(words: tuple[str, ...], command: App) -> Iterator[CommandTool]:
@@ -194,12 +204,12 @@ def _schema(one: Argument) -> Schema:
     several = get_origin(one.hint) in {list, tuple} or any(
         get_origin(part) is list for part in get_args(one.hint)
     )
-    told: Schema = {"description": _line(one.parameter.help)} if one.parameter.help else {}
+    schema: Schema = {"description": _line(one.parameter.help)} if one.parameter.help else {}
     default = one.field_info.default
     if isinstance(default, str | int | float) and default is not False:
-        told["default"] = default
+        schema["default"] = default
     value = _value(one)
-    return {**({"type": "array", "items": value} if several else value), **told}
+    return {**({"type": "array", "items": value} if several else value), **schema}
 
 
 def _value(one: Argument) -> Schema:
@@ -228,11 +238,11 @@ def _short(values: dict[str, Any]) -> dict[str, Any]:
     def cut(value: Any) -> Any:
         nonlocal left
         if isinstance(value, dict):
-            short = {key: one for key, one in value.items() if _size(one) <= MOST}
+            short = {key: item for key, item in value.items() if _size(item) <= MOST}
             left += len(value) - len(short)
-            kept = {key: (one, cut(one)) for key, one in short.items()}
-            return {key: new for key, (one, new) in kept.items() if new != {} or one == {}}
-        return [cut(one) for one in value] if isinstance(value, list) else value
+            kept = {key: (item, cut(item)) for key, item in short.items()}
+            return {key: new for key, (item, new) in kept.items() if new != {} or item == {}}
+        return [cut(item) for item in value] if isinstance(value, list) else value
 
     kept: dict[str, Any] = cut(values)
     return kept | ({"left_out": f"{left} lists of more than {MOST}; ask with json"} if left else {})
@@ -246,15 +256,15 @@ def _size(value: Any) -> int:
 def units_of(values: Any) -> dict[str, str]:
     """SI unit of each kind of quantity, and of each output that is told by its name."""
     named = {name: declared(name) for name in _names(values)}
-    told = {name: one[0].dimension for name, one in named.items() if one is not None}
-    kinds = {kind: kind for kind in SI} | told
+    dimensions = {name: item[0].dimension for name, item in named.items() if item is not None}
+    kinds = {kind: kind for kind in SI} | dimensions
     return {name: SI[kind] for name, kind in kinds.items() if kind is not None}
 
 
 def _names(values: Any) -> Iterator[str]:
-    for key, one in values.items() if isinstance(values, dict) else ():
+    for key, item in values.items() if isinstance(values, dict) else ():
         yield key
-        yield from _names(one)
+        yield from _names(item)
 
 
 def shown(path: Path, folder: Path) -> str:

@@ -52,10 +52,10 @@ def trace_across(trace: Trace, loads: Sequence[Any], springs: Sequence[Any]) -> 
         if body != FRAME
     ]
     ends += [
-        (link, one.driven, None)
-        for one in machine.couplings
-        for link in (one.driver, one.driven)
-        if one.preload and link != FRAME
+        (link, coupling.driven, None)
+        for coupling in machine.couplings
+        for link in (coupling.driver, coupling.driven)
+        if coupling.preload and link != FRAME
     ]
     for force, (link, on, point) in zip(springs, ends, strict=True):
         needed[link].append(_plane(trace, on, point) * force)
@@ -86,10 +86,10 @@ def bearing_force(trace: Trace, bearing: str, exerted: Callable[[str], Any]) -> 
     number, pin = solved.pin_of(given[bearing].link)
     needed, by_plane = solved.factors(number)
     force = sum(factor * trace.state[f"Q({link})"] for link, factor in needed.items())
-    for place, one in enumerate(solved.contacts):
-        factor = by_plane.get(one.name, 0.0) + (one.name == pin.name)
+    for place, contact in enumerate(solved.contacts):
+        factor = by_plane.get(contact.name, 0.0) + (contact.name == pin.name)
         if factor:
-            force = force + factor * _joint_plane(trace, place) * exerted(one.name)
+            force = force + factor * _joint_plane(trace, place) * exerted(contact.name)
     return (force - other * exerted(pin.name)) * (1 / (own - other))
 
 

@@ -64,7 +64,7 @@ class TracedBodies:
 
     def angle(self, body: str, on: str, middle: Any) -> Any:
         """Angle of a body from the x axis of another, within half a turn of `middle`."""
-        turn, other = (self.trace.state[u(one)[0]] for one in (body, on))
+        turn, other = (self.trace.state[u(item)[0]] for item in (body, on))
         away = turn * other.conjugate() * rotation(middle).conjugate()
         self.trace.running[f"{self.name}, {body} on {on}"] = away.real + NEAR
         return middle + angle_of(away)
@@ -137,11 +137,11 @@ def traced_element(trace: Trace, table: str, number: int) -> tuple[Element, Trac
         """A value whose numbers are slots."""
         if isinstance(value, Frozen):
             still = value.still if isinstance(value, Element) else ()
-            held = {key: traced(one, *steps, key) for key, one in vars(value).items()
+            traceds = {key: traced(var, *steps, key) for key, var in vars(value).items()
                     if key not in still}  # fmt: skip
-            return with_fields(value, **held)
+            return with_fields(value, **traceds)
         if isinstance(value, tuple):
-            return tuple(traced(one, *steps, k) for k, one in enumerate(value))
+            return tuple(traced(item, *steps, k) for k, item in enumerate(value))
         if not isinstance(value, float):
             return value
         return trace.slot(f"{name}{steps}", partial(read, steps=steps))

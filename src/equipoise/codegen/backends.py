@@ -217,7 +217,7 @@ def run_numpy(out: Array, source: TermSource, table: Array, grid: Array) -> None
 
 def march_numpy(out: Array, source: TermSource, table: Array, grid: Array) -> None:
     """Fill that where crank angles follow from each other: all designs go round together."""
-    carried: Sequence[Any] = [np.full(len(table), one.start) for one in source.carried]
+    carried: Sequence[Any] = [np.full(len(table), item.start) for item in source.carried]
     gathered: dict[int, list[Array]] = {}
     shares: dict[int, float] = {}
     if source.has_shares:
@@ -233,7 +233,7 @@ def march_numpy(out: Array, source: TermSource, table: Array, grid: Array) -> No
     share = np.array([shares[k] for k in sorted(gathered)]) if shares else None
     stacks = [np.stack(values, axis=1) for values in zip(*in_order, strict=True)]
     by_name = dict(zip(source.signals, stacks, strict=True))
-    last = iter([v for one, v in zip(source.carried, carried, strict=True) if one.watch])
+    last = iter([v for item, v in zip(source.carried, carried, strict=True) if item.watch])
     for k, (signal, kind) in enumerate(source.gathered.columns):
         if signal in by_name:
             out[:, k] = KINDS[kind].gathered(by_name[signal], share)

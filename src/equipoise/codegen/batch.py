@@ -89,8 +89,8 @@ def jumps_alike(linkage: Linkage, paths: Collection[str]) -> bool:
     """Whether forces of all designs in which these numbers vary jump at the same crank angles."""
     trace = Trace(linkage, paths)
     known = known_by_crank(trace).keys() - trace.shifted
-    jerking = (one for one in linkage.machine.couplings if one.jerks)
-    return all({one.driver, one.carrier} <= known for one in jerking)
+    jerking = (coupling for coupling in linkage.machine.couplings if coupling.jerks)
+    return all({item.driver, item.carrier} <= known for item in jerking)
 
 
 def _grid(theta: Array, turns: int) -> JumpSampling:
@@ -125,7 +125,7 @@ def sizes_of(machine: Machine, signals: Iterable[str]) -> dict[str, Any]:
         "torque": force * size,
     }
     known = {signal: declared(signal) for signal in signals}
-    return {signal: sizes[str(one[0].dimension)] for signal, one in known.items() if one}
+    return {signal: sizes[str(item[0].dimension)] for signal, item in known.items() if item}
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,8 +143,8 @@ class DesignBatch:
 
     def sizes(self, signals: Iterable[str], some: Array) -> Mapping[str, Any]:
         """Size of each signal of some of the designs, (K,) or one for all."""
-        found = sizes_of(self.machine, signals)
-        return {name: size[some, 0] if np.ndim(size) else size for name, size in found.items()}
+        values = sizes_of(self.machine, signals)
+        return {name: size[some, 0] if np.ndim(size) else size for name, size in values.items()}
 
 
 def designs_of(
@@ -154,10 +154,10 @@ def designs_of(
     columns = {path: values[:, k, None] for k, path in enumerate(paths)}
     machine = with_columns(base.machine, columns)
     refused = np.zeros(len(values), dtype=bool) | wrong(machine, base, columns)
-    found = linkage_of(machine, base)
+    linkage = linkage_of(machine, base)
     table = np.empty((len(values), source.width))
     for slot in source.slots:
-        value, own = slot.read(found), slot.read(base)
+        value, own = slot.read(linkage), slot.read(base)
         for column, part in enumerate(("real", "imag")[: 1 + slot.vector], slot.column):
             table[:, column] = np.ravel(np.real(getattr(value, part)))
             table[refused, column] = getattr(own, part)
@@ -214,7 +214,7 @@ class Batch:
         self.march = March.of(self.source, self.base)
         windings = self.base.cycle.windings if rounds else {}
         fastest = max((abs(turns) for turns in windings.values()), default=1) / self.turns
-        fastest *= prod(one.unevenness for one in machine.couplings)
+        fastest *= prod(coupling.unevenness for coupling in machine.couplings)
         shaped = any("shape" in KeyPath.parse(path) for path in self.paths)
         self.slope = SLOPE * max(1.0, fastest) * (SWUNG if shaped else 1.0)
 
@@ -245,7 +245,7 @@ class Batch:
                 )
             return np.empty(0), STEP / self.tolerance
         machine = self.base.machine
-        if any(one.contact == "surface" for one in machine.couplings):
+        if any(coupling.contact == "surface" for coupling in machine.couplings):
             return jumps_of_rows(self.base), FIRST
         every = np.concatenate([np.empty(0), *declared_jumps(machine, self.turns)])
         return of_rows(machine, every, self.turns), FIRST
@@ -255,29 +255,29 @@ class Batch:
     def _settled(self, designs: DesignBatch) -> tuple[Array, Array]:
         """Figures and reasons, with as many crank angles as it takes."""
         count = self.angles or FIRST
-        found = self._at(designs.table, self._sampling(count))
-        figures = self._figures(found, count)
-        reason = self._reasons(designs.table, found, count)
+        joined = self._at(designs.table, self._sampling(count))
+        figures = self._figures(joined, count)
+        reason = self._reasons(designs.table, joined, count)
         if self.angles is not None:
             return figures, reason
         signals = {figure.signal for figure in self.wanted}
         left = np.flatnonzero(reason == COMPUTED)
-        found, calm = found[left], np.zeros(left.size, dtype=int)
+        joined, calm = joined[left], np.zeros(left.size, dtype=int)
         while left.size and 2 * count <= MOST_ANGLES:
             if self.source.has_shares:
-                found = self._at(designs.table[left], self._sampling(2 * count))
+                joined = self._at(designs.table[left], self._sampling(2 * count))
             else:
                 between = _grid(all_angles(count, self.turns) + pi / count, self.turns)
-                found = self.gathered.joined(found, self._at(designs.table[left], between))
+                joined = self.gathered.joined(joined, self._at(designs.table[left], between))
             count *= 2
-            now = self._figures(found, count)
-            still = self._still(now, figures[left], found, count, designs.sizes(signals, left))
+            now = self._figures(joined, count)
+            still = self._still(now, figures[left], joined, count, designs.sizes(signals, left))
             calm = np.where(still, calm + 1, 0)
             figures[left] = now
-            reason[left] = self._reasons(designs.table[left], found, count)
+            reason[left] = self._reasons(designs.table[left], joined, count)
             enough = (calm >= self.needed) & (count >= self.least)
             moving = ~enough & (reason[left] == COMPUTED)
-            left, found, calm = left[moving], found[moving], calm[moving]
+            left, joined, calm = left[moving], joined[moving], calm[moving]
         reason[left] = NOT_STILL
         return figures, reason
 
@@ -295,29 +295,29 @@ class Batch:
         Extremes are those of the grid and of both sides of jumps: what is gathered at the other
         crank angles are means.
         """
-        found = self._gathered(table, sampling, sampling.shown)
+        values = self._gathered(table, sampling, sampling.shown)
         if self.source.has_shares:
             inside = np.flatnonzero(sampling.shares)
             means = self._gathered(table, sampling, inside)
             for k, (_, kind) in enumerate(self.gathered.columns):
                 if KINDS[kind].shared:
-                    found[:, k] = means[:, k]
-        return found
+                    values[:, k] = means[:, k]
+        return values
 
     def _gathered(self, table: Array, sampling: JumpSampling, some: Array) -> Array:
         """What is gathered (P, R) at some of the crank angles of a sampling."""
         theta, shares = sampling.crank_angle[some], sampling.shares[some]
-        found = self._run(table, self._grid(theta, shares))
+        values = self._run(table, self._grid(theta, shares))
         if self.march:
             for step in STEPS[1:]:
-                loose = self.march.unsettled(found)
+                loose = self.march.unsettled(values)
                 if loose.size:
                     grid = self.march.grid(theta, step, shares)
-                    found[loose] = self._run(table[loose], grid)
+                    values[loose] = self._run(table[loose], grid)
         for k, (_, kind) in enumerate(self.gathered.columns):
             if kind.endswith("_at"):
-                found[:, k] = sampling.at[some][found[:, k].astype(int)]
-        return found
+                values[:, k] = sampling.at[some][values[:, k].astype(int)]
+        return values
 
     def _grid(self, theta: Array, shares: Array | None = None) -> Array:
         if self.march:
@@ -394,9 +394,9 @@ class Batch:
             count *= DENSER
             if not some.size or count > MOST_LOOKED_AT:
                 break
-            found = self._run(table[some], self._grid(all_angles(count, self.turns)))
-            weakest[some] = found[:, self.source.weakest]
-            strongest[some] = found[:, self.source.strongest]
+            result = self._run(table[some], self._grid(all_angles(count, self.turns)))
+            weakest[some] = result[:, self.source.weakest]
+            strongest[some] = result[:, self.source.strongest]
         for k in some:
             for dyad in {self.source.watched[column] for column in np.flatnonzero(near[k])}:
                 low, high = (self._extreme(table[k : k + 1], dyad, sign) for sign in (1, -1))

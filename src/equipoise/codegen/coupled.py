@@ -91,7 +91,7 @@ def trace_coupling(trace: Trace, step: KernelCall) -> None:
 def trace_rolled(trace: Trace, step: KernelCall, number: int) -> None:
     """Where what rolls with a varying ratio touches: the step of this number of the ``forces``."""
     name = step.outputs[0].removeprefix("lever(")[:-1]
-    link = next(one.driven for one in trace.machine.couplings if one.name == name)
+    link = next(coupling.driven for coupling in trace.machine.couplings if coupling.name == name)
     if link in trace.loose:
         ratio, bend = (trace.state[f"{what}({link})"] for what in ("ratio", "bend"))
     else:
@@ -122,7 +122,7 @@ def _of_law(law: Any, place: int, driver: Turning, carrier: Turning, theta: Arra
 
 
 def _coupling(found: Linkage, link: str) -> Coupling:
-    return next(one for one in found.machine.couplings if one.driven == link)
+    return next(coupling for coupling in found.machine.couplings if coupling.driven == link)
 
 
 def _trace_uniform(trace: Trace, step: KernelCall) -> None:
@@ -237,11 +237,11 @@ def _waves(curve: PeriodicCurve) -> Array:
 def _alike(values: list[float]) -> list[float]:
     """Values of which those that differ by rounding are the same."""
     least = ALIKE * max(map(abs, values))
-    found: list[float] = []
+    numbers: list[float] = []
     for value in values:
-        near = (one for one in found if abs(one - value) <= least)
-        found.append(next(near, value))
-    return found
+        near = (item for item in numbers if abs(item - value) <= least)
+        numbers.append(next(near, value))
+    return numbers
 
 
 class Pieces:
@@ -335,7 +335,7 @@ class _Law:
         self.trace, self.number = trace, number
         self.driver, self.carrier, self.link = links_of(step)
         self.law: Any = step.parameters[0]
-        driver, carrier = (trace.state[f"phi({one})"] for one in (self.driver, self.carrier))
+        driver, carrier = (trace.state[f"phi({item})"] for item in (self.driver, self.carrier))
         self.angle = driver - carrier - self.own("zero")
 
     def trace_driven(self) -> None:
@@ -351,7 +351,7 @@ class _Law:
         offset = self.slot("offset", lambda found: _parameters(found, self.number)[1])
         state[f"phi({link})"] = state[f"phi({self.carrier})"] + y + offset
         state[f"ratio({link})"], state[f"bend({link})"] = ratio, bend
-        rates = [state[name] for one in (self.driver, self.carrier) for name in u(one)[1:]]
+        rates = [state[name] for item in (self.driver, self.carrier) for name in u(item)[1:]]
         self.trace.put(u(link)[1:], rolling_kernels.followed(ratio, bend, *rates))  # type: ignore[no-untyped-call]
 
     def slot(self, what: str, read: Callable[[Linkage], Any], vector: bool = False) -> Any:
@@ -364,7 +364,7 @@ class _Law:
     @property
     def once(self) -> Any:
         """exp(i x), with x counted from the law's zero."""
-        driver, carrier = (self.trace.state[f"u({one})"] for one in (self.driver, self.carrier))
+        driver, carrier = (self.trace.state[f"u({item})"] for item in (self.driver, self.carrier))
         zero = self.slot(
             "turned back", lambda found: np.exp(-1j * _parameters(found, self.number)[0].zero), True
         )

@@ -81,8 +81,8 @@ class Lines:
     def __post_init__(self) -> None:
         self.terms = reached(self.outputs, self.names)
         self._uses = Counter(
-            one for term in self.terms if term.op not in LEAVES for one in term.args
-            if type(one) is Term
+            arg for term in self.terms if term.op not in LEAVES for arg in term.args
+            if type(arg) is Term
         )  # fmt: skip
         self._depths: dict[Term, int] = {}
         self.used: set[Term] = set()
@@ -97,11 +97,11 @@ class Lines:
 
     def write(self, masks: Collection[int], needed: Iterable[Any] = ()) -> Iterator[str]:
         """Lines for terms that depend on one of these, and are needed, or used more than once."""
-        kept = {one for one in needed if type(one) is Term}
+        kept = {item for item in needed if type(item) is Term}
         for term in self.terms:
             if term.mask not in masks or term in self.names:
                 continue
-            depth = 1 + max((self._depths.get(one, 0) for one in term.args), default=0)
+            depth = 1 + max((self._depths.get(arg, 0) for arg in term.args), default=0)
             if self._uses[term] > 1 or term in kept or depth > DEEPEST:
                 text, depth = self.text(term), 0
                 self.names[term] = name = f"v{len(self.names)}"
@@ -116,13 +116,13 @@ class Lines:
         if value in self.names:
             self.used.add(value)
             return self.names[value]
-        return self.language.operation(value.op, [self.text(one) for one in value.args])
+        return self.language.operation(value.op, [self.text(arg) for arg in value.args])
 
 
 def boundary(outputs: Iterable[Any], mask: int) -> list[Term]:
     """Terms of this dependence that outputs, or terms of another dependence, are made of."""
     outputs = list(outputs)
-    used = {one for term in reached(outputs) if term.op not in LEAVES and term.mask != mask
-            for one in term.args if type(one) is Term}  # fmt: skip
-    used |= {one for one in outputs if type(one) is Term}
-    return [one for one in sorted(used, key=lambda term: term.order) if one.mask == mask]
+    used = {arg for term in reached(outputs) if term.op not in LEAVES and term.mask != mask
+            for arg in term.args if type(arg) is Term}  # fmt: skip
+    used |= {output for output in outputs if type(output) is Term}
+    return [item for item in sorted(used, key=lambda term: term.order) if item.mask == mask]

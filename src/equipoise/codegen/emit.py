@@ -68,16 +68,18 @@ class Signals:
         """
         if signal in self.poses:
             return self.poses[signal]
-        one, item = declared(signal) or (None, "")
-        if one is None or one.loop is None or not self._has(one):
+        entry, item = declared(signal) or (None, "")
+        if entry is None or entry.loop is None or not self._has(entry):
             raise UsageError(unknown(signal, self._known(), "signal"))
-        if one.by_friction and self.machine.rubs:
+        if entry.by_friction and self.machine.rubs:
             raise UsageError(RUBS)
         try:
-            value = one.loop(partial(self.of_member, item) if one.is_family else self.of_machine)
+            value = entry.loop(
+                partial(self.of_member, item) if entry.is_family else self.of_machine
+            )
         except _Missing:
             raise UsageError(unknown(signal, self._known(), "signal")) from None
-        return PARTS[one.part](value)
+        return PARTS[entry.part](value)
 
     def _has(self, one: Declared) -> bool:
         """Whether the machine has what an output tells of, as far as that depends on no member."""
@@ -86,9 +88,9 @@ class Signals:
     def _known(self) -> Sequence[str]:
         named = self.linkage.named_reactions
         joints = [family_of(r.kind) + name for name, r in named]
-        ones = (one for one in DECLARED.values() if one.loop is not None and not one.is_family)
+        ones = (item for item in DECLARED.values() if item.loop is not None and not item.is_family)
         bearings = [f"bearings.{name}" for name in self.machine.bearings]
-        return [*(one.name for one in ones if self._has(one)), *joints, *bearings]
+        return [*(item.name for item in ones if self._has(item)), *joints, *bearings]
 
     # -- values ------------------------------------------------------------------------------------
 
@@ -100,7 +102,7 @@ class Signals:
         is taken from that of the base.
         """
         trace = self.trace
-        found: dict[str, Any] = {}
+        values: dict[str, Any] = {}
         for link, body in self.machine.links.items():
             anchor, *_, turn, _, _ = trace.body(link)
             vectors = {"rotation": turn}
@@ -108,9 +110,9 @@ class Signals:
                 arm = trace.slot(f"center({link})", partial(_arm_of_center, link), vector=True)
                 vectors["center"] = anchor + turn * arm
             for what, vector in vectors.items():
-                found |= {f"{what}({link}).x": vector.real, f"{what}({link}).y": vector.imag}
-        found |= {f"margin {k}": number for k, (number, _) in enumerate(trace.numbers())}
-        return found | {f"cosine {k}": one for k, one in enumerate(trace.running.values())}
+                values |= {f"{what}({link}).x": vector.real, f"{what}({link}).y": vector.imag}
+        values |= {f"margin {k}": number for k, (number, _) in enumerate(trace.numbers())}
+        return values | {f"cosine {k}": item for k, item in enumerate(trace.running.values())}
 
     @cached_property
     def demands(self) -> dict[str, Any]:
@@ -206,7 +208,9 @@ class Signals:
     def coupling_part(self, item: str, part: str) -> Any:
         """A part of a coupling's force by its name."""
         reaction, couplings = self._reaction(item), self.machine.couplings
-        number, coupling = next((k, one) for k, one in enumerate(couplings) if one.name == item)
+        number, coupling = next(
+            (k, coupling) for k, coupling in enumerate(couplings) if coupling.name == item
+        )
         preload = coupling.preload and self.trace.slot(
             f"preload of {item}", lambda found: found.machine.couplings[number].preload
         )
@@ -269,12 +273,12 @@ def signals_in_loops(linkage: Linkage, names: Iterable[str]) -> list[str]:
     UsageError : a loop cannot have this linkage.
     MassError : an output needs masses, and the machine lacks some.
     """
-    signals, found = _traced(linkage), []
+    signals, texts = _traced(linkage), []
     for name in names:
         with suppress(UsageError):
             signals(name)
-            found.append(name)
-    return found
+            texts.append(name)
+    return texts
 
 
 def pose_signals(linkage: Linkage) -> list[str]:

@@ -149,7 +149,7 @@ class Gathered:
                 continue
             extreme = kind.removesuffix("_at")
             sign = 1 if extreme == "highest" else -1
-            first, second = (sign * self.column(found, signal, extreme) for found in (one, other))
+            first, second = (sign * self.column(result, signal, extreme) for result in (one, other))
             equal = np.abs(second - first) <= ROUNDING * np.abs(first)
             later = np.where(second > first, other[:, k], one[:, k])
             result[:, k] = np.where(equal, np.minimum(one[:, k], other[:, k]), later)

@@ -57,11 +57,11 @@ def can_use(machine: Machine, paths: Sequence[str], wanted: Sequence[Figure]) ->
 
 def _can_have(machine: Machine, figure: Figure) -> bool:
     """Lengths have no linear mean; where a contact changes sides, it is masses that decide it."""
-    one, _ = declared(figure.signal) or (None, "")
-    if one is None or one.needs != "masses" or not one.loop:
+    item, _ = declared(figure.signal) or (None, "")
+    if item is None or item.needs != "masses" or not item.loop:
         return False
-    return one.linear_in(machine) and (
-        figure.name == "rms" or (figure.name == "mean" and not one.is_vector)
+    return item.linear_in(machine) and (
+        figure.name == "rms" or (figure.name == "mean" and not item.is_vector)
     )
 
 
@@ -85,7 +85,7 @@ class MassBatch:
         self.base, self.paths, self.wanted = assemble(machine), tuple(paths), tuple(wanted)
         links = {massive_link(path) for path in paths}
         self.links = [link for link in machine.links if link in links]
-        self.outputs = [found for figure in wanted if (found := declared(figure.signal))]
+        self.outputs = [result for figure in wanted if (result := declared(figure.signal))]
         self.scale = np.append(_scales(machine, len(self.links)), 1.0)
         self.still = True
         rows = [*map(self._factor, self._settled(angles, tolerance), self.wanted, self.outputs)]
@@ -103,7 +103,7 @@ class MassBatch:
         # Room for some designs at a time; to have it anew each time takes as long again.
         heights = len(self.paths), *reversed(self.rows.shape)
         room = [np.ones((height, min(AT_ONCE, len(values)))) for height in heights]
-        columns, parameters, found = room
+        columns, parameters, result = room
         named = dict(zip(self.paths, columns[:, :, None], strict=True))
         for begin in range(0, len(values), AT_ONCE):
             some = slice(begin, begin + AT_ONCE)
@@ -115,9 +115,9 @@ class MassBatch:
                 inertial = chain(*(parameters_of(machine.links[link]) for link in self.links))
                 for row, value in zip(parameters[:-1], inertial, strict=True):
                     row[:] = np.ravel(value)
-                np.matmul(self.rows, parameters, out=found)
+                np.matmul(self.rows, parameters, out=result)
                 for k, ends in enumerate(pairwise(self.ends)):
-                    part = found[slice(*ends), :count]
+                    part = result[slice(*ends), :count]
                     if self.wanted[k].name == "mean":
                         figures[some, k] = part[0]
                     else:
@@ -141,15 +141,15 @@ class MassBatch:
         if angles is not None:
             return self._samples(angles)
         enough, count = max(EXACT, tolerance**2), FIRST
-        found = self._samples(count)
+        arrays = self._samples(count)
         while 2 * count <= MOST_ANGLES:
             count *= 2
-            before, found = found, self._samples(count)
-            both = zip(before, found, strict=True)
+            before, arrays = arrays, self._samples(count)
+            both = zip(before, arrays, strict=True)
             if all(_alike(old * self.scale, new * self.scale, enough) for old, new in both):
-                return found
+                return arrays
         self.still = False
-        return found
+        return arrays
 
     def _samples(self, count: int) -> list[Array]:
         """For each figure the samples (N', V + 1) of a unit of each parameter, and of the rest.
@@ -162,7 +162,7 @@ class MassBatch:
         unit, whole = Found(motion, regressor(motion)), Found(motion, forces(motion))
         varied = [k for k, (link, _) in enumerate(parameter_names(machine)) if link in self.links]
         own = parameter_values(machine)[varied]
-        found = []
+        arrays = []
         self.roots: Array | float = 1.0
         if motion.shares is not None:
             self.roots = np.sqrt(motion.shares * len(motion.shares))
@@ -172,8 +172,8 @@ class MassBatch:
             columns = [*np.moveaxis(rows, 1, 0), rest]
             if motion.shares is not None:
                 columns = [column * self.roots for column in columns]
-            found.append(np.column_stack([column.ravel() for column in columns]))
-        return found
+            arrays.append(np.column_stack([column.ravel() for column in columns]))
+        return arrays
 
     def _factor(self, samples: Array, figure: Figure, output: tuple[Declared, str]) -> Array:
         """Rows (R, V + 1) whose products with parameters and 1 are a mean, or have its squares."""

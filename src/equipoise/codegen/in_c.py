@@ -40,15 +40,15 @@ def in_c(source: TermSource, linkage: Linkage, names: Sequence[str]) -> str:
     outputs = substituted(values, dict(_known(source, linkage, values)))
     lines = Lines(outputs, C)
     body = [*lines.write((ANGLE, DESIGN, BOTH), outputs)]
-    body += [f"out[{k}] = {lines.text(one)};" for k, one in enumerate(outputs)]
-    arguments = ["double theta", *(f"double {one}" for one in GIVEN), "double *out"]
+    body += [f"out[{k}] = {lines.text(output)};" for k, output in enumerate(outputs)]
+    arguments = ["double theta", *(f"double {item}" for item in GIVEN), "double *out"]
     head = f"static void state({', '.join(arguments)})"
-    return "\n".join([HEAD, *lines.tables, head, "{", *(f"    {one}" for one in body), "}", ""])
+    return "\n".join([HEAD, *lines.tables, head, "{", *(f"    {item}" for item in body), "}", ""])
 
 
 def _known(source: TermSource, linkage: Linkage, values: list[Any]) -> Iterator[tuple[Term, Any]]:
     """Arguments, with the numbers and functions of the crank angle that take their place."""
-    arguments = {one.args[0]: one for one in reached(values) if one.op == "argument"}
+    arguments = {item.args[0]: item for item in reached(values) if item.op == "argument"}
     for slot in source.slots:
         value = slot.read(linkage)
         for column, part in enumerate((value.real, value.imag)[: 1 + slot.vector], slot.column):

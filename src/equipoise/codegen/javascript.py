@@ -101,15 +101,15 @@ def _of_numbers(
     source: TermSource, linkage: Linkage, outputs: list[Any], numbers: Mapping[str, float]
 ) -> list[Any]:
     """Outputs with what follows from these numbers in the place of slots."""
-    graph = next((one.graph for one in reached(outputs)), Graph())
+    graph = next((item.graph for item in reached(outputs)), Graph())
     columns: dict[str, Any]
     columns = {path: graph.argument(f"n{k}", DESIGN) for k, path in enumerate(numbers)}
     graph.base |= {f"n{k}": number for k, number in enumerate(numbers.values())}
     try:
-        found = linkage_of(with_columns(linkage.machine, columns), linkage)
+        result = linkage_of(with_columns(linkage.machine, columns), linkage)
         values: dict[Term, Any] = {}
         for slot in source.slots:
-            value = slot.read(found)
+            value = slot.read(result)
             for k, part in enumerate((value.real, value.imag)[: 1 + slot.vector], slot.column):
                 values[graph.argument(f"d{k}", DESIGN)] = as_value(part)
     except (TypeError, AttributeError) as error:
@@ -129,25 +129,25 @@ class _Writer:
         self.outputs = outputs
         self.by_angle = boundary(source.outputs, ANGLE)
         self.own = boundary(self.outputs, DESIGN)
-        known = {one: f"r{k}" for k, one in enumerate(self.by_angle)}
+        known = {item: f"r{k}" for k, item in enumerate(self.by_angle)}
         self.script = Lines(self.outputs, JAVASCRIPT, known)
 
     def lines(self) -> list[str]:
         script = self.script
         given = [
-            f"const {one.args[0]} = design[{one.args[0][1:]}];"
-            for one in script.terms
-            if one.op == "argument" and one.mask == DESIGN
+            f"const {term.args[0]} = design[{term.args[0][1:]}];"
+            for term in script.terms
+            if term.op == "argument" and term.mask == DESIGN
         ]
         setting = [*given, *script.write((DESIGN,), self.own)]
         parts = self._parts()
-        makers = {one: k for k, (_, _, made) in enumerate(parts) for one in made}
+        makers = {item: k for k, (_, _, made) in enumerate(parts) for item in made}
         crossing = {
-            one: row
-            for row, one in enumerate(
+            fromkey: row
+            for row, fromkey in enumerate(
                 dict.fromkeys(
-                    one for k, (_, used, _) in enumerate(parts) for one in used
-                    if makers.get(one, k) < k
+                    item for k, (_, used, _) in enumerate(parts) for item in used
+                    if makers.get(item, k) < k
                 )
             )
         }  # fmt: skip
@@ -187,8 +187,8 @@ class _Writer:
         for line in script.write((ANGLE, BOTH)):
             put(line, [*script.names][before:])
             before = len(script.names)
-        for k, one in enumerate(self.outputs):
-            put(f"out[{k} * angles + k] = {script.text(one)};", ())
+        for k, output in enumerate(self.outputs):
+            put(f"out[{k} * angles + k] = {script.text(output)};", ())
         return parts
 
     def _function(
@@ -200,23 +200,23 @@ class _Writer:
         crossing: dict[Term, int],
     ) -> list[str]:
         script, needed = self.script, dict.fromkeys(used)
-        own = [k for k, one in enumerate(self.own) if one in needed]
-        rows = [k for k, one in enumerate(self.by_angle) if one in needed]
-        taken = [one for one in crossing if one in needed and one not in made]
+        own = [k for k, item in enumerate(self.own) if item in needed]
+        rows = [k for k, item in enumerate(self.by_angle) if item in needed]
+        taken = [item for item in crossing if item in needed and item not in made]
         return [
             f"function part{number}(own, grid, work, angles, out) {{",
             *(f"    const {script.names[self.own[k]]} = own[{k}];" for k in own),
             "    for (let k = 0; k < angles; k++) {",
             *(f"        const r{row} = grid[{row} * angles + k];" for row in rows),
             *(
-                f"        const {script.names[one]} = work[{crossing[one]} * angles + k];"
-                for one in taken
+                f"        const {script.names[item]} = work[{crossing[item]} * angles + k];"
+                for item in taken
             ),
             *(f"        {line}" for line in lines),
             *(
-                f"        work[{row} * angles + k] = {script.names[one]};"
-                for one, row in crossing.items()
-                if one in made
+                f"        work[{row} * angles + k] = {script.names[item]};"
+                for item, row in crossing.items()
+                if item in made
             ),
             "    }",
             "}",

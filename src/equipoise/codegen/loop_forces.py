@@ -47,8 +47,8 @@ class _Forces:
             link: (trace.state[f"F({link})"], trace.state[f"M({link})"])
             for link in step.group.links
         }
-        closing = {_key(one) for one in step.group.equations}
-        self.closing = [k for k, one in enumerate(step.loops) if _key(one) in closing]
+        closing = {_key(equation) for equation in step.group.equations}
+        self.closing = [k for k, loop in enumerate(step.loops) if _key(loop) in closing]
 
     def put(self) -> None:
         """Add the forces to the state."""
@@ -88,8 +88,8 @@ class _Forces:
     def supply(self, place: Place) -> None:
         """What the joint supplies by which the tree places a link: all that is left on it."""
         ends = {place.link, place.to.body}  # type: ignore[union-attr]
-        k = next(k for k, one in enumerate(self.step.loops)
-                 if k not in self.closing and {one.on.body, one.by.body} == ends)  # fmt: skip
+        k = next(k for k, loop in enumerate(self.step.loops)
+                 if k not in self.closing and {loop.on.body, loop.by.body} == ends)  # fmt: skip
         loop, (force, moment) = self.loops[k], self.demands[place.link]
         sign = 1.0 if loop.on.body == place.link else -1.0
         couple = moment - cross(loop.place(self.poses) - self.poses[place.link].place[0], force)

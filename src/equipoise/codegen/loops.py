@@ -64,7 +64,7 @@ def can_trace(group: LoopGroup) -> bool:
     hung = not any(isinstance(place, Free) for place in group.tree)
     curves = [place.curve for place in group.tree if isinstance(place, Riding)]
     hung = hung and all(map(can_look_up, curves))
-    square = len(group.turning) == sum(one.unknowns for one in group.equations)
+    square = len(group.turning) == sum(equation.unknowns for equation in group.equations)
     return hung and square and len(group.turning) <= MOST_UNKNOWNS
 
 
@@ -81,8 +81,8 @@ def trace_loops(trace: Trace, number: int) -> None:
 
 def group_of(trace: Trace, group: LoopGroup) -> TracedGroup:
     """A group that was traced, with its poses."""
-    found: TracedGroup = trace.groups[group.reference]
-    return found
+    traced_group: TracedGroup = trace.groups[group.reference]
+    return traced_group
 
 
 class TracedGroup:
@@ -104,7 +104,7 @@ class TracedGroup:
         self.group = replace(group, tree=parts("tree"), equations=parts("equations"))
         self.size = trace.slot("size", lambda found: size_of_bodies(found.machine))
         self.known = {body: self.pose_of(body) for body, _ in group.known}
-        self.step, self.marked, self.steady = (trace.graph.argument(one, ANGLE) for one in MARCH)
+        self.step, self.marked, self.steady = (trace.graph.argument(item, ANGLE) for item in MARCH)
 
     # -- what is given -----------------------------------------------------------------------------
 
@@ -137,12 +137,12 @@ class TracedGroup:
 
     def carried(self, starts: Sequence[float | complex], watch: str = "") -> list[Any]:
         """Values that each crank angle has from the one before, the first of all these."""
-        return [self.trace.carry(one, watch) for one in starts]
+        return [self.trace.carry(start, watch) for start in starts]
 
     def carry_on(self, before: Sequence[Any], values: Sequence[Any]) -> None:
         """What the next crank angle has of these."""
-        for one, value in zip(before, values, strict=True):
-            self.trace.carry_on(one, value)
+        for item, value in zip(before, values, strict=True):
+            self.trace.carry_on(item, value)
 
     def told(self) -> tuple[list[float | complex], float]:
         """The base's unknowns, and the determinant of its slopes, where the file tells its pose."""
@@ -151,7 +151,7 @@ class TracedGroup:
         q = state[self.base.reference]
         _, slopes = self.base.slopes(poses_in(state, self.base.known), q)
         pairs = zip(q[:, 0].tolist(), self.base.turning, strict=True)
-        start = [complex(np.exp(1j * one)) if turns else one for one, turns in pairs]
+        start = [complex(np.exp(1j * item)) if turns else item for item, turns in pairs]
         return start, float(np.linalg.det(slopes)[0])
 
     # -- from one crank angle to the next ----------------------------------------------------------
@@ -163,18 +163,18 @@ class TracedGroup:
         before, first = self.carried(start), self.carried(start)
         rates, bends = self.carried(nothing), self.carried(nothing)
         h = self.step
-        ahead = [h * one + h * h * 0.5 * two for one, two in zip(rates, bends, strict=True)]
+        ahead = [h * rate + h * h * 0.5 * two for rate, two in zip(rates, bends, strict=True)]
         q = self.moved(before, ahead)
         minors = Minors(self.slopes(q))
         jump = minors.solve(self.gaps(q))
-        q = self.moved(q, [-one for one in jump])
-        q = self.moved(q, [-one for one in minors.solve(self.gaps(q))])
+        q = self.moved(q, [-item for item in jump])
+        q = self.moved(q, [-item for item in minors.solve(self.gaps(q))])
         minors = Minors(self.slopes(q))
         left = minors.solve(self.gaps(q))
         w, a = self.put(q, minors)
         poses = self.final
         self.carry_on(before, q)
-        marked = [one + self.marked * (now - one) for one, now in zip(first, q, strict=True)]
+        marked = [item + self.marked * (now - item) for item, now in zip(first, q, strict=True)]
         self.carry_on(first, marked)
         self.carry_on(rates, w)
         self.carry_on(bends, a)
@@ -193,7 +193,7 @@ class TracedGroup:
         """
         q = [self.of_base(k, turns) for k, turns in enumerate(self.group.turning.tolist())]
         for _ in range(FROM_BASE):
-            q = self.moved(q, [-one for one in Minors(self.slopes(q)).solve(self.gaps(q))])
+            q = self.moved(q, [-item for item in Minors(self.slopes(q)).solve(self.gaps(q))])
         minors = Minors(self.slopes(q))
         left = reduce(greatest, map(abs, self.scaled(minors.solve(self.gaps(q)))))
         self.put(q, minors)
@@ -219,8 +219,8 @@ class TracedGroup:
 
     def put(self, q: list[Any], minors: Minors) -> tuple[list[Any], list[Any]]:
         """Add poses to the state, with their rates; those of the unknowns."""
-        w = [-one for one in minors.solve(self.group.gaps(self.poses(self.known, q), 1))]
-        a = [-one for one in minors.solve(self.group.gaps(self.poses(self.known, q, w), 2))]
+        w = [-item for item in minors.solve(self.group.gaps(self.poses(self.known, q), 1))]
+        a = [-item for item in minors.solve(self.group.gaps(self.poses(self.known, q, w), 2))]
         poses = self.final = self.poses(self.known, q, w, a)
         self.reached, self.still = q, {body: pose.still for body, pose in self.known.items()}
         for link, anchor in zip(self.group.links, self.group.anchors, strict=True):
@@ -260,24 +260,24 @@ class TracedGroup:
 
     def apart(self, q: list[Any], others: list[Any]) -> Any:
         """How far two sets of unknowns are from each other, squared."""
-        ways = self.scaled([one - other for one, other in zip(q, others, strict=True)])
+        ways = self.scaled([item - other for item, other in zip(q, others, strict=True)])
         return sum((way * way.conjugate()).real for way in ways)
 
     def scaled(self, values: list[Any]) -> list[Any]:
         """Ways over the size of the machine, and angles."""
         pairs = zip(values, self.group.turning, strict=True)
-        return [one if turns else one / self.size for one, turns in pairs]
+        return [item if turns else item / self.size for item, turns in pairs]
 
     def moved(self, q: list[Any], steps: list[Any]) -> list[Any]:
         """Unknowns after steps, of which none is beyond all measure."""
         return [
-            _turned(one, step) if turns else one + _bounded(step / self.size) * self.size
-            for one, step, turns in zip(q, steps, self.group.turning, strict=True)
+            _turned(item, step) if turns else item + _bounded(step / self.size) * self.size
+            for item, step, turns in zip(q, steps, self.group.turning, strict=True)
         ]
 
     def poses(self, known: Poses, q: list[Any], *rates: list[Any]) -> Poses:
         pairs = zip(q, self.group.turning, strict=True)
-        values = [(one, 0.0) if turns else one for one, turns in pairs]
+        values = [(item, 0.0) if turns else item for item, turns in pairs]
         return self.group.poses(known, values, *rates)
 
     def gaps(self, q: list[Any]) -> list[Any]:
@@ -306,13 +306,13 @@ class Minors:
     def solve(self, right: list[Any]) -> list[Any]:
         """What the rows make the right-hand side of."""
         count = len(right)
-        rows = [[*row, one] for row, one in zip(self.rows, right, strict=True)]
-        found = dict(self.found)
+        rows = [[*row, item] for row, item in zip(self.rows, right, strict=True)]
+        by_name = dict(self.found)
         result = []
         for k in range(count):
             others = (*range(k), *range(k + 1, count), count)
             sign = -1.0 if (count - 1 - k) % 2 else 1.0
-            result.append(sign * _minor(rows, others, found) * self.inverse)
+            result.append(sign * _minor(rows, others, by_name) * self.inverse)
         return result
 
 

@@ -82,7 +82,7 @@ def trace_shared(trace: Trace, number: int) -> None:
         wrenches = loop.wrenches(poses, 0.0)
         parts = [next(strengths) for _ in wrenches]
         for name, unit in zip(reaction.outputs, zip(*wrenches, strict=True), strict=False):
-            state[name] = sum(part * one for part, one in zip(parts, unit, strict=True))
+            state[name] = sum(part * item for part, item in zip(parts, unit, strict=True))
         state.setdefault(f"p({reaction.at})", loop.place(poses))
     for drive, pin in shared.pins.items():
         state[f"F({drive})"], state[f"M({drive})"] = state[pin.force], next(strengths)
@@ -90,11 +90,11 @@ def trace_shared(trace: Trace, number: int) -> None:
 
 def _poses(trace: Trace, shared: Shared) -> Poses:
     """Where the links are, from their anchors, and the frame from the pivot of the first drive."""
-    found = {FRAME: Pose((trace.state[f"p({shared.pivot})"], 0j, 0j), (1 + 0j, 0.0, 0.0))}
+    poses = {FRAME: Pose((trace.state[f"p({shared.pivot})"], 0j, 0j), (1 + 0j, 0.0, 0.0))}
     for link in shared.group.links:
         x, x1, x2, turn, w, a = trace.body(link)
-        found[link] = Pose((x, x1, x2), (turn, w, a))
-    return found
+        poses[link] = Pose((x, x1, x2), (turn, w, a))
+    return poses
 
 
 def _demand(trace: Trace, link: str) -> tuple[Any, Any, Any]:
@@ -114,10 +114,10 @@ def _eliminated(columns: list[Column], right: list[Any]) -> list[Any]:
     count = len(right)
     products = [dict[int, Any]() for _ in range(count)]  # of each row, from its own place on
     for column in columns:
-        for i, one in column.items():
+        for i, item in column.items():
             for j, other in column.items():
                 if j >= i:
-                    value = one * other
+                    value = item * other
                     products[i][j] = products[i][j] + value if j in products[i] else value
     solution = [*right]
     for i, row in enumerate(products):

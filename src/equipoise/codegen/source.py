@@ -89,7 +89,7 @@ class TermSource:
 
         given : rows of a march, by name.
         """
-        names = {one.args[0] for one in reached(self._by_angle) if one.op == "argument"}
+        names = {item.args[0] for item in reached(self._by_angle) if item.op == "argument"}
         known = {row.name: row.values(theta) for row in self.rows if row.name in names}
         values = on_arrays(self._by_angle)(**known, **(given or {}))
         grid = [np.broadcast_to(value, np.shape(theta)) for value in values]
@@ -99,7 +99,7 @@ class TermSource:
     def text(self) -> str:
         """The loop, for Numba."""
         outputs = without_calls(self.outputs)
-        lines = Lines(outputs, PYTHON, {one: f"r{k}" for k, one in enumerate(self._by_angle)})
+        lines = Lines(outputs, PYTHON, {item: f"r{k}" for k, item in enumerate(self._by_angle)})
         loop = _march(self, lines) if self.carried else _loop(self, lines)
         head = ["from numpy import array", "", *lines.tables, ""] if lines.tables else [""]
         return "\n".join([HEAD, "", *head, *loop, ""])
@@ -109,15 +109,15 @@ class TermSource:
         """Outputs as a function of arrays: columns of the table, rows of the grid, and what is
         carried.
         """
-        names = {one: f"r{k}" for k, one in enumerate(self._by_angle)}
+        names = {item: f"r{k}" for k, item in enumerate(self._by_angle)}
         columns = [f"d{k}" for k in range(self.width)]
-        arguments = [*columns, *names.values(), *(one.before.args[0] for one in self.carried)]
+        arguments = [*columns, *names.values(), *(item.before.args[0] for item in self.carried)]
         return _function(flat(self.outputs, arguments, names))
 
 
 def on_arrays(outputs: Sequence[Any]) -> Callable[..., tuple[Any, ...]]:
     """Outputs as a function of NumPy's arrays, by the names of arguments."""
-    arguments = [one.args[0] for one in reached(outputs) if one.op == "argument"]
+    arguments = [item.args[0] for item in reached(outputs) if item.op == "argument"]
     return _function(flat(outputs, arguments))
 
 
@@ -127,10 +127,10 @@ def flat(
     """Source of a function ``states`` of arrays that returns outputs."""
     lines = Lines(outputs, PYTHON, dict(names))
     body = [*lines.write((DESIGN, ANGLE, BOTH), outputs)]
-    results = "".join(f"{lines.text(one)}, " for one in outputs)
+    results = "".join(f"{lines.text(output)}, " for output in outputs)
     head = f"def states({', '.join(arguments)}):"
     return "\n".join(
-        [*lines.tables, head, *(f"    {one}" for one in body), f"    return ({results})"]
+        [*lines.tables, head, *(f"    {item}" for item in body), f"    return ({results})"]
     )
 
 
@@ -160,7 +160,7 @@ def source_of(
     numbers = trace.numbers()
     margins = {f"margin {k}": number for k, (number, _) in enumerate(numbers)}
     cosines = {f"cosine {k}": cosine for k, cosine in enumerate(trace.running.values())}
-    ends = {f"carried {k}": one.watch for k, one in enumerate(trace.carried) if one.watch}
+    ends = {f"carried {k}": item.watch for k, item in enumerate(trace.carried) if item.watch}
     columns = [
         wanted.columns,
         [(name, "lowest") for name in margins],
@@ -183,8 +183,8 @@ def source_of(
         strongest,
         nearest,
         tuple(trace.carried),
-        tuple(trace.following[one.before] for one in trace.carried),
-        {watch: [k for k, one in watches if one == watch] for watch in WATCHED},
+        tuple(trace.following[item.before] for item in trace.carried),
+        {watch: [k for k, item in watches if item == watch] for watch in WATCHED},
         has_shares,
     )
 
@@ -236,7 +236,7 @@ def _march(source: TermSource, lines: Lines) -> Iterator[str]:
     own = boundary(lines.outputs, DESIGN)
     signals = {signal: f"x{k}" for k, signal in enumerate(source.signals)}
     columns = {c: f"g{k}" for k, c in enumerate(source.gathered.columns) if c[0] in signals}
-    before = [one.before.args[0] for one in source.carried]
+    before = [item.before.args[0] for item in source.carried]
     setting = [*_of_design(lines, own)]
     going = [*lines.write((BOTH,), lines.outputs)]
     given = [*map(lines.text, own), *before]
@@ -245,7 +245,7 @@ def _march(source: TermSource, lines: Lines) -> Iterator[str]:
         name: f"work[{k * LANES} + lane]"
         for k, name in enumerate([*given, *signals.values(), *columns.values()])
     }
-    last = iter([one.before.args[0] for one in source.carried if one.watch])
+    last = iter([item.before.args[0] for item in source.carried if item.watch])
     filled = [at[columns.get(c) or next(last)] for c in source.gathered.columns]
 
     def get(names: Iterable[str]) -> Iterator[str]:
@@ -260,7 +260,9 @@ def _march(source: TermSource, lines: Lines) -> Iterator[str]:
     yield "            i = begin + lane if lane < lanes else begin"
     yield from _indented(3, setting)
     yield from _indented(3, (f"{at[name]} = {name}" for name in given[: len(own)]))
-    yield from _indented(3, (f"{at[one.before.args[0]]} = {one.start!r}" for one in source.carried))
+    yield from _indented(
+        3, (f"{at[item.before.args[0]]} = {item.start!r}" for item in source.carried)
+    )
     yield from _indented(
         3, (f"{at[name]} = {KINDS[kind].start}" for (_, kind), name in columns.items())
     )

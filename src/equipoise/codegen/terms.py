@@ -70,9 +70,9 @@ class Graph:
     def make(self, op: str, *args: Term | float) -> Term:
         """The term that is an operation on these, of which one at least is a term."""
         mask = 0
-        for one in args:
-            if type(one) is Term:
-                mask |= one.mask
+        for arg in args:
+            if type(arg) is Term:
+                mask |= arg.mask
         return self._term((op, *args), mask)
 
     def _term(self, key: tuple[Any, ...], mask: int) -> Term:
@@ -241,12 +241,12 @@ def _in_order(a: Real, b: Real) -> tuple[Real, Real]:
 
 
 def _made(op: str, *args: Real) -> Term:
-    return next(one for one in args if isinstance(one, Term)).graph.make(op, *args)
+    return next(arg for arg in args if isinstance(arg, Term)).graph.make(op, *args)
 
 
 def _operation(op: str, *args: Any) -> Any:
     """An operation on real numbers, carried out where all are plain."""
-    if any(type(one) is Term for one in args):
+    if any(type(arg) is Term for arg in args):
         return _made(op, *args)
     return FOLDED[op](*args)
 
@@ -414,8 +414,8 @@ UFUNCS: dict[Any, Callable[..., Any]] = {
 
 
 def _by_numpy(ufunc: Any, method: str, inputs: Sequence[Any]) -> Any:
-    values = [as_value(one) for one in inputs]
-    if method != "__call__" or ufunc not in UFUNCS or any(one is None for one in values):
+    values = [as_value(item) for item in inputs]
+    if method != "__call__" or ufunc not in UFUNCS or any(value is None for value in values):
         return NotImplemented
     return UFUNCS[ufunc](*values)
 
@@ -427,15 +427,15 @@ def reached(outputs: Iterable[Any], known: Container[Term] = ()) -> list[Term]:
     """Terms that real outputs need, each after those that it is made of; of those that are known,
     what they are made of is not needed.
     """
-    seen: set[Term] = set()
-    left = [one for one in outputs if type(one) is Term]
+    terms: set[Term] = set()
+    left = [output for output in outputs if type(output) is Term]
     while left:
         term = left.pop()
-        if term not in seen:
-            seen.add(term)
+        if term not in terms:
+            terms.add(term)
             if term.op not in LEAVES and term not in known:
-                left += [one for one in term.args if type(one) is Term]
-    return sorted(seen, key=_order)
+                left += [arg for arg in term.args if type(arg) is Term]
+    return sorted(terms, key=_order)
 
 
 REMADE: dict[str, Callable[..., Any]] = {
@@ -459,14 +459,14 @@ def replaced(outputs: Iterable[Any], change: Callable[[Term, Sequence[Any]], Any
     outputs = list(outputs)
     known: dict[Term, Any] = {}
     for term in reached(outputs):
-        args = [known.get(one, one) if type(one) is Term else one for one in term.args]
+        args = [known.get(arg, arg) if type(arg) is Term else arg for arg in term.args]
         value = change(term, args)
         if value is None and term.op in LEAVES:
             value = term
         elif value is None:
             value = REMADE[term.op](*args) if term.op in REMADE else _operation(term.op, *args)
         known[term] = value
-    return [known[one] if type(one) is Term else one for one in outputs]
+    return [known[output] if type(output) is Term else output for output in outputs]
 
 
 def substituted(outputs: Iterable[Any], values: Mapping[Term, Any]) -> list[Any]:

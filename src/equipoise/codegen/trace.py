@@ -221,9 +221,9 @@ def _straight(trace: Trace, link: str) -> Any:
 
 def _drives_on(machine: Machine) -> bool:
     """Whether the angle of a pinned follower is one that another coupling starts from."""
-    asked = {body for one in machine.couplings for body in (one.driver, one.carrier)}
-    surfaces = (one for one in machine.couplings if one.contact == "surface")
-    return any(one.driven in asked for one in surfaces)
+    asked = {body for coupling in machine.couplings for body in (coupling.driver, coupling.carrier)}
+    surfaces = (coupling for coupling in machine.couplings if coupling.contact == "surface")
+    return any(surface.driven in asked for surface in surfaces)
 
 
 def _counts(step: Step) -> bool:
@@ -240,8 +240,8 @@ def links_of(step: KernelCall) -> list[str]:
 
 def _turning(machine: Machine) -> set[str]:
     """Bodies from whose angle a law counts."""
-    laws = [one for one in machine.couplings if one.relation[0] is coupled]
-    return {body for one in laws for body in (one.driver, one.carrier)}
+    laws = [coupling for coupling in machine.couplings if coupling.relation[0] is coupled]
+    return {body for law in laws for body in (law.driver, law.carrier)}
 
 
 def _changed(linkage: Linkage, paths: Collection[str]) -> tuple[set[str], set[str]]:
@@ -250,21 +250,21 @@ def _changed(linkage: Linkage, paths: Collection[str]) -> tuple[set[str], set[st
     """
     shifted, shaped = set(), set()
     varied = {*map(KeyPath.parse, paths)}
-    for where, one in _numbered(linkage.machine):
+    for where, item in _numbered(linkage.machine):
         if where / "start" in varied:
-            shifted.add(one.driven)
+            shifted.add(item.driven)
         if any(path.begin(3) == where / "shape" for path in varied):
-            shaped.add(one.driven)
-    told, loose = {FRAME, *(drive.link for drive in linkage.machine.driven)}, set()
+            shaped.add(item.driven)
+    text, loose = {FRAME, *(drive.link for drive in linkage.machine.driven)}, set()
     for step in linkage.motion:
         if not (isinstance(step, KernelCall) and step.outputs[0].startswith("phi(")):
             continue
         driver, carrier, driven = links_of(step)
-        known = {driver, carrier} <= told
+        known = {driver, carrier} <= text
         if step.kernel is not coupled:
-            told |= {driven} if known else set()
+            text |= {driven} if known else set()
         elif known and driven not in shaped and shifted.isdisjoint((driver, carrier)):
-            told.add(driven)
+            text.add(driven)
         else:
             loose.add(driven)
     return shifted, loose
@@ -273,6 +273,6 @@ def _changed(linkage: Linkage, paths: Collection[str]) -> tuple[set[str], set[st
 def _numbered(machine: Machine) -> Iterator[tuple[KeyPath, Coupling]]:
     """Couplings, each with its path in the file."""
     counts: Counter[str] = Counter()
-    for one in machine.couplings:
-        yield KeyPath((one.table, counts[one.table])), one
-        counts[one.table] += 1
+    for coupling in machine.couplings:
+        yield KeyPath((coupling.table, counts[coupling.table])), coupling
+        counts[coupling.table] += 1

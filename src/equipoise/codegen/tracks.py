@@ -28,8 +28,8 @@ class TracedCurve:
         """Place and its first three derivatives by the parameter."""
         way, pieces = self._place(s, self.curve.knots)
         powers = [
-            VectorTerm(pieces.value(one.real), pieces.value(one.imag))
-            for one in self.curve.powers.T
+            VectorTerm(pieces.value(item.real), pieces.value(item.imag))
+            for item in self.curve.powers.T
         ]
         return tuple(plane_piece(way, *powers))  # type: ignore[no-untyped-call]
 

@@ -137,12 +137,12 @@ class PooledEvaluator(Generic[Figures]):
         size = max(size, min(self.together, -(-len(values) // workers)))
         starts = range(0, len(values), size)
         parts = (DesignSlice(start, values[start : start + size]) for start in starts)
-        found, done = {}, 0
+        result, done = {}, 0
         for part, outcome in self.runner.each(parts):
-            found[part.begin] = outcome
+            result[part.begin] = outcome
             done += len(part.values)
             tell(done)
-        return [found[start] for start in starts]
+        return [result[start] for start in starts]
 
 
 def _of_parts(make: Callable[[], Evaluate[Any]]) -> Callable[[DesignSlice], Any]:

@@ -101,7 +101,7 @@ def lifts_of(machine: Machine) -> Iterator[Lift]:
 def lift_named(machine: Machine, name: str) -> Lift | None:
     """The lift of a machine by its name; None where there is none."""
     try:
-        known = {one.name: one for one in lifts_of(machine)}
+        known = {lift.name: lift for lift in lifts_of(machine)}
     except EquipoiseError:  # what cannot be put together has no lifts
         return None
     return known.get(name) or joined(machine, name)
@@ -133,8 +133,8 @@ def _gears(machine: Machine) -> Iterator[Lift]:
     numbers = range(len(machine.gears))
     paths = dict.fromkeys(path for gear in machine.gears for path in _numbers(gear))
     for path in paths:
-        found = [_of_gears(machine, f"gears[{k + 1}].{path}", [k], path) for k in numbers]
-        yield from (one for one in found if one is not None)
+        lifts = [_of_gears(machine, f"gears[{k + 1}].{path}", [k], path) for k in numbers]
+        yield from (item for item in lifts if item is not None)
         if len(machine.gears) > 1 and path != "start":
             every = _of_gears(machine, f"gears.{path}", numbers, path)
             yield from () if every is None else (every,)
@@ -157,15 +157,15 @@ def with_lifts(machine: Machine, values: Sequence[tuple[Lift, float]], **changes
     names = (FRAME, *machine.links)
     bodies = {name: _places(machine.points_of(name)) for name in names}
     draft = Draft(machine, bodies, list(machine.gears))
-    for one, value in values:
-        one.put(draft, float(value))
+    for entry, value in values:
+        entry.put(draft, float(value))
     machine = draft.machine
     points = {name: _pairs(bodies[name], machine.points_of(name)) for name in names}
     links = {
         name: link if points[name] == dict(link.points) else link.altered(points=points[name])
         for name, link in machine.links.items()
     }
-    touched = {number for one, _ in values for number in one.gears}
+    touched = {number for item, _ in values for number in item.gears}
     gears = tuple(
         closed(gear, points) if number in touched else gear
         for number, gear in enumerate(draft.gears)
@@ -291,7 +291,7 @@ def _numbered(gear: Gear) -> Iterator[tuple[str, float]]:
     for name, key in keys_of(type(shape)).items():
         value = getattr(shape, key.field)
         if isinstance(value, tuple):
-            yield from ((f"shape.{name}[{k}]", one) for k, one in enumerate(value, 1))
+            yield from ((f"shape.{name}[{k}]", item) for k, item in enumerate(value, 1))
         elif isinstance(value, float):
             yield f"shape.{name}", value
 
@@ -304,10 +304,10 @@ def _of_gears(machine: Machine, name: str, numbers: Sequence[int], path: str) ->
     """A number of some of the gears: angles turn by as much, the rest becomes equal."""
     if any(not 0 <= k < len(machine.gears) for k in numbers):
         return None
-    found = [_numbers(machine.gears[k]) for k in numbers]
-    if any(path not in one for one in found):
+    items = [_numbers(machine.gears[k]) for k in numbers]
+    if any(path not in item for item in items):
         return None
-    values = [one[path] for one in found]
+    values = [item[path] for item in items]
     dimension = dimension_of_lift(name)
     low, high = (-pi, pi) if dimension == "angle" else (-1.0, 1.0)
     low, high = ECCENTRIC if path == "shape.eccentricity" else (low, high)

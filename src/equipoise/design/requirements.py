@@ -127,8 +127,8 @@ class Requirement(RequiredFigure):
 
     def met(self, value: float, step: float) -> bool:
         """Whether a figure keeps the limits and is within one step of the target."""
-        one = np.array([value])
-        return bool(self.kept(one)[0] and abs(self.off(one)[0]) <= step)
+        values = np.array([value])
+        return bool(self.kept(values)[0] and abs(self.off(values)[0]) <= step)
 
     def size(self, values: Array) -> Array:
         """What is to become small, 0 unless `make` is given."""

@@ -74,8 +74,8 @@ class DesignProblem(ABC):
     def first(self) -> Array:
         """Places (P, d) to begin with, evenly spread."""
         power = (self.population - 1).bit_length()  # SciPy warns of other numbers
-        found: Array = sobol(len(self.spreads), self.seed).random_base2(power)
-        return found[: self.population]
+        values: Array = sobol(len(self.spreads), self.seed).random_base2(power)
+        return values[: self.population]
 
     @property
     def is_still(self) -> bool:
@@ -120,7 +120,7 @@ SOLVERS: list[DesignSolver] = []
 
 def solve(problem: DesignProblem) -> DesignSolution:
     """The best designs by the first solver that suits a problem."""
-    solver = next(one for one in (*SOLVERS, *problem.solvers) if one.suits(problem))
+    solver = next(solver for solver in (*SOLVERS, *problem.solvers) if solver.suits(problem))
     return replace(solver.solve(problem), solver=solver.name)
 
 

@@ -77,8 +77,8 @@ def _linkage(space: Any, scene: Scene) -> None:
         way, place = guide.way[0], at[guide.point]
         ends = _points([place - guide.behind[0] * way, place + guide.ahead[0] * way])
         space.add_line(*ends, dxfattribs=_layer("guide", guide.name))
-    for one, other in scene.springs:
-        space.add_line(*_points([at[one], at[other]]), dxfattribs=_layer("springs"))
+    for item, other in scene.springs:
+        space.add_line(*_points([at[item], at[other]]), dxfattribs=_layer("springs"))
     for wheel in scene.wheels:
         (center,) = _points([at[wheel.center]])
         layer = _layer("gears", wheel.link)
@@ -125,12 +125,12 @@ def _parts(space: Any, found: list[Part], scene: Scene) -> None:
     gap = abs(high - low) / 10
     corner = high + gap
     for part in found:
-        lowest, highest = (MM * one for one in part.box)
+        lowest, highest = (MM * item for item in part.box)
         shift = corner - complex(lowest.real, highest.imag)
         layer = _layer("part", part.name)
         for edges in part.edges:
             moved = [(MM * place + shift, bulge) for place, bulge in edges]
-            rows = [(one.real, one.imag, bulge) for one, bulge in moved]
+            rows = [(item.real, item.imag, bulge) for item, bulge in moved]
             space.add_lwpolyline(rows, format="xyb", close=True, dxfattribs=layer)
         _measures(space, part, shift, gap)
         corner -= 1j * ((highest - lowest).imag + gap)

@@ -56,8 +56,8 @@ def export(
         file cannot be written.
     MassError, MotionError, ModelError : the machine cannot be computed as far as the format needs.
     """
-    one = format_of(path, format, of_store=isinstance(what, Store))
-    check_kind(one, of_store=isinstance(what, Store))
+    item = format_of(path, format, of_store=isinstance(what, Store))
+    check_kind(item, of_store=isinstance(what, Store))
     if crank_angle is not None and not isfinite(crank_angle):
         raise UsageError(
             at_place(
@@ -72,11 +72,11 @@ def export(
     if isinstance(what, Store):
         write_designs(what, path, kept=kept)
         return ()
-    check_link_loads(one, link=link, angles=angles)
+    check_link_loads(item, link=link, angles=angles)
     if angles is not None and crank_angle is not None:
         raise UsageError(Note("crank_angle and angles were given; give one of them"))
     with speaking(language):
-        job, data = made(what, one, crank_angle, link, angles)
+        job, data = made(what, item, crank_angle, link, angles)
     write(path, data)
     return tuple(job.left_out)
 
@@ -129,8 +129,8 @@ def made(
     frictionless = machine.rubs and not one.rubs
     if angles is None and crank_angle is not None:
         angles = [crank_angle]
-    drawn = machine.without_friction() if frictionless else machine
-    job = Job(drawn, crank_angle or 0.0, changes, link, angles)
+    without_friction = machine.without_friction() if frictionless else machine
+    job = Job(without_friction, crank_angle or 0.0, changes, link, angles)
     if frictionless:
         job.leave_out("friction in joints: forces are those without it")
     if one.joints == ():  # its joints bear no preload either
@@ -201,9 +201,9 @@ def format_of(
             raise UsageError(unknown(name, FORMATS, "format"))
         return FORMATS[name]
     ending = os.path.splitext(path)[1].lower()
-    fitting = [one for one in FORMATS.values() if one.ending == ending]
+    fitting = [item for item in FORMATS.values() if item.ending == ending]
     if not fitting:
-        endings = ", ".join(dict.fromkeys(one.ending for one in FORMATS.values()))
+        endings = ", ".join(dict.fromkeys(item.ending for item in FORMATS.values()))
         raise UsageError(
             Note(
                 "got {given!r}; give the name of a file that ends in one of {endings}, or a format",
@@ -211,4 +211,4 @@ def format_of(
                 endings=endings,
             )
         )
-    return next((one for one in fitting if one.of_store == of_store), fitting[0])
+    return next((item for item in fitting if item.of_store == of_store), fitting[0])

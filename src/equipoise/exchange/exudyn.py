@@ -102,7 +102,7 @@ def _row(model: Data, tree: Tree, job: Job, flywheel: float) -> None:
         way = np.exp(1j * slider.direction)
         across = 1j * np.exp(-1j * slider.angle)  # in the axes of what slides
         ends = [_end(tree, slider.on, slider.through), _end(tree, slider.link, slider.point)]
-        axes = ([float(one.real), float(one.imag), 0.0] for one in (way, across))
+        axes = ([float(item.real), float(item.imag), 0.0] for item in (way, across))
         model["sliders"].append(dict(zip(("ends", "axis", "normal"), (ends, *axes), strict=True)))
     model["geared"] += _geared(tree)
     for spring in machine.springs:
@@ -136,24 +136,26 @@ def _geared(tree: Tree) -> list[Data]:
     UsageError : a coupling is of three bodies of which none follows another or stands still.
     """
     shares: dict[str, dict[str, float]] = {}
-    for one in tree.machine.couplings:
-        ratio = one.speed_ratio
+    for coupling in tree.machine.couplings:
+        ratio = coupling.speed_ratio
         total = dict[str, float]()
-        for body, share in ((one.driver, ratio), (one.carrier, 1 - ratio)):
+        for body, share in ((coupling.driver, ratio), (coupling.carrier, 1 - ratio)):
             for root, factor in shares.get(body, {body: 1.0}).items():
                 total[root] = total.get(root, 0.0) + share * factor
         total.pop(FRAME, None)
-        shares[one.driven] = {body: factor for body, factor in total.items() if factor}
-        if len(shares[one.driven]) > 1 or tree.machine.support is not None:
+        shares[coupling.driven] = {body: factor for body, factor in total.items() if factor}
+        if len(shares[coupling.driven]) > 1 or tree.machine.support is not None:
             raise UsageError(
                 Note(
                     "the {noun} {name} follows two bodies that move, which the file's format "
                     "has no joint for; give another format",
-                    noun=one.noun,
-                    name=one.name,
+                    noun=coupling.noun,
+                    name=coupling.name,
                 )
             )
-    named = ((driven, by, one) for driven, follows in shares.items() for by, one in follows.items())
+    named = (
+        (driven, by, follow) for driven, follows in shares.items() for by, follow in follows.items()
+    )
     return [
         {"driven": f"{driven}{tree.suffix}", "by": f"{by}{tree.suffix}", "factor": factor}
         for driven, by, factor in named
@@ -190,10 +192,10 @@ def _on_base(machine: Machine, place: tuple[float, float]) -> End:
 
 def _mounts(machine: Machine, support: Support) -> list[Data]:
     carried = preloads(machine)
-    found = []
+    data = []
     for name, mount in support.mounts.items():
         place = (support.reference if mount.point is None else mount.point)[:2]
-        found.append(
+        data.append(
             {
                 "body": BASE,
                 "at": _on_base(machine, place)[1],
@@ -204,4 +206,4 @@ def _mounts(machine: Machine, support: Support) -> list[Data]:
                 "one_sided": mount.one_sided,
             }
         )
-    return found
+    return data

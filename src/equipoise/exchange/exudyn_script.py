@@ -131,7 +131,7 @@ class Build:
         def push(_: Any, t: float, number: int, way: Any, speed: Any, *rest: Any) -> list[float]:
             size = preload - stiffness * (line @ way) - damping * (line @ speed)
             size = max(size, 0.0) if one_sided else size
-            return [float(-one) for one in size * line]
+            return [float(-entry) for entry in size * line]
 
         ends = self.both([("ground", ground), (body, at)])
         pushed: Data = {"stiffness": [stiffness] * 3, "springForceUserFunction": push}
@@ -175,10 +175,10 @@ def simulate(turns: float = 1.0, steps_per_turn: int = 2000, model: Data | None 
     chosen.timeIntegration.newton.relativeTolerance = 1e-10
     chosen.timeIntegration.verboseMode = 0
     system.SolveDynamic(chosen)
-    told: Data = {name: system.GetSensorStoredData(sensor) for name, sensor in sensors.items()}
-    time, force = told.pop("").T
+    data: Data = {name: system.GetSensorStoredData(sensor) for name, sensor in sensors.items()}
+    time, force = data.pop("").T
     start, rate = built.model["crank_angle"], built.model["drive"]["speed"]
-    moved = {name: values[:, 1:4] for name, values in told.items()}
+    moved = {name: values[:, 1:4] for name, values in data.items()}
     return {"crank_angle": start + rate * time, "drive_torque": -force, "bodies": moved}
 
 

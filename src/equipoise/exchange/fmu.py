@@ -49,7 +49,7 @@ def made(job: Job) -> bytes:
     job.leave_out_motor()
     job.leave_out_planes()
     outputs = _outputs(analyze(machine, [job.crank_angle]))
-    code = _code(machine, [one.name for one in outputs], job.crank_angle)
+    code = _code(machine, [output.name for output in outputs], job.crank_angle)
     guid = hashlib.sha256(code.encode()).hexdigest()[:32]
     code = f'#define GUID "{guid}"\n{code}'
     content: dict[str, str | bytes] = {
@@ -73,7 +73,7 @@ def made(job: Job) -> bytes:
 
 def _outputs(analysis: Analysis) -> list[AnalysisOutput]:
     """Those that a compiled loop can have too."""
-    arrays = {one.name: one for one in analysis.outputs.arrays}
+    arrays = {value.name: value for value in analysis.outputs.arrays}
     names = signals_in_loops(assemble(analysis.machine), arrays)
     return [arrays[name] for name in names]
 
@@ -98,7 +98,9 @@ def _description(job: Job, outputs: Sequence[AnalysisOutput], guid: str) -> str:
     slave = {"modelIdentifier": MODEL, "canHandleVariableCommunicationStepSize": "true"}
     listed = ET.SubElement(ET.SubElement(root, "CoSimulation", slave), "SourceFiles")
     ET.SubElement(listed, "File", name=SOURCE)
-    units = dict.fromkeys(["rad", "rad/s", "rad/s^2", *(one.unit for one in outputs if one.unit)])
+    units = dict.fromkeys(
+        ["rad", "rad/s", "rad/s^2", *(output.unit for output in outputs if output.unit)]
+    )
     defined = ET.SubElement(root, "UnitDefinitions")
     for unit in units:
         ET.SubElement(defined, "Unit", name=unit)
@@ -106,17 +108,17 @@ def _description(job: Job, outputs: Sequence[AnalysisOutput], guid: str) -> str:
     span = {"startTime": "0.0", "stopTime": repr(period), "stepSize": repr(period / 360)}
     ET.SubElement(root, "DefaultExperiment", span)
     variables = ET.SubElement(root, "ModelVariables")
-    told: list[tuple[str, str, str, float | None]] = [
-        *((one.name, one.unit, "output", None) for one in outputs),
+    parts: list[tuple[str, str, str, float | None]] = [
+        *((output.name, output.unit, "output", None) for output in outputs),
         ("crank_angle", "rad", "output", None),
         ("speed", "rad/s", "input", machine.drive.speed),
         ("acceleration", "rad/s^2", "input", 0.0),
         ("start", "rad", "parameter", job.crank_angle),
     ]
-    for number, (name, unit, causality, start) in enumerate(told):
+    for number, (name, unit, causality, start) in enumerate(parts):
         kind = {"variability": "fixed", "initial": "exact"} if causality == "parameter" else {}
-        one = {"name": name, "valueReference": str(number), "causality": causality, **kind}
-        variable = ET.SubElement(variables, "ScalarVariable", one)
+        item = {"name": name, "valueReference": str(number), "causality": causality, **kind}
+        variable = ET.SubElement(variables, "ScalarVariable", item)
         real = ET.SubElement(variable, "Real", {"unit": unit} if unit else {})
         if start is not None:
             real.set("start", repr(start))

@@ -54,8 +54,8 @@ class Format:
 
 
 FORMATS: Mapping[str, Format] = {
-    one.name: one
-    for one in (
+    item.name: item
+    for item in (
         Format(
             "mjcf",
             ".xml",

@@ -76,16 +76,16 @@ def _columns(
     acts at a place to behind it.
     """
     every = [loads.in_cut(cut) for cut in cuts]
-    stress = np.stack([loads.in_fibres(one) for one in every], axis=1)
+    stress = np.stack([loads.in_fibres(item) for item in every], axis=1)
     places = np.array([cut.at for cut in cuts])
     behind = np.broadcast_to(np.array([[cut.behind] for cut in cuts]), places.shape)
     order = np.lexsort((behind, places), axis=0)
     table = (
         ("crank_angle", "rad", np.broadcast_to(angles, places.shape)),
         ("place", "m", places),
-        ("axial_force", "N", np.array([one.axial for one in every])),
-        ("shear_force", "N", np.array([one.shear for one in every])),
-        ("bending_moment", "N m", np.array([one.bending for one in every])),
+        ("axial_force", "N", np.array([item.axial for item in every])),
+        ("shear_force", "N", np.array([item.shear for item in every])),
+        ("bending_moment", "N m", np.array([item.bending for item in every])),
         ("stress_left", "Pa", stress[0]),
         ("stress_right", "Pa", stress[1]),
     )

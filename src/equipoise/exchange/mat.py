@@ -28,7 +28,10 @@ def made(job: Job) -> bytes:
     machine, analysis = job.machine, analyze(job.machine)
     job.leave_out_forces()
     angles = ("crank_angle", "rad", analysis.crank_angle)
-    columns = [angles, *((one.name, one.unit, one.values) for one in analysis.outputs.arrays)]
+    columns = [
+        angles,
+        *((value.name, value.unit, value.values) for value in analysis.outputs.arrays),
+    ]
     links = {
         name: {
             "points": _struct(link.points.items()),
@@ -38,7 +41,7 @@ def made(job: Job) -> bytes:
         }
         for name, link in machine.links.items()
     }
-    told = {
+    text = {
         "title": str(machine.title),
         "units": "SI: m, rad, s, kg, N, N m",
         "speed": machine.drive.speed,
@@ -46,12 +49,12 @@ def made(job: Job) -> bytes:
         "links": _struct(links.items()),
         "signals": _struct((n, {"name": n, "unit": u, "values": v}) for n, u, v in columns),
         "summary": _struct(
-            (name, {"name": name, "unit": analysis.outputs[name].unit, **asdict(one)})
-            for name, one in analysis.summary.items()
+            (name, {"name": name, "unit": analysis.outputs[name].unit, **asdict(summary_answer)})
+            for name, summary_answer in analysis.summary.items()
         ),
     }
     data = io.BytesIO()
-    savemat(data, {"equipoise": told}, long_field_names=True, oned_as="column")
+    savemat(data, {"equipoise": text}, long_field_names=True, oned_as="column")
     return data.getvalue()
 
 
@@ -61,12 +64,12 @@ def _or_nan(value: Any) -> Any:
 
 def _struct(items: Iterable[tuple[str, Any]]) -> dict[str, Any]:
     """Values by names that MATLAB takes, each once."""
-    found: dict[str, Any] = {}
+    values: dict[str, Any] = {}
     for name, value in items:
         plain = re.sub("[^A-Za-z0-9_]", "_", name)[:LONGEST]
         plain = plain if plain[:1].isalpha() else f"x{plain}"[:LONGEST]
         number = 1
-        while (one := plain if number == 1 else f"{plain}{number}") in found:
+        while (text := plain if number == 1 else f"{plain}{number}") in values:
             number += 1
-        found[one] = value
-    return found
+        values[text] = value
+    return values

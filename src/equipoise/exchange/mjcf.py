@@ -134,7 +134,7 @@ def _links(base: ET.Element, tree: Tree, job: Job, flywheel: float) -> None:
 def _moments(tensor: Array, least: float) -> Sequence[float]:
     """Moments of inertia, at least so large, and the products where there are any."""
     products = [float(tensor[place]) for place in ((0, 1), (0, 2), (1, 2))]
-    moments = [max(float(one), least) for one in np.diagonal(tensor)]
+    moments = [max(float(item), least) for item in np.diagonal(tensor)]
     return [*moments, *products] if any(products) else moments
 
 
@@ -182,7 +182,7 @@ def _support(world: ET.Element, machine: Machine, support: Support) -> ET.Elemen
             ET.SubElement(base, "joint", name=name, type=kind, axis=_row(direction), pos=at)
     moments = support.inertia or (moment_of(support),)
     x, y, z = moments if len(moments) == 3 else moments * 3
-    xy, yz, zx = (-one for one in support.products or (0.0, 0.0, 0.0))
+    xy, yz, zx = (-item for item in support.products or (0.0, 0.0, 0.0))
     z -= machine.drive.flywheel  # it turns with the crank, where it is told
     _inertial(base, support.mass, support.center_of_mass, (x, y, z, xy, zx, yz))
     for name, gauge in support.gauges.items():
@@ -196,8 +196,8 @@ def _support(world: ET.Element, machine: Machine, support: Support) -> ET.Elemen
 
 def _part(root: ET.Element, name: str) -> ET.Element:
     """The part of the file for things of a kind, made where it is not there yet."""
-    found = root.find(name)
-    return ET.SubElement(root, name) if found is None else found
+    result = root.find(name)
+    return ET.SubElement(root, name) if result is None else result
 
 
 def _held(root: ET.Element, tree: Tree) -> None:

@@ -137,8 +137,8 @@ def _pins(model: Flat) -> None:
         for other in others:
             force = f"Fx_{number}_{model.names[other]}", f"Fy_{number}_{model.names[other]}"
             model.real(*force)
-            for one, same in zip(model.place(first, pin), model.place(other, pin), strict=True):
-                model.equations.append(f"{one} = {same};")
+            for item, same in zip(model.place(first, pin), model.place(other, pin), strict=True):
+                model.equations.append(f"{item} = {same};")
             model.push(other, pin, force, "+")
             model.push(first, pin, force, "-")
 
@@ -172,10 +172,14 @@ def _sliders(model: Flat, motion: Motion) -> None:
 
 def _couplings(model: Flat, motion: Motion) -> None:
     """What teeth do, as couples on driver, driven and carrier that do no work together."""
-    for number, one in enumerate(model.machine.couplings, 1):
-        ratio = one.speed_ratio
+    for number, coupling in enumerate(model.machine.couplings, 1):
+        ratio = coupling.speed_ratio
         couple = f"G_{number}"
-        shares = ((one.driven, 1.0), (one.driver, -ratio), (one.carrier, ratio - 1.0))
+        shares = (
+            (coupling.driven, 1.0),
+            (coupling.driver, -ratio),
+            (coupling.carrier, ratio - 1.0),
+        )
         model.real(couple)
         known = [(body, share) for body, share in shares if body != FRAME and share]
         total = sum(share * float(motion.links[body].angle[0]) for body, share in known)
@@ -214,9 +218,9 @@ def _torsion_springs(model: Flat, job: Job) -> None:
         angle, torque = f"A_{number + 1}", f"T_{number + 1}"
         model.real(angle, torque)
         ends = (spring.link, spring.on)
-        first, other = (0.0 if one == FRAME else motion.links[one].angle[0] for one in ends)
-        drawn = motion.element_values("torsion_springs", number)["angle"][0]
-        turned = _in_brackets(float(drawn - first + other))
+        first, other = (0.0 if end == FRAME else motion.links[end].angle[0] for end in ends)
+        element_value = motion.element_values("torsion_springs", number)["angle"][0]
+        turned = _in_brackets(float(element_value - first + other))
         model.equations.append(
             f"{angle} = {model.angle(ends[0])} - {model.angle(ends[1])} + {turned};"
         )

@@ -102,13 +102,13 @@ class Part:
     @property
     def arcs(self) -> tuple[RoundEdge, ...]:
         """Those of a sector about its axis, the outer one first; none of other parts."""
-        arcs = (one for one in self.curves if not one.whole)
+        arcs = (curve for curve in self.curves if not curve.whole)
         return tuple(sorted(arcs, key=lambda one: -one.radius))
 
     @property
     def is_round(self) -> bool:
         """Whether diameters and radii give all of its outline, so that it needs no width."""
-        return bool(self.arcs) or any(one.whole for one in _curves(self.edges[0]))
+        return bool(self.arcs) or any(curve.whole for curve in _curves(self.edges[0]))
 
     @property
     def lines(self) -> tuple[str, ...]:
@@ -121,7 +121,7 @@ class Part:
         if self.mass is not None:
             said.append(say("mass {mass}", mass=told(self.mass, "mass")))
         said.extend(self._round_lines())
-        holes = [one.text for edges in self.edges[1:] for one in _curves(edges) if one.whole]
+        holes = [curve.text for edges in self.edges[1:] for curve in _curves(edges) if curve.whole]
         if holes:
             said.append(say("holes: {list}", list=", ".join(dict.fromkeys(holes))))
         return tuple(said)
@@ -133,12 +133,12 @@ class Part:
             yield say(
                 "{radii} about the axis, over {angle}°, its middle at {direction}° from the x axis "
                 "of the link",
-                radii=", ".join(one.text for one in self.arcs),
+                radii=", ".join(arc.text for arc in self.arcs),
                 angle=in_mm(degrees(outer.angle)),
                 direction=in_mm(180 - (180 - round(degrees(outer.direction), 2)) % 360),
             )
         elif self.is_round:
-            (circle_of, *_) = (one for one in _curves(self.edges[0]) if one.whole)
+            (circle_of, *_) = (curve for curve in _curves(self.edges[0]) if curve.whole)
             x, y = circle_of.center.real, circle_of.center.imag
             place = f"({in_mm(1e3 * x)}, {in_mm(1e3 * y)})"
             yield say("its centre at {place} mm in the axes of the link", place=place)
@@ -160,8 +160,8 @@ class Part:
 
     def _reach(self) -> Iterator[Any]:
         for edges in self.edges:
-            for (one, bulge), (other, _) in zip(edges, (*edges[1:], edges[0]), strict=True):
-                yield along(one, other, bulge, 181 if bulge else 2)
+            for (item, bulge), (other, _) in zip(edges, (*edges[1:], edges[0]), strict=True):
+                yield along(item, other, bulge, 181 if bulge else 2)
 
 
 def parts(job: Job) -> list[Part]:
@@ -171,10 +171,10 @@ def parts(job: Job) -> list[Part]:
     ------
     UsageError : there is none.
     """
-    found = [*_of_links(job), *_of_changes(job)]
-    if not found:
+    items = [*_of_links(job), *_of_changes(job)]
+    if not items:
         raise UsageError(_refusal(job))
-    return found
+    return items
 
 
 def _refusal(job: Job) -> Note:
@@ -213,11 +213,11 @@ def in_mm(length: float) -> str:
 def area_of(edges: tuple[Edge, ...]) -> float:
     """Area of a closed outline, m2: that of its corners, and the segments below its arcs."""
     total = 0.0
-    for (one, bulge), (other, _) in zip(edges, (*edges[1:], edges[0]), strict=True):
-        total += (one.conjugate() * other).imag / 2
+    for (item, bulge), (other, _) in zip(edges, (*edges[1:], edges[0]), strict=True):
+        total += (item.conjugate() * other).imag / 2
         if bulge:
             angle = 4 * atan(bulge)
-            radius = abs(other - one) / 2 / sin(angle / 2)
+            radius = abs(other - item) / 2 / sin(angle / 2)
             total += radius**2 * (angle - sin(angle)) / 2
     return abs(total)
 
@@ -229,15 +229,15 @@ def _rounded(center: complex, radius: float) -> tuple[float, ...]:
 
 def _curves(edges: tuple[Edge, ...]) -> Iterator[RoundEdge]:
     """Circles and arcs of a closed outline; the halves of an arc are one."""
-    found: dict[tuple[float, ...], list[tuple[complex, float, complex, float]]] = {}
-    for (one, bulge), (other, _) in zip(edges, (*edges[1:], edges[0]), strict=True):
+    by_name: dict[tuple[float, ...], list[tuple[complex, float, complex, float]]] = {}
+    for (item, bulge), (other, _) in zip(edges, (*edges[1:], edges[0]), strict=True):
         if bulge:
-            center = (one + other) / 2 + 1j * (other - one) / 2 / tan(2 * atan(bulge))
-            radius = abs(one - center)
-            middle = complex(along(one, other, bulge, 3)[1])
+            center = (item + other) / 2 + 1j * (other - item) / 2 / tan(2 * atan(bulge))
+            radius = abs(item - center)
+            middle = complex(along(item, other, bulge, 3)[1])
             key = _rounded(center, radius)
-            found.setdefault(key, []).append((center, radius, middle, 4 * abs(atan(bulge))))
-    for arcs in found.values():
+            by_name.setdefault(key, []).append((center, radius, middle, 4 * abs(atan(bulge))))
+    for arcs in by_name.values():
         center, radius, *_ = arcs[0]
         angle = sum(arc[3] for arc in arcs)
         whole = angle >= 2 * pi * (1 - 1e-9)
@@ -283,7 +283,11 @@ def _drawn_section(body: Body) -> str:
 def _edges(body: Body, points: Points) -> Iterator[tuple[Edge, ...]]:
     """Outline and openings of a body."""
     for corners, radius in outlines(body, points):
-        yield circle(corners[0], abs(radius)) if radius else tuple((one, 0.0) for one in corners)
+        yield (
+            circle(corners[0], abs(radius))
+            if radius
+            else tuple((corner, 0.0) for corner in corners)
+        )
     for hole in body.holes:
         yield circle(complex(place_of(hole.at, points)), hole.radius)
 

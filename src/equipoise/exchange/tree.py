@@ -87,7 +87,7 @@ class Tree:
 
     @cached_property
     def hung(self) -> Mapping[str, Hung]:
-        return {one.name: one for one in self.links}
+        return {link.name: link for link in self.links}
 
     def pose(self, body: str) -> tuple[complex, float]:
         """Origin (complex, m) and angle of a body's axes in the axes of the frame."""
@@ -117,26 +117,30 @@ class Tree:
     def angle_between(self, body: str, on: str) -> dict[str, float]:
         """Link -> factor of its hinge in the angle of a body against another."""
         factors = dict[str, float]()
-        for one, share in ((body, 1.0), (on, -1.0)):
-            for link in self.turning(one):
+        for item, share in ((body, 1.0), (on, -1.0)):
+            for link in self.turning(item):
                 factors[link] = factors.get(link, 0.0) + share
-        return {link: one for link, one in factors.items() if one}
+        return {link: factor for link, factor in factors.items() if factor}
 
     @property
     def proportions(self) -> Iterator[tuple[str, dict[str, float]]]:
         """Of each coupling of links that turn its name, and link -> factor of its hinge in a sum
         that is 0.
         """
-        for one in self.machine.couplings:
-            if not isinstance(one, Turning):
+        for coupling in self.machine.couplings:
+            if not isinstance(coupling, Turning):
                 continue
-            ratio = one.speed_ratio
+            ratio = coupling.speed_ratio
             factors = dict[str, float]()
-            shares = ((one.driven, 1.0), (one.driver, -ratio), (one.carrier, ratio - 1))
+            shares = (
+                (coupling.driven, 1.0),
+                (coupling.driver, -ratio),
+                (coupling.carrier, ratio - 1),
+            )
             for body, share in shares:
                 for link in self.turning(body):
                     factors[link] = factors.get(link, 0.0) + share
-            yield one.name, {link: share for link, share in factors.items() if share}
+            yield coupling.name, {link: share for link, share in factors.items() if share}
 
 
 def trees(job: Job) -> tuple[Tree, ...]:
@@ -227,8 +231,8 @@ def constant_loads(job: Job) -> Iterator[tuple[int, Load]]:
 
 def _tree(machine: Machine, crank_angle: float, row: Row, suffix: str) -> Tree:
     motion = move(machine, [crank_angle + row.phase], acceleration=0.0)
-    held, loose = _spanned(machine)
-    links = tuple(_hung(machine, motion, *one) for one in _outwards(held))
+    tree_joints, loose = _spanned(machine)
+    links = tuple(_hung(machine, motion, *outward) for outward in _outwards(tree_joints))
     return Tree(machine, crank_angle, links, loose, row, suffix)
 
 
@@ -241,7 +245,9 @@ def _edges(machine: Machine) -> Iterator[TreeJoint]:
     """Joints, those first that are to be in the tree."""
     pivot, joints = assemble(machine).pivot, _joints(machine)
     yield TreeJoint(FRAME, machine.drive.link, pin=pivot)
-    yield from (TreeJoint(one.on, one.link, slider=one) for one in joints.needed.sliders)
+    yield from (
+        TreeJoint(slider.on, slider.link, slider=slider) for slider in joints.needed.sliders
+    )
     for pin, (first, *others) in joints.pins.items():
         for other in others:
             if (pin, other) != (pivot, machine.drive.link):
@@ -253,10 +259,10 @@ def _spanned(machine: Machine) -> tuple[list[TreeJoint], tuple[LoopClosure, ...]
     group = {body: body for body in machine.bodies}
     held, loose = [], []
     for edge in _edges(machine):
-        one, other = group[edge.one], group[edge.other]
-        if one != other:
+        item, other = group[edge.one], group[edge.other]
+        if item != other:
             held.append(edge)
-            group = {body: one if root == other else root for body, root in group.items()}
+            group = {body: item if root == other else root for body, root in group.items()}
         elif edge.slider is None:
             loose.append(LoopClosure(edge.pin, edge.one, edge.other))
         else:
@@ -274,7 +280,7 @@ def _outwards(held: list[TreeJoint]) -> Iterator[tuple[str, str, TreeJoint]]:
     """Link, parent and joint, from the frame outwards."""
     left, known = list(held), [FRAME]
     for parent in known:
-        for edge in [one for one in left if parent in (one.one, one.other)]:
+        for edge in [item for item in left if parent in (item.one, item.other)]:
             left.remove(edge)
             link = edge.other if edge.one == parent else edge.one
             known.append(link)
@@ -306,5 +312,5 @@ def _hung(machine: Machine, motion: Motion, link: str, parent: str, edge: TreeJo
 
 
 def _spin(motion: Motion, body: str) -> float:
-    found: Any = 0.0 if body == FRAME else motion.links[body].angular_velocity[0]
-    return float(found)
+    result: Any = 0.0 if body == FRAME else motion.links[body].angular_velocity[0]
+    return float(result)

@@ -32,10 +32,10 @@ def made(job: Job) -> str:
             _joint(root, tree, link)
         _gears(root, tree, job)
         for loop in tree.loops:
-            one, other = (_end(root, tree, body, loop.pin) for body in (loop.one, loop.other))
+            item, other = (_end(root, tree, body, loop.pin) for body in (loop.one, loop.other))
             job.leave_out(
                 f"the pin {loop.pin} of {loop.one!r} and {loop.other!r}, which closes a loop; told "
-                f'--pin "{one} = {other}", equipoise import joins them'
+                f'--pin "{item} = {other}", equipoise import joins them'
             )
     missing = {
         "springs": [*machine.force_elements],
@@ -130,7 +130,7 @@ def _joint(root: ET.Element, tree: Tree, link: Hung) -> None:
 def _way(machine: Machine, link: Hung) -> float:
     """How far a slide goes over the whole cycle, m."""
     ends = {link.name, link.parent}
-    slider = next(one for one in machine.sliders if {one.link, one.on} == ends)
+    slider = next(slider for slider in machine.sliders if {slider.link, slider.on} == ends)
     return float(np.ptp(move(machine).sliders[slider.name].travel))
 
 
@@ -140,7 +140,7 @@ def _gears(root: ET.Element, tree: Tree, job: Job) -> None:
         if len(factors) != 2:
             job.leave_out(f"the gears {name}, which join more than two joints")
             continue
-        (one, by), (other, share) = factors.items()
-        joint = next(j for j in root.iter("joint") if j.get("name") == f"{one}{tree.suffix}")
+        (item, by), (other, share) = factors.items()
+        joint = next(j for j in root.iter("joint") if j.get("name") == f"{item}{tree.suffix}")
         mimic = {"joint": f"{other}{tree.suffix}", "multiplier": repr(-share / by)}
         ET.SubElement(joint, "mimic", mimic)

@@ -47,8 +47,8 @@ def made(job: Job) -> bytes:
     _sheet(book, "Links", _links(job.machine))
     _sheet(book, "Points", _points(job.machine))
     if job.changes:
-        told = [(sentence,) for change in job.changes for sentence in sentences(change)]
-        _sheet(book, "Changes", [("what to change",), *told])
+        values = [(sentence,) for change in job.changes for sentence in sentences(change)]
+        _sheet(book, "Changes", [("what to change",), *values])
     charts = book.add_worksheet("Charts")
     _signals(book, analysis, columns)
     _charts(book, charts, columns, len(analysis.crank_angle))
@@ -95,13 +95,13 @@ def _write(sheet: Any, row: int, column: int, cell: Cell, *form: Any) -> None:
 
 def _summary(analysis: Analysis) -> list[Sequence[Cell]]:
     """A row an output: its words, its unit, its figures."""
-    found = analysis.outputs
+    outputs = analysis.outputs
     rows = [
-        (name, found[name].label(), found[name].unit, *asdict(figures).values())
+        (name, outputs[name].label(), outputs[name].unit, *asdict(figures).values())
         for name, figures in analysis.summary.items()
     ]
-    figures = next((asdict(one) for one in analysis.summary.values()), {})
-    heads = (f"{one} [rad]" if one.endswith("_at") else one for one in figures)
+    figures = next((asdict(item) for item in analysis.summary.values()), {})
+    heads = (f"{figure} [rad]" if figure.endswith("_at") else figure for figure in figures)
     return [("output", "what it is", "unit", *heads), *rows]
 
 
@@ -121,9 +121,9 @@ def _points(machine: Machine) -> list[Sequence[Cell]]:
 
 def _signals(book: Any, analysis: Analysis, columns: Iterable[AnalysisOutput]) -> None:
     """Name, unit, and the values over crank angle, below each other."""
-    told = [(one.name, one.unit, one.values) for one in columns]
-    sheet = _sheet(book, "Signals", [["crank_angle", *(name for name, _, _ in told)]])
-    every = [("crank_angle", "rad", analysis.crank_angle), *told]
+    items = [(column.name, column.unit, column.values) for column in columns]
+    sheet = _sheet(book, "Signals", [["crank_angle", *(name for name, _, _ in items)]])
+    every = [("crank_angle", "rad", analysis.crank_angle), *items]
     for column, (_, unit, _) in enumerate(every):
         _write(sheet, 1, column, unit)
     for row, values in enumerate(zip(*(values for _, _, values in every), strict=True), HEADS):

@@ -301,7 +301,7 @@ class Exposure(Result):
         "share_of_limit": ResultOutput(
             "A(8) over the limit value", read=lambda day: day.a8 / LIMIT
         ),
-        "verdict": ResultOutput(" or ".join(f'`"{one}"`' for one in get_args(Verdict))),
+        "verdict": ResultOutput(" or ".join(f'`"{get_arg}"`' for get_arg in get_args(Verdict))),
         "times": ResultOutput("of this mix of tasks", of=WorkingTimes.declared, spliced=True),
         "years_to_white_finger": ResultOutput(
             "D_y, in years; null where there is no vibration", read=lambda day: _finite(day.years)

@@ -148,7 +148,9 @@ def signal(time: Any, acceleration: Any, periodic: bool = False) -> Acceleration
                 ),
             )
         )
-    found = AccelerationSignal(values, (len(times) - 1) / float(times[-1] - times[0]), periodic)
+    acceleration_signal = AccelerationSignal(
+        values, (len(times) - 1) / float(times[-1] - times[0]), periodic
+    )
     if periodic:
         span = np.ptp(values, axis=1)
         if np.any(span > 0) and np.all(np.abs(values[:, -1] - values[:, 0]) <= SAME * span):
@@ -158,27 +160,27 @@ def signal(time: Any, acceleration: Any, periodic: bool = False) -> Acceleration
                     "leave it out"
                 )
             )
-        return found
-    if found.rate < LEAST_RATE:
+        return acceleration_signal
+    if acceleration_signal.rate < LEAST_RATE:
         raise UsageError(
             Note(
                 "sampled at {rate:.4g} Hz; give at least {least_rate:.0f} Hz, as the "
                 "bands of Wh go up to 1412 Hz, or whole periods of a steady vibration "
                 "with nothing above half the rate (periodic)",
-                rate=found.rate,
+                rate=acceleration_signal.rate,
                 least_rate=LEAST_RATE,
             )
         )
-    if found.duration < LEAST_DURATION * (1 - SAME):
+    if acceleration_signal.duration < LEAST_DURATION * (1 - SAME):
         raise UsageError(
             Note(
                 "the record takes {duration:.3g} s; give at least {least_duration:g} s, "
                 "or whole periods of a steady vibration (periodic)",
-                duration=found.duration,
+                duration=acceleration_signal.duration,
                 least_duration=LEAST_DURATION,
             )
         )
-    return found
+    return acceleration_signal
 
 
 def uneven(time: Array) -> int | None:
@@ -222,8 +224,8 @@ def weigh_signal(
         An argument cannot be used; steps of time differ; less than 1 s; sampled below 2825 Hz.
     """
     record = signal(time, acceleration, periodic)
-    found = _weigh("signal", *record.mean_squares(), axes, single_axis, weighted, record.notes())
-    return replace(found, duration=record.duration, sampling_rate=record.rate)
+    weigh = _weigh("signal", *record.mean_squares(), axes, single_axis, weighted, record.notes())
+    return replace(weigh, duration=record.duration, sampling_rate=record.rate)
 
 
 def weigh_spectrum(

@@ -52,34 +52,34 @@ def not_negative(name: str, value: Any, unit: str = "m/s^2") -> float:
 
 def row(name: str, values: Any, unit: str) -> Array:
     """Finite numbers (N,)."""
-    found = _numbers(name, values)
-    if found.ndim != 1 or not found.size:
+    numbers = _numbers(name, values)
+    if numbers.ndim != 1 or not numbers.size:
         raise UsageError(
             at_place(
                 name,
                 Note(
                     "got the shape {shape}; give a row of numbers in {unit}",
-                    shape=found.shape,
+                    shape=numbers.shape,
                     unit=unit,
                 ),
             )
         )
-    return found
+    return numbers
 
 
 def rising(name: str, values: Any, unit: str) -> Array:
     """Finite numbers (N,), each larger than the one before."""
-    found = row(name, values, unit)
-    if not np.all(np.diff(found) > 0):
+    numbers = row(name, values, unit)
+    if not np.all(np.diff(numbers) > 0):
         raise UsageError(at_place(name, Note("the values must rise from one to the next")))
-    return found
+    return numbers
 
 
 def of_axes(name: str, values: Any, count: int) -> Array:
     """Finite numbers (axes, count) of one to three axes; a single row is one axis."""
-    found = _numbers(name, values)
-    found = found[np.newaxis] if found.ndim == 1 else found
-    if found.ndim != 2 or not 1 <= len(found) <= len(AXES) or found.shape[1] != count:
+    numbers = _numbers(name, values)
+    numbers = numbers[np.newaxis] if numbers.ndim == 1 else numbers
+    if numbers.ndim != 2 or not 1 <= len(numbers) <= len(AXES) or numbers.shape[1] != count:
         raise UsageError(
             at_place(
                 name,
@@ -90,40 +90,40 @@ def of_axes(name: str, values: Any, count: int) -> Array:
                 ),
             )
         )
-    return found
+    return numbers
 
 
 def amplitudes(name: str, values: Any, count: int) -> Array:
     """As `of_axes`, of 0 or more."""
-    found = of_axes(name, values, count)
-    if np.any(found < 0):
+    numbers = of_axes(name, values, count)
+    if np.any(numbers < 0):
         raise UsageError(
-            at_place(name, Note("got {min:g}; give values of 0 or more", min=np.min(found)))
+            at_place(name, Note("got {min:g}; give values of 0 or more", min=np.min(numbers)))
         )
-    return found
+    return numbers
 
 
 def sizes(name: str, values: Any) -> Array:
     """Absolute values of complex numbers of any shape."""
     try:
-        found: Array = np.abs(np.array(values, dtype=complex))
+        numbers: Array = np.abs(np.array(values, dtype=complex))
     except (TypeError, ValueError):
         raise UsageError(
             at_place(name, Note("got {kind}; give rows of numbers", kind=type(values).__name__))
         ) from None
-    return found
+    return numbers
 
 
 def _numbers(name: str, values: Any) -> Array:
     try:
-        found = np.array(values, dtype=float)
+        numbers = np.array(values, dtype=float)
     except (TypeError, ValueError):
         raise UsageError(
             at_place(name, Note("got {kind}; give rows of numbers", kind=type(values).__name__))
         ) from None
-    if not np.all(np.abs(found) <= HUGE):
+    if not np.all(np.abs(numbers) <= HUGE):
         raise UsageError(at_place(name, Note("a value is not finite; give finite numbers")))
-    return found
+    return numbers
 
 
 F1, F2 = 10**0.8, 10**3.1

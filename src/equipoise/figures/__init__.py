@@ -68,8 +68,8 @@ def plot(result: Any, name: str = "", ax: Axes | None = None) -> Figure:
     from equipoise.figures.pictures import pictures_of
     from equipoise.mechanism.checks import unknown
 
-    found = pictures_of(result)
-    if name and name not in found:
-        raise UsageError(unknown(name, found, "picture"))
-    sheet = lay_out(found[name or next(iter(found))])
+    charts = pictures_of(result)
+    if name and name not in charts:
+        raise UsageError(unknown(name, charts, "picture"))
+    sheet = lay_out(charts[name or next(iter(charts))])
     return figure_of(sheet) if ax is None else paint_in(ax, sheet)

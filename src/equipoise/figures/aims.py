@@ -64,19 +64,19 @@ class Aim:
     def pair(self) -> Pair:
         """Values (N,) over a cycle of both machines; of vectors their sizes."""
         turns = lcm(self.before.turns, self.after.turns)
-        values = (np.tile(one.start, turns // one.turns) for one in (self.before, self.after))
-        before, after = (np.abs(one) if self.output.is_vector else one for one in values)
+        values = (np.tile(item.start, turns // item.turns) for item in (self.before, self.after))
+        before, after = (np.abs(value) if self.output.is_vector else value for value in values)
         return paired(before, after, self.least)
 
     @cached_property
     def read(self) -> Read:
         """Orders, and the size of each; of a vector of both its parts together."""
-        found = {}
+        result = {}
         for when, signal in (("before", self.before), ("after", self.after)):
             parts = np.array([np.real(signal.start), np.imag(signal.start)])
             periodic = Periodic.of(parts * np.any(self.pair[when]), signal.turns)
-            found[f"bar {when}"] = periodic.orders, np.linalg.norm(periodic.sizes, axis=0)
-        return found
+            result[f"bar {when}"] = periodic.orders, np.linalg.norm(periodic.sizes, axis=0)
+        return result
 
     def panels(self, last: int, with_speed: bool) -> tuple[Panel, Panel]:
         """Over crank angle, and by order up to the last; with_speed : whether that is told."""
@@ -89,15 +89,15 @@ class Aim:
         angles = np.arange(len(self.pair["after"])) * (2 * np.pi / turn)
         ends = {"unit": unit, "low": 0.0 if self.output.is_vector else None}
         over = compare(self.machine.drive, angles, self.pair, label, dimension, **ends)
-        told = say(", ").join(self._told(one, most) for one, most in self.asked)
-        orders = order_panel(told, dimension, self.read, last, unit=unit)
+        text = say(", ").join(self._told(item, most) for item, most in self.asked)
+        orders = order_panel(text, dimension, self.read, last, unit=unit)
         return replace(over, title=title, lines=tuple(self._limits)), orders
 
     @property
     def _limits(self) -> Iterator[Line]:
         """How large the signal may be at any crank angle."""
-        for one, most in self.asked:
-            if most is not None and one.measure == "peak":
+        for item, most in self.asked:
+            if most is not None and item.measure == "peak":
                 for sign in (1.0,) if self.output.is_vector else (1.0, -1.0):
                     yield Line(sign * most, "limit", say("limit"), axis="y")
 
@@ -106,10 +106,10 @@ class Aim:
         pair = [measured(self.pair[when], one.measure) for when in ("before", "after")]
         axis = Axis("", shown_in(unit_of(one, self.machine), pair))
         what, both = say(MEASURES[one.measure]), f"{axis.told(pair[0])} → {axis.quantity(pair[1])}"
-        told = say("{what}: {value}", what=what, value=_whole(both))
+        text = say("{what}: {value}", what=what, value=_whole(both))
         if most is None:
-            return told
-        return say("{what}, at most {limit}", what=told, limit=_whole(axis.quantity(most)))
+            return text
+        return say("{what}, at most {limit}", what=text, limit=_whole(axis.quantity(most)))
 
 
 def _whole(text: str) -> str:
@@ -120,13 +120,15 @@ def _whole(text: str) -> str:
 def aims_of(found: Balanced) -> Iterator[Aim]:
     """Each signal that a plan asks for, by itself at each speed."""
     asked: dict[Objective, list[tuple[Objective, float | None]]] = {}
-    wanted: list[tuple[Objective, float | None]] = [(one, None) for one in found.plan.objectives]
+    wanted: list[tuple[Objective, float | None]] = [
+        (objective, None) for objective in found.plan.objectives
+    ]
     for limit in found.plan.limits:
         price = found.prices[limit.name]
         wanted.append((limit.objective, price.at_most))
-    for one, most in wanted:
-        for speed in one.speeds or (found.original.drive.speed,):
-            own = replace(one, speeds=(speed,), weight=1.0)
+    for item, most in wanted:
+        for speed in item.speeds or (found.original.drive.speed,):
+            own = replace(item, speeds=(speed,), weight=1.0)
             asked.setdefault(replace(own, measure="rms"), []).append((own, most))
     force, moment = rounding(analyze(found.original, SAMPLES))
     least = {"force": force, "torque": moment}
@@ -149,9 +151,9 @@ def aims(found: Balanced) -> Iterator[Chart]:
     heading = f"{say('What was made small or limited')}, {when}"
     for suffix, some in groups(every, MOST_AIMS):
         last = max(last_order(aim.read) for aim in some)
-        told = f"{heading}{continued(some, every)}"
+        text = f"{heading}{continued(some, every)}"
         if any(aim.output.is_vector for aim in some):
-            told += "; " + say("orders of forces: both components together")
+            text += "; " + say("orders of forces: both components together")
         panels = [panel for aim in some for panel in aim.panels(last, len(speeds) > 1)]
         drawn = keys(*(aim.pair for aim in some))
-        yield Chart(f"aims{suffix}", found.original.title, told, tuple(panels), 2, keys=drawn)
+        yield Chart(f"aims{suffix}", found.original.title, text, tuple(panels), 2, keys=drawn)

@@ -48,10 +48,10 @@ def title(analysis: Analysis, what: str, remark: str = "", of_one: bool = False)
     """
     values = {"what": what, "speed": told_speed(analysis.motion.speed)}
     if of_one and len(analysis.machine.rows) > 1:
-        told = say("{what} of one row, at {speed}", **values)
+        text = say("{what} of one row, at {speed}", **values)
     else:
-        told = say("{what}, at {speed}", **values)
-    return f"{told}; {remark}" if remark else told
+        text = say("{what}, at {speed}", **values)
+    return f"{text}; {remark}" if remark else text
 
 
 def about(analysis: Analysis) -> str:
@@ -165,19 +165,21 @@ class JointCurve:
 
 def joints_of(analysis: Analysis) -> dict[str, JointCurve]:
     """Every joint, coupling and bearing; of a slider its couple too; rounding as zeros."""
-    found, forces = {}, analysis.forces
+    joint_curves, forces = {}, analysis.forces
     every = forces.solved.contacts
     largest = max((float(np.max(joint.size)) for joint in every.values()), default=0.0)
     force, moment = LEAST_FORCE * largest, LEAST_FORCE * largest * size_of(analysis)
     for name, joint in every.items():
-        found[name] = JointCurve(named(forces, name, joint), settled(joint.value, force))
+        joint_curves[name] = JointCurve(named(forces, name, joint), settled(joint.value, force))
         if isinstance(joint, SliderForce):
-            told = say("{name}: couple on {on}", name=short(name), on=short(joint.on))
-            found[f"{name}.moment"] = JointCurve(told, settled(joint.moment, moment))
+            text = say("{name}: couple on {on}", name=short(name), on=short(joint.on))
+            joint_curves[f"{name}.moment"] = JointCurve(text, settled(joint.moment, moment))
     for name in analysis.machine.bearings:
         value = forces.across.bearings[name].value
-        found[f"bearings.{name}"] = JointCurve(say("bearing {name}", name=short(name)), value)
-    return found
+        joint_curves[f"bearings.{name}"] = JointCurve(
+            say("bearing {name}", name=short(name)), value
+        )
+    return joint_curves
 
 
 def named(forces: Forces, name: str, joint: JointForce) -> str:
@@ -194,17 +196,17 @@ def named(forces: Forces, name: str, joint: JointForce) -> str:
 def joints(analysis: Analysis) -> Iterator[Chart]:
     """Size of the force in every joint over crank angle, ten in a picture."""
     analysis = analysis.resolved
-    found = joints_of(analysis)
-    every = list(found)
+    result = joints_of(analysis)
+    every = list(result)
     for suffix, names in groups(every):
         what = title(analysis, say("Force in each joint") + continued(names, every), "", True)
-        panels = tuple(_over_angle(analysis, found[name], found.values()) for name in names)
+        panels = tuple(_over_angle(analysis, result[name], result.values()) for name in names)
         yield Chart(f"joints{suffix}", analysis.machine.title, what, panels, columns=2)
 
 
 def _over_angle(analysis: Analysis, joint: JointCurve, every: Iterable[JointCurve]) -> Panel:
     """One of several joints, whose forces have one unit."""
-    beside = np.concatenate([one.values for one in every if one.couple == joint.couple])
+    beside = np.concatenate([item.values for item in every if item.couple == joint.couple])
     if joint.couple:
         values, most = joint.values, 2
         y = Axis.of(say("couple"), "torque", beside, room=ROOM)
@@ -226,17 +228,17 @@ def _over_angle(analysis: Analysis, joint: JointCurve, every: Iterable[JointCurv
 
 def joint_polars(analysis: Analysis) -> Iterator[Chart]:
     """The end of the arrow of every joint force, in the frame's axes, nine in a picture."""
-    found = {name: joint for name, joint in joints_of(analysis).items() if not joint.couple}
-    every, unit = list(found), display_of_joints(analysis).unit
+    by_name = {name: joint for name, joint in joints_of(analysis).items() if not joint.couple}
+    every, unit = list(by_name), display_of_joints(analysis).unit
     for suffix, names in groups(every, MOST_SQUARES):
-        axis = Axis.of("", "force", np.concatenate([found[name].values for name in names]), unit)
+        axis = Axis.of("", "force", np.concatenate([by_name[name].values for name in names]), unit)
         what = say("Force in each joint along x and y") + continued(names, every)
         remark = say("in {unit}; numbers: crank angle, deg", unit=axis.unit_name)
-        told = title(analysis, what, remark, of_one=True)
-        panels = tuple(_square(analysis, found[name], axis) for name in names)
+        text = title(analysis, what, remark, of_one=True)
+        panels = tuple(_square(analysis, by_name[name], axis) for name in names)
         columns = 2 if len(names) == 4 else min(len(names), IN_LINE)
         own = f"joint-polars{suffix}"
-        yield Chart(own, analysis.machine.title, told, panels, columns, stacked=False)
+        yield Chart(own, analysis.machine.title, text, panels, columns, stacked=False)
 
 
 def _square(analysis: Analysis, joint: JointCurve, axis: Axis) -> Panel:

@@ -194,27 +194,30 @@ def animated_svg(
     """
     check_seconds(seconds)
     check_width(width)
-    drawn = laid_out(scene, traced, frames, width, arrow)
-    if drawn.stage.turns * frames > MOST_STEPS:
-        frames = max(1, int(MOST_STEPS / drawn.stage.turns))
-        drawn = laid_out(scene, traced, frames, width, arrow)
-    every = list({id(part.moves): part.moves for part in drawn.parts if part.moves}.values())
+    moving = laid_out(scene, traced, frames, width, arrow)
+    if moving.stage.turns * frames > MOST_STEPS:
+        frames = max(1, int(MOST_STEPS / moving.stage.turns))
+        moving = laid_out(scene, traced, frames, width, arrow)
+    every = list({id(part.moves): part.moves for part in moving.parts if part.moves}.values())
     numbers = {id(moves): number for number, moves in enumerate(every, 1)}
     behind, before = (
-        "\n".join(_group(part, numbers) for part in parts) for parts in (drawn.behind, drawn.before)
+        "\n".join(_group(part, numbers) for part in parts)
+        for parts in (moving.behind, moving.before)
     )
-    shapes = "\n".join([behind, *map(_text, drawn.labels), before])
-    moves = [list(_steps(one, drawn.stage.times)) for one in every]
+    shapes = "\n".join([behind, *map(_text, moving.labels), before])
+    moves = [list(_steps(item, moving.stage.times)) for item in every]
     mark = f"e{sha256(repr((shapes, moves, seconds)).encode()).hexdigest()[:8]}"
-    lasting = seconds * drawn.stage.turns
+    lasting = seconds * moving.stage.turns
     names = ", ".join(body.name for body in scene.bodies)
     turning = any(np.ptp(angle) for angle in scene.angles.values())
     words = [say("The linkage turns through its whole cycle.")] * turning
     words += [say("Links: {names}.", names=names)]
     words += [say("Path of {names}.", names=", ".join(traced))] if traced else []
-    words += [told for told, _ in drawn.stage.told]
-    style = "\n".join([*_colors(mark, drawn), *_motions(mark, moves, lasting, drawn.stage.closed)])
-    stage = drawn.stage
+    words += [text for text, _ in moving.stage.told]
+    style = "\n".join(
+        [*_colors(mark, moving), *_motions(mark, moves, lasting, moving.stage.closed)]
+    )
+    stage = moving.stage
     return f"""\
 <svg xmlns="http://www.w3.org/2000/svg" class="linkage {mark}" role="img" \
 viewBox="0 0 {stage.width} {stage.height}" width="{stage.width}" height="{stage.height}">
@@ -245,9 +248,9 @@ def _strokes(strokes: tuple[PixelPath, ...]) -> Iterator[str]:
         if not round_:
             yield f'<path class="{role}" d="{"".join(map(_path, run))}"/>'
             continue
-        for one in run:
-            x, y = pixels(one.points[0].real), pixels(one.points[0].imag)
-            yield f'<circle class="{role}" cx="{x}" cy="{y}" r="{pixels(one.radius)}"/>'
+        for item in run:
+            x, y = pixels(item.points[0].real), pixels(item.points[0].imag)
+            yield f'<circle class="{role}" cx="{x}" cy="{y}" r="{pixels(item.radius)}"/>'
 
 
 def _path(stroke: PixelPath) -> str:

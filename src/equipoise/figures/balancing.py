@@ -101,14 +101,18 @@ def signals(found: Balanced) -> dict[str, Chart]:
         what = f"{say('Shaking force')}, {when}"
         drawn["force"] = Chart("force", title, what, panels, keys=keys(*moved.values()))
         drawn["polar"] = polar(found, angles, force)
-    aimed = {one.output for one in found.plan.objectives} if len(found.original.rows) < 2 else ()
+    aimed = (
+        {objective.output for objective in found.plan.objectives}
+        if len(found.original.rows) < 2
+        else ()
+    )
     shown = SIGNALS | dict([PUSHED] if drive.pushes else [])
-    for name, (output, told, label) in shown.items():
+    for name, (output, text, label) in shown.items():
         kind = drive.effort_in if output == drive.effort else "torque"
         pair = pair_of(output, least_force if kind == "force" else least_moment)
         if changed(pair) and output not in aimed:
             panel = compare(drive, angles, pair, say(label), kind)
-            drawn[name] = Chart(name, title, f"{say(told)}, {when}", (panel,), keys=keys(pair))
+            drawn[name] = Chart(name, title, f"{say(text)}, {when}", (panel,), keys=keys(pair))
     return drawn
 
 
@@ -122,11 +126,11 @@ def _told(found: Balanced) -> str:
 def polar(found: Balanced, angles: Array, force: Mapping[str, Pair]) -> Chart:
     """The end of the shaking force's arrow over a cycle, on axes of one scale."""
     ends = {when: force["x"][when] + 1j * force["y"][when] for when in ("before", "after")}
-    drawn, size = roles_of(ends), extent(*ends.values(), np.zeros(1))
+    columns, size = roles_of(ends), extent(*ends.values(), np.zeros(1))
     at = told_angles(angles)
     marks: list[Mark] = []
-    curves = [Curve.of(np.append(one, one[0]), "", role) for role, one in drawn.items()]
-    for role, values in reversed(drawn.items()):
+    curves = [Curve.of(np.append(item, item[0]), "", role) for role, item in columns.items()]
+    for role, values in reversed(columns.items()):
         if np.any(values):
             marks += numbers(at, values, role, size)
         apart = np.abs(ends["before"] - ends["after"])
@@ -158,14 +162,14 @@ def _dial(hands: Mapping[str, Machine], machine: Machine, k: int) -> Panel:
     turn = np.exp(1j * np.radians(np.arange(0, 361, 4)))
     ticks = [np.array([0.9 * way, way]) for way in (1, 1j, -1, -1j)]
     curves = [Curve.of(line, "", "dial") for line in (turn, *ticks)]
-    told = [Axis.of("", "length", [0.3]).quantity(machine.rows[k].lateral)]
+    quantities = [Axis.of("", "length", [0.3]).quantity(machine.rows[k].lateral)]
     arrows = []
-    for role, one in hands.items():
-        phase = one.rows[k].phase
+    for role, hand in hands.items():
+        phase = hand.rows[k].phase
         arrows.append(Arrow(0j, complex(np.exp(1j * phase)), role))
-        told.append(f"{say(WHEN[role])} {shown(round(float(np.degrees(phase)), 2) % 360)}°")
+        quantities.append(f"{say(WHEN[role])} {shown(round(float(np.degrees(phase)), 2) % 360)}°")
     return Panel(
-        Axis("\n".join(told), low=-1.1, high=1.1),
+        Axis("\n".join(quantities), low=-1.1, high=1.1),
         Axis(low=-1.1, high=1.1),
         tuple(curves),
         (Mark(0.0, 0.0, "", "pivot"),),
@@ -179,10 +183,10 @@ def _dial(hands: Mapping[str, Machine], machine: Machine, k: int) -> Panel:
 
 def together(original: Machine | None, machine: Machine) -> Chart:
     """Components of the shaking force of all rows together over crank angle."""
-    told = {"count": len(machine.rows), "speed": told_speed(machine.drive.speed)}
-    what = say("Shaking force of {count} rows together, at {speed}", **told)
+    text = {"count": len(machine.rows), "speed": told_speed(machine.drive.speed)}
+    what = say("Shaking force of {count} rows together, at {speed}", **text)
     if original is not None:
-        what = say("Shaking force of {count} rows together, before and after, at {speed}", **told)
+        what = say("Shaking force of {count} rows together, before and after, at {speed}", **text)
     least, _ = rounding(analyze(machine, SAMPLES))
     pairs: list[Pair] = []
     panels = []
@@ -201,8 +205,8 @@ def summed(machine: Machine, axis: str) -> tuple[Array, Array]:
     read = PhasedRows(machine).signals(Objective(f"shaking_force.{axis}"))
     total = read.total(np.array([row.phase for row in machine.rows]))[0, 0]
     count = SAMPLES_OF_ROWS * read.turns
-    found = Periodic(total, read.turns)
-    return np.arange(count) * (found.period / count), found.samples(count)
+    periodic = Periodic(total, read.turns)
+    return np.arange(count) * (periodic.period / count), periodic.samples(count)
 
 
 # -- trade-offs ------------------------------------------------------------------------------------
@@ -217,7 +221,7 @@ def front(found: Front) -> Chart:
     values = found.values
     both = (found.first, found.second)
     before = np.array([Problem.value_of(found.original, which) for which in both])
-    names = [objective_named(one, len(found.original.rows)) for one in both]
+    names = [objective_named(item, len(found.original.rows)) for item in both]
     low, high = np.min(values, axis=0), np.max(values, axis=0)
     room = SENSIBLE * (high - low)
     seen = bool(np.all((before <= high + room) & (before >= low - room)))
@@ -228,10 +232,10 @@ def front(found: Front) -> Chart:
             names, (60, 46), found.columns()[:2], held.T, strict=True
         )
     )
-    told = f"{x.quantity(before[0])}, {y.quantity(before[1])}"
-    marks, remark = [], say("as it is, far off: {places}", places=told)
+    label = f"{x.quantity(before[0])}, {y.quantity(before[1])}"
+    marks, remark = [], say("as it is, far off: {places}", places=label)
     if seen:
-        text, remark = say("as it is: {places}", places=told), ""
+        text, remark = say("as it is: {places}", places=label), ""
         marks.append(Mark.of(complex(*before), text, "own", 90.0))
     for k, wish in ((0, 20.0), (len(values) - 1, 110.0)):
         text = f"{x.quantity(values[k, 0])}, {y.quantity(values[k, 1])}"

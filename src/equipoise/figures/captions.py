@@ -38,13 +38,13 @@ class Label:
 
 def captions(stage: Stage, traced: tuple[str, ...]) -> tuple[Label, ...]:
     """Names of what stands still and of paths, each where it has room; then the strip below."""
-    found: list[Label] = []
+    labels: list[Label] = []
     places = (*_of_pivots(stage), *_of_gauges(stage), *_of_paths(stage, traced))
     for choices in (*_strip(stage), *places):
-        free = [one for one in choices if _fits(one, found, stage)]
+        free = [choice for choice in choices if _fits(choice, labels, stage)]
         if free:
-            found.append(min(free, key=lambda one: _covered(one, stage)))
-    return tuple(found)
+            labels.append(min(free, key=lambda one: _covered(one, stage)))
+    return tuple(labels)
 
 
 def _covered(label: Label, stage: Stage) -> int:

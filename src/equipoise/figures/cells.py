@@ -73,8 +73,8 @@ def cell_of(panel: Panel, height: float) -> Cell:
     places += [outline.places for outline in panel.outlines]
     places += [np.array(panel.held)] if panel.held is not None else []
     places += [np.zeros(1)] if panel.rings or (panel.equal and panel.zero) else []
-    x += [one.real for one in places]
-    y += [one.imag for one in places]
+    x += [place.real for place in places]
+    y += [place.imag for place in places]
     if panel.surface is not None:
         x.append(panel.surface.x)
         y.append(panel.surface.y)
@@ -99,8 +99,8 @@ def share(cells: list[Cell], columns: int) -> None:
     groups: dict[tuple[str, str, bool], list[Cell]] = {}
     for cell in cells:
         panel = cell.panel
-        told = cell.span or panel.message  # what is constant may be far from the others
-        if told and panel.y.unit.unit and (panel.y.scale == "log" or panel.y.high is None):
+        span = cell.span or panel.message  # what is constant may be far from the others
+        if span and panel.y.unit.unit and (panel.y.scale == "log" or panel.y.high is None):
             key = panel.x.text, panel.y.unit.unit, panel.equal
             groups.setdefault(key, []).append(cell)
     for group in groups.values():
@@ -129,8 +129,8 @@ def _enlarged(cell: Cell, most: float) -> float:
     times = most / cell.span
     power = 10.0 ** floor(log10(times))
     larger = power * max(digit for digit in (1, 2, 5) if digit * power <= times)
-    told = say("drawn {times} times as large", times=f"{larger:g}")
-    remark = f"{cell.panel.remark}; {told}" if cell.panel.remark else told
+    text = say("drawn {times} times as large", times=f"{larger:g}")
+    remark = f"{cell.panel.remark}; {text}" if cell.panel.remark else text
     cell.panel = replace(cell.panel, remark=remark)
     return larger
 
@@ -184,9 +184,11 @@ def make_room(cell: Cell, over: float) -> None:
         return
     low, high = cell.y_ends
     rate = (high - low) / cell.height
-    told = [bars for bars in panel.bars if bars.told and bars.across == "x"]
-    top = factor * max((float(np.max(bars.size, initial=0.0)) for bars in told), default=0.0)
-    above = max(NUMBERS - (high - top) / rate, 0.0) if told else 0.0
+    matching_bars = [bars for bars in panel.bars if bars.told and bars.across == "x"]
+    top = factor * max(
+        (float(np.max(bars.size, initial=0.0)) for bars in matching_bars), default=0.0
+    )
+    above = max(NUMBERS - (high - top) / rate, 0.0) if matching_bars else 0.0
     longest = max((width_of(word, NORMAL) for word in panel.y.text.split()), default=0.0)
     more = max(longest - over - cell.height - above, 0.0)
     below = 0.0 if panel.bars else more / 2

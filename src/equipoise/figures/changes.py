@@ -112,15 +112,15 @@ def changes(found: Balanced) -> Chart:
     machine, original = found.machine, found.original
     clearest = machine if len(machine.springs) > len(original.springs) else original
     posed = Posed(machine, clear_angle(Scene.of(move(clearest, ANGLES))))
-    new = [one.in_meters() for one in additions(posed, found.changes, found.plan)]
+    new = [addition.in_meters() for addition in additions(posed, found.changes, found.plan)]
     scene = _without_new(Scene.of(posed.motion), Scene.of(move(original, [0.0])), found.changes)
-    changed = any(one.kind != "room" for one in new)
+    changed = any(item.kind != "room" for item in new)
     what = say("What to change, to scale") if changed else say("Nothing to change, to scale")
-    told = told_angle(posed.angle(machine.drive.link))
+    text = told_angle(posed.angle(machine.drive.link))
     drive = short(machine.drive.link)
-    what += "; " + say("angle of {link} in the frame: {angle}", link=drive, angle=told)
+    what += "; " + say("angle of {link} in the frame: {angle}", link=drive, angle=text)
     panel = _panel(scene, posed.number, new)
-    keys = [("added", say(NAMES["spring"]))] if any(one.kind == "spring" for one in new) else []
+    keys = [("added", say(NAMES["spring"]))] if any(item.kind == "spring" for item in new) else []
     keys += [("wheel", called(scene.wheels))] if scene.wheels else []
     return Chart("changes", original.title, what, (panel,), keys=tuple(keys))
 
@@ -131,7 +131,9 @@ def _without_new(scene: Scene, old: Scene, changes: tuple[Change, ...]) -> Scene
     New springs count as planned, so that they are held as others are.
     """
     springs, wheels = scene.springs[: len(old.springs)], scene.wheels[: len(old.wheels)]
-    new = tuple((one.values["point"], one.values["to"]) for one in changes if _is_spring(one))
+    new = tuple(
+        (change.values["point"], change.values["to"]) for change in changes if _is_spring(change)
+    )
     return replace(scene, springs=springs, wheels=wheels, planned=new, mass_centers={})
 
 
@@ -226,7 +228,7 @@ def _moved(posed: Posed, change: Change) -> Addition:
 
 def _spring(posed: Posed, change: Change) -> Addition:
     values = change.values
-    one = posed.at(change.link, posed.machine.links[change.link].points[values["point"]])
+    item = posed.at(change.link, posed.machine.links[change.link].points[values["point"]])
     other = MM * complex(*posed.machine.frame[values["to"]])
     free = round(MM * values["free_length"], FINEST) / MM
     text = say(
@@ -235,7 +237,7 @@ def _spring(posed: Posed, change: Change) -> Addition:
         length=quantity(free, "length"),
     )
     return Addition(
-        "spring", np.array([one, other]), (one + other) / 2, text, 1j * _way(other - one)
+        "spring", np.array([item, other]), (item + other) / 2, text, 1j * _way(other - item)
     )
 
 
@@ -246,7 +248,9 @@ def _gears(posed: Posed, change: Change) -> Iterator[Addition]:
     points = posed.machine.links[values["driver"]].points
     at = MM * complex(*frame[next(name for name in points if name in frame)])
     aside = 1j * _way(axis - at)
-    for middle, radius in zip((at, axis), (MM * one for one in values["pitch_radii"]), strict=True):
+    for middle, radius in zip(
+        (at, axis), (MM * value for value in values["pitch_radii"]), strict=True
+    ):
         text = say("gear, {radius}", radius=quantity(radius / MM, "length"))
         yield Addition("gear", circle(middle, radius), middle + radius * aside, text, aside)
 
@@ -254,10 +258,15 @@ def _gears(posed: Posed, change: Change) -> Iterator[Addition]:
 def _rooms(posed: Posed, plan: Balance) -> Iterator[Addition]:
     """The rooms that masses and centres of mass have."""
     links = posed.machine.links
-    held = [(one.link, links[one.link].points[one.at], one.weight.radius) for one in plan.masses]
-    held += [(one.name, (0.0, 0.0), one.weight.radius) for one in plan.geared]
-    for one in plan.shafts:
-        held += [(f"{one.name}-{k}", (0.0, 0.0), one.weight.radius) for k in (1, 2)]
+    held = [
+        (mass.link, links[mass.link].points[mass.at], mass.weight.radius) for mass in plan.masses
+    ]
+    held += [
+        (geared_weight.name, (0.0, 0.0), geared_weight.weight.radius)
+        for geared_weight in plan.geared
+    ]
+    for shaft in plan.shafts:
+        held += [(f"{shaft.name}-{k}", (0.0, 0.0), shaft.weight.radius) for k in (1, 2)]
     for moved in plan.moves:
         if moved.center is not None and moved.radius is not None:
             held.append((moved.link, moved.center, moved.radius))
@@ -280,35 +289,38 @@ def grams(mass: float) -> str:
 
 def _panel(scene: Scene, k: int, new: list[Addition]) -> Panel:
     shapes = drawn(scene, k)
-    machine = np.concatenate([scene.corners_at(k), *(one.places for one in shapes["signs"])])
+    machine = np.concatenate([scene.corners_at(k), *(shape.places for shape in shapes["signs"])])
     size = _size(machine)
-    held = [one.outline for one in new if one.kind != "room" or _size(one.outline) <= FAR * size]
-    every = np.concatenate([machine, *held])
+    outlines = [
+        item.outline for item in new if item.kind != "room" or _size(item.outline) <= FAR * size
+    ]
+    every = np.concatenate([machine, *outlines])
     x, y = (
         replace(axis, low=float(np.min(part)), high=float(np.max(part)))
         for axis, part in zip(plane_axes(scene), (every.real, every.imag), strict=True)
     )
-    moves = [one.outline for one in new if one.kind == "move"]
+    moves = [item.outline for item in new if item.kind == "move"]
     return Panel(
         x,
         y,
         tuple(
-            Curve.of(one.outline, say(NAMES[one.kind]), CURVES.get(one.kind, one.kind))
-            for one in new
-            if one.kind in ("room", "gear") or (one.kind == "cut" and len(one.outline) > 1)
+            Curve.of(item.outline, say(NAMES[item.kind]), CURVES.get(item.kind, item.kind))
+            for item in new
+            if item.kind in ("room", "gear") or (item.kind == "cut" and len(item.outline) > 1)
         ),
         (*_dots(new), *_texts(new, NEAR * size), *joint_names(scene, k, optional=True)),
         arrows=tuple(Arrow(complex(old), complex(at), "move") for old, at in moves if old != at),
         outlines=tuple(
-            Outline(one.outline, "added mass", say(NAMES["mass"]), one.holes)
-            for one in new
-            if one.kind == "mass" and len(one.outline) > 1
+            Outline(item.outline, "added mass", say(NAMES["mass"]), item.holes)
+            for item in new
+            if item.kind == "mass" and len(item.outline) > 1
         ),
         equal=True,
         zero=False,
         ground=shapes["ground"],
         signs=tuple(
-            replace(one, role="added") if one.role == "planned" else one for one in shapes["signs"]
+            replace(shape, role="added") if shape.role == "planned" else shape
+            for shape in shapes["signs"]
         ),
     )
 
@@ -319,23 +331,25 @@ def _size(places: Array) -> float:
 
 def _dots(new: list[Addition]) -> Iterator[Mark]:
     """Added masses that are points; old and new centres of mass."""
-    for one in new:
-        if one.kind == "mass" and len(one.outline) == 1:
-            yield Mark.of(one.outline[0], "", "point mass", label=say(NAMES["mass"]))
-        elif one.kind == "cut" and len(one.outline) == 1:
-            yield Mark.of(one.outline[0], "", "old center", label=say(NAMES["cut"]))
-        elif one.kind == "move":
-            yield Mark.of(one.outline[0], "", "old center")
-            yield Mark.of(one.outline[1], "", "move", label=say(NAMES["move"]))
+    for item in new:
+        if item.kind == "mass" and len(item.outline) == 1:
+            yield Mark.of(item.outline[0], "", "point mass", label=say(NAMES["mass"]))
+        elif item.kind == "cut" and len(item.outline) == 1:
+            yield Mark.of(item.outline[0], "", "old center", label=say(NAMES["cut"]))
+        elif item.kind == "move":
+            yield Mark.of(item.outline[0], "", "old center")
+            yield Mark.of(item.outline[1], "", "move", label=say(NAMES["move"]))
 
 
 def _texts(new: list[Addition], near: float) -> Iterator[Mark]:
     """What each is; several that are alike and at one place share it."""
-    left = [one for one in new if one.text]
+    left = [item for item in new if item.text]
     while left:
         first = left[0]
-        alike = [one for one in left if one.text == first.text and abs(one.at - first.at) < near]
-        left = [one for one in left if one not in alike]
+        alike = [
+            item for item in left if item.text == first.text and abs(item.at - first.at) < near
+        ]
+        left = [item for item in left if item not in alike]
         text = first.text if len(alike) == 1 else f"{len(alike)} × {first.text}"
         wish = float(np.degrees(np.angle(first.away)))
         role = {"mass": "added mass", "spring": "move", "cut": "move"}.get(first.kind, first.kind)

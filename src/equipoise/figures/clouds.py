@@ -91,34 +91,34 @@ class CloudDesigns:
 
     def limits(self, name: str) -> list[float]:
         """Of an output, SI units, as far as designs reach them."""
-        ends = ((one.at_least, one.at_most) for one in self.outputs if one.name == name)
+        ends = ((output.at_least, output.at_most) for output in self.outputs if output.name == name)
         spread = self.cloud.spreads[name]
         given = (end for pair in ends for end in pair if end is not None)
         return [end for end in given if spread.low <= end <= spread.high]
 
     def axis(self, name: str, way: bool = True) -> Axis:
         """Of a number or figure; way : whether it is told which way is good."""
-        told = unit_in(self.units, name)
-        label = told.called
+        unit = unit_in(self.units, name)
+        label = unit.called
         if way and self.aimed and name in self.by:
             good = say("large is good") if self.by[name] == "largest" else say("small is good")
             label = f"{label} ({good})"
         scale = "log" if self.cloud.spreads[name].log else "linear"
-        return Axis(label, unit_of(told), scale, room=MARGIN)  # type: ignore[arg-type]
+        return Axis(label, unit_of(unit), scale, room=MARGIN)  # type: ignore[arg-type]
 
 
 def counted(designs: CloudDesigns) -> str:
     """How many designs there are, and of which kinds."""
     cloud = designs.cloud
     counts = {"count": cloud.kept + cloud.beyond + cloud.failed}
-    told = [say("{count} designs", **counts)]
+    texts = [say("{count} designs", **counts)]
     if any(output.limited for output in designs.outputs):
-        told.append(say("{count} keep every limit", count=cloud.kept))
+        texts.append(say("{count} keep every limit", count=cloud.kept))
     if cloud.failed:
-        told.append(say("{count} cannot be computed", count=cloud.failed))
+        texts.append(say("{count} cannot be computed", count=cloud.failed))
     if not cloud.each:
-        told.append(say("the darker, the more"))
-    return say(", ").join(told)
+        texts.append(say("the darker, the more"))
+    return say(", ").join(texts)
 
 
 def in_words(designs: CloudDesigns, names: Iterable[str]) -> list[str]:

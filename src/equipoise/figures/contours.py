@@ -49,22 +49,22 @@ def draw_surface(view: View, surface: Surface) -> None:
     for number, (low, high) in enumerate(zip(ends, [*ends[1:], np.inf], strict=True)):
         share = number / max(len(ends) - 2, 1)
         color = mixed(DARK, 1.0 - min(share, 1.0))
-        found: Any = drawn.filled(low, high)  # points, and where the lines in them begin and end
-        for points, parts in zip(*found, strict=True):
+        columns: Any = drawn.filled(low, high)  # points, and where the lines in them begin and end
+        for points, parts in zip(*columns, strict=True):
             lines = tuple(thinned(points[a:b]) for a, b in pairwise(parts.tolist()))
             view.sheet.add(
                 CanvasStroke(lines, color, 0.3, fill=color, closed=True, clip=view.box), 1.0
             )
-    told = []
+    text = []
     for level in levels:
         every: Any = drawn.lines(level)
         lines = tuple(line for line in map(thinned, every) if len(line) > 1)
         if lines:
             view.sheet.add(CanvasStroke(lines, INK, 0.8, clip=view.box), 2.0)
-            told.append((level, max(lines, key=_length)))
+            text.append((level, max(lines, key=_length)))
         for line in lines:
             view.labels.avoid(line)
-    for level, line in told:
+    for level, line in text:
         _tell(view, surface.axis.told(level / surface.axis.unit.factor), line)
 
 
@@ -89,7 +89,7 @@ def _finer(places: Array, rows: Array) -> tuple[Array, Array]:
         return places, rows
     shares = np.arange(steps * (len(places) - 1) + 1) / steps
     between = np.interp(shares, np.arange(len(places)), places)
-    found = np.full((len(rows), len(between)), np.nan)
+    values = np.full((len(rows), len(between)), np.nan)
     there = np.isfinite(rows)
     for mask in np.unique(there, axis=0):  # rows that lack the same are drawn together
         own = np.all(there == mask, axis=1)
@@ -100,8 +100,8 @@ def _finer(places: Array, rows: Array) -> tuple[Array, Array]:
             if last - first > 1:
                 curve = Akima1DInterpolator(places[first:last], known, axis=1, method="makima")
                 known = curve(between[part])
-            found[own, part] = known
-    return between, found
+            values[own, part] = known
+    return between, values
 
 
 def levels_of(values: Array) -> list[float]:
@@ -112,8 +112,8 @@ def levels_of(values: Array) -> list[float]:
         return []
     power = 10.0 ** np.floor(np.log10((high - low) / LEVELS))
     step = next(k * power for k in (1, 2, 2.5, 5, 10, 20) if (high - low) / (k * power) <= LEVELS)
-    found = step * np.arange(np.floor(low / step) + 1, np.ceil(high / step) + 1)
-    return [float(level) for level in found if low < level < np.nanmax(values)]
+    value = step * np.arange(np.floor(low / step) + 1, np.ceil(high / step) + 1)
+    return [float(level) for level in value if low < level < np.nanmax(values)]
 
 
 def _length(line: Array) -> float:

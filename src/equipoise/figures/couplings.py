@@ -43,7 +43,7 @@ def _rate(analysis: Analysis, gear: Gear, link: str) -> np.ndarray:
     """How a link turns on the gear's carrier, by crank angle (N,)."""
     links = analysis.motion.links
     link_rate, carrier = (
-        0.0 if one == FRAME else links[one].angle_1 for one in (link, gear.carrier)
+        0.0 if item == FRAME else links[item].angle_1 for item in (link, gear.carrier)
     )
     return np.asarray(link_rate - carrier + 0.0 * analysis.crank_angle)
 

@@ -229,8 +229,8 @@ def draw_machine(sheet: Sheet, labels: Labels, panel: Panel, places: Any, box: B
     """The signs in a panel; places : of x and y in SI units on the sheet, (n, 2)."""
 
     def at(corners: Array) -> Array:
-        found: Array = places(corners.real, corners.imag)
-        return found
+        values: Array = places(corners.real, corners.imag)
+        return values
 
     for shapes, order in ((panel.ground, GROUND), (panel.signs, BEFORE)):
         draw_shapes(sheet, shapes, at, panel.sign_size, order, box)
@@ -256,13 +256,13 @@ def draw_shapes(
         fill = looks.LIGHT[look.fill] if look.fill else ""
         width = look.width * UNIT * size
         if run[0].grown:
-            middles = np.concatenate([_corners(one, at, size) for one in run])
+            middles = np.concatenate([_corners(item, at, size) for item in run])
             wide = 2 * run[0].grown * UNIT * size
             sheet.add(Signs(middles, "o", wide, color or fill, fill, width or 0.1, clip), above)
             continue
         lines = tuple(
-            at(one.places[0] + one.radius * AROUND) if to_scale else _corners(one, at, size)
-            for one in run
+            at(item.places[0] + item.radius * AROUND) if to_scale else _corners(item, at, size)
+            for item in run
         )
         dashes = tuple(length * UNIT * size for length in look.dashes or ())
         filled = fill if closed or len(lines[0]) > 2 else ""
@@ -281,15 +281,15 @@ def _keep_clear(
 ) -> None:
     """Keep names away from what is drawn."""
     left, top, right, bottom = box
-    for one in shapes:
-        corners = _corners(one, at, size)
-        if one.grown:
+    for shape in shapes:
+        corners = _corners(shape, at, size)
+        if shape.grown:
             x, y = corners[0].tolist()
             labels.reserve(x, y, 4 * UNIT * size)
-        elif one.role in WEIGHTS:
-            line = np.vstack([corners, corners[:1]]) if one.closed else corners
+        elif shape.role in WEIGHTS:
+            line = np.vstack([corners, corners[:1]]) if shape.closed else corners
             inside = np.clip(line, (left, top), (right, bottom))
-            labels.avoid(inside, WEIGHTS[one.role])
+            labels.avoid(inside, WEIGHTS[shape.role])
 
 
 SPRINGS = ("spring", "planned", "added")

@@ -88,7 +88,7 @@ def front(designs: CloudDesigns) -> Chart:
     alone = len(pairs) == 1
     panels = tuple(_against(designs, pair, alone) for pair in pairs)
     what = say("Trade-off of {aims}", aims=say(", ").join(in_words(designs, designs.by)))
-    told = (counted(designs),)
+    parts = (counted(designs),)
     return Chart(
         "front",
         designs.title,
@@ -97,7 +97,7 @@ def front(designs: CloudDesigns) -> Chart:
         1 if alone else 2,
         False,
         keys_for(designs, pairs),
-        words=told,
+        words=parts,
     )
 
 
@@ -111,8 +111,8 @@ def over_numbers(designs: CloudDesigns) -> Iterator[Chart]:
         what += continued(names, every)
         own, columns = f"designs{suffix}", min(2, len(panels))
         keys = keys_for(designs, [(name, aim) for name in names])
-        told = (counted(designs),)
-        yield Chart(own, designs.title, what, panels, columns, False, keys, words=told)
+        parts = (counted(designs),)
+        yield Chart(own, designs.title, what, panels, columns, False, keys, words=parts)
 
 
 def _against(designs: CloudDesigns, pair: Pair, alone: bool = False) -> Panel:

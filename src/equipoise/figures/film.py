@@ -67,13 +67,13 @@ def gif(
     """
     from PIL import Image
 
-    drawn = _prepared(scene, traced, seconds, "gif", width, arrow)
+    moving = _prepared(scene, traced, seconds, "gif", width, arrow)
     colors = DARK if dark else LIGHT
-    count = _in_a_cycle(drawn)
+    count = _in_a_cycle(moving)
     check_frames(count, width)
-    shades = Shades(drawn, colors)
+    shades = Shades(moving, colors)
     pictures = []
-    for frame in _counted(_cycle(drawn, colors), count, told):
+    for frame in _counted(_cycle(moving, colors), count, told):
         picture = Image.fromarray(shades.numbers(frame))
         picture.putpalette(shades.palette.tobytes())
         pictures.append(picture)
@@ -105,15 +105,15 @@ def mp4(
     """
     av = needed("av", "a film as MP4")
     width += width % 2  # both sides are even, as hues are stored for two by two pixels
-    drawn = _prepared(scene, traced, seconds, "mp4", width, arrow)
-    whole = _in_a_cycle(drawn)
-    count = whole if turns is None else max(1, round(whole * turns / drawn.stage.turns))
+    moving = _prepared(scene, traced, seconds, "mp4", width, arrow)
+    whole = _in_a_cycle(moving)
+    count = whole if turns is None else max(1, round(whole * turns / moving.stage.turns))
     check_frames(count, width)
-    frames = islice(cycle(_cycle(drawn, DARK if dark else LIGHT)), count)
+    frames = islice(cycle(_cycle(moving, DARK if dark else LIGHT)), count)
     file = BytesIO()
     with av.open(file, "w", "mp4", options={"fflags": "+bitexact"}) as film:
         stream = film.add_stream("libx264", RATES["mp4"], ENCODING)
-        stream.width, stream.height, stream.pix_fmt = width, drawn.stage.height, "yuv420p"
+        stream.width, stream.height, stream.pix_fmt = width, moving.stage.height, "yuv420p"
         for name in ("colorspace", "color_primaries", "color_trc"):
             setattr(stream.codec_context, name, BT_709)
         for number, frame in enumerate(_counted(frames, count, told)):
@@ -136,8 +136,8 @@ def _prepared(
     check_seconds(seconds)
     check_width(width)
     frames = in_a_turn(kind, seconds)
-    drawn = laid_out(scene, traced, frames, width, arrow)
-    if round(frames * drawn.stage.turns) > (angles := len(scene.crank_angle)):
+    moving = laid_out(scene, traced, frames, width, arrow)
+    if round(frames * moving.stage.turns) > (angles := len(scene.crank_angle)):
         raise UsageError(
             Note(
                 "got {angles} crank angles, too few for {frames} frames in a turn; give "
@@ -146,7 +146,7 @@ def _prepared(
                 frames=frames,
             )
         )
-    return drawn
+    return moving
 
 
 def _in_a_cycle(drawn: Moving) -> int:
@@ -188,17 +188,19 @@ class Shades:
         few = [np.frombuffer(bytes.fromhex(colors[name][1:]), np.uint8) for name in named]
         between = (MOST_COLORS - len(few)) * 2 // (len(few) * (len(few) - 1))
         parts = np.arange(1, between + 1)[:, None] / (between + 1)
-        mixed = [one + (other.astype(float) - one) * parts for one, other in combinations(few, 2)]
+        mixed = [
+            item + (other.astype(float) - item) * parts for item, other in combinations(few, 2)
+        ]
         self.palette = np.round(np.vstack([*few, *mixed])).astype(np.uint8)
         self._known = np.full(1 << 24, MOST_COLORS, np.uint8)
 
     def numbers(self, frame: Array) -> Array:
         """(height, width, 3) uint8 -> number of the nearest colour, (height, width) uint8."""
         codes = frame.astype(np.uint32) @ np.array([1 << 16, 1 << 8, 1], np.uint32)
-        found = self._known[codes]
-        new = np.unique(codes[found == MOST_COLORS])
+        values = self._known[codes]
+        new = np.unique(codes[values == MOST_COLORS])
         if not new.size:
-            return found
+            return values
         few = np.stack([new >> 16, new >> 8 & 255, new & 255], axis=-1).astype(np.int32)
         apart = few[:, None] - self.palette.astype(np.int32)
         self._known[new] = np.sum(apart**2, axis=-1).argmin(axis=-1)

@@ -75,7 +75,9 @@ def over_crank(
             label,
             dimension,
             {role: over(analysis, values) for role, values in signals.items()},
-            beside=np.concatenate([v for one, values in every if one == dimension for v in values]),
+            beside=np.concatenate(
+                [v for item, values in every if item == dimension for v in values]
+            ),
             low=0.0 if label == say("size") else None,
             unit=_unit(analysis, dimension),
         )
@@ -94,14 +96,14 @@ def _unit(analysis: Analysis, dimension: Dimension | None) -> str | None:
 def force(analysis: Analysis) -> Chart:
     """Both components of the shaking force and its size over crank angle."""
     analysis = analysis.resolved
-    found = each(analysis, "shaking_force")
+    result = each(analysis, "shaking_force")
     parts: dict[str, Callable[[Array], Array]] = {
         say("along {axis}", axis="x"): np.real,
         say("along {axis}", axis="y"): np.imag,
         say("size"): np.abs,
     }
     panels: list[Signals] = [
-        (label, "force", {role: part(values) for role, values in found.items()})
+        (label, "force", {role: part(values) for role, values in result.items()})
         for label, part in parts.items()
     ]
     return over_crank(analysis, "force", title(analysis, say("Shaking force")), panels)
@@ -158,8 +160,8 @@ def with_mean(panel: Panel, values: Array, motion: Motion) -> Panel:
     if abs(mean) <= RESIDUE * float(np.max(np.abs(values))):
         mean = 0.0
     rms = float(np.sqrt(motion.mean(np.square(values))))
-    told = {"mean": panel.y.quantity(mean), "rms": panel.y.quantity(rms)}
-    remark = say("dashed: mean {mean}; RMS {rms}", **told)
+    text = {"mean": panel.y.quantity(mean), "rms": panel.y.quantity(rms)}
+    remark = say("dashed: mean {mean}; RMS {rms}", **text)
     return replace(panel, lines=(Line(mean, "mean", axis="y"),), remark=remark)
 
 
@@ -186,9 +188,9 @@ def _causes(analysis: Analysis, output: str, kind: Dimension) -> Panel:
 
 def polar(analysis: Analysis) -> Chart:
     """Shaking force as a polar diagram, with crank angles along it, its peak and mean size."""
-    found = each(analysis, "shaking_force")
+    result = each(analysis, "shaking_force")
     resolved = analysis.resolved
-    every = np.concatenate([*found.values()])
+    every = np.concatenate([*result.values()])
     unit = display_of_totals(analysis, "force").unit
     x, y = (
         Axis.of(say("shaking force along {axis}", axis=axis), "force", every, unit)
@@ -197,9 +199,9 @@ def polar(analysis: Analysis) -> Chart:
     whole = each(resolved, "shaking_force")
     marks, curves, arrows, message = _told_sizes(resolved, whole[ALL], x)
     if analysis.motion.whole_cycle:
-        told = told_angles(analysis.crank_angle)
-        for role, values in reversed([*found.items()]):
-            marks += numbers(told, values, role, extent(every, np.zeros(1)))
+        counts = told_angles(analysis.crank_angle)
+        for role, values in reversed([*result.items()]):
+            marks += numbers(counts, values, role, extent(every, np.zeros(1)))
     lines = [Curve.of(over(resolved, values)[1], "", role) for role, values in whole.items()]
     panel = Panel(
         x,
@@ -275,8 +277,8 @@ def spectrum(analysis: Analysis) -> Chart:
     last = max(FEWEST, *(last_order(bars) for bars in read))
     most = MOST_NUMBERED[bool(analysis.together)]
     panels = tuple(
-        order_panel(told, dimension, bars, last, most)
-        for (told, dimension, _), bars in zip(signals, read, strict=True)
+        order_panel(text, dimension, bars, last, most)
+        for (text, dimension, _), bars in zip(signals, read, strict=True)
     )
     what = title(analysis, say("Amplitude of each order"))
     keys = tuple((BAR_ROLES[role], name) for role, name in row_keys(analysis))

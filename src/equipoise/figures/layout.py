@@ -84,7 +84,7 @@ def _panels(sheet: Sheet, chart: Chart, top: float) -> float:
     inner = (sheet.width - 2 * EDGE - (columns - 1) * GAP) / columns
     for number, cell in enumerate(cells):
         later = cells[number + columns :: columns]
-        cell.numbered = not (chart.stacked and any(_same_x(cell, one) for one in later[:1]))
+        cell.numbered = not (chart.stacked and any(_same_x(cell, item) for item in later[:1]))
         _sides(cell)
     one_scale = cells[0].panel.equal  # and so one width
     for column in range(columns):

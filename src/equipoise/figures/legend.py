@@ -44,19 +44,19 @@ def kind_of(role: str) -> str:
 
 def keys_of(panel: Panel, chart_level: bool) -> list[LegendKey]:
     """What has a name in a panel: what the chart's legend tells, or that of the panel itself."""
-    found = [LegendKey(c.role, c.label, "line", c.dashed) for c in panel.curves if c.label]
+    legend_keys = [LegendKey(c.role, c.label, "line", c.dashed) for c in panel.curves if c.label]
     if panel.keyed:
-        found = [] if chart_level else found
+        legend_keys = [] if chart_level else legend_keys
     elif not chart_level:
         return []
     if chart_level:
         patches: Sequence[Any] = (*panel.bars, *panel.areas, *panel.outlines)
         kinds = ("patch", patches), ("line", panel.lines), ("sign", panel.marks)
         for kind, every in (*kinds, ("patch", panel.bands)):
-            found += [LegendKey(one.role, one.label, kind) for one in every if one.label]
+            legend_keys += [LegendKey(item.role, item.label, kind) for item in every if item.label]
         if panel.surface is not None and panel.surface.lacking:
-            found.append(LegendKey("off", panel.surface.lacking, "patch"))
-    return [*dict.fromkeys(found)]
+            legend_keys.append(LegendKey("off", panel.surface.lacking, "patch"))
+    return [*dict.fromkeys(legend_keys)]
 
 
 def rows_of(keys: list[LegendKey], room: float) -> list[list[LegendKey]]:

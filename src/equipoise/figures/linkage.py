@@ -79,10 +79,10 @@ def linkage(analysis: Analysis, at: Sequence[float] | None = None) -> Chart:
     )
     if columns == MANY:
         panels = tuple(replace(panel, sign_size=SMALLER) for panel in panels)
-    told = {"link": short(analysis.machine.drive.link), "angle": told_pose(scene, which[0])}
-    what = say("Linkage, to scale; above each: angle of {link} in the frame", **told)
+    text = {"link": short(analysis.machine.drive.link), "angle": told_pose(scene, which[0])}
+    what = say("Linkage, to scale; above each: angle of {link} in the frame", **text)
     if len(which) == 1:
-        what = say("Linkage, to scale; angle of {link} in the frame: {angle}", **told)
+        what = say("Linkage, to scale; angle of {link} in the frame: {angle}", **text)
     keys = tuple(keys_of(scene))
     words = (*rows_told(scene), *beyond(scene), *_ends_told(scene))
     return Chart("linkage", analysis.machine.title, what, panels, columns, keys=keys, words=words)
@@ -126,7 +126,9 @@ def drawn(scene: Scene, k: int) -> dict[str, Any]:
 
 def _at_ends(scene: Scene) -> Iterator[Shape]:
     """Links, pale, where a drive turns back that goes to and fro."""
-    moved = [one for one in scene.drives if one.swings is not None or one.between is not None]
+    moved = [
+        drive for drive in scene.drives if drive.swings is not None or drive.between is not None
+    ]
     angles = [scene.angles[drive.link] for drive in moved]
     for k in dict.fromkeys(int(end(angle)) for angle in angles for end in (np.argmin, np.argmax)):
         for body in scene.bodies:
@@ -266,8 +268,8 @@ def centrodes(analysis: Analysis, links: Sequence[str] | None = None) -> Chart:
             **drawn(scene, k),
         )
         panels.append(panel)
-    told = {"link": short(analysis.machine.drive.link), "angle": told_pose(scene, k)}
-    what = say("Centrodes of links in the frame; angle of {link}: {angle}", **told)
+    text = {"link": short(analysis.machine.drive.link), "angle": told_pose(scene, k)}
+    what = say("Centrodes of links in the frame; angle of {link}: {angle}", **text)
     columns = 1 if len(panels) == 1 else 2
     return Chart("centrodes", analysis.machine.title, what, tuple(panels), columns)
 

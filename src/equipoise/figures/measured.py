@@ -49,12 +49,12 @@ def exposure_charts(
 
     tools : names and total values, m/s2.
     """
-    drawn: dict[str, Chart] = {}
+    charts: dict[str, Chart] = {}
     for name, weighted in measured:
-        own = free_name("spectrum", drawn)
-        drawn[own] = spectrum(weighted, name).named(own)
-    drawn["exposure"] = exposure(tools, day)
-    return drawn
+        own = free_name("spectrum", charts)
+        charts[own] = spectrum(weighted, name).named(own)
+    charts["exposure"] = exposure(tools, day)
+    return charts
 
 
 def spectrum(weighted: Weighted, title: str) -> Chart:
@@ -69,7 +69,7 @@ def spectrum(weighted: Weighted, title: str) -> Chart:
         curves.append(_stairs(before, low, "unweighted", label))
     label = say("weighted, total value a_hv = {value} m/s²", value=shown(weighted.a_hv))
     curves.append(_stairs(after, low, "weighted", label))
-    ticks = tuple((float(10 ** (0.1 * round(10 * np.log10(one)))), f"{one:g}") for one in TOLD)
+    ticks = tuple((float(10 ** (0.1 * round(10 * np.log10(item)))), f"{item:g}") for item in TOLD)
     first, last = float(EDGES[0]), float(EDGES[-1])
     x = Axis(say("frequency"), Display("Hz", 1.0), "log", first, last, ticks=ticks)
     y = Axis(say("RMS"), RATE, "log", low, 1.6 * top)
@@ -211,14 +211,14 @@ def swings(decay: Decay, title: str) -> Chart:
     y = replace(x, label=say("height of the next"))
     sign = "\N{MINUS SIGN}" if cut < 0 else "+"
     line = {"slope": shown(slope), "sign": sign, "cut": x.quantity(abs(cut))}
-    told, at = say("next = {slope} height {sign} {cut}", **line), 0.3 * most
+    text, at = say("next = {slope} height {sign} {cut}", **line), 0.3 * most
     panel = Panel(
         x,
         y,
         (Curve(reach, reach, "", "even"), Curve(reach, slope * reach + cut, "", "thin")),
         (
-            *(Mark(float(one), float(two), "", "turning") for one, two in pairwise(heights)),
-            Mark(at, slope * at + cut, told, "main", -45.0, sign=False),
+            *(Mark(float(height), float(two), "", "turning") for height, two in pairwise(heights)),
+            Mark(at, slope * at + cut, text, "main", -45.0, sign=False),
             Mark(0.6 * most, 0.6 * most, say("no decay"), "ink", 135.0, sign=False),
         ),
         height=280.0,
@@ -228,8 +228,8 @@ def swings(decay: Decay, title: str) -> Chart:
 
 def _samples(decay: Decay, low: float, high: float) -> tuple[Array, Array]:
     """Samples between two times, thinned where there are too many to be seen."""
-    found = decay.record
-    part = slice(np.searchsorted(found.time, low), np.searchsorted(found.time, high, "right"))
-    time, values = found.time[part], found.displacement[part]
+    result = decay.record
+    part = slice(np.searchsorted(result.time, low), np.searchsorted(result.time, high, "right"))
+    time, values = result.time[part], result.displacement[part]
     step = -(-len(time) // MOST_DRAWN)
     return time[::step], values[::step]

@@ -106,8 +106,8 @@ class ModeShape:
     @cached_property
     def corners(self) -> Array:
         """All points by which the support is drawn, (N, 3), m."""
-        held = [item.point for _, item in self.items if item.point is not None]
-        return np.array([*self.linkages, self.reference, self.support.center_of_mass, *held])
+        points = [item.point for _, item in self.items if item.point is not None]
+        return np.array([*self.linkages, self.reference, self.support.center_of_mass, *points])
 
     @cached_property
     def size(self) -> float:
@@ -165,7 +165,7 @@ def mode_chart(free: FreeVibration, number: int) -> Chart:
     planar = free.linear.body.support.planar
     views: list[View] = ["side"] if planar else [*VIEWS]
     what = say("Mode {number}: {told}", number=number, told=described(mode))
-    told = say("Shape: {told}, or any multiple", told=", ".join(parts_of(free, mode)))
+    text = say("Shape: {told}, or any multiple", told=", ".join(parts_of(free, mode)))
     panels = tuple(_panel(shape, view, views) for view in VIEWS if view in views)
     return Chart(
         f"mode-{number}",
@@ -175,7 +175,7 @@ def mode_chart(free: FreeVibration, number: int) -> Chart:
         columns=len(panels[:2]),
         stacked=False,
         keys=tuple(_keys(shape)),
-        words=(told,),
+        words=(text,),
     )
 
 
@@ -186,8 +186,8 @@ def described(mode: Mode) -> str:
         return say("free, without a spring")
     if mode.swings:
         damping = mode.damping_ratio if abs(mode.damping_ratio) > UNDAMPED else 0.0
-        told = {"hertz": frequency / (2 * pi), "frequency": frequency, "damping": damping}
-        values = {name: shown(value) for name, value in told.items()}
+        text = {"hertz": frequency / (2 * pi), "frequency": frequency, "damping": damping}
+        values = {name: shown(value) for name, value in text.items()}
         return say("{hertz} Hz, {frequency} rad/s, damping ratio {damping}", **values)
     time = shown(1 / abs(decay))
     if decay > 0:
@@ -201,10 +201,10 @@ def parts_of(free: FreeVibration, mode: Mode) -> list[str]:
     for name, part in zip(free.coordinates, mode.shape.tolist(), strict=True):
         unit, size = "rad" if name in AXES else "m", abs(part)
         phase = round(float(np.degrees(np.angle(part))))
-        told = f"{size if phase == 0 else -size:.3g} {unit}"
+        text = f"{size if phase == 0 else -size:.3g} {unit}"
         if phase % 180:
-            told = say("{value} at {angle}", value=f"{size:.3g} {unit}", angle=f"{phase}°")
-        words.append(typeset(f"{say(name)} {told if size >= NOTHING else 0}"))
+            text = say("{value} at {angle}", value=f"{size:.3g} {unit}", angle=f"{phase}°")
+        words.append(typeset(f"{say(name)} {text if size >= NOTHING else 0}"))
     return words
 
 
@@ -217,8 +217,8 @@ def _panel(shape: ModeShape, view: View, views: list[View]) -> Panel:
     low, high = _held(shape, view, views)
     ticks = (None, _downward(low, high) if view == "top" else None)
     x, y = (
-        Axis.of(say(name), "length", [shape.size], room=0.0, ticks=one)
-        for name, one in zip(VIEWS[view].names, ticks, strict=True)
+        Axis.of(say(name), "length", [shape.size], room=0.0, ticks=tick)
+        for name, tick in zip(VIEWS[view].names, ticks, strict=True)
     )
     named = [name for name, item in shape.items if alone or view_of(item) == view]
     size = 1.0 if alone else SMALLER
@@ -242,10 +242,10 @@ def _held(shape: ModeShape, view: View, views: list[View]) -> tuple[complex, com
     low, high = shape.extent(view)
     if len(views) == 1:
         return low, high
-    every = {one: shape.extent(one) for one in VIEWS}
+    every = {view: shape.extent(view) for view in VIEWS}
     wide = max((end[1] - end[0]).real for end in every.values())
     middle = (low.real + high.real) / 2
-    beside = [every[one] for one in VIEWS if VIEWS[one].up == VIEWS[view].up]
+    beside = [every[item] for item in VIEWS if VIEWS[item].up == VIEWS[view].up]
     ends = min(end[0].imag for end in beside), max(end[1].imag for end in beside)
     return complex(middle - wide / 2, ends[0]), complex(middle + wide / 2, ends[1])
 

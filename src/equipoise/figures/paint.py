@@ -130,8 +130,8 @@ def settings(sheet: Sheet | None = None, texts: str = "") -> Iterator[None]:
     with _painting, matplotlib.rc_context(), warnings.catch_warnings():
         matplotlib.rcdefaults()
         matplotlib.rcParams.update(PARAMETERS)
-        more = fonts_for(frozenset(texts) if sheet is None else _signs(sheet))[0]
-        matplotlib.rcParams["font.family"] = [*_families()[:-1], *more, "sans-serif"]
+        font = fonts_for(frozenset(texts) if sheet is None else _signs(sheet))[0]
+        matplotlib.rcParams["font.family"] = [*_families()[:-1], *font, "sans-serif"]
         warnings.filterwarnings("ignore", r"Glyph \d+ .*missing from", UserWarning)
         yield
 
@@ -208,7 +208,7 @@ def _paint(axes: Axes, item: Item, order: int, scale: float) -> None:
     else:
         look: Any = {"facecolor": item.fill or "none", "edgecolor": item.color or "none"}
         look |= {"linewidth": scale * item.width if item.color else 0.0, "joinstyle": "round"}
-        look |= {"linestyle": (0, [scale * one for one in item.dashes])} if item.dashes else {}
+        look |= {"linestyle": (0, [scale * dash for dash in item.dashes])} if item.dashes else {}
         look |= {"alpha": item.opacity} if item.opacity < 1 else {}
         cap: Any = "round" if item.round else "butt"
         artist = PathPatch(_path(item), capstyle=cap, zorder=order, **look)

@@ -66,5 +66,5 @@ def compare(
     """
     period = float(angles[-1] + angles[1] - angles[0])
     axis = crank_axis(short(drive.crank, 16), drive.speed, round(period / (2 * np.pi)))
-    drawn = {role: closed(angles, values, period) for role, values in roles_of(pair).items()}
-    return compared(axis, label, dimension, drawn, **rest)
+    closeds = {role: closed(angles, values, period) for role, values in roles_of(pair).items()}
+    return compared(axis, label, dimension, closeds, **rest)

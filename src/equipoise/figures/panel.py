@@ -66,7 +66,9 @@ def draw(view: View) -> None:
             draw_one(view, part)
     for outline in panel.outlines:
         look = look_of(outline.role)
-        lines = tuple(view.places(one.real, one.imag) for one in (outline.places, *outline.holes))
+        lines = tuple(
+            view.places(hole.real, hole.imag) for hole in (outline.places, *outline.holes)
+        )
         view.sheet.add(
             CanvasStroke(
                 lines, look.color, look.width, (), look.fill, look.opacity, True, view.box
@@ -197,9 +199,11 @@ def _marks(view: View) -> None:
     size = np.array([view.x.length, view.y.length])
     for mark in view.panel.marks:
         (place,) = view.places(mark.x, mark.y)
-        same = [(one, at) for one, at in apart if one.text and (one.sign or one.text == mark.text)]
-        told = [at for one, at in same if mark.sign or one.text == mark.text]
-        if mark.text and any(np.all(np.abs(place - at) < ALIKE * size) for at in told):
+        same = [
+            (item, at) for item, at in apart if item.text and (item.sign or item.text == mark.text)
+        ]
+        values = [at for item, at in same if mark.sign or item.text == mark.text]
+        if mark.text and any(np.all(np.abs(place - at) < ALIKE * size) for at in values):
             continue
         apart.append((mark, place))
         look = look_of(mark.role)
@@ -220,17 +224,17 @@ def _marks(view: View) -> None:
 
 def _bar_numbers(view: View) -> None:
     """Sizes of bars that can be seen, at their ends, with as many digits as all have room for."""
-    told = [bars for bars in view.panel.bars if bars.told]
-    if not told:
+    matching_bars = [bars for bars in view.panel.bars if bars.told]
+    if not matching_bars:
         return
-    scale = view.y if told[0].across == "x" else view.x
+    scale = view.y if matching_bars[0].across == "x" else view.x
     factor = scale.axis.unit.factor
-    largest = factor * max(float(np.max(bars.size, initial=0.0)) for bars in told)
+    largest = factor * max(float(np.max(bars.size, initial=0.0)) for bars in matching_bars)
     if not largest:
         return
     seen = [
         (size, at, look_of(bars.role).ink)
-        for bars in told
+        for bars in matching_bars
         for at, size in zip(bars.at.tolist(), (factor * bars.size).tolist(), strict=True)
         if size > VISIBLE * largest
     ]
@@ -258,14 +262,14 @@ def _bar_numbers(view: View) -> None:
 def _clear(texts: list[Number]) -> list[Number]:
     """Those that lie on no number of a higher bar."""
     clear: list[Number] = []
-    for one in sorted(texts, key=lambda one: one[2]):
-        text, x, y, _ = one
+    for item in sorted(texts, key=lambda one: one[2]):
+        text, x, y, _ = item
         half = width_of(text, SMALL) / 2
         if all(
             abs(x - at) > half + width_of(other, SMALL) / 2 + 2 or abs(y - up) > SMALL + 1
             for other, at, up, _ in clear
         ):
-            clear.append(one)
+            clear.append(item)
     return clear
 
 

@@ -25,16 +25,16 @@ def parallel(designs: CloudDesigns) -> Iterator[Chart]:
     """Numbers and figures as axes side by side, a line for each design."""
     others = [name for name in designs.names if name != designs.aim]
     some, chosen = len(designs.cloud.good), len(designs.table)
-    drawn = [counted(designs)]
+    counteds = [counted(designs)]
     if some > SOME or not designs.cloud.each:
-        drawn.append(say("lines of {count} designs", count=min(some, SOME)))
+        counteds.append(say("lines of {count} designs", count=min(some, SOME)))
     if chosen > BEST:
-        drawn.append(say("{count} of {all} chosen designs", count=BEST, all=chosen))
+        counteds.append(say("{count} of {all} chosen designs", count=BEST, all=chosen))
     for suffix, names in groups(others, RULES - 1):
         what = say("Designs from axis to axis") + continued(names, others)
         keys = keys_for(designs)
         panel = _rules(designs, [*names, designs.aim])
-        words = (say("; ").join(drawn),)
+        words = (say("; ").join(counteds),)
         yield Chart(f"parallel{suffix}", designs.title, what, (panel,), keys=keys, words=words)
 
 
@@ -83,7 +83,7 @@ def _share(axis: Axis, values: Array | float) -> Array:
     """How far along an axis values lie."""
     assert axis.low is not None and axis.high is not None
     of: Callable[[Array], Array] = np.log if axis.scale == "log" else np.asarray
-    low, high, at = (of(np.asarray(one, float)) for one in (axis.low, axis.high, values))
+    low, high, at = (of(np.asarray(item, float)) for item in (axis.low, axis.high, values))
     return np.asarray((at - low) / (high - low))
 
 

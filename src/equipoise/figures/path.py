@@ -40,7 +40,7 @@ def path(figures: PlantingFigures) -> Chart:
     if paths.drives and figures.planting.units_per_turn > 1:
         what += "; " + say("dashed: other units")
     draw = (_machine_panel, _ground_panel)
-    panels = tuple(one(paths, held) for one, held in zip(draw, _held(paths), strict=False))
+    panels = tuple(item(paths, held) for item, held in zip(draw, _held(paths), strict=False))
     return Chart("path", figures.machine.title, what, panels, stacked=False)
 
 
@@ -64,8 +64,8 @@ def _axis(label: str) -> Axis:
 
 def _machine_panel(paths: Paths, held: tuple[complex, complex]) -> Panel:
     instants, ticks = list(paths.instants(over_ground=False)), list(_ticks(paths))
-    across = [np.array([one.place + out, one.place - out, np.nan]) for one, out in ticks]
-    marks = [Mark.of(one.place, "", f"instant {one.name}") for one in instants]
+    across = [np.array([item.place + out, item.place - out, np.nan]) for item, out in ticks]
+    marks = [Mark.of(instant.place, "", f"instant {instant.name}") for instant in instants]
     marks += [
         Mark.of(complex(place[-1]), short(name), "ink", 45.0, False, near=5.0, bold=True)
         for name, place in paths.scene.places.items()
@@ -75,7 +75,8 @@ def _machine_panel(paths: Paths, held: tuple[complex, complex]) -> Panel:
     if paths.tray.size:
         marks.append(Mark.of(complex(np.mean(paths.tray)), say("tray"), "ink", 0.0, False))
     marks += [
-        Mark.of(one.place, one.name, "lines", one.away, False, True, near=5.0) for one, _ in ticks
+        Mark.of(item.place, item.name, "lines", item.away, False, True, near=5.0)
+        for item, _ in ticks
     ]
     return Panel(
         _axis(say("x in the frame")),
@@ -99,7 +100,7 @@ def _ground_panel(paths: Paths, held: tuple[complex, complex]) -> Panel:
     places = paths.over_ground(paths.ways)
     instants = list(paths.instants(over_ground=True))
     ahead = paths.figures["forward_speed"] > 0
-    marks = [Mark.of(one.place, "", f"instant {one.name}") for one in instants]
+    marks = [Mark.of(instant.place, "", f"instant {instant.name}") for instant in instants]
     marks += _names(_outside(instants, ahead))
     for number, place in enumerate(paths.crossings()):
         text = say("crossing of the loop") if number == 0 else ""
@@ -130,17 +131,19 @@ def _ground_panel(paths: Paths, held: tuple[complex, complex]) -> Panel:
 
 def _outside(instants: list[PathInstant], ahead: bool) -> list[PathInstant]:
     """Instants over ground with their names outside, and clear of the dimension."""
-    places = {one.name: one.place for one in instants}
+    places = {instant.name: instant.place for instant in instants}
     wishes = {"lowest": -135.0 if ahead else -45.0}
     left, right = sorted(("entry", "exit"), key=lambda name: places[name].real)
     wishes |= {left: 160.0, right: 20.0}
-    return [replace(one, away=wishes.get(one.name, one.away)) for one in instants]
+    return [replace(instant, away=wishes.get(instant.name, instant.away)) for instant in instants]
 
 
 def _names(instants: Sequence[PathInstant], lower: float = 0.0) -> Iterator[Mark]:
     """What the instants are; lower : how far below their places, m."""
-    for one in instants:
-        yield Mark.of(one.place - 1j * lower, say(INSTANTS[one.name]), "ink", one.away, sign=False)
+    for instant in instants:
+        yield Mark.of(
+            instant.place - 1j * lower, say(INSTANTS[instant.name]), "ink", instant.away, sign=False
+        )
 
 
 def _path(paths: Paths, places: Array) -> Iterator[Curve]:

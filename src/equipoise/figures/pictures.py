@@ -56,26 +56,26 @@ def analysis_pictures(analysis: Analysis, at: Sequence[float] | None = None) -> 
     from equipoise.figures.linkage import centrodes, linkage, rolling
     from equipoise.figures.side import side
 
-    found: Pictures = {"linkage": linkage(analysis, at)}
+    pictures: Pictures = {"linkage": linkage(analysis, at)}
     if analysis.machine.has_planes:
-        found["side"] = side(analysis, at)
+        pictures["side"] = side(analysis, at)
     if len(analysis.crank_angle) < 2:
-        return found
+        return pictures
     if points.moving(analysis.motion):
-        found |= {"curves": points.curves(analysis), "hodograph": points.hodograph(analysis)}
+        pictures |= {"curves": points.curves(analysis), "hodograph": points.hodograph(analysis)}
     if rolling(analysis):
-        found["centrodes"] = centrodes(analysis)
-    found |= {chart.name: chart for chart in couplings.ratios(analysis)}
+        pictures["centrodes"] = centrodes(analysis)
+    pictures |= {chart.name: chart for chart in couplings.ratios(analysis)}
     if analysis.solved is None:
-        return found
-    found |= {chart.name: chart for chart in couplings.strands(analysis)}
+        return pictures
+    pictures |= {chart.name: chart for chart in couplings.strands(analysis)}
     for chart in (forces.polar, forces.force, forces.moment):
-        found[chart.__name__] = chart(analysis)
-    found |= {chart.name: chart for chart in forces.torques(analysis)}
+        pictures[chart.__name__] = chart(analysis)
+    pictures |= {chart.name: chart for chart in forces.torques(analysis)}
     if analysis.has_orders:
-        found["spectrum"] = forces.spectrum(analysis)
+        pictures["spectrum"] = forces.spectrum(analysis)
     of_joints = (*joints(analysis), *joint_polars(analysis))
-    return found | {chart.name: chart for chart in of_joints}
+    return pictures | {chart.name: chart for chart in of_joints}
 
 
 def planting_pictures(figures: PlantingFigures) -> Pictures:

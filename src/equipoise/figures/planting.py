@@ -131,7 +131,7 @@ def ratio(figures: PlantingFigures, link: str) -> Chart:
         for which in ("max", "min")
     ]
     both = {"link": link, "drive": figures.machine.drive.link}
-    names, brief = ({k: short(one, most) for k, one in both.items()} for most in (24, 14))
+    names, brief = ({k: short(item, most) for k, item in both.items()} for most in (24, 14))
     what = say("Angular velocity of {link} over that of {drive}", **names)
     label = say("angular velocity ratio, {link} / {drive}", **brief)
     return _chart(figures, f"ratio-{link}", what, Axis(label, room=ROOM), rates, places)
@@ -142,10 +142,10 @@ def tips(figures: PlantingFigures) -> Iterator[Chart]:
     for number, arm in enumerate(figures.arms):
         of = f"-{arm.tip.translate(FORBIDDEN)}" if number else ""
         for name, (title, label, dimension, _) in QUANTITIES.items():
-            for part, (told, suffix) in PARTS.items():
+            for part, (text, suffix) in PARTS.items():
                 values = tip_values(arm, name, part)
                 what = say(title, tip=short(arm.tip))
-                what += f", {say(told)}" if told else ""
+                what += f", {say(text)}" if text else ""
                 y = Axis.of(f"{say(label)}{suffix}", dimension, values, room=ROOM)
                 places = [*_extremes(arm, name, part)]
                 yield _chart(arm, name + part + of, what, y, values, places)
@@ -161,8 +161,8 @@ def _extremes(figures: PlantingFigures, name: str, part: str) -> Iterator[tuple[
     if not part:
         key = QUANTITIES[name][3]
         for which in ("max", "min"):
-            found = f"{which}_{key}"
-            yield figures[f"{found}.crank_angle"], figures[f"{found}.value"]
+            text = f"{which}_{key}"
+            yield figures[f"{text}.crank_angle"], figures[f"{text}.value"]
         return
 
     def signal(theta: Array) -> Array:
@@ -198,9 +198,9 @@ def _component(vector: Array, part: str) -> Array:
 
 def torque(figures: PlantingFigures) -> Chart:
     """Torque that the drive has to give, in the air and in the soil."""
-    found = figures.forces
-    assert found is not None
-    pair = {"air": found.in_air.drive_torque, "soil signal": found.in_soil.drive_torque}
+    forces = figures.forces
+    assert forces is not None
+    pair = {"air": forces.in_air.drive_torque, "soil signal": forces.in_soil.drive_torque}
     y = Axis.of(say("drive torque"), "torque", [*pair.values()], room=ROOM)
     panel = _air_and_soil(figures, y, pair, both=True, flags=_flags(figures))
     drive = short(figures.machine.drive.link)
@@ -210,9 +210,9 @@ def torque(figures: PlantingFigures) -> Chart:
 
 def joints(figures: PlantingFigures) -> Chart:
     """Size of the force in every joint, in the air and in the soil."""
-    found = figures.forces
-    assert found is not None
-    air, soil = (one.solved.contacts for one in (found.in_air, found.in_soil))
+    forces = figures.forces
+    assert forces is not None
+    air, soil = (item.solved.contacts for item in (forces.in_air, forces.in_soil))
     panels = []
     pairs = {name: {"air": air[name].size, "soil signal": soil[name].size} for name in soil}
     every = [[*pair.values()] for pair in pairs.values()]
@@ -220,7 +220,7 @@ def joints(figures: PlantingFigures) -> Chart:
     for name, joint in soil.items():
         panels.append(
             _air_and_soil(
-                figures, y, pairs[name], title=named(found.in_soil, name, joint), height=74.0
+                figures, y, pairs[name], title=named(forces.in_soil, name, joint), height=74.0
             )
         )
     what = f"{say('Force in each joint')}; {say(SHADED)}"

@@ -61,9 +61,9 @@ def traced(motion: Motion) -> list[str]:
     circling = {point for link in pinned for point in link.points}
     names = moving(motion)
     driven = [name for name in names if name not in machine.links[machine.drive.link].points]
-    found = [name for name in names if name not in circling] or driven or names
+    matching_names = [name for name in names if name not in circling] or driven or names
     tips = _tips(motion)
-    every = dict.fromkeys([*tips, *found])
+    every = dict.fromkeys([*tips, *matching_names])
     return sorted(every, key=lambda name: (name not in tips, name in joints.pins))
 
 
@@ -84,7 +84,7 @@ def _together(motion: Motion, names: Sequence[str]) -> list[list[str]]:
     groups: list[list[str]] = []
     for name in names:
         path = motion.points[name].place
-        alike = (one for one in groups if _coincide(motion.points[one[0]].place, path))
+        alike = (item for item in groups if _coincide(motion.points[item[0]].place, path))
         group = next(alike, None) if motion.whole_cycle else None
         if group is None:
             groups.append([name])
@@ -189,8 +189,8 @@ def hodograph(analysis: Analysis, points: Sequence[str] | None = None) -> Chart:
     """
     names = traced(analysis.motion)[:MOST_VECTORS] if points is None else [*points]
     every = [analysis.motion.points[name] for name in names]
-    rates = [one.velocity for one in every]
-    changes = [one.acceleration_vector for one in every]
+    rates = [item.velocity for item in every]
+    changes = [item.acceleration_vector for item in every]
     panels = (
         _ends(analysis, names, say("velocity"), "speed", rates),
         _ends(analysis, names, say("acceleration"), "acceleration", changes),
@@ -213,15 +213,15 @@ def _ends(
         Axis.of(say("{quantity} along {axis}", quantity=quantity, axis=axis), dimension, whole)
         for axis in ("x", "y")
     )
-    told: dict[int, int] = {}
+    counts: dict[int, int] = {}
     if analysis.motion.whole_cycle:
-        told = told_angles(analysis.crank_angle)
-        told = {a: k for a, k in told.items() if len(values) < 2 or a in FEW}
+        counts = told_angles(analysis.crank_angle)
+        counts = {a: k for a, k in counts.items() if len(values) < 2 or a in FEW}
     drawn, marks = [], [Mark(0.0, 0.0, "", "pivot")]
-    for number, (name, one) in enumerate(zip(names, values, strict=True), 1):
+    for number, (name, value) in enumerate(zip(names, values, strict=True), 1):
         role = f"several {number}"
-        drawn.append(Curve.of(over(analysis, one)[1], short(name, 14), role))
-        marks += numbers(told, one, role, extent(whole))
+        drawn.append(Curve.of(over(analysis, value)[1], short(name, 14), role))
+        marks += numbers(counts, value, role, extent(whole))
     message = "" if names else say("no point moves")
     return Panel(x, y, tuple(drawn), tuple(marks), message=message, equal=True)
 
@@ -248,19 +248,19 @@ def outputs_chart(
     ones = analysis.outputs.chosen(names)
     x = angle_axis(analysis)
     panels = []
-    for one in ones:
-        drawn = {ALL: over(analysis, one.drawn)}
-        beside = np.ravel([other.drawn for other in ones if other.dimension == one.dimension])
-        panel = compared(x, "", one.dimension, drawn, beside=beside)
-        panels.append(replace(panel, title=replace(panel.y, label=one.label()).text))
-    told = what or say(", ").join(one.label() for one in ones)
-    return Chart(name, analysis.machine.title, title(analysis, told), tuple(panels))
+    for entry in ones:
+        drawn = {ALL: over(analysis, entry.drawn)}
+        beside = np.ravel([other.drawn for other in ones if other.dimension == entry.dimension])
+        panel = compared(x, "", entry.dimension, drawn, beside=beside)
+        panels.append(replace(panel, title=replace(panel.y, label=entry.label()).text))
+    text = what or say(", ").join(item.label() for item in ones)
+    return Chart(name, analysis.machine.title, title(analysis, text), tuple(panels))
 
 
 def kinematics(analysis: Analysis) -> Iterator[Chart]:
     """Motion of every slider, link and moving point, and all transmission angles."""
     yield from _each(analysis, "sliders")
-    angles = [one.name for one in analysis.outputs if one.group == "transmission"]
+    angles = [output.name for output in analysis.outputs if output.group == "transmission"]
     if angles:
         what = say("Transmission angles")
         yield outputs_chart(analysis, angles, kinematics_named("transmission"), what)
@@ -279,12 +279,12 @@ def _each(analysis: Analysis, group: str) -> Iterator[Chart]:
     """A chart of each member of a group; components are told, and the sizes of vectors are not."""
     members: dict[str, list[AnalysisOutput]] = {}
     still = analysis.machine.frame if group == "points" else ()
-    for one in analysis.outputs:
-        if one.group == group and one.declared.array and one.item not in still:
-            members.setdefault(one.item, []).append(one)
+    for output in analysis.outputs:
+        if output.group == group and output.declared.array and output.item not in still:
+            members.setdefault(output.item, []).append(output)
     for item, ones in members.items():
         what = say("Motion of {name}", name=short(joint_named(item), 24))
-        yield outputs_chart(analysis, [one.name for one in ones], kinematics_named(item), what)
+        yield outputs_chart(analysis, [item.name for item in ones], kinematics_named(item), what)
 
 
 def kinematics_named(item: str) -> str:

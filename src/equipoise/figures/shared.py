@@ -137,18 +137,18 @@ def extremes(
 
     places : crank angles (rad) and values.
     """
-    found = []
+    marks = []
     for angle, value in places if varies(values) else ():
         text = say("{value} at {angle}", value=axis.told(value), angle=degrees_told(angle))
         wish = 90.0 if value > float(np.mean(values)) else -90.0
-        found.append(Mark(angle, value, text, role, wish))
-    return tuple(found)
+        marks.append(Mark(angle, value, text, role, wish))
+    return tuple(marks)
 
 
 def sampled_extremes(theta: Array, values: Array) -> list[tuple[float, float]]:
     """The largest and the smallest of samples (N,): crank angle, rad, and value."""
-    told = signals.figures(theta, values)
-    return [(told.max_at, told.max), (told.min_at, told.min)]
+    figures = signals.figures(theta, values)
+    return [(figures.max_at, figures.max), (figures.min_at, figures.min)]
 
 
 def compared(
@@ -191,14 +191,14 @@ def told_angles(angles: Array) -> dict[int, int]:
 
 def numbers(told: Mapping[int, int], values: Array, role: str, size: float) -> tuple[Mark, ...]:
     """Marks at crank angles of a path (N,), complex, of some size; of several at one place one."""
-    found: dict[complex, Mark] = {}
+    marks: dict[complex, Mark] = {}
     middle = complex(np.mean(values))
     for angle, k in told.items():
         place = complex(values[k])
-        if all(abs(place - other) > ALIKE * size for other in found):
+        if all(abs(place - other) > ALIKE * size for other in marks):
             wish = float(np.degrees(np.angle(place - middle)))
-            found[place] = Mark.of(place, f"{angle}", role, wish, optional=True, near=5.0)
-    return tuple(found.values())
+            marks[place] = Mark.of(place, f"{angle}", role, wish, optional=True, near=5.0)
+    return tuple(marks.values())
 
 
 def extent(*parts: Array) -> float:
@@ -236,36 +236,36 @@ def bounded(values: Array) -> Array:
 
 def ordered(read: Mapping[str, Array]) -> list[SpeedCurve]:
     """Curves that are named, in their order; behind them the quieter ones that are not."""
-    found = [SpeedCurve(name, values) for name, values in read.items()]
-    loudest = sorted(found, key=lambda one: -one.largest)[: len(KINDS)]
-    return [c for c in found if c in loudest] + [c for c in found if c not in loudest]
+    speed_curves = [SpeedCurve(name, values) for name, values in read.items()]
+    loudest = sorted(speed_curves, key=lambda one: -one.largest)[: len(KINDS)]
+    return [c for c in speed_curves if c in loudest] + [c for c in speed_curves if c not in loudest]
 
 
 def curves_of(
     x: Array, found: Sequence[SpeedCurve], stable: Array | None = None
 ) -> tuple[Curve, ...]:
     """Curves over places (S,), dashed where they are not stable; the quieter ones share a name."""
-    drawn = []
+    curves = []
     quieter = say("{count} quieter ones", count=len(found) - len(KINDS))
-    for number, one in enumerate(found):
+    for number, item in enumerate(found):
         named = number < len(KINDS)
         role = f"kind {number}" if named else "quieter"
-        label = short(one.name, 40) if named else quieter
-        y = np.where(one.values > 0, one.values, np.nan)
+        label = short(item.name, 40) if named else quieter
+        y = np.where(item.values > 0, item.values, np.nan)
         if stable is None or np.all(stable):
-            drawn.append(Curve(x, y, label, role))
+            curves.append(Curve(x, y, label, role))
             continue
         near = np.convolve(~stable, np.ones(3), "same") > 0
-        drawn.append(Curve(x, np.where(stable, y, np.nan), label, role))
-        drawn.append(Curve(x, np.where(near, y, np.nan), "", role, dashed=True))
-    return tuple(drawn)
+        curves.append(Curve(x, np.where(stable, y, np.nan), label, role))
+        curves.append(Curve(x, np.where(near, y, np.nan), "", role, dashed=True))
+    return tuple(curves)
 
 
 def log_ends(
     found: Sequence[SpeedCurve], below: float, above: float, more: Any = ()
 ) -> tuple[float, float]:
     """Ends of a log axis that holds curves and some more values, with room as factors."""
-    every = np.concatenate([*(bounded(one.values) for one in found), np.asarray(more, float)])
+    every = np.concatenate([*(bounded(item.values) for item in found), np.asarray(more, float)])
     heard = every[np.isfinite(every) & (every > 0)]
     high = float(np.max(heard, initial=0.0)) or 1.0
     low = max(float(np.min(heard, initial=high)), high * 1e-6)

@@ -41,8 +41,8 @@ def side(analysis: Analysis, at: Sequence[float] | None = None) -> Chart:
         motion = move(analysis.machine, at[:1], motion.speed, motion.acceleration)
     view = _View(motion)
     angle = told_angle(float(motion.links[motion.machine.drive.link].angle[view.k]))
-    told = {"link": short(motion.machine.drive.link), "angle": angle}
-    what = say("Linkage from the side, to scale; angle of {link} in the frame: {angle}", **told)
+    text = {"link": short(motion.machine.drive.link), "angle": angle}
+    what = say("Linkage from the side, to scale; angle of {link} in the frame: {angle}", **text)
     keys = [("solid", say("bodies"))] if view.solids else []
     keys += [("mass", say("centre of mass"))] if view.loose else []
     keys += [("room", say("room for mass to be found"))] if view.rooms else []
@@ -61,11 +61,11 @@ class _View:
         self.axis = "xy"[int(np.argmax([np.max(spread) for spread in spreads]))]
         self.k = int(np.argmax(spreads["xy".index(self.axis)]))
         planes = {
-            (body, reaction.at): one.plane
-            for one, (_, reaction) in zip(
+            (body, reaction.at): contact.plane
+            for contact, (_, reaction) in zip(
                 contacts(motion.linkage), motion.linkage.named_reactions, strict=True
             )
-            for body in (one.on, one.by)
+            for body in (contact.on, contact.by)
         }
         self.pins = [(*key, plane) for key, plane in planes.items() if key[1] in motion.points]
         self.nodes = {
@@ -115,10 +115,10 @@ class _View:
     def _rooms(self) -> Iterator[Shape]:
         """Where balancing may add masses: boxes, or a ring where there is room without limit."""
         balance = self.machine.balance
-        for one in balance.masses if balance is not None else ():
-            link, weight = self.machine.links[one.link], one.weight
+        for item in balance.masses if balance is not None else ():
+            link, weight = self.machine.links[item.link], item.weight
             z = link.plane if weight.plane is None else weight.plane
-            high = self.height(one.at)
+            high = self.height(item.at)
             if np.isinf(weight.radius):
                 yield circle("room", complex(z, high), grown=BEYOND)
             else:
@@ -127,10 +127,10 @@ class _View:
 
     def _cylinders(self) -> Iterator[Shape]:
         """Cylinders that drive, in their planes."""
-        for one, drive in zip(pushing(self.motion.linkage), self.machine.pushers, strict=True):
+        for item, drive in zip(pushing(self.motion.linkage), self.machine.pushers, strict=True):
             if drive.between is None:
                 continue
-            a, b = (complex(one.plane, self.height(point)) for point in drive.between)
+            a, b = (complex(item.plane, self.height(point)) for point in drive.between)
             if length := abs(b - a):
                 way = (b - a) / length
                 rod, barrel = cylinder(BARREL * length, BARREL * length)
@@ -154,8 +154,10 @@ class _View:
         heights = [node.imag for node in nodes.values()]
         yield line(role, complex(z, min(heights)), complex(z, max(heights)))
         for point, node in nodes.items():
-            held = [one.plane for one in self.machine.bearings.values() if one.link == name]
-            ends = [node.real, z, *(held if point in self.machine.frame else ())]
+            planes = [
+                bearing.plane for bearing in self.machine.bearings.values() if bearing.link == name
+            ]
+            ends = [node.real, z, *(planes if point in self.machine.frame else ())]
             if (low := min(ends)) < (high := max(ends)):
                 places = np.array([complex(low, node.imag), complex(high, node.imag)])
                 beyond = np.array([-BEYOND * (low < z), BEYOND * (high > z)], complex)
@@ -180,12 +182,14 @@ class _View:
         """Blocks in guides, bearings, and pins in the frame where no bearings are told."""
         for slider in self.machine.sliders:
             place = self.nodes[slider.link][slider.point]
-            for one in block():
-                yield Shape(one.role, one.places + place, 1j * one.offsets, one.closed)
+            for shape in block():
+                yield Shape(shape.role, shape.places + place, 1j * shape.offsets, shape.closed)
         for name, nodes in self.nodes.items():
-            held = [one.plane for one in self.machine.bearings.values() if one.link == name]
+            planes = [
+                bearing.plane for bearing in self.machine.bearings.values() if bearing.link == name
+            ]
             for point in (point for point in nodes if point in self.machine.frame):
-                for plane in held or [nodes[point].real]:
+                for plane in planes or [nodes[point].real]:
                     yield from pivot(complex(plane, nodes[point].imag))
 
     def _names(self) -> Iterator[Mark]:
@@ -201,9 +205,12 @@ class _View:
     def panel(self) -> Panel:
         """The view with its axes and names."""
         places = [node for nodes in self.nodes.values() for node in nodes.values()]
-        places += [*self.loose, *(one.plane + 1j * 0 for one in self.machine.bearings.values())]
+        places += [
+            *self.loose,
+            *(bearing.plane + 1j * 0 for bearing in self.machine.bearings.values()),
+        ]
         every = np.concatenate(
-            [places, *(one.places for one in (*self.solids, *self.rooms, *self.pushing))]
+            [places, *(solid.places for solid in (*self.solids, *self.rooms, *self.pushing))]
         )
         low, high = (complex(end(every.real), end(every.imag)) for end in (np.min, np.max))
         room = ROOM * abs(high - low) * (1 + 1j)

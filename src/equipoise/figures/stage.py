@@ -168,27 +168,27 @@ class Stage:
         """What is to be said of the support, its movement and the force, and its colour."""
         swing = self.scene.swing
         said = (*rows_told(self.scene), *beyond(self.scene), *(() if swing is None else swing.told))
-        found = [(words, "ink") for words in said]
+        pairs = [(words, "ink") for words in said]
         if self.arrow is not None:
             peak = quantity(float(abs(self.arrow.force).max()), "force")
             words = say("shaking force, at most {peak}", peak=peak)
             if self.arrow.of_one:
                 words = say("shaking force of one row, at most {peak}", peak=peak)
-            found.append((words, "stress"))
-        return found
+            pairs.append((words, "stress"))
+        return pairs
 
     @cached_property
     def lines(self) -> list[tuple[str, str]]:
         """The same in lines from below; the first is empty where none fits beside the ruler."""
-        found = []
+        result = []
         for words, color in self.told:
             size = width_of(words, self.size_of_type) / len(words)
             parts = wrap(words, max(1, int((self.width - 24 * self.unit) / size)))
-            found += [(part, color) for part in parts]
+            result += [(part, color) for part in parts]
         beside = (1 - RULER) * self.width - 36 * self.unit - width_of("500 mm ", self.size_of_type)
-        if found and width_of(found[-1][0], self.size_of_type) > beside:
-            found.append(("", "ink"))
-        return found[::-1]
+        if result and width_of(result[-1][0], self.size_of_type) > beside:
+            result.append(("", "ink"))
+        return result[::-1]
 
     @property
     def row(self) -> float:
@@ -214,14 +214,14 @@ class Stage:
     def links(self) -> Array:
         """Pixels along the edges of links at some instants."""
         at = self.chosen[:: max(1, len(self.chosen) // SOME)] % len(self.scene.crank_angle)
-        found = [np.zeros(0, complex)]
+        values = [np.zeros(0, complex)]
         for body in self.scene.bodies:
             corners = [
                 self.at(self.scene.swung(self.scene.places[name])[at]) for name in body.outline
             ]
             for start, end in pairwise((*corners, corners[0])):
-                found += [start + (end - start) * part for part in np.linspace(0, 1, SOME)]
-        return np.concatenate(found)
+                values += [start + (end - start) * part for part in np.linspace(0, 1, SOME)]
+        return np.concatenate(values)
 
     def way(self, point: str) -> Array:
         """Pixels through which a point goes, as many as a smooth line needs."""
@@ -257,23 +257,23 @@ def rows_told(scene: Scene) -> list[str]:
     """Which rows of several are drawn how."""
     rows = scene.rows
     parts = [say("{rows}: as drawn", rows=rows_named(rows.drawn))] if rows.drawn else []
-    for one in rows.others:
-        told = {"rows": rows_named(one.numbers), "phase": f"{np.degrees(one.phase):.4g}°"}
-        if not one.places:
-            parts.append(say("{rows}: beside the drawing, {phase} ahead", **told))
-        elif one.phase:
-            parts.append(say("{rows}: pale, {phase} ahead", **told))
+    for part in rows.others:
+        text = {"rows": rows_named(part.numbers), "phase": f"{np.degrees(part.phase):.4g}°"}
+        if not part.places:
+            parts.append(say("{rows}: beside the drawing, {phase} ahead", **text))
+        elif part.phase:
+            parts.append(say("{rows}: pale, {phase} ahead", **text))
         else:
-            parts.append(say("{rows}: pale", **told))
+            parts.append(say("{rows}: pale", **text))
     return [say("; ").join(parts)] if parts else []
 
 
 def rows_named(numbers: tuple[int, ...]) -> str:
     """Such as ``rows 2, 3``."""
-    told = ", ".join(map(str, numbers))
+    text = ", ".join(map(str, numbers))
     if len(numbers) == 1:
-        return say("row {number}", number=told)
-    return say("rows {numbers}", numbers=told)
+        return say("row {number}", number=text)
+    return say("rows {numbers}", numbers=text)
 
 
 def beyond(scene: Scene) -> list[str]:
@@ -287,13 +287,13 @@ def beyond(scene: Scene) -> list[str]:
     for items in (carrier.support.mounts, carrier.support.gauges):
         for place, names in carrier.named(items).items():
             places[place] = places.get(place, []) + names
-    told = []
+    text = []
     for place, names in places.items():
         if not scene.shows(place):
             axis = Axis.of("", "length", [place])
             at = f"({axis.told(place.real)}, {axis.told(place.imag)}) {axis.unit_name}"
-            told.append(f"{', '.join(names)} {at}")
-    return [say("Beyond the drawing: {items}", items="; ".join(told))] if told else []
+            text.append(f"{', '.join(names)} {at}")
+    return [say("Beyond the drawing: {items}", items="; ".join(text))] if text else []
 
 
 def width_of(text: str, size: float) -> float:

@@ -84,26 +84,26 @@ def speed_axis(sweep: Sweep) -> Axis:
 
 def bands(sweep: Sweep) -> tuple[Band, ...]:
     """The speeds to keep away from, loud resonances darker."""
-    found = []
+    result = []
     for loud, role in ((False, "quiet band"), (True, "loud band")):
         spans = [
             (abs(r.avoid[0]), abs(r.avoid[1]))
             for r in sweep.resonances
             if r.avoid is not None and r.is_loud == loud
         ]
-        found += [Band(low, high, role) for low, high in merged(spans)]
-    return tuple(found)
+        result += [Band(low, high, role) for low, high in merged(spans)]
+    return tuple(result)
 
 
 def merged(spans: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
     """Spans that do not overlap, and cover the same."""
-    found: list[tuple[float, float]] = []
+    pairs: list[tuple[float, float]] = []
     for low, high in sorted((min(span), max(span)) for span in spans):
-        if found and low <= found[-1][1]:
-            found[-1] = (found[-1][0], max(high, found[-1][1]))
+        if pairs and low <= pairs[-1][1]:
+            pairs[-1] = (pairs[-1][0], max(high, pairs[-1][1]))
         else:
-            found.append((low, high))
-    return found
+            pairs.append((low, high))
+    return pairs
 
 
 def fraction(order: float) -> str:
@@ -115,16 +115,16 @@ def peaks(axis: Axis, speed: Array, found: Sequence[SpeedCurve]) -> tuple[Mark, 
     """Value and speed at the highest places of the loudest of the named curves."""
     marks: list[Mark] = []
     named = [*enumerate(found[: len(KINDS)])]
-    for number, one in sorted(named, key=lambda pair: -pair[1].largest)[:PEAKS]:
-        if not one.largest or np.nanmax(one.values) > one.largest:
+    for number, item in sorted(named, key=lambda pair: -pair[1].largest)[:PEAKS]:
+        if not item.largest or np.nanmax(item.values) > item.largest:
             continue
-        k, size = int(np.nanargmax(one.values)), one.largest
+        k, size = int(np.nanargmax(item.values)), item.largest
         at, role, text = float(speed[k]), f"kind {number}", ""
         if any(mark.x == at and abs(size - mark.y) < ALIKE * size for mark in marks):
             continue
         if 0 < k < len(speed) - 1:
-            told = {"value": axis.told(size), "speed": shown(at * RPM.factor)}
-            text = say("{value} at {speed} rpm", **told)
+            statement = {"value": axis.told(size), "speed": shown(at * RPM.factor)}
+            text = say("{value} at {speed} rpm", **statement)
         marks.append(Mark(at, size, text, role, 20.0, sign=False, optional=bool(marks)))
     return tuple(mark for mark in marks if mark.text)
 
@@ -132,8 +132,8 @@ def peaks(axis: Axis, speed: Array, found: Sequence[SpeedCurve]) -> tuple[Mark, 
 def own_speed(sweep: Sweep) -> tuple[Line, ...]:
     """A line at the speed of the machine, where that is in the range."""
     at, (low, high) = abs(sweep.machine.drive.speed), sorted(np.abs(sweep.speed[[0, -1]]))
-    told = say("work, {speed} rpm", speed=shown(at * RPM.factor))
-    return (Line(at, "work", told),) if low <= at <= high else ()
+    text = say("work, {speed} rpm", speed=shown(at * RPM.factor))
+    return (Line(at, "work", text),) if low <= at <= high else ()
 
 
 def at_work(axis: Axis, sweep: Sweep, found: Sequence[SpeedCurve]) -> Iterator[Mark]:
@@ -141,8 +141,8 @@ def at_work(axis: Axis, sweep: Sweep, found: Sequence[SpeedCurve]) -> Iterator[M
     least, most = ends(axis)
     for line in own_speed(sweep):
         k = int(np.argmin(np.abs(np.abs(sweep.speed) - line.at)))
-        for number, one in enumerate(found[: len(KINDS)]):
-            value = float(one.values[k])
+        for number, item in enumerate(found[: len(KINDS)]):
+            value = float(item.values[k])
             if least <= value <= most:
                 text, role = axis.told(value), f"kind {number}"
                 yield Mark(line.at, value, text, role, 30.0, optional=True)
@@ -182,10 +182,10 @@ def mounts(sweep: Sweep) -> Chart:
     what = say("Force in the mounts")
     if handed:
         names = [curve.label for curve in panels[0].curves if curve.label in handed]
-        found = ordered(handed)  # as the first panel has them, if it has all
+        speed_curves = ordered(handed)  # as the first panel has them, if it has all
         if len(names) == len(handed):
-            found = [SpeedCurve(name, handed[name]) for name in names]
-        panels.append(_panel(sweep, say("transmissibility"), "", False, found))
+            speed_curves = [SpeedCurve(name, handed[name]) for name in names]
+        panels.append(_panel(sweep, say("transmissibility"), "", False, speed_curves))
         what += "; " + say("transmissibility: its RMS over the shaking force's")
     return _chart(sweep, "mounts", what, panels)
 
@@ -194,7 +194,7 @@ def _panel(
     sweep: Sweep, label: str, quantity: str, rotation: bool, found: Sequence[SpeedCurve]
 ) -> Panel:
     """Curves over one axis; where it is a quantity, with their highest peaks."""
-    heard = np.concatenate([bounded(one.values) for one in found])
+    heard = np.concatenate([bounded(item.values) for item in found])
     speed = np.abs(sweep.speed)
     y = Axis(label)
     if quantity:
@@ -254,9 +254,9 @@ def resonance_map(sweep: Sweep) -> Chart:
     for number, mode in enumerate(sweep.modes, 1):
         if mode.swings:
             at = 2 * pi * mode.cycles_per_second
-            told = {"number": number, "frequency": shown(mode.cycles_per_second)}
+            statement = {"number": number, "frequency": shown(mode.cycles_per_second)}
             lines.append(Line(at, "mode", axis="y"))
-            asides.append(Aside(at, say("mode {number}: {frequency} Hz", **told), "mode"))
+            asides.append(Aside(at, say("mode {number}: {frequency} Hz", **statement), "mode"))
     for order in _orders(sweep):
         curves.append(Curve(np.array([low, high]), order * np.array([low, high]), "", "order"))
         if order * high <= top:

@@ -49,13 +49,13 @@ def swinging(scene: Scene, response: Response, factor: float | None = None) -> S
     reach = _reach(scene, values)
     if factor is None:
         factor = _round(SEEN * _size(scene) / reach) if reach else 1.0
-    told = [say("movement of the support {factor} times as large", factor=shown(factor))]
+    texts = [say("movement of the support {factor} times as large", factor=shown(factor))]
     if factor == 1:
-        told = [say("movement of the support to scale")]
+        texts = [say("movement of the support to scale")]
     sizes = [f"{say(ACROSS[name])} {size}" for name, size in _across(scene, values, reach)]
     if sizes:
-        told.append(say("across the drawing, not shown: {sizes}", sizes=", ".join(sizes)))
-    return _with(scene, factor * values, told)
+        texts.append(say("across the drawing, not shown: {sizes}", sizes=", ".join(sizes)))
+    return _with(scene, factor * values, texts)
 
 
 def moving(analysis: Analysis, factor: float | None = None) -> tuple[Scene, EquipoiseError | None]:
@@ -100,11 +100,11 @@ class ModeSwing:
         in_plane = np.zeros_like(values)
         in_plane[planar] = values[planar]
         seen = _reach(scene, in_plane) > LEAST * reach
-        told = [say("Mode {number}: {told}", number=number, told=described(mode))]
+        texts = [say("Mode {number}: {told}", number=number, told=described(mode))]
         if across:
             names = ", ".join(say(ACROSS[name]) for name in across)
-            told.append(say("across the drawing, not shown: {sizes}", sizes=names))
-        return cls(whole * (SEEN * _size(scene) / reach), tuple(across), seen, tuple(told))
+            texts.append(say("across the drawing, not shown: {sizes}", sizes=names))
+        return cls(whole * (SEEN * _size(scene) / reach), tuple(across), seen, tuple(texts))
 
 
 def _phases(instants: int) -> Array:

@@ -75,9 +75,9 @@ def determinant_charts(chart: DeterminantChart, modes: ToolModes) -> dict[str, C
                 title="" if modes.alike else plane_named(plane, alike=False),
             )
         )
-    told = say("both planes") if modes.alike else say("by planes")
+    text = say("both planes") if modes.alike else say("by planes")
     what = say(
-        "Characteristic function D without damping, {planes}; its zeros are the modes", planes=told
+        "Characteristic function D without damping, {planes}; its zeros are the modes", planes=text
     )
     return {"determinant": Chart("determinant", modes.tool.title, what, tuple(panels))}
 
@@ -160,18 +160,20 @@ def _turns_axis(scale: float, top: float) -> Axis:
     powers = 10.0 ** np.arange(np.floor(np.log10(highest)), np.floor(np.log10(highest)) - 4, -1)
     for digits in ROUNDEST:
         for number in np.multiply.outer(powers, digits).ravel().tolist():
-            far = all(abs(place(number) - place(one)) >= APART * top for one in chosen)
+            far = all(abs(place(number) - place(item)) >= APART * top for item in chosen)
             if number <= highest and far:
                 chosen.append(number)
-    ticks = tuple((place(one), turns_told(one / RPM.factor)) for one in sorted(chosen))
+    ticks = tuple((place(item), turns_told(item / RPM.factor)) for item in sorted(chosen))
     unit = Display("1/min", 1.0)
     return Axis(say("natural frequency"), unit, low=0.0, high=top, ticks=ticks)
 
 
 def _parameter_axis(top: float) -> Axis:
     """The same in lambda, by steps of which there are nine at most."""
-    step = next(one for one in STEPS if top <= 9 * one)
-    return Axis("λ", ticks=tuple((one, f"{one:g}") for one in np.arange(0.0, top, step).tolist()))
+    step = next(step for step in STEPS if top <= 9 * step)
+    return Axis(
+        "λ", ticks=tuple((item, f"{item:g}") for item in np.arange(0.0, top, step).tolist())
+    )
 
 
 def _lines(variation: Variation, x: Axis, top: float) -> Iterator[Line]:
@@ -223,8 +225,8 @@ def design(found: ToolDesign) -> Chart:
     marks = (*hand_peaks(found.better, found.speed, after, y), *work_mark(work, y, above=False))
     curves = (*old, *curves_of(found.speed, after))
     panel = Panel(x, y, curves, marks, lines=work, height=209.0)
-    one = found.figures[MEASURES.index("rms" if plan is None else plan.measure)]
-    what = f"{figure_named(one)}: {shown(one.before)} → {shown(one.after)} m/s²"
+    figure = found.figures[MEASURES.index("rms" if plan is None else plan.measure)]
+    what = f"{figure_named(figure)}: {shown(figure.before)} → {shown(figure.after)} m/s²"
     keys = (("dashed ink", say("before")), ("ink", say("after")))
     return Chart("design", found.tool.title, what, (panel,), keys=keys)
 
@@ -232,13 +234,13 @@ def design(found: ToolDesign) -> Chart:
 def changes_told(found: ToolDesign) -> list[str]:
     """What was changed but is not moved, in words; where they are many, the first of them."""
     every = zip(found.variables, found.edges, strict=True)
-    told = [(one, edge) for one, edge in every if one.dimension != "length"]
-    words, count = [], len(told)
-    for one, edge in told:
-        axis = Axis("", number_unit(one.dimension))
-        ends = f"{axis.told(one.before)} → {axis.quantity(one.after)}"
+    values = [(item, edge) for item, edge in every if item.dimension != "length"]
+    words, count = [], len(values)
+    for entry, edge in values:
+        axis = Axis("", number_unit(entry.dimension))
+        ends = f"{axis.told(entry.before)} → {axis.quantity(entry.after)}"
         end = f" ({say(ALLOWED[edge])})" if edge else ""
-        words.append(f"{figure_named(one)}: {ends}{end}")
+        words.append(f"{figure_named(entry)}: {ends}{end}")
     if count <= MOST_CHANGES:
         return words
     return [*words[: MOST_CHANGES - 1], say("and {count} more", count=count - MOST_CHANGES + 1)]

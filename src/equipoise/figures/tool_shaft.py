@@ -91,14 +91,16 @@ def station_flags(tool: Tool) -> tuple[PlaceLabel, ...]:
     """Names of the stations; where there are too many, of those that matter most."""
 
     def weight(station: Station) -> tuple[bool, bool, float]:
-        shaken = any(one.station == station.name for one in tool.excitations)
-        return kind_of(station) != "station", shaken, station.mass
+        is_so = any(excitation.station == station.name for excitation in tool.excitations)
+        return kind_of(station) != "station", is_so, station.mass
 
     chosen = sorted(tool.stations, key=weight, reverse=True)[:MOST_NAMES]
     ranked = sorted(chosen, key=lambda one: one.position)
     return tuple(
-        PlaceLabel(one.position, (short(one.name, LONGEST),), 1.0 + len(chosen) - chosen.index(one))
-        for one in ranked
+        PlaceLabel(
+            item.position, (short(item.name, LONGEST),), 1.0 + len(chosen) - chosen.index(item)
+        )
+        for item in ranked
     )
 
 
@@ -115,7 +117,7 @@ def shapes(modes: ToolModes, plane: int) -> Iterator[Chart]:
     """Shapes without damping in one plane, some in each picture: Fig. 5 of Nagamine and Irie."""
     every = range(len(modes.planes[plane].frequency))
     name = "modes-lateral" if plane else "modes"
-    told = f"{say('Shapes of free vibration without damping')}, {plane_named(plane, modes.alike)}"
+    label = f"{say('Shapes of free vibration without damping')}, {plane_named(plane, modes.alike)}"
     kinds = {kind_of(station) for station in modes.tool.stations}
     keys = (
         ("shape", say("one end of the swing")),
@@ -126,7 +128,7 @@ def shapes(modes: ToolModes, plane: int) -> Iterator[Chart]:
     for suffix, numbers in groups(every, MOST_SHAPES):
         panels = [_shape(modes, modes.planes[plane], k) for k in numbers]
         panels[0] = replace(panels[0], flags=station_flags(modes.tool))
-        what = told + continued(numbers, every)
+        what = label + continued(numbers, every)
         yield Chart(name + suffix, modes.tool.title, what, tuple(panels), keys=keys)
 
 
@@ -134,8 +136,8 @@ def _shape(modes: ToolModes, found: PlaneModes, number: int) -> Panel:
     """One shape with its stations and nodes; its number at the left, its figures at the right."""
     shape, x = found.shapes[number], modes.places
     marks = [
-        Mark(one.position, float(np.interp(one.position, x, shape)), "", kind_of(one))
-        for one in modes.tool.stations
+        Mark(station.position, float(np.interp(station.position, x, shape)), "", kind_of(station))
+        for station in modes.tool.stations
     ]
     marks += [
         Mark(float(node), 0.0, f"{MM * node:.0f}", "node", optional=True, near=5.0)
@@ -181,23 +183,23 @@ def moment(response: ToolResponse, speed: float | None) -> Chart:
     """RMS of the bending moment, and the shape of each order when it is largest."""
     tool = response.tool
     speed = speed_shown(response) if speed is None else speed
-    one = respond_tool(tool, speed)
+    tool_response = respond_tool(tool, speed)
     at = np.array([station.position for station in tool.stations])  # and both sides of each
     places = np.concatenate([np.linspace(0.0, tool.shaft.length, POINTS), at, at - BEFORE])
     places = np.unique(np.clip(places, 0.0, tool.shaft.length))
-    line = one.line(places)
+    line = tool_response.line(places)
     size = np.max(np.sum(np.abs(line.moment[..., 0]) ** 2, axis=1), axis=0)
     loudest = [int(k) for k in np.argsort(-size, kind="stable")[:MOST_ORDERS]]
-    drawn = _displaced(line, loudest)
+    displaced = _displaced(line, loudest)
     keys = [("strong", say("all orders, root of squares"))]
     for role, k in zip(ORDER_ROLES, loudest, strict=False):
-        keys.append((role, say("order {order}", order=shown(float(one.orders[k])))))
-    if {plane for _, plane in drawn} == {0, 1}:
+        keys.append((role, say("order {order}", order=shown(float(tool_response.orders[k])))))
+    if {plane for _, plane in displaced} == {0, 1}:
         keys.append(("other end", say("lateral plane")))
     what = say("RMS of the bending moment, and shape of each order when it is largest")
-    told = f"{what}; {turns_told(speed)} rpm"
-    panels = _moments(tool, places, line, loudest), _shapes_of_orders(tool, places, drawn)
-    return Chart("moment", tool.title, told, panels, keys=tuple(keys))
+    text = f"{what}; {turns_told(speed)} rpm"
+    panels = _moments(tool, places, line, loudest), _shapes_of_orders(tool, places, displaced)
+    return Chart("moment", tool.title, text, panels, keys=tuple(keys))
 
 
 def speed_shown(response: ToolResponse) -> float:
@@ -210,8 +212,8 @@ def speed_shown(response: ToolResponse) -> float:
     if response.tool.grips:
         felt = np.max([grip.a_hv for grip in grips(response).values()], axis=0)
     else:
-        moved = [np.abs(response.displacement(one.name)) for one in response.tool.stations]
-        felt = np.max([np.sum(one**2, axis=(0, 1)) for one in moved], axis=0)
+        moved = [np.abs(response.displacement(station.name)) for station in response.tool.stations]
+        felt = np.max([np.sum(item**2, axis=(0, 1)) for item in moved], axis=0)
     return float(speeds[highest_at(felt, smooth=False)])
 
 
@@ -222,14 +224,14 @@ def _displaced(line: ShaftLine, loudest: list[int]) -> dict[tuple[int, int], Arr
     """
     moved = line.displacement[..., 0]
     least = MATTERS * float(np.max(np.abs(moved)))
-    found: dict[tuple[int, int], Array] = {}
+    arrays: dict[tuple[int, int], Array] = {}
     for number, k in enumerate(loudest):
         vertical, lateral = (at_largest(moved[:, plane, k]) for plane in range(2))
         if np.max(np.abs(vertical)) > least:
-            found[number, 0] = vertical
+            arrays[number, 0] = vertical
         if np.max(np.abs(lateral)) > least and not np.allclose(lateral, vertical, atol=least):
-            found[number, 1] = lateral
-    return found
+            arrays[number, 1] = lateral
+    return arrays
 
 
 def at_largest(amplitude: Array) -> Array:

@@ -98,22 +98,22 @@ def _modes_chart(modes: ToolModes, panels: Sequence[Panel]) -> Chart:
 
 def _swinging(modes: ToolModes, k: int, phases: Array) -> list[Panel]:
     """Mode k of the vertical plane; phases (N,) : shares of its largest displacement."""
-    found = modes.planes[0]
-    frequency = shown(float(found.cycles_per_second[k]))
+    plane = modes.planes[0]
+    frequency = shown(float(plane.cycles_per_second[k]))
     title = say("mode {number}: {frequency} Hz", number=k + 1, frequency=frequency)
     swing = SWING * modes.tool.shaft.length * phases[:, None]
-    drawn = side_of(modes.tool, modes.places, swing * found.shapes[k])
-    panel = _panel(drawn, (), title)
-    return [replace(panel, signs=tuple(drawn.at(instant))) for instant in range(len(phases))]
+    tool_scene = side_of(modes.tool, modes.places, swing * plane.shapes[k])
+    panel = _panel(tool_scene, (), title)
+    return [replace(panel, signs=tuple(tool_scene.at(instant))) for instant in range(len(phases))]
 
 
 def side_design(found: ToolDesign) -> Chart:
     """``side-design``: the tool before and after, with arrows of what is moved along the shaft."""
     old = side_of(found.tool)
     moved = [
-        (one.position, other.position)
-        for one, other in zip(found.tool.stations, found.better.stations, strict=True)
-        if one.position != other.position
+        (station.position, other.position)
+        for station, other in zip(found.tool.stations, found.better.stations, strict=True)
+        if station.position != other.position
     ]
     before = _panel(old, _named(found.tool), say("before"))
     after = _panel(side_of(found.better), _named(found.better), say("after"), moved)
@@ -125,11 +125,15 @@ def side_design(found: ToolDesign) -> Chart:
 
 def _named(tool: Tool) -> tuple[PlaceLabel, ...]:
     """Stations with where they are."""
-    places = {one.name: quantity(one.position, "length", "mm") for one in tool.stations}
+    places = {station.name: quantity(station.position, "length", "mm") for station in tool.stations}
     by_label = {short(name, LONGEST): place for name, place in places.items()}
     return tuple(
-        PlaceLabel(one.at, (*one.texts, by_label[one.texts[0]]), one.weight)
-        for one in station_flags(tool)
+        PlaceLabel(
+            station_flag.at,
+            (*station_flag.texts, by_label[station_flag.texts[0]]),
+            station_flag.weight,
+        )
+        for station_flag in station_flags(tool)
     )
 
 

@@ -78,7 +78,7 @@ def mode_lines(frequency: Array, axis: Axis) -> tuple[tuple[Line, ...], tuple[Pl
     """Light lines where an engine's turns meet natural frequencies, rad/s, and their numbers."""
     low, high = ends(axis)
     every = enumerate(frequency.tolist(), 1)
-    inside = [(number, one) for number, one in every if low <= one <= high][:MOST_MODES]
+    inside = [(number, item) for number, item in every if low <= item <= high][:MOST_MODES]
     flags = tuple(PlaceLabel(at, (str(number),), 1 / number) for number, at in inside)
     return tuple(Line(at, "natural") for _, at in inside), flags
 
@@ -96,7 +96,7 @@ def transmission_charts(
 
 def transmission(found: Transmissions, plane: int, modes: ToolModes | None) -> Chart:
     """Force ratio and phase of every station that is held: Fig. 6 of Nagamine and Irie."""
-    curves = ordered({name: one.size[plane] for name, one in found.stations.items()})
+    curves = ordered({name: station.size[plane] for name, station in found.stations.items()})
     x = engine_axis(found.speed)
     lines, flags = mode_lines(np.empty(0) if modes is None else modes.planes[plane].frequency, x)
     low, high = log_ends(curves, 3.0, 2.0)
@@ -120,13 +120,13 @@ def transmission(found: Transmissions, plane: int, modes: ToolModes | None) -> C
     phases = Panel(
         x,
         Axis(say("phase"), DEGREES, low=-reach, high=reach, ticks=ticks),
-        tuple(_phase(found, one.name, number, plane) for number, one in enumerate(curves)),
+        tuple(_phase(found, curve.name, number, plane) for number, curve in enumerate(curves)),
         lines=(*lines, *work),
         height=97.0,
         zero=False,
     )
-    told = say("Force on the body under a unit force at {station}", station=short(found.source))
-    what = f"{told}, {plane_named(plane, found.tool.alike)}"
+    text = say("Force on the body under a unit force at {station}", station=short(found.source))
+    what = f"{text}, {plane_named(plane, found.tool.alike)}"
     name = "transmission-lateral" if plane else "transmission"
     return Chart(name, found.tool.title, what, (size, phases), keys=tuple(keys))
 
@@ -170,22 +170,24 @@ def acceleration(exposure: ToolExposure) -> Chart:
 def weighted(exposure: ToolExposure) -> Chart:
     """Weighted total value of each hand, with action and limit value for the time of work."""
     read = {name: grip.a_hv for name, grip in exposure.grips.items()}
-    allowed = {role: np.full(len(exposure.speed), one) for role, one in levels(exposure).items()}
+    allowed = {
+        role: np.full(len(exposure.speed), level) for role, level in levels(exposure).items()
+    }
     what = say("Weighted acceleration; dotted: action and limit value")
     chart = _of_hands(exposure, "exposure", read, allowed, what, say("total value a_hv"))
     over = say(VERDICTS["above the limit value"])
-    beyond = (np.where(one > allowed["limit"], one, np.nan) for one in read.values())
+    beyond = (np.where(item > allowed["limit"], item, np.nan) for item in read.values())
     stretches = tuple(
-        Curve(exposure.speed, one, over, "broken stretch")
-        for one in beyond
-        if not np.all(np.isnan(one))
+        Curve(exposure.speed, item, over, "broken stretch")
+        for item in beyond
+        if not np.all(np.isnan(item))
     )
     (panel,) = chart.panels
     chart = replace(chart, panels=(replace(panel, curves=(*panel.curves, *stretches)),))
     if exposure.worst is None or exposure.a8 is None:
         return chart
-    told = {"a8": shown(exposure.a8), "hand": short(exposure.worst)}
-    return replace(chart, what=f"{chart.what}; " + say("A(8) = {a8} m/s² at {hand}", **told))
+    text = {"a8": shown(exposure.a8), "hand": short(exposure.worst)}
+    return replace(chart, what=f"{chart.what}; " + say("A(8) = {a8} m/s² at {hand}", **text))
 
 
 def duration_of(exposure: ToolExposure) -> float:
@@ -230,7 +232,9 @@ def hand_peaks(tool: Tool, speed: Array, curves: Sequence[SpeedCurve], y: Axis) 
 
     Where nothing takes power there is no highest place.
     """
-    if not tool.damped and not any(one.hand and one.hand.impedance for one in tool.stations):
+    if not tool.damped and not any(
+        station.hand and station.hand.impedance for station in tool.stations
+    ):
         return
     for number, curve in enumerate(curves[: len(KINDS)]):
         k = int(np.nanargmax(curve.values))

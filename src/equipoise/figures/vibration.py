@@ -69,12 +69,12 @@ def response_charts(response: Response) -> dict[str, Chart]:
     ``gauge-NAME`` for each gauge and ``spectrum``; ``mounts`` where there are any; ``drive``.
     Many gauges or mounts go on in ``spectrum-2``, ``mounts-2`` and so on.
     """
-    drawn: dict[str, Chart] = {}
+    charts: dict[str, Chart] = {}
     for name in response.gauges:
-        own = free_name(f"gauge-{name}", drawn)
-        drawn[own] = gauge(response, name).named(own)
-    drawn |= {chart.name: chart for chart in (*spectra(response), *mounts(response))}
-    return drawn | {"drive": drive(response)}
+        own = free_name(f"gauge-{name}", charts)
+        charts[own] = gauge(response, name).named(own)
+    charts |= {chart.name: chart for chart in (*spectra(response), *mounts(response))}
+    return charts | {"drive": drive(response)}
 
 
 # -- signals over a period -------------------------------------------------------------------------
@@ -127,13 +127,13 @@ def gauge(response: Response, name: str) -> Chart:
 
 def drive(response: Response) -> Chart:
     """Torque of the drive and, where it varies, speed of the crank."""
-    found = response.drive
-    y = read_axis(say("drive torque"), "force", True, sampled(found.torque)[1], room=ROOM)
-    panels = [_with_mean(response, found.torque, found.torque_figures, y)]
-    if found.speed is not None:
-        title = say("varies by {share} % of its mean", share=shown(100 * found.fluctuation))
+    result = response.drive
+    y = read_axis(say("drive torque"), "force", True, sampled(result.torque)[1], room=ROOM)
+    panels = [_with_mean(response, result.torque, result.torque_figures, y)]
+    if result.speed is not None:
+        title = say("varies by {share} % of its mean", share=shown(100 * result.fluctuation))
         y = Axis.of(say("crank speed"), "angular speed", (), "rpm", room=ROOM)
-        panels.append(_with_mean(response, found.speed, found.speed.figures, y, title=title))
+        panels.append(_with_mean(response, result.speed, result.speed.figures, y, title=title))
     what = say("Drive of {link}", link=short(response.machine.drive.link))
     rows = len(response.machine.rows)
     what += ", " + say("{rows} rows together", rows=rows) if rows > 1 else ""
@@ -206,11 +206,11 @@ def mounts(response: Response) -> Iterator[Chart]:
     """Force in each mount over a period, beside what it carries at rest."""
     every = list(response.mounts)
     at_rest = _at_rest(response) if every else {}
-    beside = _largest(response, at_rest)
+    largest = _largest(response, at_rest)
     for suffix, names in groups(every):
         what = say("Force in the mounts on the support") + continued(names, every)
         what = f"{what}, {period_told(response)}"
-        panels = tuple(_mount(response, name, at_rest[name], beside) for name in names)
+        panels = tuple(_mount(response, name, at_rest[name], largest) for name in names)
         keys, columns = (("main", say("force")), ("mean", say("at rest"))), min(2, len(panels))
         yield Chart(f"mounts{suffix}", response.machine.title, what, panels, columns, keys=keys)
 
@@ -228,11 +228,11 @@ def _at_rest(response: Response) -> dict[str, float]:
 
 def _largest(response: Response, at_rest: Mapping[str, float]) -> dict[bool, float]:
     """Of all torques (True), and of all forces, so that each of these has one unit; SI units."""
-    found: dict[bool, float] = {}
+    values: dict[bool, float] = {}
     for name, mount in response.mounts.items():
         sizes = np.abs([*sampled(mount.force)[1], at_rest[name]])
-        found[mount.torsional] = max(found.get(mount.torsional, 0.0), float(np.max(sizes)))
-    return found
+        values[mount.torsional] = max(values.get(mount.torsional, 0.0), float(np.max(sizes)))
+    return values
 
 
 def _mount(response: Response, name: str, rest: float, largest: Mapping[bool, float]) -> Panel:
@@ -284,7 +284,7 @@ def _told_off(response: Response, mount: MountForce, off: list[tuple[float, floa
 
 def transient_charts(transient: Transient) -> dict[str, Chart]:
     """``gauges`` and ``mounts`` where there are any, ``speed`` where the crank's speed varies."""
-    found: dict[str, Chart] = {}
+    charts: dict[str, Chart] = {}
     support = transient.machine.support
     if support is not None:
         gauges = transient.gauges
@@ -292,10 +292,10 @@ def transient_charts(transient: Transient) -> dict[str, Chart]:
         own = {name: support.gauges[name].axis if support.gauges else name for name in gauges}
         turning = {name: axis in AXES for name, axis in own.items()}
         what = say("Displacement at the gauges")
-        found |= _in_time(transient, "gauges", what, "displacement", gauges, turning)
+        charts |= _in_time(transient, "gauges", what, "displacement", gauges, turning)
         turning = {name: mount.axis is not None for name, mount in support.mounts.items()}
         what = say("Force in the mounts on the support")
-        found |= _in_time(transient, "mounts", what, "force", transient.mounts, turning)
+        charts |= _in_time(transient, "mounts", what, "force", transient.mounts, turning)
     speed = transient.crank_speed
     if float(np.ptp(speed)) > VARIES * float(np.max(np.abs(speed))):
         what = say("Speed of {link}", link=short(transient.machine.drive.link))
@@ -303,8 +303,8 @@ def transient_charts(transient: Transient) -> dict[str, Chart]:
         panel = _time_panel(
             transient, Axis.of(say("crank speed"), "angular speed", (), "rpm", room=0.08), speed
         )
-        found["speed"] = Chart("speed", transient.machine.title, what, (panel,))
-    return found
+        charts["speed"] = Chart("speed", transient.machine.title, what, (panel,))
+    return charts
 
 
 def _in_time(
@@ -316,19 +316,19 @@ def _in_time(
     turning: Mapping[str, bool],
 ) -> dict[str, Chart]:
     """Signals below each other against time."""
-    every, drawn = list(read), {}
+    every, charts = list(read), {}
     for suffix, names in groups(every, MOST_IN_TIME):
         panels = []
-        for one in names:
-            values, which = read[one] + 0.0, (quantity, turning[one])
+        for item in names:
+            values, which = read[item] + 0.0, (quantity, turning[item])
             y = read_axis(say(LABELS[which]), *which, values, room=0.08)
             low, high = float(np.min(values)), float(np.max(values))
             ends = say("{low} to {high}", low=y.told(low), high=y.quantity(high))
-            panels.append(_time_panel(transient, y, values, title=f"{short(one, 40)}: {ends}"))
+            panels.append(_time_panel(transient, y, values, title=f"{short(item, 40)}: {ends}"))
         whole = f"{what}{continued(names, every)}, {_from_rest(transient)}"
         own = name + suffix
-        drawn[own] = Chart(own, transient.machine.title, whole, tuple(panels))
-    return drawn
+        charts[own] = Chart(own, transient.machine.title, whole, tuple(panels))
+    return charts
 
 
 def _time_panel(transient: Transient, y: Axis, values: Array, **rest: Any) -> Panel:

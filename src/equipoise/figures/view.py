@@ -84,8 +84,8 @@ def ends_of(axis: Axis, values: Iterable[Any]) -> tuple[float, float]:
         every = every[np.isfinite(every)]
         if axis.scale == "log":
             return _log_ends(every, low, high)
-        found = (float(np.min(every)), float(np.max(every))) if every.size else (0.0, 1.0)
-        least, most = low if low is not None else found[0], high if high is not None else found[1]
+        pair = (float(np.min(every)), float(np.max(every))) if every.size else (0.0, 1.0)
+        least, most = low if low is not None else pair[0], high if high is not None else pair[1]
         size = max(abs(least), abs(most))
         if most - least <= 1e-9 * size or not size:
             half = size / 2 or 1.0
@@ -149,11 +149,11 @@ def _round_ticks(scale: AxisScale, upright: bool) -> Ticks:
             first, last = ceil(scale.low / step - 1e-6), floor(scale.high / step + 1e-6)
             if last - first > MOST or step / (scale.high - scale.low) * scale.length < NEAREST:
                 continue
-            found = [(k * step, _written(k * step, step)) for k in range(first, last + 1)]
-            if _fits(scale, found, upright, free):
-                if len(found) >= FEWEST:
-                    return found
-                fewer = max(fewer, found, key=len)
+            ticks = [(k * step, _written(k * step, step)) for k in range(first, last + 1)]
+            if _fits(scale, ticks, upright, free):
+                if len(ticks) >= FEWEST:
+                    return ticks
+                fewer = max(fewer, ticks, key=len)
                 break
     return fewer
 
@@ -179,15 +179,15 @@ def _written(value: float, step: float) -> str:
 def _log_ticks(scale: AxisScale, upright: bool) -> Ticks:
     """Plain numbers, as few digits as give three of them; round ones where there are no decades."""
     powers = range(floor(log10(scale.low)), ceil(log10(scale.high)) + 1)
-    found: Ticks = []
+    result: Ticks = []
     for digits in MANTISSAS:
         places = sorted(digit * 10.0**power for power in powers for digit in digits)
         inside = [p for p in places if 0.999 * scale.low <= p <= 1.001 * scale.high]
         ticks = [(p, typeset(f"{p:.4g}")) for p in inside]
-        if found and len(found) >= FEWEST and not _log_fits(scale, ticks, upright):
-            return found
-        found = ticks
-    return found if len(found) >= FEWEST else _round_ticks(scale, upright)
+        if result and len(result) >= FEWEST and not _log_fits(scale, ticks, upright):
+            return result
+        result = ticks
+    return result if len(result) >= FEWEST else _round_ticks(scale, upright)
 
 
 def _log_fits(scale: AxisScale, ticks: Ticks, upright: bool) -> bool:

@@ -42,22 +42,22 @@ def made(job: Job) -> bytes:
     """
     from matplotlib.backends.backend_pdf import PdfPages
 
-    found = parts(job)
-    sheets = [_texts(job, part) for part in found]
+    result = parts(job)
+    sheets = [_texts(job, part) for part in result]
     if spoken() != "en" and fonts_for(frozenset("".join(map("".join, sheets))))[1]:
         job.leave_out(
             f"texts in {LANGUAGES[spoken()]}, for which this computer has no font; they are in "
             "English; install one such as Noto Sans CJK"
         )
         with speaking("en"):
-            sheets = [_texts(job, part) for part in found]
+            sheets = [_texts(job, part) for part in result]
     out = io.BytesIO()
     about = {"CreationDate": None, "Title": str(job.machine.title)}
     with (
         settings(texts="".join(map("".join, sheets))),
         PdfPages(out, metadata=about) as pages,
     ):
-        for part, lines in zip(found, sheets, strict=True):
+        for part, lines in zip(result, sheets, strict=True):
             pages.savefig(_sheet(part, lines))
     return out.getvalue()
 
@@ -92,8 +92,8 @@ def _sheet(part: Part, lines: Sequence[str]) -> Figure:
     axes.set_xlim(center.real - half.real, center.real + half.real)
     axes.set_ylim(center.imag - half.imag, center.imag + half.imag)
     for edges in part.edges:
-        for (one, bulge), (other, _) in zip(edges, (*edges[1:], edges[0]), strict=True):
-            places = MM * along(one, other, bulge, 181 if bulge else 2)
+        for (item, bulge), (other, _) in zip(edges, (*edges[1:], edges[0]), strict=True):
+            places = MM * along(item, other, bulge, 181 if bulge else 2)
             axes.plot(places.real, places.imag, color=INK, linewidth=1.0)
     if part.arcs:
         _angle(axes, part, scale)
@@ -146,7 +146,7 @@ def _radii(axes: Axes, part: Part, scale: float) -> None:
     for number, curve in enumerate(part.curves):
         center, radius = MM * curve.center, MM * curve.radius
         end = center + rect(radius, curve.direction if not curve.whole else pi / 4 + number * 0.5)
-        widest = not curve.whole and curve.radius == max(one.radius for one in part.curves)
+        widest = not curve.whole and curve.radius == max(curve.radius for curve in part.curves)
         outward = -1.5 if widest else 1.0  # away from the measures of the height
         text_at = end + rect(6.0 * scale, float(np.angle(outward * (end - center))))
         axes.annotate(

@@ -95,8 +95,13 @@ def model_blocks(tool: Tool) -> Iterator[Block]:
     """Shaft, stations, and what shakes."""
     yield from summary_blocks(tool)
     rows = tuple(
-        (one.name, Value(one.position), Value(one.mass), say(", ").join(_holds(one)))
-        for one in tool.stations
+        (
+            station.name,
+            Value(station.position),
+            Value(station.mass),
+            say(", ").join(_holds(station)),
+        )
+        for station in tool.stations
     )
     columns = (
         Column(""),
@@ -107,7 +112,8 @@ def model_blocks(tool: Tool) -> Iterator[Block]:
     yield Table(say("Stations of the shaft"), columns, rows)
     if tool.excitations:
         shakes = tuple(
-            (one.name or one.file, one.station, Value(one.ratio)) for one in tool.excitations
+            (excitation.name or excitation.file, excitation.station, Value(excitation.ratio))
+            for excitation in tool.excitations
         )
         named = (say("source"), say("station"), say("turns a turn of the engine"))
         yield Table(say("What shakes the tool"), tuple(map(Column, named)), shakes)
@@ -126,7 +132,7 @@ def _holds(station: Station) -> Iterator[str]:
 
 def unbounded(tool: Tool) -> Iterator[Block]:
     """What to know of peaks where nothing takes power."""
-    measured = any(one.hand is not None and one.hand.impedance for one in tool.stations)
+    measured = any(station.hand is not None and station.hand.impedance for station in tool.stations)
     if not (tool.damped or measured):
         template = to_say(
             "nothing takes power from this tool, so at its resonances there is no bound; peaks "
@@ -225,10 +231,12 @@ def transmissions_blocks(found: Transmissions) -> Iterator[Block]:
     labels = (say("peaks, the largest first"), say("quiet between them"))
     columns = (Column(""), *(Column(label, at=RPM) for label in labels))
     sides = [say("both planes")] if found.tool.alike else [say(SIDES[side]) for side in PLANES]
-    for name, one in found.stations.items():
-        rows = tuple((label, *_peaks(found.speed, one, plane)) for plane, label in enumerate(sides))
-        told = {"station": name, "source": found.source}
-        title = say("Force at {station} over a force at {source}, once a turn; at speeds", **told)
+    for name, station in found.stations.items():
+        rows = tuple(
+            (label, *_peaks(found.speed, station, plane)) for plane, label in enumerate(sides)
+        )
+        text = {"station": name, "source": found.source}
+        title = say("Force at {station} over a force at {source}, once a turn; at speeds", **text)
         yield Table(title, columns, rows)
 
 
@@ -247,7 +255,7 @@ def _peaks(speed: Array, one: Transmission, plane: int) -> tuple[Cell, Cell]:
 
 def _stations(found: ToolSweep) -> Table:
     """The speed at which each station is accelerated most, and what it does there."""
-    named = [(one.name, one.position) for one in found.tool.stations]
+    named = [(station.name, station.position) for station in found.tool.stations]
     named += [("", place) for place in found.further]
     at = found.places([place for _, place in named])
     largest = float(np.max(found.largest_moment[0]))
@@ -275,12 +283,14 @@ def _stations(found: ToolSweep) -> Table:
 
 def _forces(found: ToolSweep) -> Block:
     rows: list[tuple[Cell, ...]] = []
-    for one in found.tool.stations:
-        powers = found.power(one.name)
-        for part, force in found.force(one.name).items():
+    for station in found.tool.stations:
+        powers = found.power(station.name)
+        for part, force in found.force(station.name).items():
             k = int(highest_at(force, smooth=False))
             largest = Value(float(force[k]), at=float(found.speed[k]))
-            rows.append((one.name, say(part), largest, Value(float(np.max(powers[part])), 1e-6)))
+            rows.append(
+                (station.name, say(part), largest, Value(float(np.max(powers[part])), 1e-6))
+            )
     if not rows:
         return Text(say("Nothing holds the tool."))
     columns = (Column(""), Column(""), column(say("force"), "force"), column(say("power"), "power"))
@@ -293,7 +303,7 @@ def _forces(found: ToolSweep) -> Block:
 def response_blocks(found: ToolResponse) -> Iterator[Block]:
     """What every station does at each speed that was computed, at most some of them."""
     step = -(-len(found.speed) // MOST_ROWS)
-    names = [one.name for one in found.tool.stations]
+    names = [station.name for station in found.tool.stations]
     rms = [rms_over_time(found.acceleration(name)) for name in names]
     rows = tuple(
         tuple(Value(float(row[k])) for row in (found.speed, *rms))

@@ -67,11 +67,15 @@ class Search(DesignProblem):
     ) -> None:
         self.solvers = (QuadraticPrograms(told, starts),)
         self.tool, self.design, self.band = tool, design, SpeedBand(tool, speed, LEAST)
-        self.numbers: list[Number] = [(one.station, one.key) for one in design.variables]
-        self.low = np.array([one.low for one in self.spreads])
-        self.wide = np.array([one.high for one in self.spreads]) - self.low
-        self.hands = design.hands or tuple(one.name for one in tool.grips)
-        forces = (one.station for one in design.limits if one.output == "force" and one.station)
+        self.numbers: list[Number] = [
+            (variable.station, variable.key) for variable in design.variables
+        ]
+        self.low = np.array([spread.low for spread in self.spreads])
+        self.wide = np.array([spread.high for spread in self.spreads]) - self.low
+        self.hands = design.hands or tuple(grip.name for grip in tool.grips)
+        forces = (
+            limit.station for limit in design.limits if limit.output == "force" and limit.station
+        )
         self.held = tuple(dict.fromkeys(forces))
         self.start = values_of(tool, self.numbers)
         self._seen: tuple[bytes, Any] = (b"", None)
@@ -80,10 +84,10 @@ class Search(DesignProblem):
         """Measures (M,), of which the largest counts, and limits (C,), each at most 1."""
         key = np.ascontiguousarray(place).tobytes()
         if self._seen[0] != key:
-            found = self._at(self.low + self.wide * place, slopes)
+            pair = self._at(self.low + self.wide * place, slopes)
             if not slopes:
-                return found
-            self._seen = (key, found)
+                return pair
+            self._seen = (key, pair)
         kept: tuple[Dual, Dual] = self._seen[1]
         return kept
 
@@ -91,8 +95,8 @@ class Search(DesignProblem):
         felt = self.band.felt(self.numbers, values, self.held, slopes)
         squares = [felt.hands[name] for name in self.hands]
         if self.design.measure == "rms":
-            squares = [mean_over_band(one) for one in squares]
-        limits = [self._limit(one, felt, values) for one in self.design.limits]
+            squares = [mean_over_band(square) for square in squares]
+        limits = [self._limit(limit, felt, values) for limit in self.design.limits]
         return self._joined(squares), self._joined(limits)
 
     def _limit(self, limit: DesignLimit, felt: BandFigures, values: Array) -> Dual:
@@ -115,13 +119,13 @@ class Search(DesignProblem):
 
     @property
     def spreads(self) -> list[Range]:
-        return [Range(one.low, one.high) for one in self.design.variables]
+        return [Range(variable.low, variable.high) for variable in self.design.variables]
 
     def evaluate(self, places: Array) -> tuple[Array, Array]:
         """Measures (P, 1), and by how much the limits are passed, each over its own (P, 1)."""
-        found = [self.at(place, slopes=False) for place in places]
-        measures = [np.max(measure.value) for measure, _ in found]
-        beyond = [np.max(limits.value, initial=0.0) - 1 - WITHIN for _, limits in found]
+        values = [self.at(place, slopes=False) for place in places]
+        measures = [np.max(measure.value) for measure, _ in values]
+        beyond = [np.max(limits.value, initial=0.0) - 1 - WITHIN for _, limits in values]
         return np.array(measures)[:, None], np.array(beyond)[:, None]
 
     def measure(self, place: Array) -> float:
@@ -152,12 +156,12 @@ class QuadraticPrograms:
         ResponseError : nothing within the limits was found.
         """
         places = _promising(problem) if self.starts is None else self.starts
-        found = []
+        result = []
         for done, place in enumerate(places):
             self.told(done, len(places))
-            found.append(_downhill(problem, place))
-        ends = np.array(found)
-        values, beyond = (one[:, 0] for one in problem.evaluate(ends))
+            result.append(_downhill(problem, place))
+        ends = np.array(result)
+        values, beyond = (item[:, 0] for item in problem.evaluate(ends))
         if not np.any(beyond <= 0):
             raise ResponseError(NONE_WITHIN)
         values = np.where(beyond <= 0, values, np.inf)
@@ -194,8 +198,8 @@ def _downhill(problem: Search, place: Array) -> Array:
 
     def slopes(x: Array) -> Array:
         measures, limits = problem.at(x[:-1])
-        one = np.ones((measures.value.size, 1))
-        upper = np.hstack([-measures.slopes.T / unit, one])
+        values = np.ones((measures.value.size, 1))
+        upper = np.hstack([-measures.slopes.T / unit, values])
         lower = np.hstack([-limits.slopes.T, np.zeros((limits.value.size, 1))])
         return np.vstack([upper, lower])
 
@@ -272,13 +276,13 @@ class ToolDesign(Result):
     @cached_property
     def days(self) -> tuple[Exposure, Exposure] | None:
         """The day of the hand that gets most, before and after; None where no work is given."""
-        each = [days_of(one, self.tool.work) for one in (self.tool, self.better)]
+        each = [days_of(item, self.tool.work) for item in (self.tool, self.better)]
         before, after = (max(day.values(), key=lambda one: one.a8, default=None) for day in each)
         return None if before is None or after is None else (before, after)
 
     def to_dict(self) -> dict[str, Any]:
         """As plain values in SI units."""
-        a8 = (None, None) if self.days is None else tuple(one.a8 for one in self.days)
+        a8 = (None, None) if self.days is None else tuple(day.a8 for day in self.days)
 
         def told(rows: Iterable[Before]) -> dict[str, Any]:
             return {row.name: {"before": row.before, "after": row.after} for row in rows}
@@ -338,17 +342,17 @@ def _found(search: Search, best: Array, solution: DesignSolution) -> ToolDesign:
     tool, design = search.tool, search.design
     values = search.low + search.wide * best
     better = tool
-    for one, value in zip(design.variables, values, strict=True):
-        handy = min(max(float(f"{value:.{DIGITS}g}"), one.low), one.high)
-        better = changed(better, one.station, one.key, handy)
+    for entry, value in zip(design.variables, values, strict=True):
+        handy = min(max(float(f"{value:.{DIGITS}g}"), entry.low), entry.high)
+        better = changed(better, entry.station, entry.key, handy)
     after = values_of(better, search.numbers)
     rows = tuple(
-        Before(one.name, KEYS[one.key], float(start), float(end))
-        for one, start, end in zip(design.variables, search.start, after, strict=True)
+        Before(variable.name, KEYS[variable.key], float(start), float(end))
+        for variable, start, end in zip(design.variables, search.start, after, strict=True)
     )
     speed = search.band.speed
     edges = ("lowest" if at < EDGE else "highest" if at > 1 - EDGE else "" for at in best.tolist())
-    a_hv = np.array([np.max(_curves(one, speed, search.hands), axis=0) for one in (tool, better)])
+    a_hv = np.array([np.max(_curves(item, speed, search.hands), axis=0) for item in (tool, better)])
     figures = tuple(_figures(search, better))
     return ToolDesign(
         tool=tool,
@@ -367,8 +371,8 @@ def _found(search: Search, best: Array, solution: DesignSolution) -> ToolDesign:
 
 def _curves(tool: Tool, speed: Array, hands: Iterable[str]) -> list[Array]:
     """a_hv of each hand (S,), m/s2."""
-    found = grips(respond_tool(tool, speed))
-    return [found[name].a_hv for name in hands]
+    result = grips(respond_tool(tool, speed))
+    return [result[name].a_hv for name in hands]
 
 
 def _figures(search: Search, better: Tool) -> Iterable[Before]:
@@ -381,23 +385,25 @@ def _figures(search: Search, better: Tool) -> Iterable[Before]:
     for tool in (search.tool, better):
         speed = speeds_between(tool, low, high, len(search.band.speed))
         curves = dict(zip(search.hands, _curves(tool, speed, search.hands), strict=True))
-        squares = {name: np.trapezoid(one**2, speed) / (high - low) for name, one in curves.items()}
-        means.append({name: float(np.sqrt(one)) for name, one in squares.items()})
-        tops.append({name: float(np.max(one)) for name, one in curves.items()})
+        squares = {
+            name: np.trapezoid(curve**2, speed) / (high - low) for name, curve in curves.items()
+        }
+        means.append({name: float(np.sqrt(square)) for name, square in squares.items()})
+        tops.append({name: float(np.max(curve)) for name, curve in curves.items()})
     rms, top, both = to_say("RMS over the band"), to_say("largest"), to_say("{what}, {measure}")
-    for said, found in (
+    for said, result in (
         (Note(to_say("total value a_hv of the worst hand, RMS over the band")), means),
         (Note(to_say("total value a_hv of the worst hand, largest")), tops),
     ):
-        yield _before(said, "acceleration", *(max(one.values()) for one in found))
+        yield _before(said, "acceleration", *(max(item.values()) for item in result))
     for name in search.hands if len(search.hands) > 1 else ():
         what = Note(to_say("total value a_hv at {station}"), station=name)
-        for measure, found in ((rms, means), (top, tops)):
+        for measure, result in ((rms, means), (top, tops)):
             said = Note(both, what=what, measure=Note(measure))
-            yield _before(said, "acceleration", *(one[name] for one in found))
+            yield _before(said, "acceleration", *(item[name] for item in result))
     for name in search.held:
-        shaken = (respond_tool(one, search.band.speed) for one in (search.tool, better))
-        forces = (float(np.max(rms_over_time(one.whole_force(name)))) for one in shaken)
+        shaken = (respond_tool(item, search.band.speed) for item in (search.tool, better))
+        forces = (float(np.max(rms_over_time(item.whole_force(name)))) for item in shaken)
         what = Note(to_say("force at {station}"), station=name)
         yield _before(Note(both, what=what, measure=Note(top)), "force", *forces)
     yield _before(Note(to_say("mass")), "mass", search.tool.mass, better.mass)

@@ -178,7 +178,7 @@ def wrong_design(
 
     length : of its shaft, m.  shaken : whether anything shakes it.
     """
-    held = [one.name for one in stations if one.hand is not None]
+    held = [station.name for station in stations if station.hand is not None]
     yield from wrong_speeds("design.speeds", design.speeds)
     if design.measure not in MEASURES:
         yield ModelError("design.measure", unknown(design.measure, MEASURES, "measure"))
@@ -263,7 +263,7 @@ def _wrong_limit(
     elif limit.output == "acceleration":
         yield from _not_held(f"{where}.station", limit.station, held)
     else:
-        touching = [one.name for one in stations if one.hand or one.harness]
+        touching = [station.name for station in stations if station.hand or station.harness]
         if limit.station not in touching:
             sentence = unknown(limit.station, touching, "station with a hand or harness")
             yield ModelError(f"{where}.station", sentence)

@@ -73,17 +73,21 @@ def matrices(layout: Layout, plane: int, number: int) -> tuple[Array, Array, Arr
     """
     tool = layout.tool
     stops = {0.0, *(stop for _, stop, _ in tool.shaft.pieces)}
-    stops |= {float(one.position) for one in tool.stations}
+    stops |= {float(station.position) for station in tool.stations}
     finest = tool.shaft.length / max(LEAST, OF_MODE * number)
     nodes = [0.0]
     for start, stop in pairwise(sorted(stops)):
         nodes += np.linspace(start, stop, ceil((stop - start) / finest) + 1)[1:].tolist()
-    own = [one for one in tool.stations if one.absorber is not None and one.absorber.mass]
+    own = [
+        station
+        for station in tool.stations
+        if station.absorber is not None and station.absorber.mass
+    ]
     size = 2 * len(nodes) + len(own)
     mass, damping, held, shaft = (np.zeros((size, size)) for _ in range(4))
     for k, (left, right) in enumerate(pairwise(nodes)):
         middle = (left + right) / 2
-        section = next(one for _, stop, one in tool.shaft.pieces if middle <= stop)
+        section = next(item for _, stop, item in tool.shaft.pieces if middle <= stop)
         part = slice(2 * k, 2 * k + 4)
         for matrix, of_element in zip((mass, shaft), element(right - left, section), strict=True):
             matrix[part, part] += of_element

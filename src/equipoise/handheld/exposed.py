@@ -91,13 +91,13 @@ def grips(response: ToolResponse) -> dict[str, Grip]:
     if not response.tool.grips:
         raise ModelError("shaft.stations", NO_HANDS)
     frequency = response.frequency
-    found = {}
+    by_name = {}
     for station in response.tool.grips:
         moved = response.displacement(station.name)
         weighted = np.sum(np.real(weighted_squares(frequency, moved)), axis=1)
         plain = np.sum(np.abs(frequency**2 * moved) ** 2, axis=1) / 2
-        found[station.name] = Grip(np.sqrt(plain), np.sqrt(weighted))
-    return found
+        by_name[station.name] = Grip(np.sqrt(plain), np.sqrt(weighted))
+    return by_name
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -135,7 +135,9 @@ class ToolExposure(Result):
         if not {IDLING, RACING} <= set(self.named):
             return {}
         modes = self.named[IDLING], self.named[RACING]
-        return {name: equivalent(*(float(one[name].a_hv[0]) for one in modes)) for name in modes[0]}
+        return {
+            name: equivalent(*(float(mode[name].a_hv[0]) for mode in modes)) for name in modes[0]
+        }
 
     @property
     def worst(self) -> str | None:
@@ -187,10 +189,10 @@ def expose_tool(tool: Tool, speeds: Array, duration: float | None = None) -> Too
         if operation is None:
             raise ModelError("operation", NO_OPERATION)
         work = (Work("work", operation.speed, duration),)
-    told = {}
+    text = {}
     if operation is not None:
-        told = {WORKING: operation.speed, IDLING: operation.idling, RACING: operation.racing}
-    at = ((what, speed) for what, speed in told.items() if speed is not None)
+        text = {WORKING: operation.speed, IDLING: operation.idling, RACING: operation.racing}
+    at = ((what, speed) for what, speed in text.items() if speed is not None)
     named = {what: grips(respond_tool(tool, speed)) for what, speed in at}
     return ToolExposure(response, grips(response), named, days_of(tool, work))
 
@@ -256,16 +258,16 @@ class SpeedBand:
         slopes : whether the derivatives are asked for.
         """
         own = Layout(self.tool, self.highest)
-        given = (own.of(self.tool.station(one), key) for one, key in numbers)
+        given = (own.of(self.tool.station(item), key) for item, key in numbers)
         changed = dict(zip(numbers, given if values is None else values.tolist(), strict=True))
         layout, s = Layout(self.tool, self.highest, changed), 1j * self.frequency
         carried = carry(layout.chain(s))
         loads = loads_on(layout, self.shakes, self.orders, self.speed)
         field = HarmonicField(layout, s, solve(carried, loads))
-        names = [one.name for one in self.tool.grips]
+        names = [grip.name for grip in self.tool.grips]
         by = Reciprocal(field, carried, [*names, *held], numbers if slopes else ())
         squares = {name: weighted_squares(self.frequency, by.moved(name)) for name in names}
-        hands = {name: self._over_orders(one) for name, one in squares.items()}
+        hands = {name: self._over_orders(square) for name, square in squares.items()}
         forces = {}
         for name in held:  # mean square of the force on all that holds the station
             force = by.holding(name) * by.moved(name)
@@ -298,8 +300,10 @@ def tool_sensitivities(tool: Tool, speed: Array) -> dict[Number, float]:
 
     In m/s2 for each SI unit; of a pair of numbers, by both together.
     """
-    numbers = [(one.name, key) for one in tool.stations for key in KEYS if has(one, key)]
-    means = [mean_over_band(one) for one in SpeedBand(tool, speed).felt(numbers).hands.values()]
+    numbers = [
+        (station.name, key) for station in tool.stations for key in KEYS if has(station, key)
+    ]
+    means = [mean_over_band(hand) for hand in SpeedBand(tool, speed).felt(numbers).hands.values()]
     worst = max(means, key=lambda one: float(one.value[0]))
     slopes = worst.slopes[:, 0] / (2 * np.sqrt(worst.value))
     return dict(zip(numbers, slopes.tolist(), strict=True))

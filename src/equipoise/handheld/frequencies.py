@@ -43,9 +43,14 @@ def rigid_modes(tool: Tool) -> list[Array]:
 
 def floating(tool: Tool) -> list[list[str]]:
     """Stations of each plane whose absorber has a mass, but no spring."""
-    heavy = [(one.name, one.absorber) for one in tool.stations if one.absorber is not None]
+    heavy = [
+        (station.name, station.absorber)
+        for station in tool.stations
+        if station.absorber is not None
+    ]
     return [
-        [name for name, one in heavy if one.mass and not one.stiffness[plane]] for plane in range(2)
+        [name for name, item in heavy if item.mass and not item.stiffness[plane]]
+        for plane in range(2)
     ]
 
 
@@ -53,11 +58,11 @@ def _free(tool: Tool, plane: int) -> Array:
     """By how many places springs hold, and whether one holds a rotation: however stiff they are."""
     layout = Layout(tool, 0.0)
     places = set()
-    for one in tool.stations:  # springs to what does not move; a measured hand is none
-        springs: Any = sum(layout.holding(one, 0.0, "undamped").values())
+    for item in tool.stations:  # springs to what does not move; a measured hand is none
+        springs: Any = sum(layout.holding(item, 0.0, "undamped").values())
         if springs[plane, 0]:
-            places.add(one.position)
-    turning = any(one.rotational_stiffness[plane] for one in tool.stations)
+            places.add(item.position)
+    turning = any(station.rotational_stiffness[plane] for station in tool.stations)
     if len(places) > 1 or (places and turning):
         return np.empty((0, 2))
     if places:
@@ -100,8 +105,8 @@ def natural_frequencies(tool: Tool, number: int) -> Array:
         top = np.take_along_axis(edges, before[..., None] + 1, -1)[..., 0]
         if np.all((top - bottom <= 2 * np.spacing(top)) | (wanted <= rigid)):
             break
-    found: Array = np.where(wanted <= rigid, 0.0, (bottom + top) / 2)
-    return found
+    values: Array = np.where(wanted <= rigid, 0.0, (bottom + top) / 2)
+    return values
 
 
 def frequencies_below(tool: Tool, highest: float) -> list[Array]:
@@ -190,13 +195,13 @@ def eigenvalues(layout: Layout, natural: Array, high: Array) -> list[Array]:
     starts = np.full((2, max(map(len, swinging))), np.nan, complex)
     for plane in range(2):
         starts[plane, : len(swinging[plane])] = swinging[plane]
-    found = []
+    arrays = []
     for plane, roots in enumerate(_roots(layout, starts)):
         own = _within(layout, _distinct(roots), low, high[plane])
         real = _overdamped(layout, plane, rough[plane], (low, float(high[plane])))
         both = np.concatenate([own, real])
-        found.append(both[np.argsort(np.abs(both), kind="stable")])
-    return found
+        arrays.append(both[np.argsort(np.abs(both), kind="stable")])
+    return arrays
 
 
 def _swinging(rough: Array, low: float, high: float) -> Array:
@@ -259,11 +264,11 @@ def _push(s: Array, used: Array) -> Array:
 
 def _distinct(roots: Array) -> Array:
     """Each zero once, by size."""
-    found: list[complex] = []
+    values: list[complex] = []
     for root in sorted(roots[np.isfinite(roots)], key=abs):
-        if all(abs(root - one) > SAME * abs(root) for one in found):
-            found.append(root)
-    return np.array(found, complex)
+        if all(abs(root - item) > SAME * abs(root) for item in values):
+            values.append(root)
+    return np.array(values, complex)
 
 
 def _overdamped(layout: Layout, plane: int, rough: Array, radii: tuple[float, float]) -> Array:

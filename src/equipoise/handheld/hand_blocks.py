@@ -131,10 +131,10 @@ def design_blocks(found: ToolDesign) -> Iterator[Block]:
     """What a day of work amounts to then; what to change, and what that brings."""
     yield from _verdict(found)
     rows: list[tuple[Cell, ...]] = []
-    for one, edge in zip(found.variables, found.edges, strict=True):
-        told = say(EDGES[edge]) if edge in EDGES else ""
-        rows.append((figure_named(one), *_pair(one), told))
-    rows += [(figure_named(one), *_pair(one, told=True), "") for one in found.figures]
+    for variable, edge in zip(found.variables, found.edges, strict=True):
+        text = say(EDGES[edge]) if edge in EDGES else ""
+        rows.append((figure_named(variable), *_pair(variable), text))
+    rows += [(figure_named(figure), *_pair(figure, told=True), "") for figure in found.figures]
     labels = ("", say("before"), say("after"), say("change"), "")
     title = say(
         "What to change, and what that brings at {low} to {high} rpm", **ends_told(found.speed)
@@ -190,15 +190,15 @@ def variation_blocks(found: Variation) -> Iterator[Block]:
         rows = tuple(
             (
                 Value(float(found.values[v])),
-                *(Value(one, digits=DIGITS) for one in found.parameter[plane, v].tolist()),
-                *(Value(30 / np.pi * one) for one in found.frequency[plane, v].tolist()),
+                *(Value(item, digits=DIGITS) for item in found.parameter[plane, v].tolist()),
+                *(Value(30 / np.pi * item) for item in found.frequency[plane, v].tolist()),
             )
             for v in range(0, len(found.values), step)
         )
         title = say("Natural frequencies against {what}", what=what)
         if not found.tool.alike:
-            told = {"what": what, "plane": say(SIDES[side])}
-            title = say("Natural frequencies against {what}, {plane}", **told)
+            text = {"what": what, "plane": say(SIDES[side])}
+            title = say("Natural frequencies against {what}, {plane}", **text)
         yield Table(title, columns, rows)
 
 

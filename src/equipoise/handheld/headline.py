@@ -44,8 +44,8 @@ def exposure_headline(found: ToolExposure, alone: bool = False) -> Iterator[Bloc
         at_work = {name: float(grip.a_hv[0]) for name, grip in found.named[WORKING].items()}
         hand = max(at_work, key=at_work.__getitem__)
         template = to_say("The hand at {hand} gets most: {value} m/s² at the working speed")
-        told = say(template, hand=hand, value=brief(at_work[hand]))
-        yield Text(say("{sentence}.", sentence=told))
+        text = say(template, hand=hand, value=brief(at_work[hand]))
+        yield Text(say("{sentence}.", sentence=text))
     if not alone:
         return
     if lines := tuple(_hands(found)):
@@ -91,12 +91,12 @@ def modes_headline(found: ToolModes, alone: bool = False) -> Iterator[Block]:
     lines: list[str] = []
     for plane, side in zip(found.planes, PLANES, strict=True):
         swinging = plane.cycles_per_second[len(plane.rigid) :][:MOST_MODES]
-        told = say(", ").join(brief(float(value)) for value in swinging)
-        if told and not (lines and found.alike):
-            lines.append(say(SIDES[side], list=told))
+        text = say(", ").join(brief(float(value)) for value in swinging)
+        if text and not (lines and found.alike):
+            lines.append(say(SIDES[side], list=text))
     if lines:
-        told = say("; ").join(lines)
-        yield Text(say("Lowest natural frequencies: {list}.", list=told))
+        text = say("; ").join(lines)
+        yield Text(say("Lowest natural frequencies: {list}.", list=text))
 
 
 def sweep_headline(found: ToolSweep, alone: bool = False) -> Iterator[Block]:
@@ -108,7 +108,7 @@ def sweep_headline(found: ToolSweep, alone: bool = False) -> Iterator[Block]:
         return
     if found.transmissions is not None:
         passed = found.transmissions
-        sizes = {name: np.max(one.size, axis=0) for name, one in passed.stations.items()}
+        sizes = {name: np.max(station.size, axis=0) for name, station in passed.stations.items()}
         name = max(sizes, key=lambda one: float(np.max(sizes[one])))
         k = int(highest_at(sizes[name], smooth=False))
         yield Text(

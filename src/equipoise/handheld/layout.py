@@ -34,11 +34,11 @@ def impedance(tables: Sequence[Impedance], s: Any) -> Array:
     """Force over velocity (2, F), N s/m, of both planes at s = i omega, 1/s."""
     frequency = np.abs(np.imag(value_of(s))) / (2 * pi)
     rows = np.broadcast_to(frequency, (2, frequency.shape[-1]))
-    found = []
+    numbers = []
     for table, row in zip((tables[0], tables[-1]), rows, strict=True):
         values = np.array(table.resistance) + 1j * np.array(table.reactance)
-        found.append(np.interp(row, table.frequency, values))
-    return np.array(found)
+        numbers.append(np.interp(row, table.frequency, values))
+    return np.array(numbers)
 
 
 def check_coverage(tool: Tool, lowest: float, highest: float) -> None:
@@ -107,8 +107,8 @@ def check_waves(tool: Tool, highest: float, most: int = MOST_SHAKEN) -> None:
     ModelError : says how short its waves are.
     """
     pieces = tool.shaft.pieces
-    if sum((stop - start) / _longest(one, highest) for start, stop, one in pieces) > most:
-        wave = 4 * min(_longest(one, highest) for *_, one in pieces)
+    if sum((stop - start) / _longest(item, highest) for start, stop, item in pieces) > most:
+        wave = 4 * min(_longest(item, highest) for *_, item in pieces)
         raise ModelError(
             "shaft",
             Note(
@@ -173,7 +173,7 @@ class Layout:
     def _cells(self, left: float, length: float) -> list[ShaftCell]:
         """Segments of one section, none of which is too long."""
         pieces, middle = self.tool.shaft.pieces, left + length / 2
-        section = next((one for _, stop, one in pieces if middle <= stop), pieces[-1][2])
+        section = next((item for _, stop, item in pieces if middle <= stop), pieces[-1][2])
         parts = max(1, ceil(length / _longest(section, self.highest)))
         return [ShaftCell(left + k * length / parts, length / parts, section) for k in range(parts)]
 
@@ -190,7 +190,7 @@ class Layout:
     @cached_property
     def node_of(self) -> dict[str, int]:
         """Number of the node at which each station sits."""
-        return {one.name: k for k, stations in enumerate(self.nodes) for one in stations}
+        return {station.name: k for k, stations in enumerate(self.nodes) for station in stations}
 
     def chain(self, s: Any, kind: Kind = "forced") -> Chain:
         """The chain at complex frequencies s (1 or 2, F), 1/s; a row for each plane.
@@ -222,23 +222,23 @@ class Layout:
         sections, factor = [cell.section for cell in cells], self.tool.shaft.loss_factor
         loss = 1 + 1j * factor if factor and kind != "undamped" else 1.0
         return Beam(
-            _column([1 / one.bending_stiffness for one in sections]) / loss,
-            _column([1 / one.shear_stiffness for one in sections]) / loss,
-            _column([one.mass_per_length for one in sections]) * square,
-            _column([one.rotary_inertia for one in sections]) * square,
+            _column([1 / section.bending_stiffness for section in sections]) / loss,
+            _column([1 / section.shear_stiffness for section in sections]) / loss,
+            _column([section.mass_per_length for section in sections]) * square,
+            _column([section.rotary_inertia for section in sections]) * square,
         )
 
     def sitting(self, stations: Sequence[Station], s: Any, square: Any, kind: Kind) -> NodePair:
         """Dynamic stiffness of what sits at a node."""
         across: Any = np.zeros((2, 1))
         turning: Any = np.zeros((2, 1))
-        for one in stations:
-            across = sum(self.holding(one, s, kind).values(), start=across)
-            across = across + self.mass_at(one) * square
-            turning = turning + self._spring(one, "rotational_", s, kind)
-            turning = turning + self.of(one, "inertia") * square
-            if one.absorber is not None:
-                across = across + self.absorber(one, s, square, kind)
+        for station in stations:
+            across = sum(self.holding(station, s, kind).values(), start=across)
+            across = across + self.mass_at(station) * square
+            turning = turning + self._spring(station, "rotational_", s, kind)
+            turning = turning + self.of(station, "inertia") * square
+            if station.absorber is not None:
+                across = across + self.absorber(station, s, square, kind)
         return NodePair(across, turning)
 
     def mass_at(self, station: Station) -> Any:
@@ -248,22 +248,22 @@ class Layout:
 
     def holding(self, station: Station, s: Any, kind: Kind = "forced") -> dict[str, Any]:
         """Dynamic stiffness (N/m) of what holds a station: ``ground``, ``harness``, ``hand``."""
-        found = {"ground": self._spring(station, "", s, kind)}
+        values = {"ground": self._spring(station, "", s, kind)}
         if station.harness is not None:
-            found["harness"] = self._spring(station, "harness.", s, kind)
+            values["harness"] = self._spring(station, "harness.", s, kind)
         hand = station.hand
         if hand is not None and not hand.impedance:
-            found["hand"] = hand.hands * self._spring(station, "hand.", s, kind)
+            values["hand"] = hand.hands * self._spring(station, "hand.", s, kind)
         elif hand is not None and kind == "forced":
-            found["hand"] = hand.hands * impedance(hand.impedance, s) * s
-        return found
+            values["hand"] = hand.hands * impedance(hand.impedance, s) * s
+        return values
 
     def on_body(self, station: Station, s: Any) -> dict[str, Any]:
         """Force over displacement (N/m) on what holds a station; on a hand with its own mass."""
-        found = self.holding(station, s)
+        values = self.holding(station, s)
         if station.hand is not None:
-            found["hand"] = found["hand"] + station.hand.hands * station.hand.mass * s * s
-        return found
+            values["hand"] = values["hand"] + station.hand.hands * station.hand.mass * s * s
+        return values
 
     def _spring(self, station: Station, owner: str, s: Any, kind: Kind) -> Any:
         stiffness = self.of(station, f"{owner}stiffness")
@@ -283,9 +283,10 @@ class Layout:
     def absorbers(self, s: Any, kind: Kind) -> list[Any]:
         """What the dynamic stiffness of each absorber is divided by, k + m s^2, (2, F), N/m."""
         return [
-            self._spring(one, "absorber.", s, kind) + self.of(one, "absorber.mass") * (s * s)
-            for one in self.tool.stations
-            if one.absorber is not None
+            self._spring(station, "absorber.", s, kind)
+            + self.of(station, "absorber.mass") * (s * s)
+            for station in self.tool.stations
+            if station.absorber is not None
         ]
 
 

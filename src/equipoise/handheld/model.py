@@ -100,7 +100,7 @@ class Excitation(Frozen):
     }
     file_order = ("name", "station", "force", "unbalance", "linkage", "direction")
     conditions: ClassVar[Conditions] = {
-        "oneOf": [{"required": [one]} for one in CAUSES],
+        "oneOf": [{"required": [cause]} for cause in CAUSES],
         "dependentRequired": {"direction": ["force"]},
         "allOf": [{"properties": {"ratio": {"not": {"const": 0}}}}],
     }
@@ -145,7 +145,7 @@ class Excitation(Frozen):
         cause = next(name for name in CAUSES if getattr(value, name) is not None)
         usual = {"name": usual_name(value.station, cause), "direction": "vertical"}
         own = {name: getattr(value, name) for name in usual}
-        unlike = {name: one for name, one in own.items() if one != usual[name]}
+        unlike = {name: item for name, item in own.items() if item != usual[name]}
         return {**super().to_table(value), **unlike}
 
 
@@ -256,8 +256,8 @@ class Tool(Displayed, Frozen):
     @property
     def mass(self) -> float:
         """Of everything that moves but the hands, kg."""
-        absorbers = (one.absorber.mass for one in self.stations if one.absorber)
-        return self.shaft.mass + sum(one.mass for one in self.stations) + sum(absorbers)
+        absorbers = (station.absorber.mass for station in self.stations if station.absorber)
+        return self.shaft.mass + sum(station.mass for station in self.stations) + sum(absorbers)
 
     @property
     def alike(self) -> bool:
@@ -272,20 +272,23 @@ class Tool(Displayed, Frozen):
     @property
     def grips(self) -> tuple[Station, ...]:
         """Stations that hands hold."""
-        return tuple(one for one in self.stations if one.hand is not None)
+        return tuple(station for station in self.stations if station.hand is not None)
 
     def station(self, name: str) -> Station:
         """The station of a name; a `ModelError` where there is none."""
-        for one in self.stations:
-            if one.name == name:
-                return one
-        raise ModelError("stations", unknown(name, [one.name for one in self.stations], "station"))
+        for item in self.stations:
+            if item.name == name:
+                return item
+        raise ModelError(
+            "stations", unknown(name, [station.name for station in self.stations], "station")
+        )
 
     def with_station(self, name: str, **changes: Any) -> Tool:
         """Return the tool with fields of one station changed."""
         self.station(name)
         stations = tuple(
-            replace(one, **changes) if one.name == name else one for one in self.stations
+            replace(station, **changes) if station.name == name else station
+            for station in self.stations
         )
         return replace(self, stations=stations)
 

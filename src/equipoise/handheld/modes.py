@@ -199,12 +199,12 @@ def _damped_modes(
         values = eigenvalues(layout, frequency, radius)
     else:
         values = [1j * row[row > 0] for row in frequency]
-    found = []
+    damped_modes = []
     for plane in range(2):
         own = values[plane]
         shapes = scaled(np.moveaxis(shapes_beside(layout, own[None], places, "free")[0], 0, -1))
-        found.append(tuple(map(DampedMode, own.tolist(), shapes[plane])))
-    return found
+        damped_modes.append(tuple(map(DampedMode, own.tolist(), shapes[plane])))
+    return damped_modes
 
 
 def swinging_below(tool: Tool, highest: float) -> Array:
@@ -247,8 +247,8 @@ def _notes(tool: Tool) -> Iterator[Note]:
 def still_shapes(layout: Layout, frequency: Array, places: Array) -> Array:
     """Shapes (2, K, X) without damping; of equal frequencies such that they share no momentum."""
     swing = 1j * np.where(frequency > 0, frequency, 1.0)
-    found = shapes_beside(layout, swing, places, "undamped")
-    shapes, slopes = (np.moveaxis(part, 0, -1).real.copy() for part in found)
+    pair = shapes_beside(layout, swing, places, "undamped")
+    shapes, slopes = (np.moveaxis(part, 0, -1).real.copy() for part in pair)
     for plane, free in enumerate(rigid_modes(layout.tool)):
         floats = len(floating(layout.tool)[plane])
         for k, (across, slope) in enumerate(free[: frequency.shape[1]]):
@@ -257,7 +257,7 @@ def still_shapes(layout: Layout, frequency: Array, places: Array) -> Array:
         for k in range(1, shapes.shape[1]):
             earlier, later = frequency[plane, k - 1 : k + 1]
             if later - earlier <= SAME * later and later > 0:
-                pairs = [(shapes[plane, one], slopes[plane, one]) for one in (k - 1, k)]
+                pairs = [(shapes[plane, item], slopes[plane, item]) for item in (k - 1, k)]
                 share = _share(layout, plane, later, places, *pairs)
                 shapes[plane, k] -= share * shapes[plane, k - 1]
     return np.asarray(scaled(shapes).real)

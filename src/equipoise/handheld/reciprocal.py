@@ -74,7 +74,7 @@ class Reciprocal:
         for name in self.row:
             node = layout.node_of[name]
             force = np.zeros((len(self.row), 1, 1))
-            force[[k for one, k in self.row.items() if layout.node_of[one] == node]] = 1.0
+            force[[k for item, k in self.row.items() if layout.node_of[item] == node]] = 1.0
             loads[node] = NodePair(force, 0.0)
         return solve(self.carried, loads)
 
@@ -92,11 +92,11 @@ class Reciprocal:
         sits = [layout.tool.station(name)]
         stiffness = self._along((name, key)).sitting(sits, s, s * s, self.field.kind)
         unit, own = self._unit.motion[node], self.field.states.motion[node]
-        found = np.zeros((len(self.row), *own.across.shape), complex)
-        for part, one, other in zip(stiffness, unit, own, strict=True):
+        values = np.zeros((len(self.row), *own.across.shape), complex)
+        for part, item, other in zip(stiffness, unit, own, strict=True):
             if isinstance(part, Dual):
-                found -= part.slopes[0] * one * other
-        return found
+                values -= part.slopes[0] * item * other
+        return values
 
     def _lengthened(self, k: int) -> Array:
         """v . K' u by the length of a cell, (U, 2, F)."""

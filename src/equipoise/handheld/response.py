@@ -53,7 +53,7 @@ def shakes(tool: Tool) -> tuple[Shake, ...]:
     ------
     MassError, MotionError : of a linkage that cannot turn or has no masses.
     """
-    return tuple(shake for one in tool.excitations for shake in _shakes(one))
+    return tuple(shake for excitation in tool.excitations for shake in _shakes(excitation))
 
 
 def _shakes(one: Excitation) -> Iterable[Shake]:
@@ -116,7 +116,9 @@ def loud(all_shakes: Sequence[Shake], speed: float, least: float) -> tuple[Shake
         return ()
     sizes = [float(np.max(np.abs(shake.at(np.array([speed]))))) for shake in all_shakes]
     limit = least * max(sizes)
-    return tuple(one for one, size in zip(all_shakes, sizes, strict=True) if size >= limit)
+    return tuple(
+        all_shake for all_shake, size in zip(all_shakes, sizes, strict=True) if size >= limit
+    )
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -163,9 +165,9 @@ class ToolResponse(Result):
 
     def line(self, places: Sequence[float] | Array) -> ShaftDeflection:
         """Displacement, slope, bending moment and shear at places (X), m: arrays (X, 2, K, S)."""
-        found = self.field.at(np.asarray(places, dtype=float))
+        result = self.field.at(np.asarray(places, dtype=float))
         return ShaftDeflection(
-            *(part.reshape(*part.shape[:2], *self.frequency.shape) for part in found)
+            *(part.reshape(*part.shape[:2], *self.frequency.shape) for part in result)
         )
 
     def forces(self, station: str) -> dict[str, Array]:
@@ -174,11 +176,11 @@ class ToolResponse(Result):
         That on a hand is what a gauge in the handle would read: of its spring and damper, as in
         (26) of Nagamine and Irie, and of its mass.
         """
-        one, moved = self.tool.station(station), self._node(station).across
-        held = self.field.layout.on_body(one, self.field.s)
-        if not one.grounded:
-            held.pop("ground")
-        return {part: self._shaped(stiffness * moved) for part, stiffness in held.items()}
+        item, moved = self.tool.station(station), self._node(station).across
+        on_body = self.field.layout.on_body(item, self.field.s)
+        if not item.grounded:
+            on_body.pop("ground")
+        return {part: self._shaped(stiffness * moved) for part, stiffness in on_body.items()}
 
     def whole_force(self, station: str) -> Array:
         """Force (2, K, S), N, of a station on all that holds it."""
@@ -187,19 +189,19 @@ class ToolResponse(Result):
 
     def power(self, station: str) -> dict[str, Array]:
         """Mean power (K, S), W, that goes into the hand, harness, ground and absorber there."""
-        one = self.tool.station(station)
+        item = self.tool.station(station)
         velocity = self.velocity(station)
-        found = {part: _power(force, velocity) for part, force in self.forces(station).items()}
-        if one.absorber is not None:
+        arrays = {part: _power(force, velocity) for part, force in self.forces(station).items()}
+        if item.absorber is not None:
             layout, s = self.field.layout, self.field.s
-            force = layout.absorber(one, s, s * s, "forced") * self._node(station).across
-            found["absorber"] = _power(self._shaped(force), velocity)
-        if any(one.rotational_damping):
+            force = layout.absorber(item, s, s * s, "forced") * self._node(station).across
+            arrays["absorber"] = _power(self._shaped(force), velocity)
+        if any(item.rotational_damping):
             turning = self._shaped(self._node(station).turning) * self._s
-            damping = np.array(one.rotational_damping)[:, None, None]
+            damping = np.array(item.rotational_damping)[:, None, None]
             rotation = np.sum(damping * np.abs(turning) ** 2, axis=0) / 2
-            found["ground"] = found.get("ground", 0.0) + rotation
-        return found
+            arrays["ground"] = arrays.get("ground", 0.0) + rotation
+        return arrays
 
     @cached_property
     def fed_in(self) -> Array:

@@ -310,17 +310,17 @@ class Shaft(Profiled):
     @cached_property
     def pieces(self) -> tuple[tuple[float, float, Section], ...]:
         """Start, stop and section of each part, from end to end."""
-        found, at = [], 0.0
+        parts, at = [], 0.0
         for segment in sorted(self.segments, key=lambda one: one.start):
             if segment.start > at:
-                found.append((at, segment.start, self.profile.section(self.theory)))
-            found.append((segment.start, segment.stop, segment.profile.section(self.theory)))
+                parts.append((at, segment.start, self.profile.section(self.theory)))
+            parts.append((segment.start, segment.stop, segment.profile.section(self.theory)))
             at = segment.stop
         if at < self.length:
-            found.append((at, self.length, self.profile.section(self.theory)))
-        return tuple(found)
+            parts.append((at, self.length, self.profile.section(self.theory)))
+        return tuple(parts)
 
     @property
     def mass(self) -> float:
         """kg."""
-        return sum((stop - start) * one.mass_per_length for start, stop, one in self.pieces)
+        return sum((stop - start) * item.mass_per_length for start, stop, item in self.pieces)

@@ -21,15 +21,15 @@ def side_of(tool: Tool, along: Array | None = None, deflected: Array | None = No
     if along is None or deflected is None:
         along, deflected = np.array([0.0, tool.shaft.length]), np.zeros((1, 2))
     motor = _motor(tool)
-    seats = tuple(_seat(tool, one, motor) for one in tool.stations)
+    seats = tuple(_seat(tool, station, motor) for station in tool.stations)
     return ToolScene(tuple(_tubes(tool.shaft)), seats, along, deflected)
 
 
 def _motor(tool: Tool) -> Station | None:
     """Where what turns with the engine shakes; the heaviest such station."""
-    shaking = {one.station for one in tool.excitations if abs(one.ratio) == 1}
-    found = [one for one in tool.stations if one.name in shaking]
-    return max(found, key=lambda one: one.mass, default=None)
+    shaking = {excitation.station for excitation in tool.excitations if abs(excitation.ratio) == 1}
+    matching_stations = [station for station in tool.stations if station.name in shaking]
+    return max(matching_stations, key=lambda one: one.mass, default=None)
 
 
 def _seat(tool: Tool, one: Station, motor: Station | None) -> SeatSign:
@@ -68,8 +68,8 @@ def _tubes(shaft: Shaft) -> list[TubeSign]:
     of those beside it.
     """
     own = {(part.start, part.stop): part.profile for part in shaft.segments}
-    found = [(a, b, own.get((a, b), shaft.profile)) for a, b, _ in shaft.pieces]
-    wide = [one.outer_diameter if isinstance(one, Tube) else 0.0 for *_, one in found]
+    values = [(a, b, own.get((a, b), shaft.profile)) for a, b, _ in shaft.pieces]
+    wide = [item.outer_diameter if isinstance(item, Tube) else 0.0 for *_, item in values]
     both = [max(wide[max(k - 1, 0) : k + 2]) for k in range(len(wide))]
     sizes = (own or beside for own, beside in zip(wide, both, strict=True))
-    return [TubeSign(a, b, size) for (a, b, _), size in zip(found, sizes, strict=True)]
+    return [TubeSign(a, b, size) for (a, b, _), size in zip(values, sizes, strict=True)]

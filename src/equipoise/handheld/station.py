@@ -83,7 +83,7 @@ class Hand(Frozen):
     conditions: ClassVar[Conditions] = {
         "if": {"required": ["impedance"]},
         "then": {"properties": dict.fromkeys(OF_HAND, False)},
-        "else": {"anyOf": [{"required": [one]} for one in OF_HAND]},
+        "else": {"anyOf": [{"required": [item]} for item in OF_HAND]},
     }
 
     mass: float = key("mass", "that moves with the tool", default=0.0, at_least=0)
@@ -154,8 +154,8 @@ class Station(Frozen):
         value: Any = self
         for part in key.split("."):
             value = getattr(value, part)
-        found: float | Both = value
-        return found
+        result: float | Both = value
+        return result
 
 
 def alike(part: Station | Hand | Harness | Absorber | None) -> bool:
@@ -164,10 +164,14 @@ def alike(part: Station | Hand | Harness | Absorber | None) -> bool:
         return True
     if isinstance(part, Hand) and len(part.impedance) == 2:
         return part.impedance[0] == part.impedance[1]
-    of_planes = (one for one in keys_of(type(part)).values() if isinstance(one.kind, Planes))
-    pairs = (value for one in of_planes if len(value := getattr(part, one.field)) == len(PLANES))
+    of_planes = (item for item in keys_of(type(part)).values() if isinstance(item.kind, Planes))
+    pairs = (
+        value
+        for of_plane in of_planes
+        if len(value := getattr(part, of_plane.field)) == len(PLANES)
+    )
     within = (part.absorber, part.hand, part.harness) if isinstance(part, Station) else ()
-    return all(one == other for one, other in pairs) and all(map(alike, within))
+    return all(item == other for item, other in pairs) and all(map(alike, within))
 
 
 def is_damped(station: Station) -> bool:

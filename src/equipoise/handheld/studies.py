@@ -27,10 +27,10 @@ def changed(tool: Tool, station: str, key: str, value: float) -> Tool:
     ------
     ModelError, UsageError : there is no such station or number, or it cannot have that value.
     """
-    one = tool.station(station)
-    check_key(one, key)
+    item = tool.station(station)
+    check_key(item, key)
     *path, last = key.split(".")
-    owner: Any = getattr(one, path[0]) if path else one
+    owner: Any = getattr(item, path[0]) if path else item
     number = (value, value) if isinstance(getattr(owner, last), tuple) else value
     owner = replace(owner, **{last: number})
     return tool.with_station(station, **({path[0]: owner} if path else {last: number}))
@@ -84,13 +84,13 @@ class Variation(Result):
 
     def to_dict(self) -> dict[str, Any]:
         """As plain values; natural frequencies in Hz."""
-        found: dict[str, Any] = {"station": self.station, "key": self.key, "values": self.values}
+        values: dict[str, Any] = {"station": self.station, "key": self.key, "values": self.values}
         for suffix, frequency, parameter in zip(
             ("", "_lateral"), self.frequency, self.parameter, strict=True
         ):
-            found[f"natural_frequencies{suffix}"] = frequency / (2 * np.pi)
-            found[f"eigenvalues{suffix}"] = parameter
-        return found
+            values[f"natural_frequencies{suffix}"] = frequency / (2 * np.pi)
+            values[f"eigenvalues{suffix}"] = parameter
+        return values
 
 
 def vary_tool(tool: Tool, station: str, key: str, values: Array, number: int = 5) -> Variation:
@@ -101,7 +101,7 @@ def vary_tool(tool: Tool, station: str, key: str, values: Array, number: int = 5
     ModelError, UsageError : as `changed`.
     """
     tools = [changed(tool, station, key, float(value)) for value in values]
-    frequency = np.stack([natural_frequencies(one, number) for one in tools], axis=1)
+    frequency = np.stack([natural_frequencies(tool, number) for tool in tools], axis=1)
     parameter = np.sqrt(frequency / scale_of(tool))
     return Variation(tool, station, key, np.asarray(values), frequency, parameter)
 
@@ -139,11 +139,15 @@ def determinant_chart(tool: Tool, highest: float, count: int = 800) -> Determina
 def without_damping(tool: Tool) -> Tool:
     """The tool without any loss or damper; a hand known by a table is left out."""
     stations = []
-    for one in tool.stations:
-        hand = None if one.hand is None or one.hand.impedance else one.hand
-        parts: dict[str, Any] = {"absorber": one.absorber, "harness": one.harness, "hand": hand}
+    for station in tool.stations:
+        hand = None if station.hand is None or station.hand.impedance else station.hand
+        parts: dict[str, Any] = {
+            "absorber": station.absorber,
+            "harness": station.harness,
+            "hand": hand,
+        }
         for name, part in parts.items():
             parts[name] = part and replace(part, damping=NOTHING)
-        stations.append(replace(one, damping=NOTHING, rotational_damping=NOTHING, **parts))
+        stations.append(replace(station, damping=NOTHING, rotational_damping=NOTHING, **parts))
     shaft = replace(tool.shaft, loss_factor=0.0)
     return replace(tool, shaft=shaft, stations=tuple(stations), design=None)

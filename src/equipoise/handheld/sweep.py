@@ -161,7 +161,9 @@ def source_of(tool: Tool) -> str:
 
 def held(tool: Tool) -> list[Station]:
     """Stations at which the body or the ground holds the tool."""
-    return [one for one in tool.stations if one.hand or one.harness or one.grounded]
+    return [
+        station for station in tool.stations if station.hand or station.harness or station.grounded
+    ]
 
 
 def transmit(tool: Tool, speed: Array, source: str | None = None) -> Transmissions:
@@ -171,7 +173,7 @@ def transmit(tool: Tool, speed: Array, source: str | None = None) -> Transmissio
     """
     speed = checked_speeds(speed)
     source = source_of(tool) if source is None else tool.station(source).name
-    names = [one.name for one in held(tool)]
+    names = [item.name for item in held(tool)]
     if not names:
         raise ModelError("shaft.stations", Note("nothing holds the tool; give a hand or a harness"))
 
@@ -181,7 +183,7 @@ def transmit(tool: Tool, speed: Array, source: str | None = None) -> Transmissio
     )
     unit = replace(tool, excitations=forces, design=None)
     response = respond_tool(unit, speed)
-    found = {}
+    result = {}
     for name in names:
 
         def again(speeds: Array, name: str = name) -> Array:
@@ -189,8 +191,8 @@ def transmit(tool: Tool, speed: Array, source: str | None = None) -> Transmissio
 
         ratio = response.whole_force(name)[:, 0]
         dips = [lowest_places(speed, np.abs(row), k, again) for k, row in enumerate(ratio)]
-        found[name] = Transmission(ratio, *zip(*dips, strict=True))
-    return Transmissions(tool, source, speed, found)
+        result[name] = Transmission(ratio, *zip(*dips, strict=True))
+    return Transmissions(tool, source, speed, result)
 
 
 def lowest_places(
@@ -284,8 +286,8 @@ class ToolSweep(Result):
         for k in range(0, max(1, len(places)), block):
             line = self.shaken.line(places[k : k + block])
             moved = line.displacement
-            told = (moved, moved * frequency, moved * frequency**2, line.moment)
-            parts.append(list(map(rms_over_time, told)))
+            pair = (moved, moved * frequency, moved * frequency**2, line.moment)
+            parts.append(list(map(rms_over_time, pair)))
         return Places(*map(np.concatenate, zip(*parts, strict=True)))
 
     @property
@@ -299,7 +301,7 @@ class ToolSweep(Result):
     def largest_moment(self) -> tuple[Array, Array]:
         """Largest RMS bending moment (S,), N m, and where in the shaft it is, m."""
         length = self.tool.shaft.length
-        stations = np.array([one.position for one in self.tool.stations])
+        stations = np.array([station.position for station in self.tool.stations])
         beside = np.concatenate([stations, np.nextafter(stations, 0.0)])  # where it may jump
         where = np.unique(np.concatenate([np.linspace(0, length, PLACES), beside]))
         moment = self.places(where).moment
@@ -333,10 +335,10 @@ class ToolSweep(Result):
     def station_values(self) -> dict[str, Any]:
         """What each station does, and what holds it bears."""
         stations = self.tool.stations
-        moved = zip(stations, self._moved([one.position for one in stations]), strict=True)
+        moved = zip(stations, self._moved([station.position for station in stations]), strict=True)
         return {
-            one.name: {**row, "forces": self.force(one.name), "power": self.power(one.name)}
-            for one, row in moved
+            item.name: {**row, "forces": self.force(item.name), "power": self.power(item.name)}
+            for item, row in moved
         }
 
     @property
@@ -403,18 +405,18 @@ def sweep_tool(tool: Tool, speed: Array, further: Sequence[float] = ()) -> ToolS
         raise ModelError(
             "shaft", Note("nothing holds the tool and nothing shakes it; add a station")
         )
-    found = ToolSweep(tool, np.asarray(speed), transmissions, response, tuple(further))
+    tool_sweep = ToolSweep(tool, np.asarray(speed), transmissions, response, tuple(further))
     if further:
-        found.places(further)  # a place off the shaft is told at once
-    return found
+        tool_sweep.places(further)  # a place off the shaft is told at once
+    return tool_sweep
 
 
 def default_answers(tool: Tool) -> list[str]:
     """Those of ``modes``, ``respond`` and ``exposure`` that the tool has what is needed for."""
     if tool.operation is None or not tool.stations:
         return ["modes"]
-    shaken = ["exposure"] if tool.excitations and tool.grips else []
-    return ["modes", "respond", *shaken]
+    labels = ["exposure"] if tool.excitations and tool.grips else []
+    return ["modes", "respond", *labels]
 
 
 def default_speeds(tool: Tool) -> tuple[float, float] | None:
@@ -434,11 +436,11 @@ def speeds_between(tool: Tool, low: float, high: float, count: int = SPEEDS) -> 
     """
     orders = {shake.order for shake in loud(shakes(tool), high, LOUD)} | {1.0}
     check_waves(tool, max(orders) * high)
-    found = swinging_below(tool, max(orders) * high)
-    wide = np.abs(found.real) > NARROW * found.imag
+    values = swinging_below(tool, max(orders) * high)
+    wide = np.abs(values.real) > NARROW * values.imag
     about = [
-        (found.imag[~wide, None] * (1 + BESIDE)).ravel(),
-        (found.imag[wide, None] + np.abs(found.real[wide, None]) * WIDTHS).ravel(),
+        (values.imag[~wide, None] * (1 + BESIDE)).ravel(),
+        (values.imag[wide, None] + np.abs(values.real[wide, None]) * WIDTHS).ravel(),
     ]
     beside = [part / order for order in orders for part in about]
     speeds = np.unique(np.concatenate([np.linspace(low, high, count), *beside]))

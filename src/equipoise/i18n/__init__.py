@@ -70,15 +70,15 @@ class Note(str):
     @property
     def is_translated(self) -> bool:
         """Whether the language that is spoken has the sentence, and what is in it."""
-        inner = (one for one in self.values.values() if isinstance(one, Note))
+        inner = (value for value in self.values.values() if isinstance(value, Note))
         here = spoken() == "en" or self.template in catalogue(spoken())
-        return here and all(one.is_translated for one in inner)
+        return here and all(item.is_translated for item in inner)
 
     def with_values(self, change: Callable[[Any], Any]) -> Note:
         """The same sentence with other values, those of Notes in it too."""
         changed = {
-            name: one.with_values(change) if isinstance(one, Note) else change(one)
-            for name, one in self.values.items()
+            name: value.with_values(change) if isinstance(value, Note) else change(value)
+            for name, value in self.values.items()
         }
         return Note(self.template, **changed).about(self.topic)
 
@@ -215,9 +215,9 @@ def in_each(text: str, change: Callable[[str], str]) -> str:
     if not isinstance(text, Worded):
         return change(text)
     changed = {}
-    for code, one in text.texts.items():
+    for code, name in text.texts.items():
         with speaking(code):
-            changed[code] = change(one)
+            changed[code] = change(name)
     return Worded(changed)
 
 

@@ -20,7 +20,7 @@ def lacks(*keys: str) -> dict[str, Any]:
 
 def any_of(*keys: str) -> dict[str, Any]:
     """JSON Schema of a table that has one of these keys."""
-    return {"anyOf": [needs(one) for one in keys]}
+    return {"anyOf": [needs(key) for key in keys]}
 
 
 def not_both(*keys: str) -> dict[str, Any]:
@@ -32,7 +32,7 @@ def told_by(name: str, sizes: Sequence[str], dimensions: Mapping[str, Dimension]
     """JSON Schema of a table in which the key `name` tells the dimension of `sizes`."""
     cases = []
     for dimension in dict.fromkeys(dimensions.values()):
-        names = [one for one, own in dimensions.items() if own == dimension]
+        names = [item for item, own in dimensions.items() if own == dimension]
         cases.append(
             {
                 "if": {"properties": {name: {"enum": names}}, "required": [name]},

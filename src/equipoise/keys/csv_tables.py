@@ -36,5 +36,5 @@ class CsvTable(Frozen):
     @classmethod
     def like(cls, first: str) -> Any:
         """The class whose columns, of which this is the first, mean something of their own."""
-        named = (one for one in cls.kinds.values() if one.forms[0][0] == first)
-        return next((one for one in named if one.columns or not one.rises), cls)
+        named = (kind for kind in cls.kinds.values() if kind.forms[0][0] == first)
+        return next((item for item in named if item.columns or not item.rises), cls)

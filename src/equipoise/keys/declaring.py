@@ -160,21 +160,24 @@ class Frozen(TableRecord):
     __dataclass_fields__: ClassVar[dict[str, Any]]
 
     def __post_init__(self) -> None:
-        for one in declarations(type(self)):
-            value = getattr(self, one.field)
-            if value is one.default and value in (None, ()):  # there is one empty tuple only
+        for declaration in declarations(type(self)):
+            value = getattr(self, declaration.field)
+            if value is declaration.default and value in (
+                None,
+                (),
+            ):  # there is one empty tuple only
                 continue
             try:
-                object.__setattr__(self, one.field, one.kind.check(value))
+                object.__setattr__(self, declaration.field, declaration.kind.check(value))
             except (TypeError, ValueError, OverflowError):
                 text = repr(value)
                 shown = text if len(text) <= 60 else f"{text[:57]}..."
                 raise ModelError(
-                    one.field,
-                    Note("got {shown}; give {wanted}", shown=shown, wanted=one.kind.wanted),
+                    declaration.field,
+                    Note("got {shown}; give {wanted}", shown=shown, wanted=declaration.kind.wanted),
                 ) from None
             except UsageError as error:
-                raise ModelError(one.field, error.note) from None
+                raise ModelError(declaration.field, error.note) from None
 
     @classmethod
     def from_table(cls, given: dict[str, Any]) -> Any:
@@ -189,8 +192,10 @@ class Frozen(TableRecord):
     @classmethod
     def to_table(cls, value: Any) -> dict[str, Any]:
         """What the file says of an object, by key, in SI units; defaults are left out."""
-        given = ((one, getattr(value, one.field)) for one in keys_of(cls).values() if one.field)
-        return {one.name: item for one, item in given if one.required or item != one.default}
+        given = ((item, getattr(value, item.field)) for item in keys_of(cls).values() if item.field)
+        return {
+            entry.name: item for entry, item in given if entry.required or item != entry.default
+        }
 
     def following(self, changes: dict[str, Any]) -> dict[str, Any]:
         """Changes of fields, with what they do to other fields that follow from them."""
@@ -233,39 +238,39 @@ VERSION = Key(
 @once
 def keys_of(cls: type[Frozen]) -> Mapping[str, Key]:
     """Keys of a class in the order of the file, by name; a flat table is one of them."""
-    own = {one.name: one for one in declarations(cls) if one.name}
-    found = {name: replace(one, name=name) for name, one in cls.beside.items()} | own
-    return {name: found[name] for name in dict.fromkeys((*cls.file_order, *own, *cls.beside))}
+    own = {declaration.name: declaration for declaration in declarations(cls) if declaration.name}
+    value = {name: replace(item, name=name) for name, item in cls.beside.items()} | own
+    return {name: value[name] for name in dict.fromkeys((*cls.file_order, *own, *cls.beside))}
 
 
 @once
 def listed_types(cls: type[Frozen]) -> Mapping[str, type[Frozen]]:
     """Classes of the lists of tables that a class has, by field, in the order of the file."""
-    lists = {one.field: one.kind for one in keys_of(cls).values()}
+    lists = {item.field: item.kind for item in keys_of(cls).values()}
     return {field: kind.item.type for field, kind in lists.items() if isinstance(kind, Tables)}
 
 
 @once
 def all_keys(cls: type[Frozen]) -> Mapping[str, Key]:
     """Keys that stand in the table of a class, by name, with those of flat ones in their places."""
-    found: dict[str, Key] = {}
-    for one in keys_of(cls).values():
-        kind = one.kind
+    keys: dict[str, Key] = {}
+    for item in keys_of(cls).values():
+        kind = item.kind
         if isinstance(kind, KeyTable) and kind.flat:
             inner = all_keys(kind.type).items()
-            found |= {name: own for name, own in inner if name not in kind.without}
+            keys |= {name: own for name, own in inner if name not in kind.without}
         else:
-            found[one.name] = one
-    return found
+            keys[item.name] = item
+    return keys
 
 
 @once
 def declarations(cls: type[Frozen]) -> tuple[Key, ...]:
     """What is declared of the fields of a class; without a name where no file has it."""
-    found = [(one.name, one.metadata[_KEY]) for one in fields(cls) if _KEY in one.metadata]
+    values = [(item.name, item.metadata[_KEY]) for item in fields(cls) if _KEY in item.metadata]
     return tuple(
-        replace(one, field=field, name=one.name or ("" if one.inside else field))
-        for field, one in found
+        replace(item, field=field, name=item.name or ("" if item.inside else field))
+        for field, item in values
     )
 
 
@@ -274,8 +279,8 @@ def declarations(cls: type[Frozen]) -> tuple[Key, ...]:
 
 def quantities_of(value: Frozen | type[Frozen]) -> Mapping[str, Key]:
     """Keys of an object or a class that are one quantity each, by name."""
-    found = keys_of(value if isinstance(value, type) else type(value)).items()
-    return {name: one for name, one in found if isinstance(one.kind, Quantity) and one.field}
+    keys = keys_of(value if isinstance(value, type) else type(value)).items()
+    return {name: item for name, item in keys if isinstance(item.kind, Quantity) and item.field}
 
 
 def numbers_of(value: Frozen | type[Frozen]) -> Mapping[str, Key]:
@@ -283,10 +288,12 @@ def numbers_of(value: Frozen | type[Frozen]) -> Mapping[str, Key]:
     without a unit such as a coefficient of friction.
     """
     keys = keys_of(value if isinstance(value, type) else type(value)).items()
-    numbers = {name: one for name, one in keys if isinstance(one.kind, Number) and one.field}
+    numbers = {name: item for name, item in keys if isinstance(item.kind, Number) and item.field}
     # What a number that something else tells is of, such as a limit, is not known here.
     return {
-        name: one for name, one in numbers.items() if not isinstance(one.kind, DependentQuantity)
+        name: number
+        for name, number in numbers.items()
+        if not isinstance(number.kind, DependentQuantity)
     }
 
 
@@ -315,11 +322,11 @@ def changed(
         return (*value[:index], inner, *value[index + 1 :])
     if isinstance(value, Mapping):
         return {**value, step: changed(value[step], rest, change, make)}
-    one = keys_of(type(value))[str(step)]
-    held = getattr(value, one.field)
-    if isinstance(one.kind, KeyTable) and not isinstance(held, Frozen):
+    item = keys_of(type(value))[str(step)]
+    held = getattr(value, item.field)
+    if isinstance(item.kind, KeyTable) and not isinstance(held, Frozen):
         rest = rest[1:]  # a table with one key, which the object has without it
-    new = {one.field: changed(held, rest, change, make)}
+    new = {item.field: changed(held, rest, change, make)}
     return make(value, **value.following(new))
 
 

@@ -58,7 +58,7 @@ class Wording(TextKind):
             return super().check(value)
         if not value or not value.keys() <= LANGUAGES.keys() or not all(value.values()):
             raise ValueError
-        return Worded({code: super(Wording, self).check(one) for code, one in value.items()})
+        return Worded({code: super(Wording, self).check(item) for code, item in value.items()})
 
 
 @dataclass(frozen=True)
@@ -302,7 +302,7 @@ class Named(Kind):
         if not isinstance(value, Mapping):
             raise TypeError
         name, item = TextKind().check, self.item.check
-        return MappingProxyType({name(key): item(one) for key, one in value.items()})
+        return MappingProxyType({name(key): item(entry) for key, entry in value.items()})
 
 
 @dataclass(frozen=True)

@@ -98,8 +98,8 @@ class KeyPath(tuple[str | int, ...]):
         """Whether it has the keys of a pattern, in which `str` is any key and `int` any number."""
         wanted = tuple(pattern)
         return len(wanted) == len(self) and all(
-            isinstance(step, one) if isinstance(one, type) else step == one
-            for step, one in zip(self, wanted, strict=True)
+            isinstance(step, item) if isinstance(item, type) else step == item
+            for step, item in zip(self, wanted, strict=True)
         )
 
     def read(self, document: Any) -> Any:

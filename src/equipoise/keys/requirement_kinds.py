@@ -148,7 +148,7 @@ class RequiredFigure:
     def target(self) -> float | None:
         """What it is to come close to."""
         targets = (REQUIREMENT_KINDS[key].target(value) for key, value in self.asks)
-        return next((one for one in targets if one is not None), None)
+        return next((target for target in targets if target is not None), None)
 
     @property
     def make(self) -> Make | None:

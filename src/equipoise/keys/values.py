@@ -28,14 +28,14 @@ def wrong_values(where: str, value: Any) -> Iterator[ModelError]:
         elif abs(leaf) > HUGE or 0 < abs(leaf) < TINY:
             size = f"{leaf:g} in SI units"
             yield ModelError(place, Note("got {text}, which no machine can have", text=size))
-    for place, leaf, one in leaves:
-        names = () if one is None else _names(one)
+    for place, leaf, item in leaves:
+        names = () if item is None else _names(item)
         if names and leaf not in names:
-            told = Note("got {leaf!r}; give {choice}", leaf=leaf, choice=choice(names))
-            yield ModelError(place, told)
-        elif one is not None and not isinstance(leaf, str) and not one.allows(leaf):
-            given = Measured(leaf, one.dimension)
-            yield ModelError(place, Note("got {text}; {right}", text=given, right=one.right(leaf)))
+            note = Note("got {leaf!r}; give {choice}", leaf=leaf, choice=choice(names))
+            yield ModelError(place, note)
+        elif item is not None and not isinstance(leaf, str) and not item.allows(leaf):
+            given = Measured(leaf, item.dimension)
+            yield ModelError(place, Note("got {text}; {right}", text=given, right=item.right(leaf)))
 
 
 def _leaves(where: str, value: Any, of: Key | None) -> Iterator[tuple[str, Any, Key | None]]:
@@ -56,10 +56,12 @@ def _leaves(where: str, value: Any, of: Key | None) -> Iterator[tuple[str, Any, 
             part = f".{PLANES[number - 1]}" if planes else f"[{number}]"
             yield from _leaves(where if alike else where + part, item, of)
     else:
-        for one in declarations(type(value)):
-            flat = isinstance(one.kind, KeyTable) and one.kind.flat
-            place = where if flat else f"{where}.{one.name or one.field}".lstrip(".")
-            yield from _leaves(place, getattr(value, one.field), one)
+        for declaration in declarations(type(value)):
+            flat = isinstance(declaration.kind, KeyTable) and declaration.kind.flat
+            place = (
+                where if flat else f"{where}.{declaration.name or declaration.field}".lstrip(".")
+            )
+            yield from _leaves(place, getattr(value, declaration.field), declaration)
 
 
 def _names(one: Key) -> tuple[Any, ...]:
@@ -71,7 +73,9 @@ def _names(one: Key) -> tuple[Any, ...]:
 @once
 def _limits(cls: type[Frozen]) -> tuple[tuple[str, Key, tuple[Any, ...]], ...]:
     """Fields of a class, each with its declaration and its names."""
-    return tuple((one.field, one, _names(one)) for one in declarations(cls))
+    return tuple(
+        (declaration.field, declaration, _names(declaration)) for declaration in declarations(cls)
+    )
 
 
 def _is_sound(value: Any, of: Key | None = None, names: tuple[Any, ...] = ()) -> bool:
@@ -100,7 +104,7 @@ def _parts_are_sound(value: Any, finished: bool) -> bool:
     kept = vars(value)
     if "_sound" in kept:
         return bool(kept["_sound"])
-    sound = all(_is_sound(kept[name], one, names) for name, one, names in _limits(type(value)))
+    sound = all(_is_sound(kept[name], item, names) for name, item, names in _limits(type(value)))
     if finished:
         kept["_sound"] = sound
     return sound

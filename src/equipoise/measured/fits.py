@@ -66,11 +66,11 @@ class Constants:
         point = np.array([self.damped, self.loss, self.friction])
         values = _quantities(point.astype(complex), kind, stiffness)
         slopes = [_quantities(point + 1j * STEP * row, kind, stiffness) for row in np.eye(3)]
-        found = {}
+        fitted_values = {}
         for name, value in values.items():
             gradient = np.array([slope[name].imag for slope in slopes]) / STEP
-            found[name] = self._interval(value.real, gradient)
-        return found
+            fitted_values[name] = self._interval(value.real, gradient)
+        return fitted_values
 
     def line(self) -> dict[str, FittedValue]:
         """Slope n and intercept m of the line of half-swings."""
@@ -96,7 +96,7 @@ def _quantities(point: Array, kind: Kind, stiffness: float | None) -> dict[str, 
     damped, loss, friction = point
     natural = damped * np.sqrt(1 + (loss / pi) ** 2)
     rate = damped * loss / pi
-    found = {
+    values = {
         "damped_angular_frequency": damped,
         "natural_angular_frequency": natural,
         "damped_frequency": damped / (2 * pi),
@@ -109,12 +109,12 @@ def _quantities(point: Array, kind: Kind, stiffness: float | None) -> dict[str, 
     if stiffness is not None:
         inertia = stiffness / natural**2
         names = NAMES[kind]
-        found |= {
+        values |= {
             names[0]: inertia,
             "viscous_damping": 2 * rate * inertia,
             names[1]: stiffness * friction,
         }
-    return found
+    return values
 
 
 NAMES: dict[Kind, tuple[str, str]] = {
@@ -141,10 +141,10 @@ def line_of_swings(turns: Turns, confidence: float) -> Constants:
     Three half-swings have exactly one line, so there are no intervals.
     """
     spacing, spacing_variance = _spacing(turns)
-    found, covariance = _line(turns)
-    loss, friction = found[2:]
+    result, covariance = _line(turns)
+    loss, friction = result[2:]
     damped = np.pi / spacing
-    free = len(turns.time) - len(found)
+    free = len(turns.time) - len(result)
     if free == 0:
         return Constants(damped, loss, friction, None, np.nan)
     both = np.zeros((3, 3))
@@ -275,9 +275,9 @@ def fit_whole(record: Record, turns: Turns, line: Constants, confidence: float) 
         least_squares(left, guess / unit, "3-point", x_scale="jac", max_nfev=200)
         for guess in _first_guesses(turns, line)
     ]
-    done = min((one for one in tried if one.success), key=lambda one: one.cost, default=tried[0])
-    found = motion(done.x)
-    if not done.success or not found.damped > 0:
+    done = min((item for item in tried if item.success), key=lambda one: one.cost, default=tried[0])
+    result = motion(done.x)
+    if not done.success or not result.damped > 0:
         raise UsageError(
             Note("no damped vibration fits the whole record; give a record of a free decay")
         )
@@ -288,10 +288,10 @@ def fit_whole(record: Record, turns: Turns, line: Constants, confidence: float) 
     matrix = covariance * pinv(done.jac.T @ done.jac) * np.outer(unit, unit)
     change = np.zeros((3, UNKNOWNS))  # -ln n = pi sigma / beta in place of sigma
     change[0, 3] = change[2, 5] = 1.0
-    change[1, 3], change[1, 4] = -found.loss / found.damped, np.pi / found.damped
+    change[1, 3], change[1, 4] = -result.loss / result.damped, np.pi / result.damped
     factor, three = student(confidence, max(free, 1.0)), change @ matrix @ change.T
-    constants = Constants(found.damped, found.loss, found.friction, three, factor)
-    return WholeFit(constants, found, time, residual, per_point, correlated)
+    constants = Constants(result.damped, result.loss, result.friction, three, factor)
+    return WholeFit(constants, result, time, residual, per_point, correlated)
 
 
 def _first_guesses(turns: Turns, line: Constants) -> Iterator[Array]:

@@ -33,7 +33,7 @@ def zigzag(values: Array, threshold: float, last: bool = False) -> list[int]:
 
     last : with the extreme reached after the last of them, from which there is no way back.
     """
-    found: list[int] = []
+    numbers: list[int] = []
     high = low = 0
     sense = 0
     for k, value in enumerate(values.tolist()):
@@ -42,14 +42,14 @@ def zigzag(values: Array, threshold: float, last: bool = False) -> list[int]:
         if sense <= 0 and value < values[low]:
             low = k
         if sense >= 0 and value < values[high] - threshold:
-            found.append(high)
+            numbers.append(high)
             sense, low = -1, k
         elif sense <= 0 and value > values[low] + threshold:
-            found.append(low)
+            numbers.append(low)
             sense, high = 1, k
     if last and sense:
-        found.append(high if sense > 0 else low)
-    return found
+        numbers.append(high if sense > 0 else low)
+    return numbers
 
 
 class Local(NamedTuple):
@@ -89,12 +89,12 @@ def fitted(samples: Samples, at: float, width: float, still: bool = False, side:
     design = np.vander(u, powers[-1] + 1, increasing=True)[:, powers]
     inverse = pinv(design.T @ design, hermitian=True)
     mean = float(np.mean(y))  # values about it: a large offset must not cost digits
-    found = inverse @ (design.T @ (y - mean))
-    left = y - mean - design @ found
+    value = inverse @ (design.T @ (y - mean))
+    left = y - mean - design @ value
     free = len(u) - len(powers)
     noise = float(np.sqrt(left @ left / free)) if free > 0 else None
     coefficients = np.zeros(5)
-    coefficients[list(powers)] = found
+    coefficients[list(powers)] = value
     coefficients[0] += mean
     spread = float(np.sqrt(inverse[0, 0]))
     return Local(at, float(coefficients[0]), spread, noise, coefficients, width)

@@ -87,7 +87,9 @@ def find_turns(record: Record) -> Turns:
     places = [place for place in (first, *places, last) if place is not None]
     if len(places) <= NEEDED:
         raise _too_few(len(places) - 1)
-    time, displacement, spread = np.array([(one.at, one.value, one.spread) for one in places]).T
+    time, displacement, spread = np.array(
+        [(place.at, place.value, place.spread) for place in places]
+    ).T
     halves = [steepest_time(whole, *ends, half) for ends in pairwise(places)]
     passed, passed_spread = np.array(halves).T
     return Turns(time, displacement, spread, passed, passed_spread, _noise(whole, half))
@@ -203,8 +205,8 @@ def _noise(samples: Samples, half: float) -> float:
     width = half / 3
     centers = np.arange(samples.time[0] + width, samples.time[-1] - width, 2 * width)
     step = max(1, len(centers) // 200)
-    found = [fitted(samples, at, width).noise for at in centers[::step]]
-    known = [noise for noise in found if noise is not None]
+    noises = [fitted(samples, at, width).noise for at in centers[::step]]
+    known = [noise for noise in noises if noise is not None]
     return float(np.median(known)) if known else 0.0
 
 

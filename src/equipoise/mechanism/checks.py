@@ -68,16 +68,16 @@ class NamedItems(dict[str, Value]):
 
 def bodies_at(bodies: Bodies) -> dict[str, list[str]]:
     """The bodies that have a point, by its name: two and more are pinned together there."""
-    found: dict[str, list[str]] = {}
+    names: dict[str, list[str]] = {}
     for body, points in bodies.items():
         for point in points:
-            found.setdefault(point, []).append(body)
-    return found
+            names.setdefault(point, []).append(body)
+    return names
 
 
 def check_kept(where: str, old: Iterable[str], new: Any) -> None:
     """Refuse points that leave some of the old ones out, which nobody would notice."""
-    lost = [one for one in old if one not in new] if new and isinstance(new, Mapping) else ()
+    lost = [item for item in old if item not in new] if new and isinstance(new, Mapping) else ()
     if lost:
         raise ModelError(
             where,
@@ -104,8 +104,8 @@ def too_many(key: str, items: Sequence[Any] | Mapping[str, Any], most: int) -> I
 def wrong_text(where: str, text: str) -> Iterator[ModelError]:
     """Complain of a title or name that cannot be printed."""
     if isinstance(text, Worded):
-        for code, one in text.texts.items():
-            yield from wrong_text(f"{where}.{code}", one)
+        for code, name in text.texts.items():
+            yield from wrong_text(f"{where}.{code}", name)
     elif len(text) > LONGEST_NAME:
         yield ModelError(
             where,
@@ -157,7 +157,7 @@ def wrong_speeds(where: str, speeds: Sequence[float]) -> Iterator[ModelError]:
 def unknown_link(where: str, name: str, bodies: Bodies) -> Iterator[ModelError]:
     """Complain of a name that no link has."""
     if name == FRAME or name not in bodies:
-        yield ModelError(where, unknown(name, [one for one in bodies if one != FRAME], "link"))
+        yield ModelError(where, unknown(name, [body for body in bodies if body != FRAME], "link"))
 
 
 def unknown_point(where: str, point: str, body: str, bodies: Bodies) -> Iterator[ModelError]:

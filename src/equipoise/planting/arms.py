@@ -36,19 +36,19 @@ def machine_figures(curve: TipCurve, wanted: Collection[str] | None = None) -> F
     """
     first, *further = curve.arms
     groups = None if wanted is None else {_group(name) for name in wanted}
-    found = tip_figures(first, *soil_crossings(first), wanted=groups)
+    result = tip_figures(first, *soil_crossings(first), wanted=groups)
     if groups is None or "hills" in groups:
-        found |= hills(curve)
+        result |= hills(curve)
     if groups is None or not SHAKING.isdisjoint(groups):
-        found |= shaking(curve)
+        result |= shaking(curve)
     for arm in further:
         begin = f"arms.{arm.arm.tip}."
         own = {name.removeprefix(begin) for name in wanted or () if name.startswith(begin)}
         if wanted is None or own:
             groups = {_group(name) for name in own} or None
             figures = tip_figures(arm, *soil_crossings(arm), wanted=groups)
-            found |= of_arm(arm.arm.tip, figures)
-    return found
+            result |= of_arm(arm.arm.tip, figures)
+    return result
 
 
 def _group(name: str) -> str:
@@ -66,7 +66,7 @@ def hills(curve: TipCurve) -> Figures:
         return {}
     sense, forward = np.sign(curve.speed[:, 0]), curve.forward[:, 0]
     row = np.abs(forward) * curve.period / np.abs(curve.speed[:, 0])
-    places = np.stack([_hill(one, sense) for one in curve.arms], axis=1)
+    places = np.stack([_hill(arm, sense) for arm in curve.arms], axis=1)
     with np.errstate(invalid="ignore"):
         along = np.sort(np.mod(places, row[:, None]), axis=1)
         apart = np.diff(along, axis=1, append=along[:, :1] + row[:, None])

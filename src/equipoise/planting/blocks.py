@@ -136,7 +136,7 @@ def _instants(page: FigureCells) -> Table:
     names = _in_time(page, names)
     angles = (page.turned(page.figures[f"{name}.crank_angle"]) for name in names)
     rows: list[tuple[Cell, ...]] = [(say("crank angle"), *angles)]
-    for key, one in OF_AN_INSTANT.items():
+    for key, item in OF_AN_INSTANT.items():
         still = key.startswith("ground_velocity") and not page.figures["forward_speed"]
         if key == "crank_angle" or still or page.get(f"entry.{key}") is None:
             continue
@@ -144,7 +144,9 @@ def _instants(page: FigureCells) -> Table:
         height = page.figures["curve.height"] if key in ("x", "y") else 0.0
         scales = [page.get(f"{name}.{size}.size") or height for name in names]
         pairs = zip(names, scales, strict=True)
-        rows.append((say(one.words), *(page.cell(f"{name}.{key}", scale) for name, scale in pairs)))
+        rows.append(
+            (say(item.words), *(page.cell(f"{name}.{key}", scale) for name, scale in pairs))
+        )
     title = say("Instants; relative to the machine where nothing else is said, directions from x")
     columns = (Column(""), *(Column(say(INSTANTS[name])) for name in names))
     return Table(page.titled(title), columns, tuple(rows))
@@ -166,8 +168,8 @@ def _values(title: str, figures: dict[str, NamedFigure], pages: Sequence[FigureC
         return None if shared else page.cell(name)
 
     rows = tuple(
-        (say(one.words), *(cell_of(page, name) for page in pages))
-        for name, one in figures.items()
+        (say(figure.words), *(cell_of(page, name) for page in pages))
+        for name, figure in figures.items()
         if any(page.get(name) is not None for page in pages)
     )
     several = len(pages) > 1
@@ -178,11 +180,11 @@ def _values(title: str, figures: dict[str, NamedFigure], pages: Sequence[FigureC
 def _extremes(page: FigureCells) -> Table:
     rows = tuple(
         (
-            say(one.words),
+            say(extreme.words),
             page.at(f"{name}.value", f"{name}.crank_angle"),
             page.cell(f"{name}.direction"),
         )
-        for name, one in EXTREMES.items()
+        for name, extreme in EXTREMES.items()
     )
     columns = (Column(""), Column(say("value")), Column(say("direction"), "angle"))
     title = page.titled(say("Extremes relative to the machine, at crank angle"))
@@ -202,8 +204,8 @@ def _ratios(page: FigureCells) -> Iterator[Block]:
 
 def _visits(page: FigureCells) -> Iterator[Block]:
     rows = tuple(
-        (*map(page.turned, (one.entry, one.exit, one.deepest)), Value(one.depth))
-        for one in page.figures.visits
+        (*map(page.turned, (visit.entry, visit.exit, visit.deepest)), Value(visit.depth))
+        for visit in page.figures.visits
     )
     if len(rows) > 1:
         angles = (Column(label, "angle") for label in (say("entry"), say("exit"), say("deepest")))
@@ -246,7 +248,7 @@ def _clearances(pages: Sequence[FigureCells]) -> Iterator[Block]:
         names = (f"clearance.{ground}.{body}" for ground in grounds)
         height = figures["curve.height"]
         cells = [page.at(f"{name}.value", f"{name}.crank_angle", height) for name in names]
-        if any(one is not None for one in cells):
+        if any(item is not None for item in cells):
             rows.append((body, *cells))
     columns = (Column(""), *map(Column, grounds.values()))
     title = say("Smallest clearance of links, the tip left out, at crank angle")
@@ -286,8 +288,8 @@ def _forces(page: FigureCells) -> Iterator[Block]:
         joint = joint_named(name.removeprefix("joints."))
         text = say("drive torque") if drive else say("joint {name}", name=joint)
         peaks = (
-            Value(found.peak, soil.peak, page.from_zero(found.peak_at), dimension=kind)
-            for found in (air, soil)
+            Value(result.peak, soil.peak, page.from_zero(result.peak_at), dimension=kind)
+            for result in (air, soil)
         )
         ratio = Value(soil.peak / air.peak) if air.peak > 1e-9 * soil.peak else None
         rows.append((text, *peaks, ratio))

@@ -39,25 +39,25 @@ def clearances(curve: TipCurve, entry: Array) -> Figures:
     start, stop = (complex(*point) for point in tray)
 
     def apart(theta: Array, link: str) -> Any:
-        found = places(theta, link)
-        lines = combinations(found, 2) if len(found) > 1 else [(found[0], found[0])]
+        result = places(theta, link)
+        lines = combinations(result, 2) if len(result) > 1 else [(result[0], result[0])]
         return np.min([distance(a, b, start, stop) for a, b in lines], axis=0)
 
     for link in outlines:
         result |= _smallest(curve, f"clearance.tray.{link}", partial(apart, link=link))
     name, passes = f"clearance.tray.tip {tip}", pick_up(curve, entry)
-    found = _smallest(curve, name, lambda theta: to_line(curve.at(theta).place, start, stop))
+    figures = _smallest(curve, name, lambda theta: to_line(curve.at(theta).place, start, stop))
     met = np.isfinite(passes)
-    found[f"{name}.value"][met] = 0.0
-    found[f"{name}.crank_angle"][met] = wrapped(curve, passes)[met]
-    return result | found
+    figures[f"{name}.value"][met] = 0.0
+    figures[f"{name}.crank_angle"][met] = wrapped(curve, passes)[met]
+    return result | figures
 
 
 def _outlines(curve: TipCurve) -> dict[str, list[str]]:
     """Points of each link that has some beside tips; none where the arm is not the first."""
     if curve is not curve.arms[0]:
         return {}
-    tips = {one.arm.tip for one in curve.arms}
+    tips = {arm.arm.tip for arm in curve.arms}
     links = curve.machines[0].links.items()
     outlines = {name: [point for point in link.points if point not in tips] for name, link in links}
     return {name: points for name, points in outlines.items() if points}

@@ -37,7 +37,7 @@ class Designs:
     ) -> None:
         self.machine, self.sense = machine, sense
         self.given = (machine, vary, sense)
-        known = {one.name: one for one in lifts_of(machine)}
+        known = {lift.name: lift for lift in lifts_of(machine)}
         names = [name for name in known if usual(name)] if vary is None else list(vary)
         if not names:
             raise UsageError(
@@ -46,34 +46,36 @@ class Designs:
         self.lifts: list[Lift] = []
         self.ranges: list[Range] = []
         for name in names:
-            one = known.get(name) or joined(machine, name)
-            if one is None:
+            item = known.get(name) or joined(machine, name)
+            if item is None:
                 raise UsageError(at_place(f"vary.{name}", unknown(name, known, "number to vary")))
-            self.lifts.append(one)
-            self.ranges.append(_range(one, *((one.low, one.high) if vary is None else vary[name])))
+            self.lifts.append(item)
+            self.ranges.append(
+                _range(item, *((item.low, item.high) if vary is None else vary[name]))
+            )
         self.twins = [
             twin
             for twin in twins_of(machine)
-            if all(twin.mate in one.gears for one in self.lifts if twin.gear in one.gears)
+            if all(twin.mate in lift.gears for lift in self.lifts if twin.gear in lift.gears)
         ]
 
     @property
     def variables(self) -> tuple[Variable, ...]:
         """What varies."""
-        found = zip(self.lifts, self.ranges, strict=True)
-        return tuple(Variable(lift.name, one, lift.dimension) for lift, one in found)
+        lifts = zip(self.lifts, self.ranges, strict=True)
+        return tuple(Variable(lift.name, item, lift.dimension) for lift, item in lifts)
 
     @property
     def bounds(self) -> tuple[Array, Array]:
         """Lowest and highest values, (n,) each."""
-        low, high = [one.low for one in self.ranges], [one.high for one in self.ranges]
+        low, high = [item.low for item in self.ranges], [item.high for item in self.ranges]
         turning = [1.0] if self.sense == "either" else []
         return np.array([*low, *(-t for t in turning)]), np.array([*high, *turning])
 
     @property
     def start(self) -> Array:
         """Values of the machine itself, inside the limits, (n,)."""
-        values = [one.start for one in self.lifts]
+        values = [lift.start for lift in self.lifts]
         turning = [np.sign(self.machine.drive.speed)] if self.sense == "either" else []
         start: Array = np.clip([*values, *turning], *self.bounds)
         return start

@@ -92,7 +92,7 @@ def tip_figures(
     if curve is not curve.arms[0]:
         groups = {name: group for name, group in groups.items() if name not in OF_MACHINE}
     known = [group(name) for name, group in groups.items() if wanted is None or name in wanted]
-    return {name: values for found in known for name, values in found.items()}
+    return {name: values for result in known for name, values in result.items()}
 
 
 def size_of_curve(curve: TipCurve) -> Figures:

@@ -68,9 +68,9 @@ def _goals(fit: Fit) -> Table:
 
 def _changes(fit: Fit) -> Table:
     rows: list[tuple[Cell, ...]] = []
-    for one, limits in zip(fit.designs.lifts, fit.designs.ranges, strict=True):
-        values = (one.start, fit.values[one.name], limits.low, limits.high)
-        rows.append((one.name, *(quantity(value, one.dimension) for value in values)))
+    for lift, limits in zip(fit.designs.lifts, fit.designs.ranges, strict=True):
+        values = (lift.start, fit.values[lift.name], limits.low, limits.high)
+        rows.append((lift.name, *(quantity(value, lift.dimension) for value in values)))
     old, new = fit.designs.machine.drive.speed, fit.machine.drive.speed
     if old != new:
         pair = (quantity(speed, "angular speed") for speed in (old, new))

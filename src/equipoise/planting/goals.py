@@ -63,8 +63,8 @@ class GoalOutcome:
     @classmethod
     def joined(cls, parts: Sequence[GoalOutcome]) -> GoalOutcome:
         """What came of all parts, one after the other."""
-        names = [one.name for one in fields(cls)]
-        return cls(*(np.concatenate([getattr(one, name) for one in parts]) for name in names))
+        names = [item.name for item in fields(cls)]
+        return cls(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
 
     @property
     def kept(self) -> Array:
@@ -145,15 +145,15 @@ class PlantingProblem(DesignProblem):
         """Judge designs (P, n) in this process; of none does the result depend on the others."""
         machines, worst = self._built(values)
         good = worst > OPEN
-        found = {goal.figure: np.full(len(values), np.nan) for goal in self.goals}
+        fulls = {goal.figure: np.full(len(values), np.nan) for goal in self.goals}
         if np.any(good):
             some = [m for m, g in zip(machines, good, strict=True) if g and m is not None]
-            computed = _figures(some, [*found], self.turns)
-            for name, column in found.items():
+            computed = _figures(some, [*fulls], self.turns)
+            for name, column in fulls.items():
                 column[good] = computed[name]
         off, slack, size = [], [], np.zeros(len(values))
         for goal, scale in zip(self.goals, self.scales, strict=True):
-            column = found[goal.figure]
+            column = fulls[goal.figure]
             if goal.target is not None:
                 off.append(goal.off(column) / scale)
             slack += [part / scale for part in goal.slack(column)]
@@ -194,9 +194,9 @@ def _figures(
     """Figures of designs by name, (P,); NaN where a design does not have one."""
     with np.errstate(all="ignore"):
         curve = TipCurve(machines, GRID, turns)
-        found = machine_figures(curve, wanted)
-        plants = np.all([_plants(one) for one in curve.arms], axis=0)
-        return {name: np.where(plants, values, np.nan) for name, values in found.items()}
+        figures = machine_figures(curve, wanted)
+        plants = np.all([_plants(arm) for arm in curve.arms], axis=0)
+        return {name: np.where(plants, values, np.nan) for name, values in figures.items()}
 
 
 def _plants(curve: TipCurve) -> Array:

@@ -113,8 +113,8 @@ class GroundPath:
         around = self.slow + period * np.floor((start - self.slow) / period)
         slow = np.concatenate([around + period * k for k in range(3)], axis=None)
         step = period / len(self.curve.theta) * 8
-        near = _crowded(slow, step)
-        inner = np.concatenate([np.linspace(start, stop, pieces + 1), near])
+        crowded = _crowded(slow, step)
+        inner = np.concatenate([np.linspace(start, stop, pieces + 1), crowded])
         return np.unique(inner[(inner >= start) & (inner <= stop)])
 
     def loops(self) -> tuple[Loop, ...]:
@@ -152,10 +152,10 @@ class GroundPath:
         for _ in range(MOST_STEPS):
             if not ways.size:
                 break
-            places, (one, other) = self.place(ways), self.rate(ways).T
-            turn, gap = kernels.cross(one, other), places[:, 1] - places[:, 0]
+            places, (item, other) = self.place(ways), self.rate(ways).T
+            turn, gap = kernels.cross(item, other), places[:, 1] - places[:, 0]
             crossing = np.abs(turn) > 0
-            steps = np.stack([kernels.cross(gap, other), kernels.cross(gap, one)], axis=-1)
+            steps = np.stack([kernels.cross(gap, other), kernels.cross(gap, item)], axis=-1)
             steps = steps[crossing] / turn[crossing, None]
             ways = ways[crossing] + steps
             close = np.max(np.abs(steps), axis=1) < CLOSED

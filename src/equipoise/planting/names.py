@@ -78,7 +78,7 @@ EXTREMES = {
 FIGURES = {
     **PATH,
     **SOIL,
-    **{f"{name}.value": one for name, one in EXTREMES.items()},
+    **{f"{name}.value": extreme for name, extreme in EXTREMES.items()},
 }
 SHAKEN = {
     "shaking_force.rms": NamedFigure(to_say("RMS of the shaking force"), "force"),

@@ -107,7 +107,7 @@ class Fit(Result):
     def _told(self, goal: Requirement) -> dict[str, Any]:
         """A goal, whether it is met, and its figure before and after."""
         figures = {"before": self.before, "after": self.after}
-        values = {when: one and one.get(goal.figure) for when, one in figures.items()}
+        values = {when: figure and figure.get(goal.figure) for when, figure in figures.items()}
         asked = {"figure": goal.figure, **goal.asked_in("goals"), "tolerance": goal.tolerance}
         return {**asked, "met": self.met.get(goal.figure), **values}
 
@@ -237,13 +237,13 @@ class _Evolution:
     def rounds(self, population: int) -> Array:
         """Best designs (K, n) of the whole range; a further round where the targets are missed."""
         low, high = self.problem.designs.bounds
-        found = self.round(low, high, self.problem.designs.start, population, self.generations)
+        values = self.round(low, high, self.problem.designs.start, population, self.generations)
         while not self.problem.makes and not self._close() and self.done < self.generations:
             left = self.generations - self.done
             again = self.round(low, high, None, population, left)
-            found = np.vstack([found, again])
-        order = np.argsort(self.problem.judge(found).cost)
-        best: Array = found[order[:POLISHED]]
+            values = np.vstack([values, again])
+        order = np.argsort(self.problem.judge(values).cost)
+        best: Array = values[order[:POLISHED]]
         return best
 
     def near(self, start: Array, population: int) -> Array:
@@ -302,9 +302,9 @@ class _Evolution:
 def _polished(problem: PlantingProblem, starts: Array) -> Iterator[Array]:
     """Designs (1, n) nearest to the targets; it ends once one of them meets them all."""
     for start in starts:
-        found = _nearest(problem, start)[None]
-        yield found
-        if problem.judge(found).cost[0] < MET:
+        result = _nearest(problem, start)[None]
+        yield result
+        if problem.judge(result).cost[0] < MET:
             return
 
 

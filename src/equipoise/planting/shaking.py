@@ -26,11 +26,11 @@ def shaking(curve: TipCurve) -> Figures:
         return {}
     parts = _Parts(curve)
     sampled = parts.signals(curve.grid.state)
-    found: Figures = {}
+    figures: Figures = {}
     for name, values in sampled.items():
-        found[f"{name}.rms"] = np.sqrt(np.mean(values**2, axis=1))
-        found[f"{name}.peak"] = _peak(curve, parts.of(name))
-    return found
+        figures[f"{name}.rms"] = np.sqrt(np.mean(values**2, axis=1))
+        figures[f"{name}.peak"] = _peak(curve, parts.of(name))
+    return figures
 
 
 def _peak(curve: TipCurve, signal: Callable[[Array], Array]) -> Array:

@@ -116,13 +116,13 @@ def visits(curve: TipCurve) -> tuple[Visit, ...]:
     entries, exits = (
         np.sort(np.mod(sense * angles[side], curve.period)) for side in (falls, ~falls)
     )
-    found = []
+    result = []
     for entry in entries:
         leave = _next(exits, entry, curve.period)
         theta, depth = _deepest(curve, nodes, sense * entry, sense * leave, level)
-        found.append(Visit(sense * entry, sense * leave, theta, depth))
-    deepest = max((visit.depth for visit in found), default=0.0)
-    return tuple(sorted(found, key=lambda visit: -min(visit.depth, deepest * (1 - EQUAL))))
+        result.append(Visit(sense * entry, sense * leave, theta, depth))
+    deepest = max((visit.depth for visit in result), default=0.0)
+    return tuple(sorted(result, key=lambda visit: -min(visit.depth, deepest * (1 - EQUAL))))
 
 
 def _next(ways: Array, way: float, period: float) -> float:
@@ -147,7 +147,7 @@ def _check_reach(curve: TipCurve, level: float) -> None:
     touch = TOUCH * (highest - lowest)
     tip, given = curve.arm.tip, curve.planting.depth
     if level <= lowest + touch and given is not None:
-        told = Note(
+        note = Note(
             "got {place}; the tip {tip} never reaches the soil, its lowest point is {higher} "
             "above that of the deepest; {right}",
             place=_mm(given),
@@ -155,7 +155,7 @@ def _check_reach(curve: TipCurve, level: float) -> None:
             higher=_mm(lowest - level + given),
             right=next(nearly_alike(curve.machines[0]), Note("give more than that")),
         )
-        raise ModelError("planting.depth", told)
+        raise ModelError("planting.depth", note)
     if level <= lowest + touch:
         raise ModelError(
             "planting.surface",
@@ -205,7 +205,7 @@ def soil_crossings(curve: TipCurve) -> tuple[Array, Array]:
     above = curve.height(nodes) >= level
     k_leave = np.argmax(above, axis=1)[:, None]
     k_entry = count - np.argmax(above[:, ::-1], axis=1)[:, None]
-    found = np.any(above, axis=1) & ~above[:, 0]
+    value = np.any(above, axis=1) & ~above[:, 0]
     k_leave, k_entry = np.clip(k_leave, 1, count), np.clip(k_entry, 0, count - 1)
 
     def over(theta: Array) -> Any:
@@ -213,7 +213,7 @@ def soil_crossings(curve: TipCurve) -> tuple[Array, Array]:
 
     def between(k: Array) -> Array:
         ends = (np.take_along_axis(nodes, k + step, axis=1) for step in (0, 1))
-        return np.where(found, roots(over, *ends)[:, 0], np.nan)
+        return np.where(value, roots(over, *ends)[:, 0], np.nan)
 
     return between(k_entry) - sense[:, 0] * curve.period, between(k_leave - 1)
 

@@ -48,12 +48,12 @@ class SoilForces:
     def compared(self) -> dict[str, tuple[Figures, Figures]]:
         """Figures in the air and in the soil of the drive torque and of every joint's force."""
         air, soil = (
-            {"drive_torque": self.motion.figures(found.drive_torque)}
+            {"drive_torque": self.motion.figures(result.drive_torque)}
             | {
                 f"joints.{name}": self.motion.figures(joint.size)
-                for name, joint in found.joints.items()
+                for name, joint in result.joints.items()
             }
-            for found in (self.in_air, self.in_soil)
+            for result in (self.in_air, self.in_soil)
         )
         return {name: (air[name], soil[name]) for name in air}
 
@@ -208,7 +208,7 @@ class PlantingFigures(Result):
             "the same of each further arm, without what belongs to the machine",
             of={**OF_ARM, "figures": replace(OF_ARM["figures"], read="_nested_of_arm")},
             family=True,
-            read=lambda found: {one.tip: one for one in found.further},
+            read=lambda found: {item.tip: item for item in found.further},
             present="further",
             table="plant",
         ),
@@ -266,9 +266,9 @@ def _read_off(curve: TipCurve) -> PlantingFigures:
     path, stays = GroundPath(curve), visits(curve)
     main = stays[0]
     breaks = path.sense * path.breaks(path.sense * main.entry, path.sense * main.exit)
-    found = tip_figures(curve, np.array([main.entry]), np.array([main.exit]), breaks[None])
+    figures = tip_figures(curve, np.array([main.entry]), np.array([main.exit]), breaks[None])
     crossed = tray_crossings(curve)
-    values = _of_drive(curve) | {name: float(value[0]) for name, value in found.items()}
+    values = _of_drive(curve) | {name: float(value[0]) for name, value in figures.items()}
     known = NamedItems("figure", ((n, value) for n, value in values.items() if isfinite(value)))
     notes = _notes(curve, stays, crossed, known)
     return PlantingFigures(

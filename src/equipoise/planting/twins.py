@@ -47,10 +47,10 @@ def twins_of(machine: Machine) -> tuple[Twin, ...]:
         return ()
     links = [tip_link(machine, arm.tip) for arm in planting.every_arm]
     first, *further = ([*_chain(machine, link)] for link in links)
-    found = [pair for chain in further for pair in _paired(machine, first, chain)]
-    starts = np.array([machine.gears[gear].start for gear, _, _ in found])
-    offsets = starts - _angles(machine, [(mate, ahead) for _, mate, ahead in found])
-    return tuple(Twin(*pair, offset) for pair, offset in zip(found, offsets.tolist(), strict=True))
+    values = [pair for chain in further for pair in _paired(machine, first, chain)]
+    starts = np.array([machine.gears[gear].start for gear, _, _ in values])
+    offsets = starts - _angles(machine, [(mate, ahead) for _, mate, ahead in values])
+    return tuple(Twin(*pair, offset) for pair, offset in zip(values, offsets.tolist(), strict=True))
 
 
 def kept_alike(machine: Machine, twins: Sequence[Twin]) -> Machine:
@@ -87,8 +87,8 @@ def nearly_alike(machine: Machine) -> Iterator[Note]:
 
 def _goes_with(machine: Machine, twin: Twin) -> bool:
     """Whether a gear does what its mate does at some more crank angles than that of the start."""
-    own = _angles(machine, [(twin.gear, one) for one in LATER])
-    mates = _angles(machine, [(twin.mate, one + twin.ahead) for one in LATER])
+    own = _angles(machine, [(twin.gear, item) for item in LATER])
+    mates = _angles(machine, [(twin.mate, item + twin.ahead) for item in LATER])
     return bool(np.max(np.abs(np.exp(1j * own) - np.exp(1j * mates))) < CLOSE)
 
 

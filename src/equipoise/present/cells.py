@@ -102,9 +102,11 @@ def grid(table: Table) -> Grid:
         return Grid(table.title, tuple(Head(column.label) for column in table.columns), ())
     columns = zip(table.columns, zip(*table.rows, strict=True), strict=True)
     heads = (_head(*pair, shown) for pair in columns)
-    kept = [any(cell.text for cell in cells) for cells in zip(*rows, strict=True)]
+    is_sos = [any(cell.text for cell in cells) for cells in zip(*rows, strict=True)]
     return Grid(
-        table.title, tuple(compress(heads, kept)), tuple(tuple(compress(row, kept)) for row in rows)
+        table.title,
+        tuple(compress(heads, is_sos)),
+        tuple(tuple(compress(row, is_sos)) for row in rows),
     )
 
 
@@ -191,8 +193,8 @@ def _display(dimension: Dimension | None, unit: str | None, values: Iterable[flo
 
 
 def _head(column: Column, cells: tuple[Cell, ...], shown: Mapping[Kind, Display]) -> Head:
-    held = any(value.at is not None for cell in cells for value in _values(cell))
-    at = shown[column.at].unit if held else ""
+    is_so = any(value.at is not None for cell in cells for value in _values(cell))
+    at = shown[column.at].unit if is_so else ""
     return Head(column.label, shown[column.dimension, column.unit].unit, at)
 
 
@@ -212,10 +214,12 @@ def _text(
         share = change(cell.before, cell.after)
         return CellText(say("same") if share == UNCHANGED else share, "", True, cell.emphasis)
     if isinstance(cell, Many):
-        told = [_text(value, column, shown, sizes, faint) for value in cell.values]
-        more = [say("and {count} more", count=cell.more)] if cell.more else []
-        words = say(", ").join([*(one.told for one in told), *more])
-        return CellText(words, emphasis=next((one.emphasis for one in told if one.emphasis), None))
+        values = [_text(value, column, shown, sizes, faint) for value in cell.values]
+        labels = [say("and {count} more", count=cell.more)] if cell.more else []
+        words = say(", ").join([*(item.told for item in values), *labels])
+        return CellText(
+            words, emphasis=next((item.emphasis for item in values if item.emphasis), None)
+        )
     if isinstance(cell, Span):
         kind = column.dimension, column.unit
         unit, size = shown[kind], sizes[kind]

@@ -48,11 +48,11 @@ def machine_blocks(machine: Machine) -> Iterator[Block]:
     linkage = assemble(machine)
     motion, drive = move(machine), machine.drive  # at the angles of an analysis
     cycle = motion.linkage.cycle
-    told = f"{drive.link} at {number(drive.speed / PER_RPM)} rpm about {linkage.pivot}"
+    text = f"{drive.link} at {number(drive.speed / PER_RPM)} rpm about {linkage.pivot}"
     if not machine.has_crank:
-        told = driven(machine, drive.speed)
+        text = driven(machine, drive.speed)
     free = "one free motion" if not machine.drives else f"{len(machine.driven)} free motions"
-    yield Text(f"{len(machine.links)} moving links, {free}; driven: {told}")
+    yield Text(f"{len(machine.links)} moving links, {free}; driven: {text}")
     yield from map(Text, _build_up(linkage))
     crank = machine.crank_turns
     turns = "one turn" if cycle.turns == 1 else f"{cycle.turns} turns"
@@ -146,10 +146,10 @@ def _elements(motion: Motion) -> Iterator[str]:
 
 
 def _joints(machine: Machine) -> Iterator[str]:
-    for one in machine.joints:
-        radius = "" if one.radius is None else f", radius {_length(one.radius)}"
-        stiff = "" if one.stiffness is None else f", {told(one.stiffness, 'stiffness', 'N/m')}"
-        yield f"{one.joint}{radius}{_bearing(one)}{stiff}{_friction(one)}"
+    for joint in machine.joints:
+        radius = "" if joint.radius is None else f", radius {_length(joint.radius)}"
+        stiff = "" if joint.stiffness is None else f", {told(joint.stiffness, 'stiffness', 'N/m')}"
+        yield f"{joint.joint}{radius}{_bearing(joint)}{stiff}{_friction(joint)}"
 
 
 def _bearing(one: JointProperties) -> str:
@@ -164,22 +164,22 @@ def _bearing(one: JointProperties) -> str:
 
 def _friction(one: JointProperties) -> str:
     """What a joint resists its motion with; a coefficient that is unusual is asked about."""
-    found = ""
+    text = ""
     if one.friction is not None:
         asked = " (is it meant? dry steel on steel has 0.2)" if one.friction > UNUSUAL else ""
-        found += f", friction {number(one.friction)}{asked}"
+        text += f", friction {number(one.friction)}{asked}"
     if one.static_friction is not None and one.stribeck_speed is not None:
         speed = told(one.stribeck_speed, "speed", "m/s")
-        found += f", {number(one.static_friction)} at rest (Stribeck speed {speed})"
+        text += f", {number(one.static_friction)} at rest (Stribeck speed {speed})"
     if one.guide_length is not None:
-        found += f", guide of {_length(one.guide_length)}"
+        text += f", guide of {_length(one.guide_length)}"
     sizes: list[tuple[str, float, Dimension]] = [
         ("damping", one.damping, "damping"),
         ("damping", one.torsional_damping, "torsional damping"),
         ("drag", one.drag_force, "force"),
         ("drag", one.drag_torque, "torque"),
     ]
-    return found + "".join(f", {what} {told(size, kind)}" for what, size, kind in sizes if size)
+    return text + "".join(f", {what} {told(size, kind)}" for what, size, kind in sizes if size)
 
 
 def _drive_train(machine: Machine) -> Iterator[str]:
@@ -297,7 +297,7 @@ def tool_blocks(tool: Tool, file: str) -> Iterator[Block]:
     if tool.operation is not None:
         yield Text(f"engine: {', '.join(_operation(tool.operation))}")
     if tool.work:
-        times = (f"{one.name} {number(one.duration / 3600)} h" for one in tool.work)
+        times = (f"{value.name} {number(value.duration / 3600)} h" for value in tool.work)
         yield Text(f"day: {', '.join(times)}")
     if tool.design is not None:
         yield from map(Text, _design(tool.design))
@@ -406,7 +406,7 @@ def _design(design: DesignPlan) -> Iterator[str]:
     low, high = map(_rpm, design.speeds)
     measure = {"rms": "RMS", "peak": "largest"}[design.measure]
     yield f"design: acceleration of the hands, {measure} over {low} to {high} rpm"
-    yield f"  may change: {', '.join(varied_named(one.name) for one in design.variables)}"
+    yield f"  may change: {', '.join(varied_named(variable.name) for variable in design.variables)}"
     for limit in design.limits:
         most = told(limit.at_most, OUTPUTS[limit.output])
         yield f"  {LIMITED[limit.output].format(station=limit.station)}: at most {most}"

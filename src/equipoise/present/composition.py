@@ -92,11 +92,11 @@ def build(
     """
     with speaking(language), in_own_words(found.owner):
         if isinstance(found, ToolFindings):
-            made = _of_tool(found, language, command)
+            of_tool = _of_tool(found, language, command)
         else:
             check_whole_cycle(found)
-            made = _of_linkage(found, language, command, together)
-        return replace(made, units=chosen_units())
+            of_tool = _of_linkage(found, language, command, together)
+        return replace(of_tool, units=chosen_units())
 
 
 def _of_linkage(found: Findings, language: str, command: str, together: bool) -> ReportDocument:
@@ -116,14 +116,14 @@ def _of_linkage(found: Findings, language: str, command: str, together: bool) ->
         ]
         blocks["joints"] = [*drawn.get("joints", []), *_with_after(_joints, analysis, again)]
     if found.response is not None:
-        shaken = None if later is None else later.response
+        response = None if later is None else later.response
         blocks["vibration"] = [*drawn.get("vibration", []), *drawn.get("modes", [])]
-        blocks["vibration"] += _with_after(response_blocks, found.response, shaken)
+        blocks["vibration"] += _with_after(response_blocks, found.response, response)
         if found.sweep is not None and found.sweep.resonances:
             blocks["vibration"].append(resonances_table(found.sweep))
     if found.balanced is not None:
         blocks["balance"] = [*balance_blocks(found), *drawn.get("balance", [])]
-    seen = {name: seen_in(name, found) for name in blocks}
+    seens = {name: seen_in(name, found) for name in blocks}
     summary = tuple(answers(found))
     if "balance" in blocks:
         blocks["balance"] = [*_not_said(blocks["balance"], summary)]
@@ -135,7 +135,7 @@ def _of_linkage(found: Findings, language: str, command: str, together: bool) ->
         tuple(tiles(found)),
         summary,
         _animation(found),
-        *_sections(found, blocks, seen, _settings_of_linkage(found), command),
+        *_sections(found, blocks, seens, _settings_of_linkage(found), command),
         lead="" if later is None else say(AFTER),
         verdict=next(_verdict(found), None),
         drawing=_first_picture(blocks["model"]),
@@ -167,8 +167,8 @@ def _with_after(
     blocks: Callable[[Any], Iterable[Block]], before: Any, after: Any
 ) -> Iterable[Block]:
     """What a result shows, beside the same after the change that helps most, where there is one."""
-    told = blocks(before)
-    return told if after is None else beside(told, blocks(after))
+    text = blocks(before)
+    return text if after is None else beside(text, blocks(after))
 
 
 def balance_blocks(found: Findings) -> Iterator[Block]:
@@ -355,8 +355,8 @@ def report(
         raise UsageError(
             at_place("report", Note("no file is named; give one such as 'report.html'"))
         )
-    found = find(model, speed=speed)
-    write_document(build(found, language, command, together=True), outs)
+    result = find(model, speed=speed)
+    write_document(build(result, language, command, together=True), outs)
 
 
 def report_page(found: Findings | ToolFindings, language: str = "en", command: str = "") -> str:

@@ -74,9 +74,9 @@ def _draw(found: Findings | ToolFindings, sections: Collection[str]) -> Drawings
     drawn: Drawings = {}
     for picture in each(found, sections=sections):
         chart = picture.draw()
-        told = say("; ").join((chart.what, *chart.words))
+        text = say("; ").join((chart.what, *chart.words))
         svg, wide = svg_of(chart)
         seen, caption = picture.seen(), say(picture.caption)
-        block = SvgPicture(picture.name, told, svg, seen, caption, wide, picture.detail)
+        block = SvgPicture(picture.name, text, svg, seen, caption, wide, picture.detail)
         drawn.setdefault(picture.section, []).append(block)
     return drawn

@@ -254,11 +254,11 @@ def find(
     if isinstance(given, Tool):
         return ToolFindings(_at_speed(given, speed), text, name)
     machine = given if speed is None else given.with_drive(speed=speed)
-    found = swing(machine) if swings else None
-    if found is None:
+    result = swing(machine) if swings else None
+    if result is None:
         return Findings(machine, text, name, angles)
     title = in_each(machine.title, lambda own: f"{own}{say(SHOWN_SWINGING)}")
-    return Findings(replace(found.machine, title=title), text, name, angles, found.note)
+    return Findings(replace(result.machine, title=title), text, name, angles, result.note)
 
 
 def _with_text(

@@ -76,14 +76,14 @@ def fastest(analysis: Analysis) -> str:
 
 def stroked(analysis: Analysis) -> str:
     """Stroke of the first slider or swing of the first rocker, with its time ratio."""
-    for name, one in analysis.strokes.items():
+    for name, stroke in analysis.strokes.items():
         templates = {
             "slider": to_say("{name} has a stroke of {size}, with a time ratio of {ratio}"),
             "rocker": to_say("{name} swings by {size}, with a time ratio of {ratio}"),
         }
-        size = told(one.stroke, one.dimension, "deg" if one.dimension == "angle" else None)
-        values = {"name": named(joint_named(name)), "size": size, "ratio": brief(one.time_ratio)}
-        return say(templates["slider" if one.kind == "slider" else "rocker"], **values)
+        size = told(stroke.stroke, stroke.dimension, "deg" if stroke.dimension == "angle" else None)
+        values = {"name": named(joint_named(name)), "size": size, "ratio": brief(stroke.time_ratio)}
+        return say(templates["slider" if stroke.kind == "slider" else "rocker"], **values)
     return fastest(analysis)
 
 
@@ -91,17 +91,17 @@ def kinematic(analysis: Analysis, name: str) -> str:
     """Of a chart of motion: the range of the transmission angles, or the largest velocity."""
     from equipoise.figures.points import kinematics_named
 
-    every = [one for one in analysis.outputs if one.group == "transmission"]
+    every = [output for output in analysis.outputs if output.group == "transmission"]
     if every and name == kinematics_named("transmission"):
-        ends = ((one.figures.min, one.figures.max) for one in every)
+        ends = ((item.figures.min, item.figures.max) for item in every)
         low, high = (
             angle(f(pair)) for f, pair in zip((min, max), zip(*ends, strict=True), strict=True)
         )
         return say("The transmission angle stays between {low} and {high}", low=low, high=high)
-    for one in analysis.outputs:
-        if one.dimension in ("speed", "angular speed") and name == kinematics_named(one.item):
-            shown = display(one.dimension, [one.figures.peak])
-            return topped(one.label(), one.figures, shown)
+    for entry in analysis.outputs:
+        if entry.dimension in ("speed", "angular speed") and name == kinematics_named(entry.item):
+            shown = display(entry.dimension, [entry.figures.peak])
+            return topped(entry.label(), entry.figures, shown)
     return ""
 
 
@@ -131,7 +131,7 @@ def resisted(found: PlantingFigures) -> str:
     """What the soil adds to the drive torque."""
     assert found.forces is not None
     air, soil = found.forces.compared()["drive_torque"]
-    before, after = (told(one.peak, "torque", digits=3) for one in (air, soil))
+    before, after = (told(item.peak, "torque", digits=3) for item in (air, soil))
     text = to_say("Drive torque: up to {before} in the air, {after} in the soil")
     return say(text, before=before, after=after)
 
@@ -158,10 +158,10 @@ def pushed(found: Findings) -> str:
 def peaked(analysis: Analysis, name: str, dimension: Dimension) -> str:
     """The largest of an output of frame or drive, of all rows, and at which crank angle."""
     name = analysis.whole(name)
-    one, scale, what = analysis.summary[name], scale_of(analysis, dimension), output_named(name)
-    if one.peak <= NOTHING * scale:
+    item, scale, what = analysis.summary[name], scale_of(analysis, dimension), output_named(name)
+    if item.peak <= NOTHING * scale:
         return say("{what}: none", what=capital(what))
-    return topped(what, one, display_of_totals(analysis, dimension))
+    return topped(what, item, display_of_totals(analysis, dimension))
 
 
 def topped(what: str, found: Figures, unit: Display) -> str:
@@ -208,16 +208,16 @@ def carried(analysis: Analysis) -> str:
     """Which joint carries most."""
     if not analysis.forces.joints:
         return say("The forces in the joints grow without bound where links lie in line")
-    name, found = largest_joint(analysis)
+    name, figures = largest_joint(analysis)
     unit = display_of_joints(analysis)
-    size = unit.with_unit(unit.text(found.peak, digits=3))
+    size = unit.with_unit(unit.text(figures.peak, digits=3))
     return say("Joint {name} carries most: up to {peak}", name=named(joint_named(name)), peak=size)
 
 
 def joint_peaked(analysis: Analysis) -> str:
     """At which crank angle that joint carries most."""
-    name, found = largest_joint(analysis)
-    at = angle(found.peak_at)
+    name, figures = largest_joint(analysis)
+    at = angle(figures.peak_at)
     text = to_say("Joint {name} carries most at crank angle {angle}")
     return say(text, name=named(joint_named(name)), angle=at)
 
@@ -236,8 +236,8 @@ def aimed(found: Findings) -> str:
     """What balancing does to the first of what was to become small."""
     balanced = found.balanced
     assert balanced is not None
-    one, pair = next(iter(balanced.aims.items()))
-    what = capital(objective_named(one, len(found.machine.rows)))
+    item, pair = next(iter(balanced.aims.items()))
+    what = capital(objective_named(item, len(found.machine.rows)))
     if not found.helped:
         return f"{what}: {good_already(balanced)}"
     return say("{what}: {change}", what=what, change=change(*pair) or percent(0))
@@ -275,9 +275,9 @@ def compared(found: Findings, picture: str) -> str:
 
 def reached(balanced: Balanced) -> str:
     """The first of what was to become small, before and after."""
-    one, pair = next(iter(balanced.aims.items()))
-    what = objective_named(one, len(balanced.original.rows))
-    return _changed(what, pair, unit_of(one, balanced.original))
+    item, pair = next(iter(balanced.aims.items()))
+    what = objective_named(item, len(balanced.original.rows))
+    return _changed(what, pair, unit_of(item, balanced.original))
 
 
 def _changed(what: str, pair: tuple[float, float], si_unit: str) -> str:

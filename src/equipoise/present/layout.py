@@ -273,7 +273,7 @@ def _lines(part: Sequence[_Column], rows: int, looks: Looks) -> Iterator[str]:
     """Lines of a part; headings end, and cells begin, side by side."""
     widths = _widths(part)
     for row in (None, *range(rows)):
-        cells = [one.lines(row, width, looks) for one, width in zip(part, widths, strict=True)]
+        cells = [item.lines(row, width, looks) for item, width in zip(part, widths, strict=True)]
         tall = max(map(len, cells))
         for column, lines, width in zip(part, cells, widths, strict=True):
             empty = [" " * (width + column.tail)] * (tall - len(lines))

@@ -87,14 +87,19 @@ class ReportDocument:
 
     def more(self, section: str) -> str:
         """How much of a section stands in the appendix, in words; empty where nothing does."""
-        own = [block for one in self.appendix if one.name == section for block in one.blocks]
+        own = [
+            block
+            for report_section in self.appendix
+            if report_section.name == section
+            for block in report_section.blocks
+        ]
         tables, pictures = (sum(isinstance(b, kind) for b in own) for kind in (Table, SvgPicture))
-        told = []
+        text = []
         if pictures:
-            told.append(say("Pictures in the appendix: {count}", count=pictures))
+            text.append(say("Pictures in the appendix: {count}", count=pictures))
         if tables:
-            told.append(say("Tables in the appendix: {count}", count=tables))
-        return say("; ").join(told)
+            text.append(say("Tables in the appendix: {count}", count=tables))
+        return say("; ").join(text)
 
     def without_drawing(
         self, blocks: Iterable[Block | ReportSection]
@@ -190,13 +195,13 @@ def _environment() -> jinja2.Environment:
 
 def printed_grid(table: Table) -> Grid:
     """A table as texts that are ready for print."""
-    told = grid(table)
-    heads = (Head(printed(one.label), sign_of(one.unit), sign_of(one.at)) for one in told.heads)
+    text = grid(table)
+    heads = (Head(printed(head.label), sign_of(head.unit), sign_of(head.at)) for head in text.heads)
     rows = (
-        tuple(replace(one, text=printed(one.text), at=printed(one.at)) for one in row)
-        for row in told.rows
+        tuple(replace(item, text=printed(item.text), at=printed(item.at)) for item in row)
+        for row in text.rows
     )
-    return Grid(printed(told.title), tuple(heads), tuple(rows))
+    return Grid(printed(text.title), tuple(heads), tuple(rows))
 
 
 def _classes(cell: CellText) -> Markup:
@@ -222,11 +227,11 @@ def paired(drawn: Iterable[SvgPicture]) -> list[list[SvgPicture]]:
     """
     rows: list[list[SvgPicture]] = []
     waiting: list[SvgPicture] = []
-    for one in drawn:
-        row = [one] if one.wide else [*waiting, one]
-        if one.wide or len(row) == 2:
+    for item in drawn:
+        row = [item] if item.wide else [*waiting, item]
+        if item.wide or len(row) == 2:
             rows.append(row)
-        waiting = waiting if one.wide else row[: len(row) % 2]
+        waiting = waiting if item.wide else row[: len(row) % 2]
     return [*rows, waiting] if waiting else rows
 
 

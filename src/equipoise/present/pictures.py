@@ -80,8 +80,8 @@ def _model(found: Findings, at: Sequence[float] | None) -> Iterator[PictureEntry
 
     caption = to_say("The linkage to scale, with its joints, links and centres of mass.")
     draw = partial(linkage, found.analysis, at)
-    told = partial(seen.heaviest, found.analysis)
-    yield PictureEntry("linkage", caption, draw, told, True)
+    value = partial(seen.heaviest, found.analysis)
+    yield PictureEntry("linkage", caption, draw, value, True)
     if found.analysis.machine.has_planes:
         caption = to_say("The planes of links, masses and bearings, from the side and to scale.")
         yield PictureEntry("side", caption, partial(side, found.analysis, at))
@@ -107,8 +107,8 @@ def _motion(found: Findings) -> Iterator[PictureEntry]:
     caption = to_say("Motion over crank angle: position, velocity and acceleration.")
     charts = main_kinematics(analysis) if len(analysis.crank_angle) > 1 else ()
     for number, chart in enumerate(charts):
-        told = partial(seen.kinematic, analysis, chart.name)
-        yield PictureEntry(chart.name, caption, partial(made, chart), told, number > 0)
+        value = partial(seen.kinematic, analysis, chart.name)
+        yield PictureEntry(chart.name, caption, partial(made, chart), value, number > 0)
     caption = to_say("Speed ratio of gears over crank angle.")
     for chart in ratios(analysis) if len(analysis.crank_angle) > 1 else ():
         yield PictureEntry(chart.name, caption, partial(made, chart), detail=True)
@@ -172,10 +172,10 @@ def _forces(found: Findings) -> Iterator[PictureEntry]:
     drives, pushes = analysis.machine.driven, analysis.machine.drive.pushes
     of_torque = to_say("Drive torque over crank angle, and what it is for.")
     of_force = to_say("Drive force over crank angle, and what it is for.")
-    for number, one in enumerate(drives, 1):
+    for number, drive in enumerate(drives, 1):
         yield PictureEntry(
             "torque" if number == 1 else f"torque-{number}",
-            of_force if one.pushes else of_torque,
+            of_force if drive.pushes else of_torque,
             partial(forces.torque, analysis, number),
             partial(seen.caused, analysis, number),
         )

@@ -103,9 +103,9 @@ def acting(force: Array) -> str:
 
 def largest_joint(analysis: Analysis) -> tuple[str, Figures]:
     """The joint whose force is the largest, and figures of that force."""
-    found = {name: analysis.summary[f"joints.{name}"] for name in analysis.forces.joints}
-    name = max(found, key=lambda name: found[name].peak)
-    return name, found[name]
+    by_name = {name: analysis.summary[f"joints.{name}"] for name in analysis.forces.joints}
+    name = max(by_name, key=lambda name: by_name[name].peak)
+    return name, by_name[name]
 
 
 def largest_of(sizes: Mapping[str, float]) -> tuple[str, float]:

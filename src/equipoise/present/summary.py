@@ -77,11 +77,11 @@ def tiles(found: Findings) -> Iterator[Tile]:
     }
     for output, (label, kind) in kinds.items():
         name = analysis.whole(output)
-        one, scale = analysis.summary[name], scale_of(analysis, kind)
+        item, scale = analysis.summary[name], scale_of(analysis, kind)
         after = None if later is None else later.analysis.summary[name].signed_peak
-        note = _at(one.peak_at) if brief(one.peak, scale) != "0" else ""
+        note = _at(item.peak_at) if brief(item.peak, scale) != "0" else ""
         unit = display_of_totals(analysis, kind)
-        yield _tile(say(template, what=label), one.signed_peak, unit, note, scale, after)
+        yield _tile(say(template, what=label), item.signed_peak, unit, note, scale, after)
     if analysis.forces.joints:
         name, largest = largest_joint(analysis)
         after = None if later is None else largest_joint(later.analysis)[1].peak
@@ -90,10 +90,10 @@ def tiles(found: Findings) -> Iterator[Tile]:
         yield _tile(say("largest joint force"), largest.peak, unit, note, after=after)
     if found.balanced is not None:
         first, pair = next(iter(found.balanced.aims.items()))
-        told = change(*pair).removesuffix(" %") if found.helped else ""
+        removesuffix = change(*pair).removesuffix(" %") if found.helped else ""
         what = objective_named(first, len(found.machine.rows))
         note = what if found.helped else good_already(found.balanced)
-        yield Tile(say("by balancing"), told or percent(0), "%", note)
+        yield Tile(say("by balancing"), removesuffix or percent(0), "%", note)
 
 
 def _pace(found: Findings) -> Tile:
@@ -173,21 +173,21 @@ def _ordered(found: Findings, shaking: Shaking) -> str:
     order, share = shaking.loudest
     motion = found.analysis.motion
     frequency = brief(order * abs(motion.speed) / (2 * pi))
-    told = {"share": percent(share), "frequency": frequency}
+    text = {"share": percent(share), "frequency": frequency}
     if not found.machine.crank_turns:
         return say(
             "Its largest part, {share} % of the mean square, comes {order} times a cycle, at "
             "{frequency} Hz.",
             order=f"{order * motion.turns:.4g}",
-            **told,
+            **text,
         )
     if order == 1 and share >= LEADING:
-        return say("{share} % of it (mean square) comes once a turn, at {frequency} Hz.", **told)
+        return say("{share} % of it (mean square) comes once a turn, at {frequency} Hz.", **text)
     return say(
         "Its largest part, {share} % of the mean square, comes {order} times a turn, at "
         "{frequency} Hz.",
         order=f"{order:.4g}",
-        **told,
+        **text,
     )
 
 

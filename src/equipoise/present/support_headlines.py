@@ -83,12 +83,12 @@ def met(sweep: Sweep, speed: float) -> str:
     """Which loud resonance is nearest to the speed of the machine."""
     if not sweep.resonances:
         return say("No order meets a mode at these speeds")
-    near = nearest_loud(sweep.resonances, speed)
+    resonance = nearest_loud(sweep.resonances, speed)
     return say(
         "The nearest loud resonance is at {speed} rpm: order {order} meets mode {mode}",
-        speed=brief(abs(near.speed) / PER_RPM),
-        order=f"{near.order:.4g}",
-        mode=near.mode,
+        speed=brief(abs(resonance.speed) / PER_RPM),
+        order=f"{resonance.order:.4g}",
+        mode=resonance.mode,
     )
 
 

@@ -90,11 +90,13 @@ def _shortened(blocks: list[Block | ReportSection]) -> list[Block | ReportSectio
             else:
                 continue
             return [*blocks[:k], rest, *blocks[k + 1 :]]
-    details = [k for k, one in enumerate(blocks) if isinstance(one, Running) and one.is_detail]
+    details = [
+        k for k, block in enumerate(blocks) if isinstance(block, Running) and block.is_detail
+    ]
     if details:
         return [*blocks[: details[-1]], *blocks[details[-1] + 1 :]]
     kinds = (block for block in enumerate(blocks) if isinstance(block[1], Notes | Facts))
-    lists = [k for k, one in kinds if not getattr(one, "is_whole", False)]
+    lists = [k for k, item in kinds if not getattr(item, "is_whole", False)]
     return [*blocks[: lists[-1]], *blocks[lists[-1] + 1 :]] if lists else []
 
 

@@ -28,8 +28,8 @@ def worst_at_work(exposure: ToolExposure) -> tuple[str, float]:
 
 def lowest(modes: ToolModes, plane: int) -> str:
     """The lowest natural frequency of bending in a plane, 0 or 1."""
-    found = modes.planes[plane]
-    swinging = found.cycles_per_second[len(found.rigid) :]
+    result = modes.planes[plane]
+    swinging = result.cycles_per_second[len(result.rigid) :]
     if not len(swinging):
         return ""
     return say("The lowest natural frequency is {value} Hz", value=brief(float(swinging[0])))
@@ -37,7 +37,7 @@ def lowest(modes: ToolModes, plane: int) -> str:
 
 def passed(found: Transmissions, plane: int) -> str:
     """Which holder gets the largest share of a force in a plane, 0 or 1, and at which speed."""
-    sizes = {name: one.size[plane] for name, one in found.stations.items()}
+    sizes = {name: station.size[plane] for name, station in found.stations.items()}
     if not sizes:
         return ""
     name = max(sizes, key=lambda name: float(np.max(sizes[name])))
@@ -73,5 +73,5 @@ def improved(found: ToolFindings) -> str:
     """What the design does to the hand that gets most."""
     assert found.design is not None
     best = found.design.figures[0]
-    told = change(best.before, best.after) or percent(0)
-    return say("Vibration of the hand that gets most: {change}", change=told)
+    text = change(best.before, best.after) or percent(0)
+    return say("Vibration of the hand that gets most: {change}", change=text)

@@ -26,14 +26,14 @@ def of_tool(found: ToolFindings) -> Iterator[PictureEntry]:
         caption = to_say("Shapes of the natural vibrations of the shaft.")
         for plane, name in enumerate(planes):
             drawn = partial(tool_shaft.shapes, modes, plane)
-            told = partial(seen.lowest, modes, plane)
-            yield from pages(f"modes{name}", caption, drawn, told, detail=True)
+            value = partial(seen.lowest, modes, plane)
+            yield from pages(f"modes{name}", caption, drawn, value, detail=True)
     if transmission is not None:
         caption = to_say("Share of a shaking force that comes to what holds the tool.")
         for plane, name in enumerate(planes):
             draw = partial(tool_speeds.transmission, transmission, plane, modes)
-            told = partial(seen.passed, transmission, plane)
-            yield PictureEntry(f"transmission{name}", caption, draw, told, plane > 0)
+            value = partial(seen.passed, transmission, plane)
+            yield PictureEntry(f"transmission{name}", caption, draw, value, plane > 0)
     if found.sweep is not None and found.sweep.response is not None:
         caption = to_say("Bending moment and displacement along the shaft.")
         draw = partial(tool_shaft.moment, found.sweep.response, None)

@@ -55,8 +55,8 @@ def tool_tiles(found: ToolFindings) -> Iterator[Tile]:
         yield Tile(label, brief(exposure.a8), "m/s²", say(verdict), after, stands_out)
     if found.design is not None:
         best = found.design.figures[0]
-        told = change(best.before, best.after).removesuffix(" %")
-        yield Tile(say("by the changes below"), told, "%", say("vibration of the hand"))
+        removesuffix = change(best.before, best.after).removesuffix(" %")
+        yield Tile(say("by the changes below"), removesuffix, "%", say("vibration of the hand"))
 
 
 def tool_answers(found: ToolFindings) -> Iterator[SummaryAnswer]:
@@ -115,9 +115,9 @@ def _why(tool: Tool) -> Iterator[str]:
     whole = grips(respond_tool(tool, speed))
     hand = max(whole, key=lambda name: float(whole[name].a_hv[0]))
     parts = []
-    for one in tool.excitations:
-        alone = grips(respond_tool(replace(tool, excitations=(one,)), speed))[hand]
-        name = one.name or one.file or one.station
+    for excitation in tool.excitations:
+        alone = grips(respond_tool(replace(tool, excitations=(excitation,)), speed))[hand]
+        name = excitation.name or excitation.file or excitation.station
         value = brief(float(alone.a_hv[0]))
         parts.append(say("{name} {value} m/s²", name=name, value=value))
     yield say(
@@ -130,8 +130,8 @@ def _why(tool: Tool) -> Iterator[str]:
 def _transmitted(found: ToolFindings) -> Iterator[str]:
     transmission = found.transmission
     assert transmission is not None
-    for name, one in transmission.stations.items():
-        size = np.max(one.size, axis=0)
+    for name, station in transmission.stations.items():
+        size = np.max(station.size, axis=0)
         k = int(highest_at(size, smooth=False))
         yield say(
             "Of a force at {source}, {name} gets at most {ratio} times as much, at {speed} rpm.",
@@ -146,9 +146,9 @@ def _near(found: ToolFindings, modes: ToolModes) -> Iterator[str]:
     """The natural frequency nearest to what shakes once a turn."""
     plane = modes.planes[0]
     swinging = plane.cycles_per_second[len(plane.rigid) :]
-    told = say(", ").join(brief(float(value)) for value in swinging[:4])
-    if told:
-        yield say("The lowest are {list} Hz.", list=told)
+    text = say(", ").join(brief(float(value)) for value in swinging[:4])
+    if text:
+        yield say("The lowest are {list} Hz.", list=text)
     operation = found.tool.operation
     if operation is None or not len(swinging):
         return
@@ -164,12 +164,12 @@ def _near(found: ToolFindings, modes: ToolModes) -> Iterator[str]:
 
 
 def _helps(design: ToolDesign, found: ToolFindings) -> Iterator[str]:
-    for one in design.variables:
-        kind: Dimension = one.dimension  # type: ignore[assignment]
-        unit = display(kind, [one.before, one.after], UNITS.get(kind))
-        before, after = unit.text(one.before), unit.text(one.after)
+    for variable in design.variables:
+        kind: Dimension = variable.dimension  # type: ignore[assignment]
+        unit = display(kind, [variable.before, variable.after], UNITS.get(kind))
+        before, after = unit.text(variable.before), unit.text(variable.after)
         if before != after:
-            name = varied_named(one.name)
+            name = varied_named(variable.name)
             yield say(
                 "{name}: {before} → {after} {unit}.",
                 name=capital(name),
@@ -193,9 +193,9 @@ def _helps(design: ToolDesign, found: ToolFindings) -> Iterator[str]:
             verdict=say(VERDICTS[day.verdict]),
         )
     worse = [
-        larger(figure_named(one), one.after / one.before - 1)
-        for one in design.figures[1:]
-        if one.dimension != "mass" and one.after > (1 + WORSE) * one.before > 0
+        larger(figure_named(figure), figure.after / figure.before - 1)
+        for figure in design.figures[1:]
+        if figure.dimension != "mass" and figure.after > (1 + WORSE) * figure.before > 0
     ]
     if worse:
         yield say(

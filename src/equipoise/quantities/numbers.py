@@ -154,7 +154,7 @@ def chosen_unit(dimension: Dimension) -> str | None:
     if dimension in chosen or not chosen or dimension not in _FOLLOWS:
         return chosen.get(dimension)
     try:
-        unit = _FOLLOWS[dimension].format(**{str(kind): one for kind, one in chosen.items()})
+        unit = _FOLLOWS[dimension].format(**{str(kind): item for kind, item in chosen.items()})
     except KeyError:
         return None
     known = unit in KINDS[dimension].units
@@ -289,12 +289,12 @@ def _fitting(first: Display, largest: float, most: float) -> Display:
     if not 0 < size < SMALL and not size > most:
         return first
     scale = next((scale for scale in _SCALES if first.unit in scale), (first.unit,))
-    place, found = scale.index(first.unit), first
-    for found in map(in_unit, scale[place + 1 :] if size > most else scale[:place][::-1]):
-        number_of_it = found.factor * largest
+    place, result = scale.index(first.unit), first
+    for result in map(in_unit, scale[place + 1 :] if size > most else scale[:place][::-1]):
+        number_of_it = result.factor * largest
         if number_of_it <= LARGE if size > most else number_of_it >= FEW:
             break
-    return found
+    return result
 
 
 def told(

@@ -162,7 +162,9 @@ def separators_told(number: str, unit: str = "") -> str:
 
     unit : written behind each reading, in quotes.
     """
-    decimal, whole = (f'"{one} {unit}"' if one and unit else one for one in readings(number))
+    decimal, whole = (
+        f'"{reading} {unit}"' if reading and unit else reading for reading in readings(number)
+    )
     if decimal and whole:
         return Note(
             "a comma may be the decimal sign or separate thousands; write {decimal} or {whole}",
@@ -204,8 +206,8 @@ def _right(text: str, dimension: Dimension) -> str:
         return Note('{noun} is wanted, not a range; give one such as "{low}"', noun=noun, low=low)
     parts = re.fullmatch(r"(.*[0-9.,]) *([^\s0-9.,].*)", text)
     known = parts is not None and plain_unit(parts[2]) in kind.units
-    if parts is not None and known and (told := separators_told(*parts.groups())):
-        return told
+    if parts is not None and known and (name := separators_told(*parts.groups())):
+        return name
     whole = re.fullmatch(rf"({NUMBER})( *)(\S.*)", text)
     if whole is None:
         return _number_complaint(text, kind)
@@ -274,7 +276,7 @@ def _unit_complaint(unit: str, number: str, dimension: Dimension) -> str:
         return Note('write "{number} {unit}"', number=number, unit=plain)
     if meant := unit_meant(unit, dimension):
         return Note('did you mean "{number} {unit}"?', number=number, unit=meant)
-    other = _known(plain) or next((KINDS[one] for one in KINDS if unit_meant(unit, one)), None)
+    other = _known(plain) or next((KINDS[kind] for kind in KINDS if unit_meant(unit, kind)), None)
     if other is not None:
         of = Note(other.noun)
         shown = plain if plain in other.units else _quoted(unit)

@@ -169,13 +169,13 @@ class Analysis(Result):
 
     def _figures(self, ones: Sequence[AnalysisOutput]) -> Mapping[str, Figures]:
         """Those of some outputs, by name; of so many at once as leave memory to others."""
-        motion, found = self.resolved.motion, NamedItems[Figures]("output", ())
+        motion, figures = self.resolved.motion, NamedItems[Figures]("output", ())
         some = max(1, AT_ONCE // len(motion.crank_angle))
         for begin in range(0, len(ones), some):
             part = ones[begin : begin + some]
-            told = motion.figures_of_each(np.array([one.resolved for one in part]))
-            found.update(zip((one.name for one in part), told, strict=True))
-        return found
+            figures_of_each = motion.figures_of_each(np.array([item.resolved for item in part]))
+            figures.update(zip((item.name for item in part), figures_of_each, strict=True))
+        return figures
 
     @property
     def has_together(self) -> bool:
@@ -230,9 +230,9 @@ class Analysis(Result):
                     of_phase[phase] = _of_one_row(own)
                 yield of_phase[phase]
             return
-        one = Periodic.of(_of_one_row(found), motion.turns)
+        item = Periodic.of(_of_one_row(found), motion.turns)
         for row in rows:
-            yield one.shifted(row.phase).samples(len(self.crank_angle))
+            yield item.shifted(row.phase).samples(len(self.crank_angle))
 
     @cached_property
     def notes(self) -> tuple[Note | str, ...]:
@@ -240,8 +240,8 @@ class Analysis(Result):
         lost = () if self.solved is None else lost_contacts(self.solved)
         sectioned = any(link.section is not None for link in self.machine.links.values())
         bending = slender_links(self.sections, self.motion.speed) if sectioned else ()
-        found = (*remarks(self.motion.linkage), *lost, *bending)
-        asked = (*found, *idle_parts(self.machine.support))
+        parts = (*remarks(self.motion.linkage), *lost, *bending)
+        asked = (*parts, *idle_parts(self.machine.support))
         return tuple(dict.fromkeys(asked))
 
     @property
@@ -275,7 +275,7 @@ class Analysis(Result):
                     least_angles=LEAST_ANGLES,
                 )
             )
-        return NamedItems("output", ((one.name, one.periodic) for one in self.outputs.ordered))
+        return NamedItems("output", ((item.name, item.periodic) for item in self.outputs.ordered))
 
     def to_dict(
         self,
@@ -299,33 +299,33 @@ class Analysis(Result):
             "links": {},
             "points": {},
         }
-        found = self.solved
-        if found is None:
+        solved = self.solved
+        if solved is None:
             result["missing"] = massless(self.machine)
         else:
-            for family, forces in {"joints": found.joints, **found.couplings}.items():
-                ends = {name: {"on": one.on, "by": one.by} for name, one in forces.items()}
+            for family, forces in {"joints": solved.joints, **solved.couplings}.items():
+                ends = {name: {"on": force.on, "by": force.by} for name, force in forces.items()}
                 if ends or family == "joints":
                     result[family] = ends
             result.update(_undecided(self.motion.linkage))
             result.update(_friction(self.losses))
-            result |= values_of(found, ABOUT)
+            result |= values_of(solved, ABOUT)
             if not self.machine.has_crank and self.motion.whole_cycle:
                 works = self.resolved.forces.work
                 result["drives"] = {link: {"work": work} for link, work in works.items()}
         arrays = self.outputs.arrays
-        for one in (one for one in arrays if wanted is None or one.name in wanted):
-            *keys, last = one.path
+        for entry in (item for item in arrays if wanted is None or item.name in wanted):
+            *keys, last = entry.path
             values = result
             for key in keys:
                 values = values.setdefault(key, {})
-            values[last] = one.values
-        if found is not None and split:
-            result.update(_split(found))
+            values[last] = entry.values
+        if solved is not None and split:
+            result.update(_split(solved))
         if chosen := self.outputs.chosen(outputs):
-            result["outputs"] = {one.name: _or_none(one.values) for one in chosen}
+            result["outputs"] = {item.name: _or_none(item.values) for item in chosen}
         if strokes:
-            result["strokes"] = {name: one.told() for name, one in self.strokes.items()}
+            result["strokes"] = {name: stroke.told() for name, stroke in self.strokes.items()}
             for table, name, figures in figures_by_name(self):
                 result.setdefault(table, {}).setdefault(name, {}).update(figures.to_dict())
             result["notes"] = list(map(str, self.notes))
@@ -334,12 +334,12 @@ class Analysis(Result):
     def _summary_of(self, wanted: Collection[str] | None) -> Values:
         """The summary as plain data, of outputs of some names, or of all."""
         if wanted is None:
-            found = self.summary
+            figures = self.summary
         else:
-            found = self._figures([one for one in self.outputs.summed if one.name in wanted])
+            figures = self._figures([item for item in self.outputs.summed if item.name in wanted])
         summary: Values = {
             name: {**vars(figure), "peak_to_peak": figure.peak_to_peak}
-            for name, figure in found.items()
+            for name, figure in figures.items()
         }
         if self.four_bar is not None:
             summary["four_bar"] = values_of(self.four_bar, FOUR_BAR)
@@ -356,8 +356,12 @@ class Analysis(Result):
 
         coordinate = {"crank_angle": ("crank_angle", self.crank_angle, {"units": "rad"})}
         arrays = {
-            one.name: ("crank_angle", one.values, {"units": one.unit, "long_name": one.label()})
-            for one in self.outputs.arrays
+            value.name: (
+                "crank_angle",
+                value.values,
+                {"units": value.unit, "long_name": value.label()},
+            )
+            for value in self.outputs.arrays
         }
         return xarray.Dataset(arrays, coordinate, attrs=self._heading)
 
@@ -368,7 +372,9 @@ class Analysis(Result):
         import pandas
 
         index = pandas.Index(self.crank_angle, name=column_heading("crank_angle", "rad"))
-        columns = {column_heading(one.name, one.unit): one.values for one in self.outputs.arrays}
+        columns = {
+            column_heading(value.name, value.unit): value.values for value in self.outputs.arrays
+        }
         return pandas.DataFrame(columns, index=index)
 
 
@@ -436,12 +442,12 @@ def order_values(analysis: Analysis, orders: int, zero: float) -> Values:
 
     zero : rad, direction from which crank angles count.
     """
-    found = {}
+    result = {}
     for name, whole in analysis.by_order.items():
         signal = whole.shifted(zero)
         kept = slice(0, signal.count_to(orders))
-        found[name] = {key: values[kept] for key, values in values_of(signal, BY_ORDER).items()}
-    return found
+        result[name] = {key: values[kept] for key, values in values_of(signal, BY_ORDER).items()}
+    return result
 
 
 def _split(found: Forces) -> Values:
@@ -457,20 +463,20 @@ def _split(found: Forces) -> Values:
     check_memory(SPLIT * links**2 * count, Note(split_of, count=count, turns=motion.turns))
     read = Found(found.motion, found.split)
     result: Values = {key: {"joints": {}} for key in ("by_cause", "by_link")}
-    for one in DECLARED.values():
-        if one.part in ("x", "y") or not one.is_split:
+    for entry in DECLARED.values():
+        if entry.part in ("x", "y") or not entry.is_split:
             continue
-        for item in one.items_of(read):
-            whole = one.vector(read, item)
+        for item in entry.items_of(read):
+            whole = entry.vector(read, item)
             for key, names, axis in (
                 ("by_cause", found.split.causes, 1),
                 ("by_link", found.split.links, 0),
             ):
                 parts = zip(names, whole.sum(axis=axis), strict=True)
                 values = result[key]
-                for step in one.path(item)[:-1]:
+                for step in entry.path(item)[:-1]:
                     values = values.setdefault(step, {})
-                values[one.path(item)[-1]] = {name: _parts(part) for name, part in parts}
+                values[entry.path(item)[-1]] = {name: _parts(part) for name, part in parts}
     return result
 
 
@@ -478,7 +484,7 @@ def _friction(losses: Losses | None) -> Values:
     """What friction in joints costs, where there is some."""
     if losses is None:
         return {}
-    joints = {name: dict(vars(one)) for name, one in losses.joints.items()}
+    joints = {name: dict(vars(joint)) for name, joint in losses.joints.items()}
     total = {"loss": losses.loss, "efficiency": losses.efficiency}
     given = {"drive": losses.drive, "loads": losses.loads}
     return {"friction": {**given, **total, "joints": joints}}
@@ -486,13 +492,13 @@ def _friction(losses: Losses | None) -> Values:
 
 def _undecided(linkage: Linkage) -> Values:
     """Joints of which statics does not tell the force, where there are such."""
-    found = undecided(linkage)
+    outcome = undecided(linkage)
     result: Values = {}
-    if found.open:
-        rule = "stiffness" if found.by_stiffness else "least squares"
-        result["open"] = {"joints": [*found.open], "rule": rule}
-    if found.unbounded:
-        result["unbounded"] = {"joints": [*found.unbounded], "crank_angle": found.at}
+    if outcome.open:
+        rule = "stiffness" if outcome.by_stiffness else "least squares"
+        result["open"] = {"joints": [*outcome.open], "rule": rule}
+    if outcome.unbounded:
+        result["unbounded"] = {"joints": [*outcome.unbounded], "crank_angle": outcome.at}
     return result
 
 
@@ -501,9 +507,9 @@ def _or_none(values: Array) -> Array:
     there = np.isfinite(values)
     if np.all(there):
         return values
-    found = values.astype(object)
-    found[~there] = None
-    return found
+    numbers = values.astype(object)
+    numbers[~there] = None
+    return numbers
 
 
 def _parts(values: Array) -> Any:

@@ -116,17 +116,17 @@ def turned(analysis: Analysis, link: str) -> str:
 def strokes_table(analysis: Analysis) -> Table:
     """Strokes of sliders and swings of rockers, with their dead positions and time ratios."""
     rows: list[tuple[Cell, ...]] = []
-    for name, one in analysis.strokes.items():
+    for name, item in analysis.strokes.items():
         dead = [
-            Value(place.place, one.stroke, place.crank_angle, dimension=one.dimension)
-            for place in one.dead_positions
+            Value(place.place, item.stroke, place.crank_angle, dimension=item.dimension)
+            for place in item.dead_positions
         ]
-        ends = [next(d for d in dead if d.at == at) for at in (one.lowest_at, one.highest_at)]
-        least = EQUAL * one.stroke
-        others = [d for d in dead if one.lowest + least < d.value < one.highest - least]
+        ends = [next(d for d in dead if d.at == at) for at in (item.lowest_at, item.highest_at)]
+        least = EQUAL * item.stroke
+        others = [d for d in dead if item.lowest + least < d.value < item.highest - least]
         rest = Many(tuple(others[:MOST_DEAD]), max(len(others) - MOST_DEAD, 0)) if others else None
-        stroke = Value(one.stroke, dimension=one.dimension)
-        rows.append((joint_named(name), stroke, *ends, Value(one.time_ratio), rest))
+        stroke = Value(item.stroke, dimension=item.dimension)
+        rows.append((joint_named(name), stroke, *ends, Value(item.time_ratio), rest))
     heads = (say("stroke"), say("lowest"), say("highest"), say("time ratio"))
     columns = ("", *heads, say("further dead positions"))
     shown = len(columns) if any(row[-1] is not None for row in rows) else -1
@@ -140,13 +140,13 @@ def strokes_table(analysis: Analysis) -> Table:
 def advantages_table(analysis: Analysis) -> Table:
     """Over which crank angle sliders and rockers rise and dwell, and their least advantage."""
     rows: list[tuple[Cell, ...]] = []
-    for name, one in analysis.strokes.items():
+    for name, stroke in analysis.strokes.items():
         least = None
-        if one.least_advantage is not None:
-            least = Value(one.least_advantage, at=one.least_advantage_at)
-        pushes = (least, None) if one.kind == "slider" else (None, least)
-        held = Value(one.dwell, at=one.dwell_at, after=1)
-        rows.append((joint_named(name), Value(one.rise, after=1), held, *pushes))
+        if stroke.least_advantage is not None:
+            least = Value(stroke.least_advantage, at=stroke.least_advantage_at)
+        pushes = (least, None) if stroke.kind == "slider" else (None, least)
+        held = Value(stroke.dwell, at=stroke.dwell_at, after=1)
+        rows.append((joint_named(name), Value(stroke.rise, after=1), held, *pushes))
     columns = (
         "",
         Column(say("rises over"), "angle", "deg"),
@@ -172,8 +172,8 @@ TOTALS = ("forces", "drives", "rows")
 
 def _beside(analysis: Analysis, kind: Dimension | None) -> float:
     """The largest of all forces, moments or torques on frame and drive."""
-    ones = (one for one in analysis.outputs.summed if one.group in TOTALS[:2])
-    return max((one.figures.peak for one in ones if one.dimension == kind), default=0.0)
+    ones = (item for item in analysis.outputs.summed if item.group in TOTALS[:2])
+    return max((item.figures.peak for item in ones if item.dimension == kind), default=0.0)
 
 
 def scale_of(analysis: Analysis, kind: Dimension) -> float:
@@ -183,27 +183,27 @@ def scale_of(analysis: Analysis, kind: Dimension) -> float:
 
 def display_of_totals(analysis: Analysis, kind: Dimension | None) -> Display:
     """The unit in which forces, or moments and torques, on frame and drive are shown everywhere."""
-    ones = (one.figures for one in analysis.outputs.summed
-            if one.group in TOTALS and one.dimension == kind)  # fmt: skip
-    return display(kind, [0.0, *(max(one.peak, one.peak_to_peak) for one in ones)])
+    ones = (item.figures for item in analysis.outputs.summed
+            if item.group in TOTALS and item.dimension == kind)  # fmt: skip
+    return display(kind, [0.0, *(max(item.peak, item.peak_to_peak) for item in ones)])
 
 
 def force_blocks(analysis: Analysis) -> Iterator[Block]:
     """Forces on frame and drive; what they come from; their orders."""
     named = [f"drives.{analysis.machine.drive.link}.{analysis.machine.drive.effort_in}"]
-    ones = [one for one in analysis.outputs.summed if one.group in TOTALS]
+    ones = [item for item in analysis.outputs.summed if item.group in TOTALS]
     if not analysis.machine.drives:
-        ones = [one for one in ones if one.name not in named]  # which is the drive torque
+        ones = [item for item in ones if item.name not in named]  # which is the drive torque
     rows: list[tuple[Cell, ...]] = []
-    for one in ones:
-        found, kind = one.figures, one.dimension
+    for entry in ones:
+        figures, kind = entry.figures, entry.dimension
         scale, unit = _beside(analysis, kind), display_of_totals(analysis, kind).unit
         mean, rms, swing = (
             Value(value, scale, dimension=kind, unit=unit)
-            for value in (found.mean, found.rms, found.peak_to_peak)
+            for value in (figures.mean, figures.rms, figures.peak_to_peak)
         )
-        ends = (replace(end(found, scale, kind), unit=unit) for end in (largest, smallest))
-        rows.append((one.label(), mean, rms, *ends, swing))
+        ends = (replace(end(figures, scale, kind), unit=unit) for end in (largest, smallest))
+        rows.append((entry.label(), mean, rms, *ends, swing))
     about = analysis.forces.about
     title = say(
         "On frame and drive; extremes with their crank angle, moments about {place}",
@@ -249,15 +249,15 @@ def shares(parts: Mapping[str, Array], motion: Motion) -> dict[str, float]:
     parts : signals (N,) at the crank angles of a motion, real or complex.
     """
     signals = np.array(list(parts.values()))
-    whole, beside = np.sum(signals, axis=0), np.max(np.abs(signals), initial=0.0)
-    if np.max(np.abs(whole)) <= ROUNDING * beside:
+    whole, signal = np.sum(signals, axis=0), np.max(np.abs(signals), initial=0.0)
+    if np.max(np.abs(whole)) <= ROUNDING * signal:
         return dict.fromkeys(parts, 0.0)
     square = float(motion.mean(np.abs(whole) ** 2))
-    found = {
+    by_name = {
         name: float(motion.mean((part * np.conj(whole)).real)) / square
         for name, part in parts.items()
     }
-    return dict(sorted(found.items(), key=lambda item: -item[1]))
+    return dict(sorted(by_name.items(), key=lambda item: -item[1]))
 
 
 def _causes(analysis: Analysis) -> Table:
@@ -267,9 +267,9 @@ def _causes(analysis: Analysis) -> Table:
     rows: list[tuple[Cell, ...]] = []
     for cause, values in forces.split.by_cause(drive.effort).items():
         if given.get(cause, True):
-            found = forces.motion.figures(values)
-            told = (found.mean, found.rms, found.max, found.min)
-            rows.append((say(CAUSES[cause]), *(Value(value, scale) for value in told)))
+            figures = forces.motion.figures(values)
+            parts = (figures.mean, figures.rms, figures.max, figures.min)
+            rows.append((say(CAUSES[cause]), *(Value(value, scale) for value in parts)))
     labels = (say("mean"), say("RMS"), say("largest"), say("smallest"))
     columns = (Column(label, drive.effort_in) for label in labels)
     title = say("Drive force by cause") if drive.pushes else say("Drive torque by cause")
@@ -278,12 +278,12 @@ def _causes(analysis: Analysis) -> Table:
 
 def orders_table(analysis: Analysis) -> Table:
     """Amplitudes of the first orders that there are."""
-    ones = [one for one in analysis.outputs.ordered if one.declared.summed]
-    signals = [analysis.by_order[one.name] for one in ones]
+    ones = [item for item in analysis.outputs.ordered if item.declared.summed]
+    signals = [analysis.by_order[item.name] for item in ones]
     count = max(len(signal.amplitudes) for signal in signals)
     sizes = [np.pad(signal.sizes, (0, count - len(signal.sizes))) for signal in signals]
     tops = tops_of(zip(ones, (size[1:] for size in sizes), strict=True))
-    kinds = [one.dimension for one in ones]
+    kinds = [item.dimension for item in ones]
     scales = [max(1e3 * tops[kind], _beside(analysis, kind)) for kind in kinds]
     turns = analysis.motion.turns
     per_order = abs(analysis.motion.speed) / (2 * np.pi)
@@ -295,7 +295,7 @@ def orders_table(analysis: Analysis) -> Table:
         )
         for k in loud(sizes)
     )
-    columns = (Column(one.declared.say(one.item), one.dimension) for one in ones)
+    columns = (Column(item.declared.say(item.item), item.dimension) for item in ones)
     heads = (say("order"), Column(say("frequency"), "frequency"), *columns)
     return Table.of(say("Amplitudes by order"), heads, rows)
 
@@ -318,14 +318,14 @@ def harmonic_blocks(analysis: Analysis, orders: int, zero: float) -> Iterator[Bl
     yield Text("y = sum A_n cos(n theta) + B_n sin(n theta) = sum R_n sin(n theta + phase_n)")
     yield Text(say("theta: crank angle from {angle}", angle=angle(zero)))
     signals = analysis.by_order
-    tops = tops_of((one, signals[one.name].sizes) for one in analysis.outputs.ordered)
+    tops = tops_of((item, signals[item.name].sizes) for item in analysis.outputs.ordered)
     # the motion before the forces, as in that table
-    for one in sorted(analysis.outputs.ordered, key=lambda one: one.dimension != "acceleration"):
-        kind = one.dimension
+    for entry in sorted(analysis.outputs.ordered, key=lambda one: one.dimension != "acceleration"):
+        kind = entry.dimension
         columns = [say("order"), *(Column(label, kind, alike=False) for label in ("A", "B", "R"))]
         columns += [Column(say("phase"), "angle"), Column(say("RMS"), kind, alike=False)]
-        rows = _harmonics(signals[one.name].shifted(zero), orders, 10 * tops[kind])
-        yield Table.of(one.declared.title(one.item), columns, rows)
+        rows = _harmonics(signals[entry.name].shifted(zero), orders, 10 * tops[kind])
+        yield Table.of(entry.declared.title(entry.item), columns, rows)
 
 
 def _harmonics(signal: Periodic, orders: int, scale: float) -> Iterator[tuple[Cell, ...]]:
@@ -349,15 +349,15 @@ def outputs_table(analysis: Analysis, names: Iterable[str]) -> Table:
     ones = analysis.outputs.chosen(names)
     theta, motion = analysis.crank_angle, analysis.motion
     apart = max(len(theta) // (TOLD_ANGLES * motion.turns), 1) if motion.whole_cycle else 1
-    columns = [Column(one.label(), one.dimension, alike=False) for one in ones]
+    columns = [Column(item.label(), item.dimension, alike=False) for item in ones]
     cells = []
-    for one in ones:
-        sizes = np.abs(one.declared.vector(analysis, one.item))
+    for entry in ones:
+        sizes = np.abs(entry.declared.vector(analysis, entry.item))
         scale = float(np.median(sizes[np.isfinite(sizes)])) if np.any(np.isfinite(sizes)) else 0.0
         cells.append(
             [
                 Value(value, scale) if np.isfinite(value) else say("infinite")
-                for value in one.values[::apart].tolist()
+                for value in entry.values[::apart].tolist()
             ]
         )
     angles = (Value(angle, after=1) for angle in theta[::apart].tolist())
@@ -369,8 +369,8 @@ def outputs_table(analysis: Analysis, names: Iterable[str]) -> Table:
 def dwells_table(dwells: Mapping[str, Dwell], kind: Dimension) -> Table:
     """How long things hardly move."""
     rows = (
-        (joint_named(name), Value(one.tolerance), Value(one.angle, after=1, at=one.begin))
-        for name, one in dwells.items()
+        (joint_named(name), Value(dwell.tolerance), Value(dwell.angle, after=1, at=dwell.begin))
+        for name, dwell in dwells.items()
     )
     columns = ("", Column(say("within"), kind), Column(say("dwell"), "angle", "deg"))
     title = say("Longest crank angle over which each moves by no more, from crank angle")

@@ -25,11 +25,18 @@ def bearing_blocks(analysis: Analysis) -> Iterator[Block]:
 
 def _rolling(analysis: Analysis) -> Table:
     rows: list[tuple[Cell, ...]] = []
-    for name, one in analysis.rolling_bearings.items():
-        reached = None if one.reached is None else f"{percent(one.reached)} %"
-        numbers = (one.basic_life, one.rated_life, one.needed_rating, one.static_safety)
+    for name, rolling_bearing in analysis.rolling_bearings.items():
+        reached = (
+            None if rolling_bearing.reached is None else f"{percent(rolling_bearing.reached)} %"
+        )
+        numbers = (
+            rolling_bearing.basic_life,
+            rolling_bearing.rated_life,
+            rolling_bearing.needed_rating,
+            rolling_bearing.static_safety,
+        )
         life, rated, rating, safety = (None if x is None else Value(x) for x in numbers)
-        load, speed = Value(one.equivalent_load), Value(one.speed)
+        load, speed = Value(rolling_bearing.equivalent_load), Value(rolling_bearing.speed)
         rows.append((joint_named(name), load, speed, life, rated, reached, rating, safety))
     columns = [
         "",
@@ -51,8 +58,10 @@ def _rolling(analysis: Analysis) -> Table:
 
 def _plain(analysis: Analysis) -> Table:
     motion, rows = analysis.resolved.motion, []
-    for name, one in analysis.resolved.forces.plain_bearings.items():
-        pressure, warms = (motion.figures(x) for x in (one.pressure, one.pressure_speed))
+    for name, plain_bearing in analysis.resolved.forces.plain_bearings.items():
+        pressure, warms = (
+            motion.figures(x) for x in (plain_bearing.pressure, plain_bearing.pressure_speed)
+        )
         rows.append((joint_named(name), largest(pressure), largest(warms), Value(warms.mean)))
     columns = (
         "",

@@ -23,8 +23,8 @@ def belt_blocks(forces: Forces) -> Iterator[Block]:
     for belt in forces.belts.values():
         ends = f"{body_named(belt.by)} → {body_named(belt.on)}"
         for strand, tension in ((say("left"), belt.left), (say("right"), belt.right)):
-            found = forces.motion.figures(tension)
-            cells = (Value(found.mean), Value(found.rms), largest(found), smallest(found))
+            figures = forces.motion.figures(tension)
+            cells = (Value(figures.mean), Value(figures.rms), largest(figures), smallest(figures))
             rows.append((strand, ends, *cells))
     labels = (say("mean"), say("RMS"), say("largest"), say("smallest"))
     columns = ("", say("by → on"), *(Column(label, "force") for label in labels))
@@ -37,8 +37,8 @@ def slack(forces: Forces) -> Iterator[Note]:
     """Where a belt would have to push, which it cannot."""
     theta = forces.motion.crank_angle
     for belt in forces.motion.machine.belts:
-        found = forces.belts[belt.name]
-        least = np.minimum(found.left, found.right)
+        result = forces.belts[belt.name]
+        least = np.minimum(result.left, result.right)
         if belt.tension is not None and np.min(least) < 0:
             at = highest_at(-least)
             yield Note(
@@ -47,5 +47,5 @@ def slack(forces: Forces) -> Iterator[Note]:
                 name=belt.name,
                 angle=angle(float(theta[at])),
                 push=told(float(-least[at]), "force"),
-                tension=told(float(np.max(np.abs(found.pull))) / 2, "force"),
+                tension=told(float(np.max(np.abs(result.pull))) / 2, "force"),
             )

@@ -155,7 +155,7 @@ class Table:
     @classmethod
     def of(cls, title: str, columns: Iterable[Any], rows: Iterable[Iterable[Any]]) -> Table:
         """From columns and rows of cells; words alone head a column of plain numbers or words."""
-        heads = (Column(one) if isinstance(one, str) else one for one in columns)
+        heads = (Column(column) if isinstance(column, str) else column for column in columns)
         return cls(title, tuple(heads), tuple(map(tuple, rows)))
 
 
@@ -242,16 +242,16 @@ def beside(before: Iterable[Block], after: Iterable[Block]) -> Iterator[Block]:
 
     A table that has other columns afterwards, such as those of further orders, follows whole.
     """
-    later = {one.title: one for one in after if isinstance(one, Table)}
-    for one in before:
-        other = later.get(one.title) if isinstance(one, Table) else None
-        if not isinstance(one, Table) or other is None:
-            yield one
-        elif [column.label for column in other.columns] == [c.label for c in one.columns]:
+    later = {item.title: item for item in after if isinstance(item, Table)}
+    for entry in before:
+        other = later.get(entry.title) if isinstance(entry, Table) else None
+        if not isinstance(entry, Table) or other is None:
+            yield entry
+        elif [column.label for column in other.columns] == [c.label for c in entry.columns]:
             rows = {_words(row): row for row in other.rows}
-            yield replace(one, rows=tuple(_followed(one.rows, rows)))
+            yield replace(entry, rows=tuple(_followed(entry.rows, rows)))
         else:
-            yield one
+            yield entry
             yield replace(other, title=say("{what}, after", what=other.title))
 
 

@@ -25,18 +25,18 @@ def cam_blocks(analysis: Analysis) -> Iterator[Block]:
         return
     rows: list[tuple[Cell, ...]] = []
     motion, solved = analysis.resolved.motion, analysis.resolved.solved
-    limited = any(one.lift_off_speed is not None for one in analysis.cams.values())
-    for name, one in analysis.cams.items():
+    limited = any(cam.lift_off_speed is not None for cam in analysis.cams.values())
+    for name, item in analysis.cams.items():
         steep = motion.figures(abs(motion.pressure_angles[name]))
         row: tuple[Cell, ...] = (
             name.replace(" to ", " → "),
-            Value(one.least_radius),
+            Value(item.least_radius),
             largest(steep),
         )
         if solved is not None:
             force = motion.figures(solved.cams[name].normal)
-            speed = one.lift_off_speed
-            limit = None if speed is None else Value(speed, at=one.lift_off_at)
+            speed = item.lift_off_speed
+            limit = None if speed is None else Value(speed, at=item.lift_off_at)
             row = (*row, smallest(force), largest(force), limit)
         rows.append(row)
     force_heads = (say("smallest contact force"), say("largest"))
@@ -58,7 +58,7 @@ def cams_told(machine: Machine, joints: Structure) -> Iterator[str]:
     """What each cam is, a sentence each."""
     for fit in fits_of(machine, joints):
         cam, (radius, where) = fit.cam, sharpest(fit)
-        low, high = (told(one, cam.law.dimension) for one in cam.law.curve.extremes)
+        low, high = (told(extreme, cam.law.dimension) for extreme in cam.law.curve.extremes)
         yield (
             f"cam: {cam.driver} moves {cam.driven} from {low} to {high}, {cam.rides}, closed by "
             f"{cam.closed_by}; least radius of curvature {told(radius, 'length', 'mm')}, at cam "

@@ -108,9 +108,9 @@ class ResultOutput:
         if self.of is None:
             return dict(value) if isinstance(value, Mapping) else value
         if self.family:
-            return {name: values_of(one, self.of) for name, one in value.items()}
+            return {name: values_of(item, self.of) for name, item in value.items()}
         if self.many:
-            return [values_of(one, self.of) for one in value]
+            return [values_of(item, self.of) for item in value]
         return values_of(value, self.of)
 
     def kind(self, own: Dimension | None, turned: bool) -> Dimension | None:
@@ -122,13 +122,13 @@ class ResultOutput:
     @property
     def has_columns(self) -> bool:
         """Whether outputs below it are columns of the CSV file."""
-        return any(one.column is not None for one in (self.of or {}).values())
+        return any(item.column is not None for item in (self.of or {}).values())
 
 
 def _with_nulls(values: Array) -> list[Any]:
-    found = values.astype(object)
-    found[~np.isfinite(values)] = None
-    return list(found.tolist())
+    result = values.astype(object)
+    result[~np.isfinite(values)] = None
+    return list(result.tolist())
 
 
 Declarations = dict[str, ResultOutput]
@@ -145,20 +145,20 @@ def values_of(
 
     wanted : keys that are needed of those that are slow; None for all.
     """
-    found: dict[str, Any] = {}
-    for key, one in declared.items():
-        if one.is_in(holder) and (not one.slow or wanted is None or key in wanted):
-            value = one.plain(one.value(key, holder))
-            found |= value if one.spliced else {key: value}
-    return found
+    values: dict[str, Any] = {}
+    for key, item in declared.items():
+        if item.is_in(holder) and (not item.slow or wanted is None or key in wanted):
+            value = item.plain(item.value(key, holder))
+            values |= value if item.spliced else {key: value}
+    return values
 
 
 def flat(declared: Declarations) -> Declarations:
     """Declarations with those in the place of others among them, as keys of the JSON object."""
-    found: Declarations = {}
-    for key, one in declared.items():
-        found |= flat(one.of) if one.spliced and one.of is not None else {key: one}
-    return found
+    declarations: Declarations = {}
+    for key, item in declared.items():
+        declarations |= flat(item.of) if item.spliced and item.of is not None else {key: item}
+    return declarations
 
 
 # -- columns of CSV files --------------------------------------------------------------------------
@@ -178,23 +178,23 @@ def columns_of(
     of families.  before : what names begin with.  turned : whether the object is of a part that
     turns.
     """
-    for key, one in sorted(declared.items(), key=lambda pair: pair[1].rank):
-        if one.column is None or not one.is_in(holder):
+    for key, item in sorted(declared.items(), key=lambda pair: pair[1].rank):
+        if item.column is None or not item.is_in(holder):
             continue
-        value = getattr(holder, one.series) if one.series else one.value(key, holder)
+        value = getattr(holder, item.series) if item.series else item.value(key, holder)
         if value is None:
             continue
         named = value.items() if isinstance(value, Mapping) else [("", value)]
-        if one.many:
-            named = [("" if one.named is None else one.named(part), part) for part in value]
-        members = {} if one.members is None else one.members(model)
+        if item.many:
+            named = [("" if item.named is None else item.named(part), part) for part in value]
+        members = {} if item.members is None else item.members(model)
         for name, part in named:
-            column = before + one.column.format(name)
+            column = before + item.column.format(name)
             turns = members.get(name, turned)
-            if one.of is not None and one.has_columns:
-                yield from columns_of(part, one.of, sampled, model, column, turns)
+            if item.of is not None and item.has_columns:
+                yield from columns_of(part, item.of, sampled, model, column, turns)
             else:
-                dimension = one.kind(None, turns)
+                dimension = item.kind(None, turns)
                 yield column, "1" if dimension is None else SI[dimension], sampled(part)
 
 
@@ -212,24 +212,24 @@ def dimension_at(declared: Declarations, path: str, model: Any = None) -> Dimens
 def _matching(
     declared: Declarations, path: str, model: Any, own: Dimension | None, turned: bool
 ) -> Iterator[Dimension | None]:
-    for key, one in declared.items():
-        if one.spliced:
+    for key, item in declared.items():
+        if item.spliced:
             rest = path
         elif f"{path}.".startswith(f"{key}."):
             rest = path[len(key) + 1 :]
         else:
             continue
-        for after, turns in _members(one, rest, model) if one.family else [(rest, turned)]:
-            kind = one.kind(own, turns)
-            if one.lookup is not None:
-                if (known_elsewhere := one.lookup(model, after)) is not None:
+        for after, turns in _members(item, rest, model) if item.family else [(rest, turned)]:
+            kind = item.kind(own, turns)
+            if item.lookup is not None:
+                if (known_elsewhere := item.lookup(model, after)) is not None:
                     yield known_elsewhere
-            elif one.of is not None:
-                yield from _matching(one.of, after, model, kind, turns)
+            elif item.of is not None:
+                yield from _matching(item.of, after, model, kind, turns)
             elif after in ("", *FIGURES_OF_LISTS):
                 yield kind
-            elif after in PLACES and one.along:
-                yield ALONG[one.along]
+            elif after in PLACES and item.along:
+                yield ALONG[item.along]
 
 
 def _members(one: ResultOutput, rest: str, model: Any) -> Iterator[tuple[str, bool]]:
@@ -253,21 +253,21 @@ def table_of(
     before : headings of what stands before them, the name among it.
     """
     heads = [*before, *headings(declared)]
-    return Table.of(title, heads, ((name, *cells_of(one, declared)) for name, one in rows.items()))
+    return Table.of(title, heads, ((name, *cells_of(row, declared)) for name, row in rows.items()))
 
 
 def headings(declared: Declarations, turned: bool = False) -> Iterator[Column]:
     """The columns of headed outputs.  turned : whether they are of what turns."""
-    for one in declared.values():
-        if one.heading:
-            yield Column(say(one.heading), one.kind(None, turned), one.unit)
+    for item in declared.values():
+        if item.heading:
+            yield Column(say(item.heading), item.kind(None, turned), item.unit)
 
 
 def cells_of(holder: Any, declared: Declarations) -> Iterator[Cell]:
     """The cells of an object below these."""
-    for key, one in declared.items():
-        if one.heading:
-            yield Value(float(one.value(key, holder))) if one.cell is None else one.cell(holder)
+    for key, item in declared.items():
+        if item.heading:
+            yield Value(float(item.value(key, holder))) if item.cell is None else item.cell(holder)
 
 
 def figures_of(holder: Any, declared: Declarations) -> Iterator[Table]:
@@ -291,16 +291,16 @@ def documented(declared: Declarations) -> str:
 
 
 def _rows(declared: Declarations, before: str) -> Iterator[str]:
-    for key, one in declared.items():
-        path = before.removesuffix(".") if one.spliced else before + key
-        path += ".NAME" * one.family + "[1]" * (one.many and one.of is not None)
-        csv = "" if one.column is None or one.has_columns else "yes"
-        if csv and (one.spliced or one.column != key):
-            csv = f"`{one.column}`"
-        if path and not (one.spliced and one.of and not one.table):
-            yield f"| `{path}` | {unit_shown(one)} | {one.meaning} | {csv} |\n"
-        if one.of is not None and not one.table:
-            yield from _rows(one.of, before if one.spliced else f"{path}.")
+    for key, item in declared.items():
+        path = before.removesuffix(".") if item.spliced else before + key
+        path += ".NAME" * item.family + "[1]" * (item.many and item.of is not None)
+        csv = "" if item.column is None or item.has_columns else "yes"
+        if csv and (item.spliced or item.column != key):
+            csv = f"`{item.column}`"
+        if path and not (item.spliced and item.of and not item.table):
+            yield f"| `{path}` | {unit_shown(item)} | {item.meaning} | {csv} |\n"
+        if item.of is not None and not item.table:
+            yield from _rows(item.of, before if item.spliced else f"{path}.")
 
 
 def unit_shown(one: ResultOutput) -> str:

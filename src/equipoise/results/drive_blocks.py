@@ -22,7 +22,7 @@ def driven(machine: Machine, speed: float) -> str:
     """How the drive runs."""
     drive = machine.drive
     law = drive.stroke or drive.motion
-    if machine.drives and all(one.pushes for one in machine.driven):
+    if machine.drives and all(item.pushes for item in machine.driven):
         return say(
             "{drives}, {rate} cycles a minute",
             drives=say(", ").join(map(drive_told, machine.driven)),
@@ -56,7 +56,7 @@ def drives_table(analysis: Analysis) -> Iterator[Table]:
         columns = (say("drive"), Column(say("work"), "energy"))
         forces = analysis.resolved.forces
         both = forces.work_both_ways
-        work = ((link, Value(one, both[link])) for link, one in forces.work.items())
+        work = ((link, Value(value, both[link])) for link, value in forces.work.items())
         yield Table.of(say("Work of the drives in a cycle"), columns, work)
 
 

@@ -23,14 +23,14 @@ def friction_blocks(analysis: Analysis) -> Iterator[Block]:
         return
     total = losses.loss
     rows: list[tuple[Cell, ...]] = []
-    for name, one in losses.joints.items():
+    for name, joint in losses.joints.items():
         friction = forces.frictions[name]
         kind: Dimension = "torque" if friction.is_pin else "force"
         figures = forces.motion.figures(abs(friction.effort))
         resists = largest(figures, dimension=kind)
-        share = f"{percent(one.loss / total)} %" if total else ""
-        wears = None if friction.table else Value(one.wear_work)
-        rows.append((joint_named(name), Value(one.loss), share, resists, wears))
+        share = f"{percent(joint.loss / total)} %" if total else ""
+        wears = None if friction.table else Value(joint.wear_work)
+        rows.append((joint_named(name), Value(joint.loss), share, resists, wears))
     columns = (
         "",
         Column(say("mean loss"), "power"),

@@ -53,12 +53,12 @@ def analysis_headline(
     if alone:
         yield Text(what_it_is(analysis))
     is_of_gauge = first is not None and first.output.startswith(GAUGES)
-    rest = [one for one in entries if one is not first and not one.is_kept_contact]
+    rest = [entry for entry in entries if entry is not first and not entry.is_kept_contact]
     if is_of_gauge:  # `respond` has the others
-        rest = [one for one in rest if not one.output.startswith(GAUGES)]
-    large = [one for one in rest if one.is_large]
+        rest = [item for item in rest if not item.output.startswith(GAUGES)]
+    large = [item for item in rest if item.is_large]
     if shown := large[:MOST_LARGE] or rest[:MOST_SMALL]:
-        lines = tuple(sentence(one, analysis.machine.crank_turns) for one in shown)
+        lines = tuple(sentence(item, analysis.machine.crank_turns) for item in shown)
         small = NEXT_TO_ONE if first is not None and first.is_large else NEXT_TO_NONE
         yield Facts(say(ELSE_LARGE if large else small), lines)
     if alone and (notes := analysis.notes):
@@ -81,12 +81,12 @@ def verdict_blocks(
     readings : of gauges, as of `assess`.
     """
     entries = assess(analysis, readings)
-    first, kept = verdict(entries), kept_contact(entries)
+    first, figure_assessment = verdict(entries), kept_contact(entries)
     words = []
-    if first is not None and first is not kept:
+    if first is not None and first is not figure_assessment:
         words.append(say("{sentence}.", sentence=sentence(first, analysis.machine.crank_turns)))
-    if kept is not None:
-        words.append(contact_sentence(kept))
+    if figure_assessment is not None:
+        words.append(contact_sentence(figure_assessment))
     if words:
         is_broken = first is not None and first.is_limit and first.is_large
         yield Text(" ".join(words), broken_if(is_broken))

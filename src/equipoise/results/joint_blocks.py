@@ -29,12 +29,12 @@ def joint_blocks(analysis: Analysis) -> Iterator[Block]:
     """Forces in joints, which of them statics leaves open, friction, bearings, stress in links."""
     if analysis.forces.solved.contacts:
         yield joint_table(analysis)
-    told = [*undecided(analysis.motion.linkage).told()]
-    told += idle_told(analysis.motion.linkage, analysis.forces.solved.state)
+    items = [*undecided(analysis.motion.linkage).told()]
+    items += idle_told(analysis.motion.linkage, analysis.forces.solved.state)
     if analysis.machine.has_planes:
-        told += analysis.forces.across.statics.told()
-    if told:
-        yield Notes(tuple(told))
+        items += analysis.forces.across.statics.told()
+    if items:
+        yield Notes(tuple(items))
     yield from friction_blocks(analysis)
     yield from bearing_blocks(analysis)
     yield from section_blocks(analysis)
@@ -54,7 +54,7 @@ def _elements_table(
     for number, element in enumerate(elements):
         values = analysis.motion.element_values(table, number)
         figures = (analysis.motion.figures(values[name]) for name in kind.headings)
-        cells = (cell(one) for one in figures for cell in (smallest, largest))
+        cells = (cell(figure) for figure in figures for cell in (smallest, largest))
         rows.append((str(number + 1), " → ".join(element.route), *cells))
     columns: list[str | Column] = ["", say("from → to")]
     for name, heads in kind.headings.items():
@@ -68,7 +68,7 @@ def contact_named(forces: Forces, name: str) -> str:
     if name in forces.joints:
         return joint_named(name)
     couplings = forces.motion.machine.couplings
-    return say(next(one.touch for one in couplings if one.name == name))
+    return say(next(coupling.touch for coupling in couplings if coupling.name == name))
 
 
 def display_of_joints(analysis: Analysis) -> Display:
@@ -77,7 +77,7 @@ def display_of_joints(analysis: Analysis) -> Display:
     ones = [*forces.solved.contacts.values()]
     if analysis.machine.has_planes:
         ones += forces.across.bearings.values()
-    return display("force", [0.0, *(float(np.max(one.size, initial=0.0)) for one in ones)])
+    return display("force", [0.0, *(float(np.max(item.size, initial=0.0)) for item in ones)])
 
 
 def joint_table(analysis: Analysis) -> Table:
@@ -101,7 +101,7 @@ def joint_table(analysis: Analysis) -> Table:
     labels = (say("mean"), say("RMS"), say("largest"))
     unit = display_of_joints(analysis).unit
     columns = ["", say("by → on"), *(Column(label, "force", unit) for label in labels)]
-    columns += [Column(say(one), "torque") for one in (MOMENT, TILTING)]
+    columns += [Column(say(item), "torque") for item in (MOMENT, TILTING)]
     shown = [k for k in range(len(columns)) if any(row[k] is not None for row in rows)]
     title = say("Force in each joint; largest with its crank angle")
     return Table.of(title, [columns[k] for k in shown], ([row[k] for k in shown] for row in rows))
@@ -112,9 +112,9 @@ MOMENT, TILTING = to_say("moment"), to_say("tilting moment")
 
 def _told(analysis: Analysis, joint: JointForce) -> tuple[Cell, ...]:
     """Which bodies it is between, and mean, RMS and largest of a force."""
-    found = analysis.motion.figures(joint.size)
+    figures = analysis.motion.figures(joint.size)
     ends = f"{body_named(joint.by)} → {body_named(joint.on)}"
-    return ends, Value(found.mean), Value(found.rms), largest(found)
+    return ends, Value(figures.mean), Value(figures.rms), largest(figures)
 
 
 def _peak(moment: JointForce | None) -> Value | None:

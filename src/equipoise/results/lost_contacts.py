@@ -56,4 +56,4 @@ def where_lost(machine: Machine) -> tuple[Note, ...]:
 def lost_contacts(found: Forces) -> tuple[Note, ...]:
     """Where springs do not keep followers on their cams, at the speed analysed."""
     sprung = any(found.motion.machine.force_elements)
-    return tuple(lost_told(one, sprung) for one in let_go(found) if one.ranges)
+    return tuple(lost_told(item, sprung) for item in let_go(found) if item.ranges)

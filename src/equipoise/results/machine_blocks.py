@@ -135,7 +135,7 @@ def mass_columns() -> tuple[Column, Column]:
 def every_place(machine: Machine) -> Iterator[tuple[float, float]]:
     """Points and centres of mass in the axes of their bodies, m."""
     yield from (at for points in machine.bodies.values() for at in points.values())
-    yield from (one.center_of_mass for one in machine.links.values() if one.center_of_mass)
+    yield from (link.center_of_mass for link in machine.links.values() if link.center_of_mass)
 
 
 def bodies_tables(machine: Machine) -> Iterator[Table]:

@@ -20,9 +20,9 @@ of the JSON object."""
 def dimensions_by_path() -> dict[str, Dimension | None]:
     """Dimension of each figure by a regular expression for its path."""
     return {
-        rf"{table}\..*\.{one.name}": one.metadata["dimension"]
+        rf"{table}\..*\.{declared_figure.name}": declared_figure.metadata["dimension"]
         for table, of in NAMED_FIGURES.items()
-        for one in declared_figures(of)
+        for declared_figure in declared_figures(of)
     }
 
 

@@ -146,5 +146,5 @@ def words_of(model: Any) -> Mapping[str, str]:
     """What is said of a model by what is said of a machine with a crank; empty of one with it."""
     if not isinstance(model, Machine) or model.crank_turns:
         return {}
-    is_pushed = all(one.pushes for one in model.driven) and turns_given(model) == 1
+    is_pushed = all(item.pushes for item in model.driven) and turns_given(model) == 1
     return {**OF_CYCLES, **PUSHED} if is_pushed else OF_CYCLES

@@ -49,7 +49,7 @@ class Result(Displayed):
     def owner(self) -> Any:
         """The machine, tool or study that it tells of; None where it is of neither."""
         owners = (getattr(self, name, None) for name in ("machine", "original", "tool", "study"))
-        return next((one for one in owners if one is not None), None)
+        return next((owner for owner in owners if owner is not None), None)
 
     @property
     def title(self) -> str:
@@ -67,8 +67,8 @@ class Result(Displayed):
         """
         if self.declared:
             return values_of(self, self.declared)
-        told = {one.name: getattr(self, one.name) for one in fields(cast("Any", self))}
-        return {name: value for name, value in told.items() if isinstance(value, PLAIN)}
+        getattrs = {item.name: getattr(self, item.name) for item in fields(cast("Any", self))}
+        return {name: value for name, value in getattrs.items() if isinstance(value, PLAIN)}
 
     declared: ClassVar[Declarations] = {}
     """Its outputs by key."""
@@ -81,8 +81,8 @@ class Result(Displayed):
 
         Empty where it has none.
         """
-        found = columns_of(self, self.declared, model=self.owner)
-        return [*{column[0]: column for column in found}.values()]  # parts share an abscissa
+        result = columns_of(self, self.declared, model=self.owner)
+        return [*{column[0]: column for column in result}.values()]  # parts share an abscissa
 
     blocks_in: ClassVar[str]
     """Module and function that tell what it shows, such as ``vibration.blocks.response_blocks``."""
@@ -127,12 +127,12 @@ class Result(Displayed):
         units = ABSCISSAE | {name: unit for name, unit, _ in columns}
         if columns and columns[0][0] not in arrays and not self.records:
             arrays |= {name: ((columns[0][0],), values) for name, _, values in columns}
-        found = {
+        by_name = {
             path: (axes, values, {"units": units[path]} if units.get(path) else {})
             for path, (axes, values) in arrays.items()
         }
-        ticks = {path: found.pop(path) for path, (axes, _) in arrays.items() if axes == (path,)}
-        return xarray.Dataset(found, ticks, attrs=attributes)
+        ticks = {path: by_name.pop(path) for path, (axes, _) in arrays.items() if axes == (path,)}
+        return xarray.Dataset(by_name, ticks, attrs=attributes)
 
     def to_frame(self) -> pandas.DataFrame:
         """The columns of its CSV file where it has one, over the first of them, by name and SI unit
@@ -147,7 +147,7 @@ class Result(Displayed):
         columns = self.columns()
         if columns and not self.records:
             (first, unit, index), *rest = columns
-            frame = {column_heading(name, one): values for name, one, values in rest}
+            frame = {column_heading(name, item): values for name, item, values in rest}
             return pandas.DataFrame(frame, pandas.Index(index, name=column_heading(first, unit)))
         arrays, attributes = _split(self)
         along = self.records or next((name for name in ABSCISSAE if name in arrays), "")
@@ -239,9 +239,9 @@ def _split(result: Result) -> tuple[dict[str, Along], dict[str, Any]]:
     records: dict[str, str] = {}  # path -> records to which it belongs
     for path, value in _leaves(result.to_dict()):
         if isinstance(value, list) and value and isinstance(value[0], Mapping):
-            told = [dict(_leaves(one)) for one in value]
-            for key in dict.fromkeys(key for one in told for key in one):
-                arrays[f"{path}.{key}"] = _array([one.get(key) for one in told])
+            items = [dict(_leaves(item)) for item in value]
+            for key in dict.fromkeys(key for item in items for key in item):
+                arrays[f"{path}.{key}"] = _array([item.get(key) for item in items])
                 records[f"{path}.{key}"] = path
         elif isinstance(value, np.ndarray):
             arrays[path] = value
@@ -249,12 +249,12 @@ def _split(result: Result) -> tuple[dict[str, Along], dict[str, Any]]:
             arrays[path] = _array(value)
         elif value is not None:
             attributes[path] = value
-    single = {path: one for path, one in arrays.items() if one.ndim == 1 and path not in records}
-    found = {
+    single = {path: item for path, item in arrays.items() if item.ndim == 1 and path not in records}
+    by_name = {
         path: (_axes(path, values, single, records.get(path)), values)
         for path, values in arrays.items()
     }
-    return found, attributes
+    return by_name, attributes
 
 
 def _leaves(values: Mapping[str, Any], path: str = "") -> Iterator[tuple[str, Any]]:
@@ -269,27 +269,29 @@ def _leaves(values: Mapping[str, Any], path: str = "") -> Iterator[tuple[str, An
 def _is_numeric(values: Sequence[Any]) -> bool:
     """Whether these are numbers, none in the place of some, or lists of such."""
     return all(
-        _is_numeric(one)
-        if isinstance(one, list | tuple)
-        else one is None or isinstance(one, Number)
-        for one in values
+        _is_numeric(value)
+        if isinstance(value, list | tuple)
+        else value is None or isinstance(value, Number)
+        for value in values
     )
 
 
 def _array(values: Sequence[Any]) -> Array:
     """Values (N, ...), filled up with NaN where there are none; other than numbers as objects."""
     if _is_numeric(values):
-        if not any(isinstance(one, list | tuple) for one in values):
-            return np.array([np.nan if one is None else one for one in values])
-        parts = {k: _array(one) for k, one in enumerate(values) if isinstance(one, list | tuple)}
+        if not any(isinstance(value, list | tuple) for value in values):
+            return np.array([np.nan if value is None else value for value in values])
+        parts = {
+            k: _array(value) for k, value in enumerate(values) if isinstance(value, list | tuple)
+        }
         shape = np.max([part.shape for part in parts.values()], axis=0)
         filled = np.full((len(values), *shape), np.nan)
         for k, part in parts.items():
             filled[k][tuple(map(slice, part.shape))] = part
         return filled
-    found = np.empty(len(values), dtype=object)
-    found[:] = values
-    return found
+    numbers = np.empty(len(values), dtype=object)
+    numbers[:] = values
+    return numbers
 
 
 def _axes(
@@ -299,8 +301,8 @@ def _axes(
     axes: list[str] = [] if record is None else [record]
     beside = [f"{scope}{name}" for name in ABSCISSAE for scope in _scopes(path)]
     for k, size in list(enumerate(values.shape))[len(axes) :]:
-        fitting = (one for one in beside if one in single and len(single[one]) == size)
-        free = (one for one in fitting if one not in axes)
+        fitting = (item for item in beside if item in single and len(single[item]) == size)
+        free = (item for item in fitting if item not in axes)
         axes.append(next(free, f"{path}.index_{k}"))
     return tuple(axes)
 

@@ -23,19 +23,19 @@ def section_blocks(analysis: Analysis) -> Iterator[Block]:
         return
     loads: list[tuple[Cell, ...]] = []
     strength: list[tuple[Cell, ...]] = []
-    for name, one in analysis.sections.items():
-        forces = (one.tension, one.compression, one.shear, one.bending_moment)
+    for name, section in analysis.sections.items():
+        forces = (section.tension, section.compression, section.shear, section.bending_moment)
         loads.append((name, *map(Value, forces)))
-        safeties = (one.safety, one.buckling_safety, one.fatigue_safety)
+        safeties = (section.safety, section.buckling_safety, section.fatigue_safety)
         cells = (None if safety is None else Value(safety) for safety in safeties)
-        life = None if one.life is None else Value(one.life)
+        life = None if section.life is None else Value(section.life)
         place = say(
             "{distance} from {point}, {side}",
-            distance=told(one.place, "length", "mm"),
+            distance=told(section.place, "length", "mm"),
             point=_first(analysis, name),
-            side=say("left fibre") if one.fibre == "left" else say("right fibre"),
+            side=say("left fibre") if section.fibre == "left" else say("right fibre"),
         )
-        stress = Value(one.stress, at=one.stress_at)
+        stress = Value(section.stress, at=section.stress_at)
         strength.append((name, stress, place, *cells, life))
     heads = (say("tension"), say("compression"), say("shear"))
     columns = ["", *(Column(head, "force") for head in heads)]
@@ -56,11 +56,13 @@ def section_blocks(analysis: Analysis) -> Iterator[Block]:
 def _elastic_blocks(analysis: Analysis) -> Iterator[Block]:
     """How links with an elastic modulus bend."""
     rows: list[tuple[Cell, ...]] = []
-    for name, one in analysis.sections.items():
-        if one.deflection is not None:
-            frequency = None if one.natural_frequency is None else Value(one.natural_frequency)
-            bent = Value(one.deflection, at=one.deflection_at)
-            rows.append((name, frequency, bent, Value(one.path_error or 0.0)))
+    for name, section in analysis.sections.items():
+        if section.deflection is not None:
+            frequency = (
+                None if section.natural_frequency is None else Value(section.natural_frequency)
+            )
+            bent = Value(section.deflection, at=section.deflection_at)
+            rows.append((name, frequency, bent, Value(section.path_error or 0.0)))
     if rows:
         columns = (
             "",
@@ -79,9 +81,9 @@ def _first(analysis: Analysis, link: str) -> str:
 
 def _notes(analysis: Analysis) -> Iterator[Note]:
     """Links whose mass does not lie between the ends of their line."""
-    for name, one in analysis.sections.items():
+    for name, section in analysis.sections.items():
         mass = analysis.machine.links[name].mass or 0.0
-        if min(one.rod_mass, one.least_end_mass) < -BELOW * mass:
+        if min(section.rod_mass, section.least_end_mass) < -BELOW * mass:
             yield Note(
                 to_say(
                     "mass of the {link} lies beyond the ends of the line of its section, or close "

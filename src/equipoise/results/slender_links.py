@@ -13,13 +13,13 @@ from equipoise.quantities import number, percent
 
 def slender_links(sections: Mapping[str, LinkStress], speed: float) -> Iterator[Note]:
     """Links, by name, of which this is so at a speed of the crank, rad/s."""
-    for name, one in sections.items():
-        if one.natural_frequency is None or not speed:
+    for name, section in sections.items():
+        if section.natural_frequency is None or not speed:
             continue
-        share = added_share(one.natural_frequency, speed)
+        share = added_share(section.natural_frequency, speed)
         if share <= ADDED:
             continue
-        ratio = number(2 * pi * one.natural_frequency / abs(speed), digits=3)
+        ratio = number(2 * pi * section.natural_frequency / abs(speed), digits=3)
         if share == inf:
             yield Note(
                 to_say(

@@ -89,7 +89,7 @@ class CrankEquation:
 
     def inertia(self, theta: Array) -> tuple[Array, Array]:
         """J and J' (N,), kg m2, at crank angles (N,), from the linkage itself."""
-        inertia, slope = np.sum([reduced_inertia(one) for one in self.motions(theta)], axis=0)
+        inertia, slope = np.sum([reduced_inertia(motion) for motion in self.motions(theta)], axis=0)
         return inertia + self.shaft_inertia, slope
 
     def energy(self, theta: Array, speed: Array) -> Array:
@@ -117,7 +117,7 @@ class CrankEquation:
         def functions(theta: Array) -> Array:
             motions = self.motions(theta)
             inertia = sum(reduced_inertia(motion)[0] for motion in motions) + self.shaft_inertia
-            columns = [inertia, *(c for one in self.sources for c in one.columns(motions))]
+            columns = [inertia, *(c for source in self.sources for c in source.columns(motions))]
             return np.array([np.broadcast_to(column, theta.shape) for column in columns])
 
         groups = [0]
@@ -143,14 +143,14 @@ class CrankEquation:
             matter to friction only.
         """
         each = zip(self.sources, self.slices, strict=True)
-        found = [source.torque(columns[part], speed) for source, part in each
+        values = [source.torque(columns[part], speed) for source, part in each
                  if source is not self.friction]  # fmt: skip
         if self.friction is not None:
-            acting, part = np.asarray(sum(found, start=driving)), self.slices[-1]
-            found.append(
+            acting, part = np.asarray(sum(values, start=driving)), self.slices[-1]
+            values.append(
                 self.friction.torque_beside(columns[0], columns[part], speed, sense, acting)
             )
-        return np.array(found) if found else np.zeros((0, *np.shape(speed)))
+        return np.array(values) if values else np.zeros((0, *np.shape(speed)))
 
     def at(
         self, theta: float, speed: float, driving: float = 0.0, sense: float = 1.0

@@ -133,10 +133,10 @@ class SteadyCycle:
         speed = np.full_like(self._inertia, self.mean_speed)
         for _ in range(ROUNDS):
             before = speed
-            found = self._of_energy(self._work(self._torque(sense * speed)))
-            if found is None:
+            values = self._of_energy(self._work(self._torque(sense * speed)))
+            if values is None:
                 return None
-            speed = found
+            speed = values
             if np.max(np.abs(speed - before)) <= SAME * self.mean_speed:
                 return speed
         raise ResponseError(
@@ -224,8 +224,8 @@ def size_flywheel(
     present = fluctuation(0.0)
     speed = machine.drive.speed
     about = max(needed * motor.slower**2, own)
-    found = 0.0 if present <= wanted else _least(fluctuation, wanted, about)
-    return Flywheel(wanted, present, found, max(needed - own, 0.0), work, speed)
+    least = 0.0 if present <= wanted else _least(fluctuation, wanted, about)
+    return Flywheel(wanted, present, least, max(needed - own, 0.0), work, speed)
 
 
 def _least(fluctuation: Callable[[float], float], wanted: float, about: float) -> float:
@@ -310,7 +310,7 @@ class MotorCycles:
             run = self._turned(shooting.equation, start, count * in_cycle)
             self.cycles += len(run.begins)
             if run.events[-1].kind == "steady" and len(run.begins) > 1:
-                rows, (begin, end) = np.vstack(run.track), (one.time for one in run.begins[-2:])
+                rows, (begin, end) = np.vstack(run.track), (begin.time for begin in run.begins[-2:])
                 return rows[(rows[:, 0] >= begin) & (rows[:, 0] <= end)]
             if run.events[-1].kind != "turns":
                 return None

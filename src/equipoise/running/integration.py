@@ -253,7 +253,10 @@ class Integration:
             )
 
     def _record(self, *instants: Instant) -> None:
-        rows = [[one.time, one.angle, one.speed, *one.electric, *one.work] for one in instants]
+        rows = [
+            [instant.time, instant.angle, instant.speed, *instant.electric, *instant.work]
+            for instant in instants
+        ]
         self.track.append(np.array(rows))
 
     def _switched_on(self, now: Instant) -> Instant:
@@ -336,7 +339,7 @@ class Integration:
         low, high = min(begin.angle, far), max(begin.angle, far)
         half = (ends[1] - ends[0]) / 2
         places = (low - ends[0]) / half - 1, (high - ends[0]) / half - 1
-        place = (k, self.direction, *(round(one, 9) for one in places))
+        place = (k, self.direction, *(round(place, 9) for place in places))
         return TableRange(place, (low, high), *self.table.within(k, *places))
 
     def _slows(self, now: Instant) -> bool:
@@ -421,8 +424,10 @@ class Integration:
             return np.column_stack([begin.time + gained[:, 0], angle, now, electric, work])
 
         def at(x: float) -> Instant:
-            found = self._instant(rows(np.array([x]))[0])
-            return replace(found, angle=ends[0] if x == -1 else ends[1] if x == 1 else found.angle)
+            instant = self._instant(rows(np.array([x]))[0])
+            return replace(
+                instant, angle=ends[0] if x == -1 else ends[1] if x == 1 else instant.angle
+            )
 
         return at, rows
 
@@ -488,10 +493,10 @@ class Integration:
 
         at = solution[0]
         far, half = self.direction, (ends[1] - ends[0]) / 2
-        found: list[tuple[float, str]] = []
+        pairs: list[tuple[float, str]] = []
         for kind, angle in self._angles():
             if ends[0] <= angle <= ends[1] and (angle - begin.angle) * far > AT_EDGE:
-                found.append(((angle - ends[0]) / half - 1, kind))
+                pairs.append(((angle - ends[0]) / half - 1, kind))
         for kind, time in self._times():
             if begin.time < time < inf and time <= at(far).time:
                 start = (begin.angle - ends[0]) / half - 1
@@ -499,12 +504,12 @@ class Integration:
                 def left(x: float, time: float = time) -> float:
                     return at(x).time - time
 
-                found.append((brentq(left, start, far, xtol=1e-15), kind))
+                pairs.append((brentq(left, start, far, xtol=1e-15), kind))
         start = (begin.angle - ends[0]) / half - 1
         if self.driver.controlled and (limit := self._limit_in(start, solution[1])) is not None:
-            found.append((limit, "limit"))
+            pairs.append((limit, "limit"))
         # of what happens at the edge itself the others come first
-        return min([*found, (far, "edge")], key=lambda one: one[0] * far)
+        return min([*pairs, (far, "edge")], key=lambda one: one[0] * far)
 
     def _limit_in(self, start: float, within: Callable[[Array], Array]) -> float | None:
         """Place in a piece, beyond its start, at which a servo motor comes to its limit of torque,
@@ -588,8 +593,8 @@ class Integration:
         kind = last if done.t[-1] >= until else "rest"
         for hit, (name, _) in zip(done.t_events, [("halt", 0.0), *marks], strict=True):
             kind = name if hit.size else kind
-        found = self._instant(end)
-        return self._happens(kind, replace(found, angle=edge) if kind == "edge" else found)
+        instant = self._instant(end)
+        return self._happens(kind, replace(instant, angle=edge) if kind == "edge" else instant)
 
     def _rates(self, time: float, state: Array) -> list[float]:
         if not np.all(np.isfinite(state[:2])):  # a try that has left all numbers

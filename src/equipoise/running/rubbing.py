@@ -49,8 +49,8 @@ NOISE = 1e-14
 def plus(*demands: Demands) -> dict[str, Any]:
     """Demands of links, added up."""
     total: dict[str, Any] = {}
-    for one in demands:
-        for link, (force, moment) in one.items():
+    for demand in demands:
+        for link, (force, moment) in demand.items():
             own = total.get(link, (0.0, 0.0))
             total[link] = own[0] + force, own[1] + moment
     return total
@@ -97,10 +97,10 @@ class Friction(Source):
         count = len(self.joints)
         whole = np.zeros((count, 2, KNOWN + count, len(motions[0].crank_angle)))
         begin = 0
-        for one in parts:
-            end = begin + len(one)
-            whole[begin:end, :, :KNOWN] = one[:, :, :KNOWN]
-            whole[begin:end, :, KNOWN + begin : KNOWN + end] = one[:, :, KNOWN:]
+        for part in parts:
+            end = begin + len(part)
+            whole[begin:end, :, :KNOWN] = part[:, :, :KNOWN]
+            whole[begin:end, :, KNOWN + begin : KNOWN + end] = part[:, :, KNOWN:]
             begin = end
         return [np.asarray(slope), *rates, *whole.reshape(-1, whole.shape[-1])]
 
@@ -125,14 +125,14 @@ class Friction(Source):
         sense : 1 or -1, in which the crank turns, or would.  acting : of all else, N m.
         """
         shape = np.shape(speed)
-        inertia, speed, acting = (np.ravel(one) for one in (inertia, speed, acting))
+        inertia, speed, acting = (np.ravel(item) for item in (inertia, speed, acting))
         slope, rates, parts = self._split(columns)
         free = (acting - slope * speed**2 / 2) / inertia
         of_acceleration = parts[:, :, 2]
         without = parts[:, :, 0] + speed**2 * parts[:, :, 1] + free * of_acceleration
         response = parts[:, :, KNOWN:] + np.einsum("jcn,kn->jckn", of_acceleration, rates / inertia)
-        found = self._found(rates, speed, sense, Press(without, response))
-        return np.asarray(found.reshape(shape))
+        result = self._found(rates, speed, sense, Press(without, response))
+        return np.asarray(result.reshape(shape))
 
     def breakaway(self, columns: Array, sense: float) -> float:
         """Torque, N m, that has to be exceeded for the crank to leave its rest in a sense."""
@@ -158,9 +158,9 @@ class Friction(Source):
 def _parts(motion: Motion, joints: Sequence[RubbingJoint]) -> Array:
     """Parts (J, 2, 3 + J, N) of what presses in the joints of a row."""
     still, turning, starting = (motion.at(*rates) for rates in ((0.0, 0.0), (1.0, 0.0), (0.0, 1.0)))
-    found = forces(still)
+    result = forces(still)
     loads = demands_of(motion, given_loads(motion))
-    demands = plus(found.weights, loads, found.springs)
+    demands = plus(result.weights, loads, result.springs)
     rows = [demands, forces(turning).inertia, forces(starting).inertia]
     rows += unit_demands(motion, joints)
     return pressing_rows(motion, rows, joints, None)

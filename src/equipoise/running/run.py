@@ -350,13 +350,13 @@ def run(
     )
     wanted = None if fluctuation is None else share_of_mean(fluctuation)
     equation, driver = CrankEquation(machine), Driver(machine)
-    found = Integration(equation, driver, limits)
+    integration = Integration(equation, driver, limits)
     if progress is not None and limits.turns < inf:
         most = ceil(limits.turns)
-        found.on_turns = lambda done: progress(int(done), most)
-    found.follow(float(start[1]), float(start[0]))
+        integration.on_turns = lambda done: progress(int(done), most)
+    integration.follow(float(start[1]), float(start[0]))
     flywheel = None if wanted is None else size_flywheel(machine, wanted, progress)
-    return _result(equation, found, flywheel)
+    return _result(equation, integration, flywheel)
 
 
 def _result(equation: CrankEquation, found: Integration, flywheel: Flywheel | None) -> Run:

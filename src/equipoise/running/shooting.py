@@ -76,7 +76,7 @@ class Shooting:
         try:
             end, track = self._cycle(state)
             nudges = NUDGE * np.eye(len(state))
-            slopes = np.array([self._cycle(state + one)[0] - end for one in nudges]).T / NUDGE
+            slopes = np.array([self._cycle(state + nudge)[0] - end for nudge in nudges]).T / NUDGE
             ahead = 1.0
             while self.cycles < MOST_CYCLES:
                 step, is_stable = self._step(end - state, slopes)

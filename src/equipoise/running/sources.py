@@ -107,7 +107,7 @@ def sources_of(machine: Machine) -> Iterator[Source]:
     """Everything but the drive that turns the crank or brakes it."""
     if any(machine.gravity):
         yield ByAngle("weight", to_say("weight"), weight_torque, conserves=True)
-    if [*machine.force_elements] or any(one.preload for one in machine.couplings):
+    if [*machine.force_elements] or any(coupling.preload for coupling in machine.couplings):
         yield ByAngle("springs", to_say("springs"), _of_springs, conserves=True)
     if machine.loads:
         yield ByAngle("loads", to_say("loads"), _of_loads)

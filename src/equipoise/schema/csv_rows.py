@@ -89,13 +89,13 @@ def _header(text: str) -> tuple[int, str]:
 def _separator(line: int, header: str) -> str:
     """What stands between the cells of a header."""
     bare = _ASIDE.sub("", header)
-    found = [separator for separator in SEPARATORS if separator in bare]
-    if len(found) > 1:
-        both = all_of([SEPARATORS[separator] for separator in found])
+    matching_separators = [separator for separator in SEPARATORS if separator in bare]
+    if len(matching_separators) > 1:
+        both = all_of([SEPARATORS[separator] for separator in matching_separators])
         raise wrong(
             line, Note("the header has {both} between its columns; keep to one of them", both=both)
         )
-    return found[0] if found else ","
+    return matching_separators[0] if matching_separators else ","
 
 
 def _separated(text: str, at: int, header: str, separator: str) -> Iterator[Row]:

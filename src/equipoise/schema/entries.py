@@ -104,12 +104,16 @@ def entry_of(kind: Any) -> KeyTable | None:
 
 def own_keys(of: type[Frozen]) -> dict[str, Key]:
     """Keys of a table that a user sets: no tables, and nothing that can only be what it is."""
-    return {name: one for name, one in all_keys(of).items() if not (_fixed(one) or _below(one))}
+    return {
+        name: all_key
+        for name, all_key in all_keys(of).items()
+        if not (_fixed(all_key) or _below(all_key))
+    }
 
 
 def tables_below(of: type[Frozen]) -> dict[str, Key]:
     """Keys of a table below which there are others."""
-    return {name: one for name, one in all_keys(of).items() if _below(one)}
+    return {name: all_key for name, all_key in all_keys(of).items() if _below(all_key)}
 
 
 def kept(of: type[Frozen], entry: Mapping[str, Any]) -> Content:
@@ -125,22 +129,22 @@ def kind_at(of: type[Frozen], place: KeyPath) -> KeyTable:
     ------
     ModelError : no file has entries there.
     """
-    held = KeyTable(of)
+    key_table = KeyTable(of)
     steps = iter(place)
     for step in steps:
-        known = tables_below(held.type)
+        known = tables_below(key_table.type)
         if step not in known:
             raise ModelError(place.shown, unknown(str(step), known, "table"))
-        one = known[str(step)].kind
-        inner = entry_of(one)
+        kind = known[str(step)].kind
+        inner = entry_of(kind)
         assert inner is not None
-        if isinstance(one, Tables | Named):
+        if isinstance(kind, Tables | Named):
             last = next(steps, None)
-            if isinstance(last, int) != isinstance(one, Tables) or last is None:
-                what = "the number" if isinstance(one, Tables) else "the name"
+            if isinstance(last, int) != isinstance(kind, Tables) or last is None:
+                what = "the number" if isinstance(kind, Tables) else "the name"
                 raise ModelError(place.shown, Note("give {what} of the entry too", what=what))
-        held = inner
-    return held
+        key_table = inner
+    return key_table
 
 
 # -- inside ----------------------------------------------------------------------------------------
@@ -216,8 +220,8 @@ def _make_room(of: type[Frozen], content: Content, place: KeyPath) -> None:
         return  # nothing of the whole follows from its tables
     with suppress(ModelError):
         rest = {name: value for name, value in here.items() if name != key}
-        made: Frozen = read_table(above, rest, Context(lambda *_: None))
-        changes = made.following({keys_of(above)[key].field: (None,)})
-        for name, one in keys_of(above).items():
-            if name != key and one.field in changes and not changes[one.field]:
+        frozen: Frozen = read_table(above, rest, Context(lambda *_: None))
+        changes = frozen.following({keys_of(above)[key].field: (None,)})
+        for name, item in keys_of(above).items():
+            if name != key and item.field in changes and not changes[item.field]:
                 here.pop(name, None)

@@ -234,8 +234,8 @@ def to_csv(analysis: Analysis, outputs: Iterable[str] = ()) -> str:
     outputs : names of those that are told instead.
     """
     ones = analysis.outputs.chosen(outputs) or analysis.outputs.arrays
-    told = [(one.name, one.unit, one.values) for one in ones]
-    return csv_text([("crank_angle", "rad", analysis.crank_angle), *told])
+    values = [(item.name, item.unit, item.values) for item in ones]
+    return csv_text([("crank_angle", "rad", analysis.crank_angle), *values])
 
 
 def csv_text(table: Sequence[tuple[str, str, Any]]) -> str:

@@ -118,16 +118,16 @@ def is_whole(kind: Kind, place: KeyPath) -> bool:
 
 def _kind_at(kind: Kind, place: KeyPath) -> KeyKind | None:
     """What stands at a place; None where nothing is known of it."""
-    found: KeyKind | None = KeyTable(document_of(kind))
+    key_kind: KeyKind | None = KeyTable(document_of(kind))
     for step in place:
-        if isinstance(found, KeyTable):
-            one = all_keys(found.type).get(str(step))
-            found = None if one is None else one.kind
-        elif isinstance(found, Named | Tables | Listing | OneOr):
-            found = found.item
+        if isinstance(key_kind, KeyTable):
+            item = all_keys(key_kind.type).get(str(step))
+            key_kind = None if item is None else item.kind
+        elif isinstance(key_kind, Named | Tables | Listing | OneOr):
+            key_kind = key_kind.item
         else:
             return None
-    return found
+    return key_kind
 
 
 # -- one step --------------------------------------------------------------------------------------
@@ -141,11 +141,11 @@ def _below(content: Content, kind: Kind, path: str, place: KeyPath, here: Any) -
     if isinstance(here, dict):
         if step in here:
             return here[step]
-        one = key_at(kind, place)
-        default = None if one is None else plain_default(one)
+        key = key_at(kind, place)
+        default = None if key is None else plain_default(key)
         if default is not None:
             return default
-        if one is not None:
+        if key is not None:
             missing = place.shown
             raise ModelError(
                 path,
@@ -165,7 +165,7 @@ def _expression_in_point(here: Any, step: str | int) -> str | None:
         here = [*here.values()]
     if step not in (*XYZ, *POLAR) or not isinstance(here, list):
         return None
-    return next((one for one in here if _is_expression(one)), None)
+    return next((item for item in here if _is_expression(item)), None)
 
 
 def _is_expression(here: Any) -> bool:
@@ -210,16 +210,16 @@ def replaced(content: Content, given: Iterable[Given]) -> dict[str, Any]:
     changes: dict[KeyPath, Any] = {}
     parts: dict[KeyPath, dict[str, float]] = {}
     wholes: dict[KeyPath, Vector | PlanePair] = {}
-    for path, found, value in given:
+    for path, result, value in given:
         if isinstance(value, bool) or not isinstance(value, Real):
             raise ModelError(path, Note("got {value!r}; give a number", value=value))
-        beside = parts.setdefault(found.place, {})
-        _check_company(path, found, beside, found.place in changes)
-        if found.whole is not None:
-            beside[found.part] = value
-            wholes[found.place] = found.whole
-        elif found.number is not None:
-            changes[found.place] = found.number.written(value)
+        beside = parts.setdefault(result.place, {})
+        _check_company(path, result, beside, result.place in changes)
+        if result.whole is not None:
+            beside[result.part] = value
+            wholes[result.place] = result.whole
+        elif result.number is not None:
+            changes[result.place] = result.number.written(value)
     changes |= {place: whole.changed(parts[place]) for place, whole in wholes.items()}
     return with_values(content, changes)
 

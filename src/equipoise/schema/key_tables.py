@@ -32,8 +32,8 @@ def key_table(of: type[keys.Frozen]) -> str:
 
 def rows(of: Mapping[str, keys.Key]) -> list[tuple[str, str, str, str]]:
     """Key, kind, default and meaning of each key that holds no table, in Markdown."""
-    plain = (one for one in of.values() if not _holds_tables(one.kind))
-    return [(f"`{one.name}`", _words_of(one.kind), _default(one), one.text) for one in plain]
+    plain = (item for item in of.values() if not _holds_tables(item.kind))
+    return [(f"`{item.name}`", _words_of(item.kind), _default(item), item.text) for item in plain]
 
 
 def _holds_tables(kind: keys.Kind) -> bool:

@@ -75,7 +75,9 @@ def machine_of(content: Mapping[str, Any], reader: Beside) -> Machine:
         machine = _with_balance(machine, balance, context)
     if not context.expressions:
         return machine
-    return machine.with_expressions({str(at): one for at, one in context.expressions.items()})
+    return machine.with_expressions(
+        {str(at): expression for at, expression in context.expressions.items()}
+    )
 
 
 def _with_balance(machine: Machine, balance: Any, context: Context) -> Machine:
@@ -150,9 +152,9 @@ class Beside:
         from equipoise.mechanism.assembly.linkage import assemble
         from equipoise.mechanism.dynamics.forces import massless
 
-        found = self._opened(file)
+        result = self._opened(file)
         try:
-            machine = loads_linkage(found.text, printable(file), found.folder)
+            machine = loads_linkage(result.text, printable(file), result.folder)
         except ModelError as error:  # which names its file
             raise ModelError("", error.note) from error  # lines would be for the other file
         try:
@@ -322,10 +324,10 @@ def save_model(model: Machine | Tool, path: Path) -> None:
 
 def files_of(model: Machine | Tool, path: str | os.PathLike[str]) -> list[Path]:
     """Every file that `save` would write, the model file first."""
-    found = [Path(path)]
+    paths = [Path(path)]
     for part, file in _written(parts_of(model), Path(path)):
-        found += files_of(part.value, file) if isinstance(part.value, Machine) else [file]
-    return found
+        paths += files_of(part.value, file) if isinstance(part.value, Machine) else [file]
+    return paths
 
 
 @dataclass(frozen=True)

@@ -210,15 +210,15 @@ class Vector:
     @cached_property
     def numbers(self) -> dict[str, FileNumber]:
         """Everything of it that can be varied, by its last key."""
-        found = {
+        file_numbers = {
             key: FileNumber(value, self.dimension)
             for key, value in zip(XYZ, self.components, strict=False)
         }
         if self.dimension == "length":
             distance, direction = self._polar
-            found["distance"] = FileNumber(distance, "length")
-            found["direction"] = FileNumber(direction, "angle")
-        return found
+            file_numbers["distance"] = FileNumber(distance, "length")
+            file_numbers["direction"] = FileNumber(direction, "angle")
+        return file_numbers
 
     @property
     def _polar(self) -> tuple[float, float]:
@@ -280,9 +280,9 @@ def vector_of(given: Any) -> Vector | None:
         ):
             return Vector(given, from_polar(distance.value, direction.value), "length")
     if isinstance(given, list) and len(given) in (2, 3):
-        numbers = [read_number(one) for one in given]
-        kinds = {None if one is None else one.dimension for one in numbers}
+        numbers = [read_number(item) for item in given]
+        kinds = {None if number is None else number.dimension for number in numbers}
         dimension = kinds.pop()
         if not kinds and dimension in VECTORS:
-            return Vector(given, tuple(one.value for one in numbers if one), dimension)
+            return Vector(given, tuple(number.value for number in numbers if number), dimension)
     return None

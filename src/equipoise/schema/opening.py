@@ -106,13 +106,13 @@ def bundled() -> dict[str, Traversable]:
     folder = files("equipoise").joinpath("examples")
     if not folder.is_dir():
         return {}
-    found = [file for file in folder.iterdir() if file.name.endswith(".toml")]
-    return {file.name.removesuffix(".toml"): file for file in sorted(found, key=lambda f: f.name)}
+    values = [file for file in folder.iterdir() if file.name.endswith(".toml")]
+    return {file.name.removesuffix(".toml"): file for file in sorted(values, key=lambda f: f.name)}
 
 
 def _known_examples(name: str) -> Note:
-    if near := _file_meant(name):
-        return near
+    if note := _file_meant(name):
+        return note
     bare = os.path.basename(name).removesuffix(".toml")
     right = Note("give a path, or the name of an example: run `equipoise examples`")
     hint = meant(printable(bare), [*bundled()])
@@ -123,15 +123,15 @@ def _file_meant(name: str) -> Note | None:
     """Ask whether a file beside is meant whose name is spelt alike, or lacks its ending here."""
     folder, base = os.path.split(name)
     try:
-        beside = [one for one in os.listdir(folder or ".") if one.endswith(".toml")]
+        beside = [item for item in os.listdir(folder or ".") if item.endswith(".toml")]
     except OSError:
         return None
     if f"{base}.toml" in beside:
         return Note("did you mean {name!r}?", name=os.path.join(folder, f"{base}.toml"))
-    near = meant(base, sorted(beside))  # folders are not compared, which would be alike
-    if not isinstance(near, Note):
+    note = meant(base, sorted(beside))  # folders are not compared, which would be alike
+    if not isinstance(note, Note):
         return None
-    path = printable(os.path.join(folder, near.values["name"]))
+    path = printable(os.path.join(folder, note.values["name"]))
     return Note("did you mean {name!r}?", name=path)
 
 
@@ -194,9 +194,9 @@ def content_of(text: str, wanted: FileKind) -> dict[str, Any]:
     ModelError : as `toml_content`, or it is of another kind.
     """
     content = toml_content(text)
-    found = kind_of(content)
-    if found not in {None, wanted}:
-        raise ModelError("", Note("this is {others}", others=OTHERS[found]))
+    kind = kind_of(content)
+    if kind not in {None, wanted}:
+        raise ModelError("", Note("this is {others}", others=OTHERS[kind]))
     return content
 
 

@@ -53,14 +53,14 @@ def read_table(
     ------
     ModelError : the first thing that is wrong with it, with the number of the others.
     """
-    found = _table(keys.KeyTable(of), content, place, context)
+    table = _table(keys.KeyTable(of), content, place, context)
     if context.problems:
         (where, what), *others = context.problems
         if others:
             what = Note("{sentence} (and {more} more)", sentence=what, more=len(others))
         raise ModelError(where.shown, what)
     with context.with_written():
-        return made(found, context)
+        return made(table, context)
 
 
 UNKNOWN = "no-key-of-that-name"
@@ -81,9 +81,9 @@ def _table(kind: keys.KeyTable, given: Any, place: KeyPath, context: Context) ->
                             hint=hint)  # fmt: skip
                 return context.say(place / name, what.about(UNKNOWN))
             return context.say(place / name, wrong.about(UNKNOWN))
-    for name, one in known.items():
-        if one.required and name not in given:
-            return context.say(place / name, Note("missing; add {example}", example=_example(one)))
+    for name, item in known.items():
+        if item.required and name not in given:
+            return context.say(place / name, Note("missing; add {example}", example=_example(item)))
     return Values(of, place, _values(of, given, place, context))
 
 
@@ -94,9 +94,9 @@ def _meant_below(name: str, value: Any, known: Mapping[str, keys.Key]) -> str:
     if meant(name, [*known]):
         return ""
     fitting = [
-        one.name
-        for one in known.values()
-        if isinstance(one.kind, keys.Named) and _looks_like(one.kind.item, value)
+        item.name
+        for item in known.values()
+        if isinstance(item.kind, keys.Named) and _looks_like(item.kind.item, value)
     ]
     return f"{fitting[0]}.{name}" if len(fitting) == 1 else ""
 
@@ -114,8 +114,8 @@ def _values(
 ) -> dict[str, Any]:
     """What is given of the keys of a class, by field."""
     values: dict[str, Any] = {}
-    for name, one in keys.keys_of(of).items():
-        kind, at = one.kind, one.field or name
+    for name, key in keys.keys_of(of).items():
+        kind, at = key.kind, key.field or name
         if isinstance(kind, keys.KeyTable) and kind.flat:
             values[at] = Values(kind.type, place, _values(kind.type, given, place, context))
         elif name in given:
@@ -140,7 +140,7 @@ def _tables(kind: keys.Tables, given: Any, place: KeyPath, context: Context) -> 
         return context.wrong(
             place, given, Note("write each as a table under [[{header}]]", header=header)
         )
-    return tuple(_table(kind.item, one, place / n, context) for n, one in enumerate(given))
+    return tuple(_table(kind.item, item, place / n, context) for n, item in enumerate(given))
 
 
 def _named(kind: keys.Named, given: Any, place: KeyPath, context: Context) -> Any:
@@ -155,7 +155,7 @@ def _named(kind: keys.Named, given: Any, place: KeyPath, context: Context) -> An
             Note("give a table, or a list of names") if kind.listed else Note("give a table"),
         )
     read, item = READERS[type(kind.item)], kind.item
-    return {name: read(item, one, place / name, context) for name, one in given.items()}
+    return {name: read(item, entry, place / name, context) for name, entry in given.items()}
 
 
 def made(value: Any, context: Context) -> Any:
@@ -179,9 +179,9 @@ def made(value: Any, context: Context) -> Any:
 def _given(found: Values, context: Context) -> dict[str, Any]:
     """What an object is made of, by its fields."""
     given = {name: made(value, context) for name, value in found.given.items()}
-    for name, one in keys.keys_of(found.of).items():
-        if isinstance(one.kind, keys.File) and one.kind.named and name in given:
-            given[one.kind.named] = found.given[name].file
+    for name, key in keys.keys_of(found.of).items():
+        if isinstance(key.kind, keys.File) and key.kind.named and name in given:
+            given[key.kind.named] = found.given[name].file
     return given
 
 
@@ -248,7 +248,7 @@ def _wording(kind: keys.Wording, given: Any, place: KeyPath, context: Context) -
             return context.say(place / code, unknown(code, LANGUAGES, "language"))
         if text == "":
             return context.say(place / code, Note("is empty; give text, or leave it out"))
-    read = {code: _text(kind, one, place / code, context) for code, one in given.items()}
+    read = {code: _text(kind, item, place / code, context) for code, item in given.items()}
     return WRONG if WRONG in read.values() else Worded(read)
 
 
@@ -306,7 +306,7 @@ def _listing(kind: keys.Listing, given: Any, place: KeyPath, context: Context) -
     elif not isinstance(given, list):
         return context.wrong(place, given, _two_of(kind.item))
     read, item = READERS[type(kind.item)], kind.item
-    values = tuple(read(item, one, place / n, context) for n, one in enumerate(given))
+    values = tuple(read(item, entry, place / n, context) for n, entry in enumerate(given))
     if kind.right or len(given) == 2:
         return values
     for _ in range(max(2 - len(given), 1)):
@@ -318,8 +318,8 @@ def _two_of(item: keys.Kind) -> Note:
     """What to give instead of a list of two values."""
     if not isinstance(item, keys.Quantity):
         return Note("give a list of two values in brackets")
-    one = KINDS[item.dimension]
-    example = quoted([f"0 {one.example.partition(' ')[2]}", one.example])
+    kind = KINDS[item.dimension]
+    example = quoted([f"0 {kind.example.partition(' ')[2]}", kind.example])
     return Note("give a list of two values in brackets, such as {example}", example=example)
 
 
@@ -337,10 +337,10 @@ def _point(kind: keys.Point, given: Any, place: KeyPath, context: Context) -> An
         return given
     if isinstance(given, dict):
         count = len(context.problems)
-        found = _table(keys.KeyTable(Polar), given, place, context)
+        table = _table(keys.KeyTable(Polar), given, place, context)
         if len(context.problems) > count:
             return WRONG
-        x, y = made(found, context)
+        x, y = made(table, context)
         return (x, y, 0.0) if kind.space else (x, y)
     if not kind.space:
         if not isinstance(given, list):

@@ -37,11 +37,11 @@ def json_schema(kind: FileKind = "linkage") -> Schema:
 
 def _object(of: type[keys.Frozen], definitions: Definitions) -> Schema:
     known = keys.all_keys(of)
-    required = [name for name, one in known.items() if one.required]
+    required = [name for name, item in known.items() if item.required]
     return {
         "description": " ".join((of.__doc__ or "").split("\n\n")[0].split()),
         "type": "object",
-        "properties": {name: _property(one, definitions) for name, one in known.items()},
+        "properties": {name: _property(item, definitions) for name, item in known.items()},
         **({"required": required} if required else {}),
         "additionalProperties": False,
         **of.conditions,
@@ -107,10 +107,10 @@ def _wording(kind: keys.Wording, definitions: Definitions) -> Schema:
         "minProperties": 1,
         "additionalProperties": False,
     }
-    told = "text for all readers, or one for each of some languages"
+    label = "text for all readers, or one for each of some languages"
     return _defined(
         "Wording",
-        lambda: {"anyOf": [{"type": "string"}, table], "description": told},
+        lambda: {"anyOf": [{"type": "string"}, table], "description": label},
         definitions,
     )
 
@@ -140,7 +140,7 @@ _LENGTH = keys.Quantity(dimension="length")
 def _point(kind: keys.Point, definitions: Definitions) -> Schema:
     sizes = (2, 3) if kind.space else (2,)
     polar = _defined("PolarPoint", lambda: _object(Polar, definitions), definitions)
-    told = (
+    text = (
         "x, y and z; in the plane of the drawing if z is left out"
         if kind.space
         else "x and y, or distance and direction"
@@ -149,7 +149,7 @@ def _point(kind: keys.Point, definitions: Definitions) -> Schema:
     if kind.named:
         return {"anyOf": [{"type": "string"}, _point(keys.Point(kind.space), definitions)]}
     name = "Place" if kind.space else "Point"
-    return _defined(name, lambda: {"anyOf": either, "description": told}, definitions)
+    return _defined(name, lambda: {"anyOf": either, "description": text}, definitions)
 
 
 def _named(kind: keys.Named, definitions: Definitions) -> Schema:
@@ -161,8 +161,8 @@ def _named(kind: keys.Named, definitions: Definitions) -> Schema:
 def _direction(kind: keys.Direction, definitions: Definitions) -> Schema:
     vector = _listing(keys.Listing(keys.Number(), (3,)), definitions)
     either = [_schema(keys.Quantity(dimension="angle"), definitions), vector]
-    told = "angle in the plane of the drawing, or a vector of three plain numbers"
-    return _defined("Direction", lambda: {"anyOf": either, "description": told}, definitions)
+    text = "angle in the plane of the drawing, or a vector of three plain numbers"
+    return _defined("Direction", lambda: {"anyOf": either, "description": text}, definitions)
 
 
 def _one_or(kind: keys.OneOr, definitions: Definitions) -> Schema:
@@ -178,9 +178,9 @@ def _planes(kind: keys.Planes, definitions: Definitions) -> Schema:
             {"type": "string", "examples": ["hand.csv"]}, "name of a file; or a table"
         )
     item = kind.item
-    told = _described(item.dimension, "; or a table")["description"]
+    text = _described(item.dimension, "; or a table")["description"]
     name = "".join(word.capitalize() for word in item.dimension.split())
-    return _defined(f"{name}InPlanes", lambda: _in_planes(_text_of(item), told), definitions)
+    return _defined(f"{name}InPlanes", lambda: _in_planes(_text_of(item), text), definitions)
 
 
 def _in_planes(text: Schema, told: str) -> Schema:

@@ -114,15 +114,15 @@ def _study(text: str, folder: Path) -> Study:
     return Study(
         title=template.base().title if document.title is None else document.title,
         model=template,
-        vary=tuple(_vary(f"vary[{number}]", one, template) for number, one in numbered),
+        vary=tuple(_vary(f"vary[{number}]", item, template) for number, item in numbered),
         outputs=tuple(
-            _output(f"outputs[{number}]", one, template)
-            for number, one in enumerate(document.outputs, 1)
+            _output(f"outputs[{number}]", output, template)
+            for number, output in enumerate(document.outputs, 1)
         ),
         sampling=_sampling(document.sampling),
         correlations=tuple(
-            Correlation(one.between[0], one.between[1], one.coefficient)
-            for one in document.correlations
+            Correlation(correlation.between[0], correlation.between[1], correlation.coefficient)
+            for correlation in document.correlations
         ),
         angles=angles,
         tolerance=tolerance,
@@ -132,9 +132,9 @@ def _study(text: str, folder: Path) -> Study:
 
 def _template(name: str, folder: Path) -> Template:
     """The model of a study: a file beside it goes before a bundled example."""
-    beside = os.path.isfile(folder / name)
+    isfile = os.path.isfile(folder / name)
     try:
-        is_example = not beside and name in bundled()
+        is_example = not isfile and name in bundled()
         file = opened_example(name) if is_example else opened(folder / name, within=folder)
         return Template.of_opened(file)
     except ModelError as error:
@@ -172,10 +172,10 @@ def _spread(where: str, given: VaryTable, value: float, dimension: str | None) -
         return value if one is None else si_value(f"{where}{key}", one, dimension)
 
     if given.range is not None:
-        low, high = (read(f"[{n}]", one) for n, one in enumerate(given.range, 1))
+        low, high = (read(f"[{n}]", item) for n, item in enumerate(given.range, 1))
         return Range(low, high, given.steps, whole=isinstance(value, int))
     if given.list is not None:
-        return Choices(tuple(read(f"[{n}]", one) for n, one in enumerate(given.list, 1)))
+        return Choices(tuple(read(f"[{n}]", item) for n, item in enumerate(given.list, 1)))
     if given.normal is not None:
         normal = given.normal
         deviation = read(".deviation", normal.deviation)
@@ -249,11 +249,12 @@ def study_text(study: Study) -> str:
     table = StudyTable(
         title=study.title,
         model=name if name in bundled() else source,
-        vary=tuple(_vary_table(one) for one in study.vary),
-        outputs=tuple(_output_table(one) for one in study.outputs),
+        vary=tuple(_vary_table(item) for item in study.vary),
+        outputs=tuple(_output_table(output) for output in study.outputs),
         sampling=_sampling_table(study.sampling),
         correlations=tuple(
-            CorrelationTable((one.first, one.second), one.coefficient) for one in study.correlations
+            CorrelationTable((correlation.first, correlation.second), correlation.coefficient)
+            for correlation in study.correlations
         ),
         accuracy=_accuracy_table(study),
     )

@@ -62,7 +62,7 @@ class VaryTable(Frozen):
     """A number of the model that varies: over a range or a list, or by a tolerance."""
 
     conditions: ClassVar[Conditions] = {
-        "oneOf": [{"required": [one]} for one in SPREADS],
+        "oneOf": [{"required": [spread]} for spread in SPREADS],
         "dependentRequired": {"steps": ["range"]},
     }
 

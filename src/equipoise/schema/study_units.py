@@ -120,13 +120,17 @@ def units_of(study: Study) -> dict[str, Unit]:
     them, figures in the one in which the study limits them, and else in one that is usual.
     """
     given = _given(study.file)
-    numbers = {one.path: unit_named(_of_number(study, one)) for one in study.vary}
+    numbers = {item.path: unit_named(_of_number(study, item)) for item in study.vary}
     figures = {
         output.name: unit_named(_of_output(output, given.get(output.name, {})))
         for output in study.outputs
     }
     words = {path: study.model.words(path, numbers) for path in numbers}
-    words |= {one.name: figure_named(one.value) for one in study.outputs if one.name == one.value}
+    words |= {
+        output.name: figure_named(output.value)
+        for output in study.outputs
+        if output.name == output.value
+    }
     return {
         name: replace(unit, label=words.get(name, name))
         for name, unit in (numbers | figures).items()

@@ -148,11 +148,11 @@ def arrays_of(text: str, forms: Forms, taken: Taken = None) -> dict[str, Array]:
     """
     import numpy as np
 
-    found = _whole(rows_of(text, taken), forms)
-    if found is None:
+    arrays = _whole(rows_of(text, taken), forms)
+    if arrays is None:
         columns = columns_of(text, forms, taken)
-        found = {name: np.array(column) for name, column in columns.items()}
-    return found
+        arrays = {name: np.array(column) for name, column in columns.items()}
+    return arrays
 
 
 def _whole(lines: Iterator[Row], forms: Forms) -> dict[str, Array] | None:
@@ -174,9 +174,11 @@ def _whole(lines: Iterator[Row], forms: Forms) -> dict[str, Array] | None:
     sizes = np.abs(values)
     if not np.all((sizes <= HUGE) & ((sizes >= TINY) | (sizes == 0))):
         return None
-    found = dict(zip(names, values.T.copy(), strict=True))
+    by_name = dict(zip(names, values.T.copy(), strict=True))
     first = forms[0][0]
-    return found if not CsvTable.like(first).rises or np.all(np.diff(found[first]) > 0) else None
+    return (
+        by_name if not CsvTable.like(first).rises or np.all(np.diff(by_name[first]) > 0) else None
+    )
 
 
 def header_of(
@@ -280,8 +282,8 @@ def parse_table(sort: str, text: str, file: str = "") -> CsvTable:
         pairs = zip(columns["magnitude"], columns["phase"], strict=True)
         resistance, reactance = zip(*(from_polar(*pair) for pair in pairs), strict=True)
         return Impedance(columns["frequency"], resistance, reactance, file)
-    found: CsvTable = TABLES[sort](*(columns[name] for name in TABLES[sort].forms[0]), file)
-    return found
+    csv_table: CsvTable = TABLES[sort](*(columns[name] for name in TABLES[sort].forms[0]), file)
+    return csv_table
 
 
 def format_table(table: CsvTable) -> str:
@@ -290,7 +292,7 @@ def format_table(table: CsvTable) -> str:
         form: tuple[str, ...] = LoadTable.forms[0 if len(table.values) == 2 else 1]
         return _text(form, [table.crank_angle, *table.values])
     form = table.forms[0]
-    columns = [getattr(table, one.name) for one in fields(table)]
+    columns = [getattr(table, item.name) for item in fields(table)]
     return _text(form, columns[: len(form)])
 
 

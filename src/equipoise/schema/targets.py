@@ -120,7 +120,7 @@ def read_targets(path: str | os.PathLike[str], figures: Collection[str]) -> Targ
         table: TargetTable = read_table(TargetTable, content, Context())
         if not table.goals:
             raise ModelError("goals", Note("there is none; give at least one [[goals]]"))
-        goals = tuple(_goal(f"goals[{n}]", one, figures) for n, one in enumerate(table.goals, 1))
+        goals = tuple(_goal(f"goals[{n}]", goal, figures) for n, goal in enumerate(table.goals, 1))
         vary = None if table.vary is None else dict(_limits(table.vary))
         return Targets(goals, vary, table.search)
 
@@ -136,9 +136,9 @@ def _goal(where: str, goal: GoalTable, figures: Collection[str]) -> Requirement:
     given: dict[str, Any] = dict(goal.asks)
     if goal.tolerance is not None:
         given["tolerance"] = goal.tolerance
-    for one, value in given.items():
-        if one not in REQUIREMENT_KINDS or not REQUIREMENT_KINDS[one].choices:
-            given[one] = si_value(f"{where}.{one}", value, dimension_of(goal.figure))
+    for item, value in given.items():
+        if item not in REQUIREMENT_KINDS or not REQUIREMENT_KINDS[item].choices:
+            given[item] = si_value(f"{where}.{item}", value, dimension_of(goal.figure))
     try:
         asked = Requirement(goal.figure, **given)
         check_asks(asked)
@@ -151,8 +151,8 @@ def _limits(
     table: Mapping[str, Any], prefix: str = ""
 ) -> Iterator[tuple[str, tuple[float, float]]]:
     """Numbers to vary with their limits, by dotted name."""
-    for one, value in table.items():
-        name = f"{prefix}{one}"
+    for item, value in table.items():
+        name = f"{prefix}{item}"
         if isinstance(value, Mapping):
             yield from _limits(value, f"{name}.")
             continue

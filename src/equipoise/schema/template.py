@@ -124,10 +124,10 @@ class Template:
     def _number(self, path: str) -> tuple[float, str | None]:
         if (lift := self._lift(path)) is not None:
             return lift.start, lift.dimension
-        found = self._find(path)
-        if found.number is None:
-            return self._linkage(found.place).number(found.rest)
-        return found.number.value, found.number.dimension
+        number_location = self._find(path)
+        if number_location.number is None:
+            return self._linkage(number_location.place).number(number_location.rest)
+        return number_location.number.value, number_location.number.dimension
 
     def unit(self, path: str) -> str:
         """Unit in which the file gives a number; nothing of a plain one.
@@ -138,10 +138,10 @@ class Template:
         """
         if (lift := self._lift(path)) is not None:
             return handy(lift.dimension) if lift.dimension else ""
-        found = self._find(path)
-        if found.rest:
-            return self._linkage(found.place).unit(found.rest)
-        return unit_in(self._content, found)
+        number_location = self._find(path)
+        if number_location.rest:
+            return self._linkage(number_location.place).unit(number_location.rest)
+        return unit_in(self._content, number_location)
 
     def words(self, path: str, others: Collection[str] = (), known: int = 0) -> Note | str:
         """A number of the file in words, such as ``mass of the crank``; its path where it has none.
@@ -155,11 +155,11 @@ class Template:
         """
         if self._lift(path) is not None:
             return path
-        found = self._find(path)
-        if found.rest:
-            return self._linkage(found.place).words(found.rest)
-        numbers = [one for one in others if self._lift(one) is None]
-        return words_of(self._content, self.kind, found, numbers, known) or path
+        number_location = self._find(path)
+        if number_location.rest:
+            return self._linkage(number_location.place).words(number_location.rest)
+        numbers = [item for item in others if self._lift(item) is None]
+        return words_of(self._content, self.kind, number_location, numbers, known) or path
 
     def key(self, path: str) -> Key | None:
         """The declared key of a number of a machine, with its limits; None where it has none.
@@ -197,7 +197,7 @@ class Template:
             linkages = self._linkages(values)
             names = {place: f"{place.shown} changed" for place in linkages}
             given = ((path, self._find(path), value) for path, value in values.items())
-            content = replaced(self._content, (one for one in given if not one[1].rest))
+            content = replaced(self._content, (item for item in given if not item[1].rest))
             known = self._known | {("linkage", names[at]): new for at, new in linkages.items()}
             made = self._read(with_values(content, names), _Carried(None, known))
         except ModelError as error:
@@ -279,9 +279,9 @@ class Template:
     def _lifted(self, machine: Machine | Tool, values: Mapping[str, float]) -> Machine:
         """The machine with other values of lifts, by their names."""
         assert isinstance(machine, Machine)
-        found = ((lift_named(machine, name), value) for name, value in values.items())
+        result = ((lift_named(machine, name), value) for name, value in values.items())
         try:
-            return with_lifts(machine, [(lift, value) for lift, value in found if lift])
+            return with_lifts(machine, [(lift, value) for lift, value in result if lift])
         except ModelError as error:
             raise error.in_file(self.source) from error
 
@@ -294,9 +294,9 @@ class Template:
         """The linkages of a tool that are others, by the places of their files' names."""
         inside: dict[KeyPath, dict[str, float]] = defaultdict(dict)
         for path, value in values.items():
-            found = self._find(path)
-            if found.rest:
-                inside[found.place][found.rest] = value
+            number_location = self._find(path)
+            if number_location.rest:
+                inside[number_location.place][number_location.rest] = value
         linkages: dict[KeyPath, Machine] = {}
         for place, numbers in inside.items():
             try:
@@ -331,8 +331,8 @@ class _Carried(Beside):
         if ("linkage", file) not in self.known:
             super().linkage(file)  # for its checks
             self.known["linkage", file] = Template.of_opened(self._opened(file))
-        found = self.known["linkage", file]
-        machine = found.base() if isinstance(found, Template) else found
+        result = self.known["linkage", file]
+        machine = result.base() if isinstance(result, Template) else result
         assert isinstance(machine, Machine)
         return machine
 
@@ -345,10 +345,10 @@ def named_parts(model: Machine | Tool) -> tuple[dict[str, str], Known]:
     names: dict[str, str] = {}
     known: Known = {}
     for part in parts_of(model):
-        one = Template.of(part.value) if part.sort == "linkage" else part.value
-        same = part.file and known.get((part.sort, part.file), one) == one
+        value = Template.of(part.value) if part.sort == "linkage" else part.value
+        same = part.file and known.get((part.sort, part.file), value) == value
         name = part.file if same else part.where
-        names[part.where], known[part.sort, name] = name, one
+        names[part.where], known[part.sort, name] = name, value
     return names, known
 
 
@@ -360,5 +360,8 @@ def _text_of(value: Any) -> str:
 def _without_names(tool: Machine | Tool, names: set[str]) -> Tool:
     """The tool without the names of files that do not exist."""
     assert isinstance(tool, Tool)
-    excitations = (replace(one, file="") if one.file in names else one for one in tool.excitations)
+    excitations = (
+        replace(excitation, file="") if excitation.file in names else excitation
+        for excitation in tool.excitations
+    )
     return replace(tool, excitations=tuple(excitations))

@@ -109,8 +109,8 @@ def _unquoted(line: str, column: int) -> Note | None:
     """Say what lacks quotes about a column of a line; empty where nothing does."""
     for match in _KEYS.finditer(line):
         key, opening, table = match.groups()
-        parts = [one.strip() for one in re.findall(_PART, key or table)]
-        mended = ".".join(one if one[:1] in "\"'" else written_key(one) for one in parts)
+        parts = [part.strip() for part in re.findall(_PART, key or table)]
+        mended = ".".join(part if part[:1] in "\"'" else written_key(part) for part in parts)
         if match.start() <= column <= match.end() and mended.count('"') > (key or table).count('"'):
             shown = f"{opening}{mended}{']' * len(opening)}" if opening else f"{mended} ="
             return Note(

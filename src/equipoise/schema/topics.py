@@ -88,25 +88,25 @@ def plain_page(topic: str) -> tuple[str, str]:
 @cache
 def tables() -> Mapping[str, FileTable]:
     """Every table of every file, by its path; of one that several files have, the first."""
-    found: dict[str, FileTable] = {}
+    file_tables: dict[str, FileTable] = {}
     for kind in FILES:
         for path, of, is_list in _below(document_of(kind), ()):
             bare = ".".join(path)
             heading = f"[[{bare}]]" if is_list else f"[{bare}]"
-            found.setdefault(bare, FileTable(heading, of, kind))
-    return found
+            file_tables.setdefault(bare, FileTable(heading, of, kind))
+    return file_tables
 
 
 def _below(
     of: type[keys.Frozen], path: tuple[str, ...], above: tuple[type[keys.Frozen], ...] = ()
 ) -> Iterator[tuple[tuple[str, ...], type[keys.Frozen], bool]]:
     """Path, class, and whether it is a list, of all tables below one; each class once on a way."""
-    for name, one in keys.all_keys(of).items():
-        inner = keys.innermost(one.kind)
+    for name, all_key in keys.all_keys(of).items():
+        inner = keys.innermost(all_key.kind)
         if not isinstance(inner, keys.KeyTable | keys.Tables):
             continue
         item = inner.item.type if isinstance(inner, keys.Tables) else inner.type
-        here = (*path, name, *([NAME] if isinstance(one.kind, keys.Named) else []))
+        here = (*path, name, *([NAME] if isinstance(all_key.kind, keys.Named) else []))
         if item not in (of, *above):
             yield here, item, isinstance(inner, keys.Tables)
             yield from _below(item, here, (of, *above))
@@ -134,7 +134,9 @@ def terms() -> Mapping[str, Explained]:
     every = {slug_of(term): Explained(term, text) for term, text in (TERMS | MEANINGS).items()}
     others = {*errors(), *tables()}
     return {
-        topic: one for topic, one in every.items() if "{" not in one.title and topic not in others
+        topic: item
+        for topic, item in every.items()
+        if "{" not in item.title and topic not in others
     }
 
 

@@ -114,34 +114,34 @@ def words_of(
 
 def _number(layer: Layer) -> str:
     """Which number of several it is, where its word does not say that."""
-    told = any(name == "number" for _, name, _, _ in Formatter().parse(layer.word))
-    return "" if told else layer.names.get("number", "")
+    flag = any(name == "number" for _, name, _, _ in Formatter().parse(layer.word))
+    return "" if flag else layer.names.get("number", "")
 
 
 def _layers(content: Content, kind: Kind, place: KeyPath) -> list[Layer]:
     """Keys on the way to a place; none where they are not known."""
-    held: KeyKind = KeyTable(document_of(kind))
+    key_kind: KeyKind = KeyTable(document_of(kind))
     here: Any = content
     layers: list[Layer] = []
     for step in place:
         here = _below(here, step)
-        if isinstance(held, KeyTable):
-            one = all_keys(held.type).get(str(step))
-            if one is None:
+        if isinstance(key_kind, KeyTable):
+            key = all_keys(key_kind.type).get(str(step))
+            if key is None:
                 return []
-            held, names = one.kind, {}
-        elif isinstance(held, Named):
-            one, held, names = layers.pop().key, held.item, {"name": str(step)}
-        elif isinstance(held, Planes):
-            one, held, names = layers.pop().key, held.item, {"part": str(step)}
-        elif isinstance(held, Tables | Listing | OneOr):
+            key_kind, names = key.kind, {}
+        elif isinstance(key_kind, Named):
+            key, key_kind, names = layers.pop().key, key_kind.item, {"name": str(step)}
+        elif isinstance(key_kind, Planes):
+            key, key_kind, names = layers.pop().key, key_kind.item, {"part": str(step)}
+        elif isinstance(key_kind, Tables | Listing | OneOr):
             entry = here if isinstance(here, dict) else {}
             names = {name: text for name, text in entry.items() if isinstance(text, str)}
             names["number"] = str(int(step) + 1)
-            one, held = layers.pop().key, held.item
+            key, key_kind = layers.pop().key, key_kind.item
         else:
             return []
-        layers.append(Layer(one, held, names))
+        layers.append(Layer(key, key_kind, names))
     return layers
 
 
@@ -158,10 +158,10 @@ def _length(content: Content, found: NumberLocation) -> Note | None:
     points = found.place.parent.read(content)
     if not isinstance(points, dict):  # a list of points has no origin among them
         return None
-    places = {name: vector_of(one) for name, one in points.items()}
+    places = {name: vector_of(point) for name, point in points.items()}
     name = str(found.place[-1])
     own = places.pop(name)
-    origins = [other for other, one in places.items() if one and not any(one.components)]
+    origins = [other for other, place in places.items() if place and not any(place.components)]
     along = own is not None and own.components[0] > 0 and not any(own.components[1:])
     if not origins or not (along or found.part == "distance"):
         return None

@@ -65,13 +65,13 @@ class Writer:
         """Content of the table of an object as plain values."""
         given = _given(self.makers.get(of, of.to_table), value, place)
         table: dict[str, Any] = {}
-        for name, one in keys.keys_of(of).items():
+        for name, key in keys.keys_of(of).items():
             if name not in given:
                 continue
-            if isinstance(one.kind, keys.KeyTable) and one.kind.flat:
-                table |= self.content(one.kind.type, given[name], place)
+            if isinstance(key.kind, keys.KeyTable) and key.kind.flat:
+                table |= self.content(key.kind.type, given[name], place)
             else:
-                table[name] = self.plain(one.kind, given[name], place / name)
+                table[name] = self.plain(key.kind, given[name], place / name)
         return table
 
     def plain(self, kind: keys.Kind, value: Any, place: KeyPath) -> Any:
@@ -116,19 +116,19 @@ def _beside(kind: keys.Kind, value: Any, place: KeyPath) -> Iterator[tuple[str, 
             yield from _beside(kind.item, item, place / name)
     elif isinstance(kind, keys.KeyTable):
         for name, item in _given(kind.type.to_table, value, place).items():
-            one = keys.keys_of(kind.type)[name]
-            inner = place if isinstance(one.kind, keys.KeyTable) and one.kind.flat else place / name
-            for where, sort, found, file in _beside(one.kind, item, inner):
-                named = isinstance(one.kind, keys.File) and one.kind.named
-                yield where, sort, found, getattr(value, named) if named else file
+            key = keys.keys_of(kind.type)[name]
+            inner = place if isinstance(key.kind, keys.KeyTable) and key.kind.flat else place / name
+            for where, sort, result, file in _beside(key.kind, item, inner):
+                named = isinstance(key.kind, keys.File) and key.kind.named
+                yield where, sort, result, getattr(value, named) if named else file
 
 
 def _in_planes(value: tuple[Any, ...], place: KeyPath) -> Iterator[tuple[KeyPath, Any]]:
     """The parts of what is of both planes, each with its place in the file."""
     if len(value) == len(keys.PLANES):
-        yield from ((place / plane, one) for plane, one in zip(keys.PLANES, value, strict=True))
+        yield from ((place / plane, item) for plane, item in zip(keys.PLANES, value, strict=True))
     else:
-        yield from ((place, one) for one in value)
+        yield from ((place, item) for item in value)
 
 
 # -- plain values ----------------------------------------------------------------------------------
@@ -143,12 +143,12 @@ def _point(kind: keys.Point, value: Any, place: KeyPath, writer: Writer) -> Any:
     if isinstance(value, str):
         return value
     if kind.space and value[2]:
-        return [_length(one, place / n, writer) for n, one in enumerate(value)]
+        return [_length(item, place / n, writer) for n, item in enumerate(value)]
     x, y = value[:2]
     expressions = writer.worked_out.expressions
     if any(str(place / axis) in expressions for axis in (0, 1)):
-        return [_length(one, place / n, writer) for n, one in enumerate((x, y))]
-    given = {name: one for name in POLAR if (one := expressions.get(str(place / name)))}
+        return [_length(item, place / n, writer) for n, item in enumerate((x, y))]
+    given = {name: entry for name in POLAR if (entry := expressions.get(str(place / name)))}
     return written_point((x, y), given, writer.worked_out.read) if given else written_point((x, y))
 
 
@@ -174,26 +174,26 @@ def _number(kind: keys.Number | keys.Whole, value: Any, place: KeyPath, writer: 
 
 
 def _listing(kind: keys.Listing, value: Any, place: KeyPath, writer: Writer) -> Any:
-    return [writer.plain(kind.item, one, place) for one in value]
+    return [writer.plain(kind.item, item, place) for item in value]
 
 
 def _named(kind: keys.Named, value: Any, place: KeyPath, writer: Writer) -> Any:
     if isinstance(value, tuple):
         return [*value]
-    return {name: writer.plain(kind.item, one, place / name) for name, one in value.items()}
+    return {name: writer.plain(kind.item, item, place / name) for name, item in value.items()}
 
 
 def _one_or(kind: keys.OneOr, value: Any, place: KeyPath, writer: Writer) -> Any:
     items = _listing(keys.Listing(kind.item), value, place, writer)
-    alike = kind.repeat and all(one == value[0] for one in value)
+    alike = kind.repeat and all(item == value[0] for item in value)
     return items[0] if len(items) == 1 or alike else items
 
 
 def _planes(kind: keys.Planes, value: Any, place: KeyPath, writer: Writer) -> Any:
     if isinstance(kind.item, keys.Quantity):
-        texts = [writer.plain(kind.item, one, place) for one in value]
+        texts = [writer.plain(kind.item, item, place) for item in value]
         return texts[0] if value[0] == value[1] else dict(zip(keys.PLANES, texts, strict=True))
-    named = [writer.plain(kind.item, one, part) for part, one in _in_planes(value, place)]
+    named = [writer.plain(kind.item, item, part) for part, item in _in_planes(value, place)]
     return named[0] if len(named) == 1 else dict(zip(keys.PLANES, named, strict=False))
 
 
@@ -214,7 +214,7 @@ WRITERS: dict[type[keys.Kind], Callable[[Any, Any, KeyPath, Writer], Any]] = {
     keys.Quantity: _number,
     keys.KeyTable: lambda kind, value, place, writer: writer.content(kind.type, value, place),
     keys.Tables: lambda kind, value, place, writer: [
-        writer.plain(kind.item, one, place / n) for n, one in enumerate(value)
+        writer.plain(kind.item, item, place / n) for n, item in enumerate(value)
     ],
     keys.TextKind: lambda kind, value, place, writer: value,
     keys.DependentQuantity: lambda kind, value, place, writer: value,

@@ -63,24 +63,24 @@ Units = Mapping[str, Unit]
 
 def unit_in(units: Units | None, name: str) -> Unit:
     """How a number or figure is told; by its path or name, in SI units, where nothing is known."""
-    found = (units or {}).get(name, Unit())
-    return found if found.label else replace(found, label=name)
+    result = (units or {}).get(name, Unit())
+    return result if result.label else replace(result, label=name)
 
 
 def named_together(names: Sequence[str], units: Units | None) -> str:
     """Numbers that vary together in words; what they are of is said once."""
-    found = _together([unit_in(units, name).label for name in names])
-    return found.said() if isinstance(found, Note) else found
+    result = _together([unit_in(units, name).label for name in names])
+    return result.said() if isinstance(result, Note) else result
 
 
 def _together(words: Sequence[Note | str]) -> Note | str:
     first, *rest = words
     if not rest:
         return first
-    notes = [one for one in words if isinstance(one, Note) and "what" in one.values]
-    around = [(one.template, {**one.values, "what": ""}) for one in notes]
+    notes = [word for word in words if isinstance(word, Note) and "what" in word.values]
+    around = [(note.template, {**note.values, "what": ""}) for note in notes]
     if len(notes) == len(words) and around.count(around[0]) == len(around):
-        inner = _together([one.values["what"] for one in notes])
+        inner = _together([note.values["what"] for note in notes])
         return Note(notes[0].template, **{**notes[0].values, "what": inner})
     return Note("{first} + {second}", first=first, second=_together(rest))
 
@@ -139,7 +139,7 @@ def designs_table(
     names = [*dict.fromkeys((*first, *columns))]
     own = {name: unit_in(units, name) for name in names}
     heads = (Column(own[name].called, unit=own[name].name or None) for name in names)
-    cells = ([in_unit(one, own[name]) for one in columns[name]] for name in names)
+    cells = ([in_unit(column, own[name]) for column in columns[name]] for name in names)
     return Table(title, (Column(say("design")), *heads), tuple(zip(labels, *cells, strict=True)))
 
 
@@ -151,19 +151,19 @@ def wanted(by: Mapping[str, Make], units: Units | None) -> str:
 
 def limits(outputs: Iterable[Output], units: Units | None) -> list[str]:
     """Every limit as one says it, such as ``vertical at most 12.00 N``."""
-    told = []
+    names = []
     for output in outputs:
         unit = unit_in(units, output.name)
         for words, limit in ((say("at least"), output.at_least), (say("at most"), output.at_most)):
             if limit is not None:
                 value = number(unit.of_si(limit))
-                told.append(f"{unit.called} {words} {value} {unit.name}".strip())
-    return told
+                names.append(f"{unit.called} {words} {value} {unit.name}".strip())
+    return names
 
 
 def _limits(outputs: Iterable[Output], units: Units | None) -> Iterator[Block]:
-    if told := limits(outputs, units):
-        yield Text(say("Limits: {limits}", limits=say(", ").join(told)))
+    if text := limits(outputs, units):
+        yield Text(say("Limits: {limits}", limits=say(", ").join(text)))
 
 
 def best_blocks(
@@ -172,10 +172,10 @@ def best_blocks(
     """What is best of how many, within which limits, and the designs."""
     counted = {"stored": found.stored, "computed": found.computed, "kept": found.kept}
     if limits(outputs, units):
-        told = say("{stored} designs: {computed} have figures, {kept} keep every limit", **counted)
+        text = say("{stored} designs: {computed} have figures, {kept} keep every limit", **counted)
     else:
-        told = say("{stored} designs: {computed} have figures", **counted)
-    yield Text(told)
+        text = say("{stored} designs: {computed} have figures", **counted)
+    yield Text(text)
     yield from _limits(outputs, units)
     if found.note:
         yield Text(found.note, "broken")
@@ -235,19 +235,19 @@ def _front(found: Searched, units: Units | None, own: tuple[Array, Array] | None
     signs = signs_of(found.objectives.values())
     outputs = [found.study.names.index(name) for name in found.objectives]
     shown = far_apart(signs * found.figures[:, outputs], MOST)
-    labels = [str(one) for one in shown]
+    labels = [str(item) for item in shown]
     values, figures = found.values[shown], found.figures[shown]
     if own is not None:
         labels = [say("model"), *labels]
         values, figures = np.vstack([own[0], values]), np.vstack([own[1], figures])
     columns = columns_of(found.study.paths, values, found.study.names, figures)
-    told = {"shown": len(shown), "count": found.front, "aims": wanted(found.objectives, units)}
+    text = {"shown": len(shown), "count": found.front, "aims": wanted(found.objectives, units)}
     if len(found.objectives) == 1:
-        title = say("The best design; {aims}", **told)
+        title = say("The best design; {aims}", **text)
     elif len(shown) < found.front:
-        title = say("{shown} of {count} designs that no other beats; {aims}", **told)
+        title = say("{shown} of {count} designs that no other beats; {aims}", **text)
     else:
-        title = say("{count} designs that no other beats; {aims}", **told)
+        title = say("{count} designs that no other beats; {aims}", **text)
     return designs_table(title, labels, columns, (*found.objectives, *found.study.names), units)
 
 
@@ -274,7 +274,7 @@ class Summary:
     @property
     def limited(self) -> bool:
         """Whether there are limits to keep."""
-        return any(one.limited for one in self.outputs)
+        return any(output.limited for output in self.outputs)
 
 
 def summary_blocks(summary: Summary, units: Units | None = None, run: str = "") -> Iterator[Block]:
@@ -312,16 +312,18 @@ def _size(store: Store) -> str:
 
 def _next(summary: Summary, path: str) -> Iterator[str]:
     """Commands that take it, each below what it does."""
-    by = "" if any(one.make for one in summary.outputs) else f" --by {summary.outputs[0].name}"
-    told, best = {}, f"equipoise best {quote(path)}{by}"
+    by = (
+        "" if any(output.make for output in summary.outputs) else f" --by {summary.outputs[0].name}"
+    )
+    text, best = {}, f"equipoise best {quote(path)}{by}"
     if not summary.note:
-        told[best] = say("the best designs; --out writes one as a model file")
+        text[best] = say("the best designs; --out writes one as a model file")
     elif sum(summary.failures.values()) < summary.store.size:
-        told[f"{best} --plot pictures"] = say("the designs nearest to the limits, also as pictures")
+        text[f"{best} --plot pictures"] = say("the designs nearest to the limits, also as pictures")
     table = quote(f"{path.rpartition('/')[2].removesuffix('.zarr')}.parquet")
-    told[f"equipoise export {quote(path)} -o {table}"] = say("all designs as one table, or as .csv")
-    told[f"xarray.open_zarr({path!r})"] = say("the same in Python, without reading it all")
-    for command, what in told.items():
+    text[f"equipoise export {quote(path)} -o {table}"] = say("all designs as one table, or as .csv")
+    text[f"xarray.open_zarr({path!r})"] = say("the same in Python, without reading it all")
+    for command, what in text.items():
         yield from (f"  {what}:", f"    {command}")
 
 
@@ -343,7 +345,7 @@ def landscape_blocks(found: Landscape) -> Iterator[Block]:
         rows.append((say("as it is"), *map(Value, (*found.start, found.before))))
     objective = Column(objective_named(found.objective), unit=found.unit)
     words = (found.words[path] for path in found.paths)
-    said = (one.said() if isinstance(one, Note) else one for one in words)
+    said = (word.said() if isinstance(word, Note) else word for word in words)
     columns = (Column(""), *map(Column, said), objective)
     yield Table(say("Least over two numbers, SI units"), columns, tuple(rows))
     values = found.values[np.isfinite(found.values)]

@@ -61,8 +61,8 @@ class Spread:
 
     def bins(self, values: Array) -> Array:
         """The bin of each value (n,); any where there is none."""
-        found = np.searchsorted(self.edges, np.nan_to_num(values), "right") - 1
-        return np.asarray(np.clip(found, 0, BINS - 1))
+        value = np.searchsorted(self.edges, np.nan_to_num(values), "right") - 1
+        return np.asarray(np.clip(value, 0, BINS - 1))
 
 
 @dataclass(frozen=True, eq=False)
@@ -170,13 +170,13 @@ def _counts(
     for _, block in blocks():
         table, (good, bad, failed) = _table(block, outputs)
         bins = {name: spreads[name].bins(table[:, k]) for k, name in enumerate(names)}
-        for (first, second), found in counts.items():
+        for (first, second), outcome in counts.items():
             cells = BINS * bins[second] + bins[first]
             for row, mask in enumerate((good, bad)):
-                found[row] += np.bincount(cells[mask], minlength=BINS * BINS)
+                outcome[row] += np.bincount(cells[mask], minlength=BINS * BINS)
         for name in lost:
             lost[name] += np.bincount(bins[name][failed], minlength=BINS)
     return (
-        {pair: found.reshape(2, BINS, BINS) for pair, found in counts.items()},
-        {name: np.flatnonzero(found) for name, found in lost.items()},
+        {pair: count.reshape(2, BINS, BINS) for pair, count in counts.items()},
+        {name: np.flatnonzero(result) for name, result in lost.items()},
     )

@@ -42,17 +42,17 @@ class Cluster(Pool):
         self.task, self.address = task, address
         self.rpc = needed("distributed.core", "a cluster").rpc
         self.seen = monotonic()
-        with ExitStack() as held:
-            held.enter_context(_quiet())
+        with ExitStack() as exitstack:
+            exitstack.enter_context(_quiet())
             while not self._counted():
                 sleep(0.2)
             distributed = needed("distributed", "a cluster")
             with warnings.catch_warnings():  # of versions, which each chunk looks after
                 warnings.simplefilter("ignore")
                 client = distributed.Client(address, timeout=ANSWER, set_as_default=False)
-            held.callback(client.close)
+            exitstack.callback(client.close)
             self.executor = client.get_executor(pure=False)
-            self.held = held.pop_all()
+            self.held = exitstack.pop_all()
 
     def submit(self, chunk: Any) -> Future[Any]:
         call = Call(_compute, (versions(), self.task.function, self.task.study, chunk))
@@ -67,7 +67,7 @@ class Cluster(Pool):
         """Threads of all workers; there is room for twice as many chunks, so that none waits."""
         try:
             with ThreadPoolExecutor(1) as aside:  # a notebook has a loop in this thread
-                found = aside.submit(asyncio.run, self._identity()).result()
+                result = aside.submit(asyncio.run, self._identity()).result()
         except Exception as error:  # whatever may listen there
             raise SilentError(
                 Note(
@@ -77,7 +77,7 @@ class Cluster(Pool):
                     brief=brief(error),
                 )
             ) from error
-        threads: int = found["total_threads"]
+        threads: int = result["total_threads"]
         self.room = max(1, 2 * threads)
         if threads:
             self.seen = monotonic()
@@ -94,8 +94,8 @@ class Cluster(Pool):
     async def _identity(self) -> dict[str, Any]:
         """What the scheduler says of itself."""
         async with asyncio.timeout(ANSWER), self.rpc(self.address) as scheduler:
-            found: dict[str, Any] = await scheduler.identity()
-        return found
+            values: dict[str, Any] = await scheduler.identity()
+        return values
 
     def close(self) -> None:
         """Leave what is not finished, and the cluster to others."""
@@ -151,15 +151,15 @@ def _compute(
     wanted: dict[str, str], function: Callable[[bytes, Any], Any], study: bytes, chunk: Any
 ) -> Any:
     """On a worker: compute a chunk, if it has the versions of whoever asks."""
-    for name, found in versions().items():
-        if found != wanted.get(name):
+    for name, version in versions().items():
+        if version != wanted.get(name):
             raise StoppedError(
                 Note(
                     "the worker on {host} has {name} {given}, and whoever asks it has "
                     "{wanted}; install the same on all hosts",
                     host=gethostname(),
                     name=name,
-                    given=found,
+                    given=version,
                     wanted=wanted.get(name),
                 )
             )

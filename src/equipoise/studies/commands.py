@@ -57,7 +57,11 @@ def analyzed(
     analysis = analyze(machine, angles)
     split = analysis.solved is not None and (wanted is None or not SPLIT.isdisjoint(wanted))
     outputs = analysis.outputs
-    names = [one.name for one in outputs if ways is None or _lead_to(ways, one.name, one.path)]
+    names = [
+        output.name
+        for output in outputs
+        if ways is None or _lead_to(ways, output.name, output.path)
+    ]
     further: list[str] = []
     if wanted is None or "outputs" in wanted:  # those that are had by their names alone
         further = [name for name in names if outputs[name].declared.unbounded]
@@ -119,7 +123,7 @@ def _answer(tool: Tool, name: str, wanted: Wanted) -> Values:
         return vibrate_tool(tool, MODES).to_dict()
     if name == "respond":
         return sweep_tool(tool, _speeds(tool)).to_dict(wanted)
-    over_speeds = {key for key, one in ToolExposure.declared.items() if one.along}
+    over_speeds = {key for key, item in ToolExposure.declared.items() if item.along}
     if wanted is None or not over_speeds.isdisjoint(wanted):
         return expose_tool(tool, _speeds(tool)).to_dict()
     if tool.operation is None:
@@ -166,8 +170,8 @@ class Request:
 
     @property
     def wanted(self) -> set[str]:
-        along = {*ALONG} if any(figure_name(one) in PLACES for one in self.steps) else set()
-        return {str(one[0]) for one in self.steps} | along
+        along = {*ALONG} if any(figure_name(step) in PLACES for step in self.steps) else set()
+        return {str(step[0]) for step in self.steps} | along
 
 
 def find_outputs(study: Study, wanted: Sequence[int] | None = None) -> tuple[Request, ...]:
@@ -259,10 +263,10 @@ def _steps(
         return tuple(_resolved(study, values, output) for output in asked.values())
     except UsageError:  # told again with all that there is
         values = _values(study, model, command, None)
-    found = []
+    steps = []
     for number, output in asked.items():
         try:
-            found.append(_resolved(study, values, output))
+            steps.append(_resolved(study, values, output))
         except UsageError as error:
             missing = values.get("missing")
             if not missing:
@@ -271,7 +275,7 @@ def _steps(
                 "got {given!r}; there are no forces, {why}", given=output.value, why=missing
             )
             return ModelError(f"outputs[{number}].value", what)
-    return tuple(found)
+    return tuple(steps)
 
 
 def _values(

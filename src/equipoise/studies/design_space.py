@@ -72,8 +72,8 @@ class Output(RequiredFigure):
         **more: Any,
     ) -> None:
         given = {"name": name, "of": of, "value": value or name, "dimension": dimension}
-        for field, one in (given | {"asks": asks_of(more, asks)}).items():
-            object.__setattr__(self, field, one)
+        for field, item in (given | {"asks": asks_of(more, asks)}).items():
+            object.__setattr__(self, field, item)
 
     @property
     def requirement(self) -> Requirement:
@@ -84,7 +84,7 @@ class Output(RequiredFigure):
 
     def to_plain(self) -> dict[str, Any]:
         """As plain values, in SI units; ``Output(**plain)`` is the same again."""
-        fields = {one: getattr(self, one) for one in ("name", "of", "value", "dimension")}
+        fields = {name: getattr(self, name) for name in ("name", "of", "value", "dimension")}
         return fields | self.asked_in("outputs")
 
 

@@ -120,18 +120,18 @@ class Routes:
         return backends.engine()
 
     def __call__(self, values: Array) -> Outcome:
-        found = np.full((len(values), len(self.study.outputs)), np.nan)
-        found[:, self.columns], reason = self.quick(values)
+        numbers = np.full((len(values), len(self.study.outputs)), np.nan)
+        numbers[:, self.columns], reason = self.quick(values)
         if self.rest is not None:  # what is left of the designs that are possible
             good = np.flatnonzero(reason == COMPUTED)
             outcome = self.rest(values[good])
-            found[good[:, None], self.others], reason[good] = outcome.figures, outcome.reason
-            found[reason != COMPUTED] = np.nan
+            numbers[good[:, None], self.others], reason[good] = outcome.figures, outcome.reason
+            numbers[reason != COMPUTED] = np.nan
         strange = np.flatnonzero(reason == NOT_COMPUTED)
         if strange.size:  # too far from the model for a loop: other turns of a geared link
             alone = OneByOne(self.study)(values[strange])
-            found[strange], reason[strange] = alone.figures, alone.reason
-        return Outcome(found, reason)
+            numbers[strange], reason[strange] = alone.figures, alone.reason
+        return Outcome(numbers, reason)
 
 
 def _quick(study: Study, threads: int | None) -> tuple[Quick, list[int]] | None:
@@ -171,7 +171,7 @@ class OneByOne:
 
     def __init__(self, study: Study, wanted: Sequence[int] | None = None) -> None:
         self.study, self.asked = study, find_outputs(study, wanted)
-        self.width = sum(len(one.columns) for one in self.asked)
+        self.width = sum(len(objective.columns) for objective in self.asked)
 
     def __call__(self, values: Array) -> Outcome:
         """Compute designs (P, d), some at a time."""
@@ -217,7 +217,7 @@ class OneByOne:
     def ask(self, model: Machine | Tool, asked: Request, figures: Array) -> int:
         """Fill the figures (m,) that one command gives; returns why some are missing."""
         try:
-            found, still = _figures_of(model, asked, self.study)
+            result, still = _figures_of(model, asked, self.study)
         except EquipoiseError as error:
             if isinstance(error, ModelError):  # of a machine that is one: it lacks what is asked
                 return NO_FIGURE if asked.command == "plant" else NOT_COMPUTED
@@ -226,8 +226,8 @@ class OneByOne:
             return NOT_COMPUTED
         if not still:
             return NOT_STILL
-        figures[list(asked.columns)] = [one if isfinite(one) else nan for one in found]
-        return COMPUTED if all(map(isfinite, found)) else NO_FIGURE
+        figures[list(asked.columns)] = [item if isfinite(item) else nan for item in result]
+        return COMPUTED if all(map(isfinite, result)) else NO_FIGURE
 
 
 def _together(models: Mapping[int, Any], asked: Request, figures: Array) -> dict[int, int]:
@@ -241,10 +241,12 @@ def _together(models: Mapping[int, Any], asked: Request, figures: Array) -> dict
         else:
             turning[k] = machine
     if turning:
-        found = planting_figures([*turning.values()], asked.steps)
-        figures[np.ix_([*turning], asked.columns)] = np.where(np.isfinite(found), found, nan)
-        there = np.all(np.isfinite(found), axis=1)
-        failed |= {k: COMPUTED if one else NO_FIGURE for k, one in zip(turning, there, strict=True)}
+        values = planting_figures([*turning.values()], asked.steps)
+        figures[np.ix_([*turning], asked.columns)] = np.where(np.isfinite(values), values, nan)
+        there = np.all(np.isfinite(values), axis=1)
+        failed |= {
+            k: COMPUTED if item else NO_FIGURE for k, item in zip(turning, there, strict=True)
+        }
     return failed
 
 
@@ -273,20 +275,20 @@ def _figures_of(model: Machine | Tool, asked: Request, study: Study) -> tuple[li
         values = analyzed(machine, angles, asked.wanted, asked.steps)
         return [read(values, steps) for steps in asked.steps], True
     values = analyzed(machine, ANGLES, asked.wanted)
-    found = [read(values, steps) for steps in asked.steps]
-    faint = {str(one[0]): FAINT * _beside(values, str(one[0])) for one in asked.steps}
+    items = [read(values, steps) for steps in asked.steps]
+    faint = {str(step[0]): FAINT * _beside(values, str(step[0])) for step in asked.steps}
     number, calm = ANGLES, 0
     # Extremes, and their places, may stand still once by chance.
-    needed = 1 if all(figure_name(one) in ("mean", "rms") for one in asked.steps) else 2
+    needed = 1 if all(figure_name(step) in ("mean", "rms") for step in asked.steps) else 2
     most = min(MOST_ANGLES, MOST_SAMPLES // values.get("turns", 1))
     while 2 * number <= most:
         number *= 2
         values = analyzed(machine, number, asked.wanted, asked.steps)
-        before, found = found, [read(values, steps) for steps in asked.steps]
-        calm = calm + 1 if _still(values, asked.steps, before, found, faint, tolerance) else 0
+        before, items = items, [read(values, steps) for steps in asked.steps]
+        calm = calm + 1 if _still(values, asked.steps, before, items, faint, tolerance) else 0
         if calm == needed:
-            return found, True
-    return found, False
+            return items, True
+    return items, False
 
 
 def _still(
@@ -301,14 +303,14 @@ def _still(
 
     faint : by the table in which a figure stands, below what a signal is rounding.
     """
-    for one, old, new in zip(steps, before, now, strict=True):
+    for step, old, new in zip(steps, before, now, strict=True):
         change = abs(new - old)
-        if figure_name(one) in PLACES:
+        if figure_name(step) in PLACES:
             change = abs(remainder(change, 2 * np.pi * values.get("turns", 1)))
         if change == 0 or not (isfinite(old) and isfinite(new)):
             continue  # what is missing will not come with further crank angles
-        size = scale(values, one)
-        if change > tolerance * size and change > tolerance * faint[str(one[0])]:
+        size = scale(values, step)
+        if change > tolerance * size and change > tolerance * faint[str(step[0])]:
             return False
     return True
 
@@ -324,8 +326,8 @@ def _sizes(table: Any) -> Iterator[float]:
         if isinstance(table.get("rms"), float):
             yield table["rms"]
             return
-        for one in table.values():
-            yield from _sizes(one)
+        for item in table.values():
+            yield from _sizes(item)
     elif isinstance(table, np.ndarray):
         yield float(np.sqrt(np.mean(np.square(table))))
 
@@ -337,9 +339,9 @@ def planting_figures(machines: Sequence[Machine], steps: Sequence[Sequence[Step]
     from equipoise.planting.stroke import both_sides
 
     curve = TipCurve(machines)
-    plants = np.all([both_sides(one) for one in curve.arms], axis=0) & (curve.speed[:, 0] != 0)
-    names = [".".join(map(str, one)) for one in steps]
-    found = machine_figures(curve, names)
-    columns = [found.get(name, np.full(len(machines), np.nan)) for name in names]
+    plants = np.all([both_sides(arm) for arm in curve.arms], axis=0) & (curve.speed[:, 0] != 0)
+    names = [".".join(map(str, step)) for step in steps]
+    figures = machine_figures(curve, names)
+    columns = [figures.get(name, np.full(len(machines), np.nan)) for name in names]
     table: Array = np.where(plants[:, None], np.stack(columns, axis=1), np.nan)
     return table

@@ -79,8 +79,8 @@ def resolve(values: Values, path: str, short: str | None = None) -> tuple[Step, 
             return (short, *steps)
     for steps in finder.ways(values, path):
         return steps
-    told = min(reversed(finder.stuck), key=lambda failure: failure[0])[1]
-    raise UsageError(Note("got {path!r}; {sentence}", path=path, sentence=told))
+    text = min(reversed(finder.stuck), key=lambda failure: failure[0])[1]
+    raise UsageError(Note("got {path!r}; {sentence}", path=path, sentence=text))
 
 
 def read(values: Values, steps: Sequence[Step]) -> float:
@@ -90,12 +90,12 @@ def read(values: Values, steps: Sequence[Step]) -> float:
     try:
         for number, step in enumerate(steps):
             if isinstance(step, Order):
-                found = _of_order(here, step.number, above["orders"], steps[number - 1])
+                of_order = _of_order(here, step.number, above["orders"], steps[number - 1])
             elif isinstance(step, Of):
-                found = _figure(here, step, values)
+                of_order = _figure(here, step, values)
             else:
-                found = here[step]
-            above, here = here, found
+                of_order = here[step]
+            above, here = here, of_order
         return float(here)
     except (KeyError, IndexError, TypeError, ValueError):
         return nan
@@ -131,8 +131,8 @@ def _of_order(numbers: Any, order: float, orders: Any, key: Step) -> Any:
 def _figure(numbers: Any, of: Of, whole: Values) -> float:
     samples = np.asarray(numbers, dtype=float)
     along = _abscissa(whole, len(samples))
-    found = figures(np.full(len(samples), nan) if along is None else along, samples)
-    return float(getattr(found, of.name))
+    result = figures(np.full(len(samples), nan) if along is None else along, samples)
+    return float(getattr(result, of.name))
 
 
 def _abscissa(whole: Values, count: int) -> Array | None:
@@ -222,20 +222,20 @@ class _Finder:
         if order in orders or (order > orders[-1] and (order / spacing).is_integer()):
             yield (Order(order),)
             return
-        told = ", ".join(f"{k * spacing:g}" for k in range(4))
-        self.ends(rest, f"there is no order {number}; the orders are {told} and so on")
+        text = ", ".join(f"{k * spacing:g}" for k in range(4))
+        self.ends(rest, f"there is no order {number}; the orders are {text} and so on")
 
 
 def _of_numbers(values: Any) -> bool:
     if isinstance(values, np.ndarray):
         return values.ndim == 1 and values.dtype.kind in "fiu"
-    return all(isinstance(one, int | float) for one in values)
+    return all(isinstance(value, int | float) for value in values)
 
 
 def _listed(names: Any, most: int = 12) -> str:
     shown = [str(name) for name in names]
-    told = ", ".join(shown[:most]) or "none"
-    return told if len(shown) <= most else f"{told} and {len(shown) - most} more"
+    text = ", ".join(shown[:most]) or "none"
+    return text if len(shown) <= most else f"{text} and {len(shown) - most} more"
 
 
 # -- what it is ------------------------------------------------------------------------------------
@@ -253,7 +253,7 @@ def dimension_of(model: Machine | Tool, of: str, value: str) -> str | None:
     if of not in ("plant", "respond", "balance", "tool"):
         of, whole = "analyze", whole.removeprefix("summary.").removeprefix("outputs.")
     if of != "analyze":
-        kinds = (dimension_at(one, whole, model) for one in declarations(of))
+        kinds = (dimension_at(declaration, whole, model) for declaration in declarations(of))
         return next((kind for kind in kinds if kind), None)
     return _of_analysis(cast("Machine", model), _STATISTIC.sub("", whole))
 
@@ -320,12 +320,12 @@ _STATISTIC = re.compile(rf"\.({'|'.join(FIGURES_OF_LISTS)})$")
 
 
 def _of_output(name: str) -> Dimension | None:
-    found = declared(name)
-    return None if found is None else found[0].dimension
+    result = declared(name)
+    return None if result is None else result[0].dimension
 
 
 def _of_part(path: str) -> str | None:
     """Of what a cause or link adds to an output, which stands first."""
     words = path.split(".")
     names = (".".join(words[:count]) for count in range(len(words), 0, -1))
-    return next((found[0].dimension for found in map(declared, names) if found), None)
+    return next((name[0].dimension for name in map(declared, names) if name), None)

@@ -129,7 +129,7 @@ class SingleValues:
     def __call__(self, points: Array) -> Array:
         """The objective (P,) at values (P, 2); NaN where there is none or it cannot turn."""
         return np.array(
-            [self._value(dict(zip(self.paths, one, strict=True))) for one in points.tolist()]
+            [self._value(dict(zip(self.paths, point, strict=True))) for point in points.tolist()]
         )
 
     def _value(self, point: Point) -> float:
@@ -144,7 +144,7 @@ def inertial_parameters(machine: Machine, values: Mapping[str, Any]) -> dict[str
 
     Numbers may be columns (P, 1), of which there are (P, 1, 4) then.
     """
-    found = {
+    arrays = {
         name: np.stack(np.broadcast_arrays(*parameters_of(link)), axis=-1)
         for name, link in machine.links.items()
     }
@@ -152,18 +152,18 @@ def inertial_parameters(machine: Machine, values: Mapping[str, Any]) -> dict[str
         pin = complex(*machine.links[link].points[pin_of(machine, link)])
         at = pin + weight["radius"] * np.exp(1j * np.asarray(weight["direction"]))
         point_mass = np.stack(np.broadcast_arrays(1.0, at.real, at.imag, abs(at) ** 2), axis=-1)
-        found[link] = found[link] + np.expand_dims(weight["mass"], -1) * point_mass
-    return found
+        arrays[link] = arrays[link] + np.expand_dims(weight["mass"], -1) * point_mass
+    return arrays
 
 
 def _weights(values: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
     """Counterweights by link; what is not given of them is 0."""
-    found: dict[str, dict[str, Any]] = {}
+    items: dict[str, dict[str, Any]] = {}
     for path, value in values.items():
         weight = COUNTERWEIGHT.fullmatch(path)
         if weight is not None:
-            found.setdefault(weight["link"], dict.fromkeys(KEYS, 0.0))[weight["key"]] = value
-    return found
+            items.setdefault(weight["link"], dict.fromkeys(KEYS, 0.0))[weight["key"]] = value
+    return items
 
 
 # -- many machines that differ in masses -----------------------------------------------------------
@@ -217,25 +217,28 @@ class LinearValues:
             matrix, vector = mean_square_rows(signal, self.measure)
             return np.asarray(np.linalg.norm(changes @ matrix.T + vector, axis=1))
         if self.measure == "peak":
-            return np.concatenate([_peaks(signal.shown, one) for one in _parts(changes)])
+            return np.concatenate([_peaks(signal.shown, part) for part in _parts(changes)])
         each = (
-            measured_each(signal.at(one), self.measure, signal.sampling) for one in _parts(changes)
+            measured_each(signal.at(part), self.measure, signal.sampling)
+            for part in _parts(changes)
         )
         return np.concatenate([*each])
 
     def _changes(self, points: Array) -> Array:
         """Changes (P, 4 L) of inertial parameters; NaN where no machine can have these numbers."""
         columns = {path: points[:, [k]] for k, path in enumerate(self.paths)}
-        own = {path: one for path, one in columns.items() if not COUNTERWEIGHT.fullmatch(path)}
+        own = {
+            path: column for path, column in columns.items() if not COUNTERWEIGHT.fullmatch(path)
+        }
         try:
             machine = with_columns(self.machine, own)
         except UsageError:  # a number that follows from others in the file
             return np.array([self._change(point) for point in points])
         with np.errstate(all="ignore"):
-            found = inertial_parameters(machine, {**self.maker.given, **columns})
+            arrays = inertial_parameters(machine, {**self.maker.given, **columns})
         change = np.empty((len(points), 4 * len(self.start)))
         for k, (link, start) in enumerate(self.start.items()):
-            change[:, 4 * k : 4 * k + 4] = found[link].reshape(-1, 4) - start
+            change[:, 4 * k : 4 * k + 4] = arrays[link].reshape(-1, 4) - start
         if own:
             change[wrong(machine, assemble(self.machine), own)] = nan
         return change
@@ -243,10 +246,10 @@ class LinearValues:
     def _change(self, point: Array) -> Array:
         """The same of one machine (4 L,)."""
         try:
-            found = self.maker.parameters(dict(zip(self.paths, point.tolist(), strict=True)))[1]
+            parameter = self.maker.parameters(dict(zip(self.paths, point.tolist(), strict=True)))[1]
         except EquipoiseError:
             return np.full(4 * len(self.start), nan)
-        return np.concatenate([found[link] - own for link, own in self.start.items()])
+        return np.concatenate([parameter[link] - own for link, own in self.start.items()])
 
 
 def _parts(changes: Array) -> Iterator[Array]:
@@ -270,9 +273,9 @@ def _differ_in_masses(base: Machine, others: Sequence[Machine], of: Objective) -
         return False
     places = {name: link.points for name, link in base.links.items()}
     return all(
-        replace(base, links=one.links) == one
-        and {name: link.points for name, link in one.links.items()} == places
-        for one in others
+        replace(base, links=item.links) == item
+        and {name: link.points for name, link in item.links.items()} == places
+        for item in others
     )
 
 
@@ -319,7 +322,7 @@ class Landscape(Result):
     def at_edge(self) -> list[str]:
         """Which of the two numbers is least at an end of its range: beyond it, it may be less."""
         ranges = zip(self.paths, self.best, (self.x, self.y), strict=True)
-        ends = [(path, best, one[[0, -1]]) for path, best, one in ranges]
+        ends = [(path, best, item[[0, -1]]) for path, best, item in ranges]
         return [p for p, best, end in ends if np.min(np.abs(end - best)) <= CLOSE * np.ptp(end)]
 
     def to_dict(self) -> dict[str, Any]:
@@ -376,9 +379,9 @@ def landscape(
     linkage_of(model.base())
     given = dict(given or {})
     paths, drawn = _checked(over, given)
-    told = {path: told_as(model, path, paths) for path in (*paths, *given)}
-    dimensions = {path: kind for path, (kind, _) in told.items()}
-    words = {path: one for path, (_, one) in told.items()}
+    told_ases = {path: told_as(model, path, paths) for path in (*paths, *given)}
+    dimensions = {path: kind for path, (kind, _) in told_ases.items()}
+    words = {path: item for path, (_, item) in told_ases.items()}
     maker = MachineVariants(model, given)
     base = maker.machine({})
     if missing := massless(base):
@@ -387,14 +390,14 @@ def landscape(
         base.with_balance(Balance(objectives=(of,)))
     except ModelError as error:  # of a plan that nobody has written
         raise UsageError(error.what) from error
-    ends = (dict(zip(paths, (one[k] for one in drawn), strict=True)) for k in (0, -1))
+    ends = (dict(zip(paths, (item[k] for item in drawn), strict=True)) for k in (0, -1))
     _check_weights(*({**given, **end} for end in ends))
     x, y = drawn
-    points = np.stack([one.ravel() for one in np.meshgrid(x, y)], axis=1)
+    points = np.stack([item.ravel() for item in np.meshgrid(x, y)], axis=1)
     linear = LinearValues.of(maker, of, paths, points)
     value = linear or SingleValues(maker, of, paths)
-    found = _computed(value, points, progress, workers, elsewhere(cluster, workers))
-    if np.all(np.isnan(found)):
+    computed = _computed(value, points, progress, workers, elsewhere(cluster, workers))
+    if np.all(np.isnan(computed)):
         raise UsageError(
             Note(
                 "no linkage turns with {paths} and {paths_2} in these ranges",
@@ -402,13 +405,13 @@ def landscape(
                 paths_2=paths[1],
             )
         )
-    lowest = int(highest_at(np.where(np.isnan(found), -np.inf, -found), smooth=False))
+    lowest = int(highest_at(np.where(np.isnan(computed), -np.inf, -computed), smooth=False))
     best, least = _refined(value, points[lowest], x, y)
     start, before = None, nan
     if not given and not any(COUNTERWEIGHT.fullmatch(path) for path in paths):
         start = float(model.number(paths[0])[0]), float(model.number(paths[1])[0])
         before = float(value(np.array([start]))[0])
-    values = found.reshape(len(y), len(x))
+    values = computed.reshape(len(y), len(x))
     asked = (of, paths, given, dimensions, words, x, y, values, unit_of(of, base))
     return Landscape(base.with_balance(None), *asked, best, least, start, before)
 
@@ -431,12 +434,12 @@ def _computed(
     ) as evaluate:
         if not linear:
             return evaluate(points, tell)
-        found = []
+        result = []
         for k in range(0, len(points), LINEAR_AT_ONCE):
-            found.append(evaluate(points[k : k + LINEAR_AT_ONCE]))
+            result.append(evaluate(points[k : k + LINEAR_AT_ONCE]))
             if tell is not None:
                 tell(min(k + LINEAR_AT_ONCE, len(points)))
-        return np.concatenate(found)
+        return np.concatenate(result)
 
 
 def _itself(value: Values) -> Values:
@@ -452,10 +455,10 @@ def _checked(
         )
     if both := [path for path in over if path in given]:
         raise UsageError(Note("{both} is to vary and is set too; give one of both", both=both[0]))
-    values = [np.asarray(one, float) for one in over.values()]
-    for path, one in zip(over, values, strict=True):
-        rising = one.ndim == 1 and bool(np.all(np.isfinite(one)) and np.all(np.diff(one) > 0))
-        if not rising or not 2 <= len(one) <= MOST:
+    values = [np.asarray(item, float) for item in over.values()]
+    for path, value in zip(over, values, strict=True):
+        rising = value.ndim == 1 and bool(np.all(np.isfinite(value)) and np.all(np.diff(value) > 0))
+        if not rising or not 2 <= len(value) <= MOST:
             raise UsageError(
                 at_place(path, Note("give 2 to {most} rising values in SI units", most=MOST))
             )
@@ -495,12 +498,12 @@ def _refined(values: Values, start: Array, x: Array, y: Array) -> tuple[tuple[fl
     simplex = begin + np.vstack([[0.0, 0.0], np.where(begin > 0.5, -steps, steps)])
 
     def at(share: Array) -> float:
-        (found,) = values((low + np.clip(share, 0.0, 1.0) * width)[None])
-        return np.inf if np.isnan(found) else float(found)
+        (result,) = values((low + np.clip(share, 0.0, 1.0) * width)[None])
+        return np.inf if np.isnan(result) else float(result)
 
     least = at(begin)
     options = {"initial_simplex": simplex, "xatol": CLOSE, "fatol": 1e-12 * least, "maxiter": 400}
-    found = minimize(at, begin, method="Nelder-Mead", bounds=[(0, 1), (0, 1)], options=options)
-    better = found.x if found.fun < least else begin
+    outcome = minimize(at, begin, method="Nelder-Mead", bounds=[(0, 1), (0, 1)], options=options)
+    better = outcome.x if outcome.fun < least else begin
     x_best, y_best = (low + np.clip(better, 0.0, 1.0) * width).tolist()
-    return (x_best, y_best), min(float(found.fun), least)
+    return (x_best, y_best), min(float(outcome.fun), least)

@@ -48,7 +48,7 @@ class Outcome:
     @classmethod
     def joined(cls, parts: Sequence[Outcome]) -> Outcome:
         """What came of all parts, one after the other."""
-        figures, reasons = zip(*((one.figures, one.reason) for one in parts), strict=True)
+        figures, reasons = zip(*((part.figures, part.reason) for part in parts), strict=True)
         return cls(np.concatenate(figures), np.concatenate(reasons))
 
 
@@ -79,7 +79,10 @@ class Block:
 def kept(outputs: Sequence[Output], figures: Array) -> Array:
     """Whether each design keeps each limit, (P, m); `figures` are (P, m)."""
     return np.stack(
-        [one.requirement.kept(column) for one, column in zip(outputs, figures.T, strict=True)],
+        [
+            output.requirement.kept(column)
+            for output, column in zip(outputs, figures.T, strict=True)
+        ],
         axis=1,
     )
 
@@ -91,9 +94,9 @@ def designs_told(
     return [
         {
             "values": dict(zip(numbers, row, strict=True)),
-            "figures": dict(zip(outputs, found, strict=True)),
+            "figures": dict(zip(outputs, figure, strict=True)),
         }
-        for row, found in zip(values.tolist(), figures.tolist(), strict=True)
+        for row, figure in zip(values.tolist(), figures.tolist(), strict=True)
     ]
 
 
@@ -150,12 +153,12 @@ def why_none(
             names=", ".join(failed),
         )
     named = zip(outputs, units or [""] * len(outputs), limits, strict=True)
-    told = [f"{_limit(one, unit)} by {n}" for one, unit, n in named if one.limited]
+    texts = [f"{_limit(item, unit)} by {n}" for item, unit, n in named if item.limited]
     return Note(
         "none of {computed} designs keeps every limit; kept is {names}; loosen a "
         "limit, or let more vary",
         computed=computed,
-        names=", ".join(told),
+        names=", ".join(texts),
     )
 
 

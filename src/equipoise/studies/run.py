@@ -195,8 +195,8 @@ def _counted(store: Store, study: Study) -> tuple[Tally, list[int]]:
 def _check_same(store: Store, engine: str) -> None:
     here = {**versions(), "engine": engine}
     for name, wanted in {**store.versions, "engine": store.engine}.items():
-        found = here.get(name, "none")
-        if found != wanted:
+        result = here.get(name, "none")
+        if result != wanted:
             raise UsageError(
                 at_place(
                     store.path,
@@ -206,7 +206,7 @@ def _check_same(store: Store, engine: str) -> None:
                         "anew",
                         name=name,
                         wanted=wanted,
-                        given=found,
+                        given=result,
                     ),
                 )
             )
@@ -318,11 +318,11 @@ def _described(study: Study, chunk: int, engine: str) -> dict[str, bytes]:
             attributes=attributes,
         )
 
-    for one in study.vary:
+    for item in study.vary:
         # All but those that repeat are random in most of their digits: compressing them by a
         # tenth would take as long again as storing them.
-        repeated = study.sampling.method == "grid" or isinstance(one.spread, Choices)
-        add(one.path, "float64", nan, repeated, _unit(one.dimension))
+        repeated = study.sampling.method == "grid" or isinstance(item.spread, Choices)
+        add(item.path, "float64", nan, repeated, _unit(item.dimension))
     for output in study.outputs:
         add(output.name, "float64", nan, False, _unit(output.dimension))
     meanings = {**REASONS, UNKNOWN: "not computed yet"}

@@ -46,7 +46,7 @@ def samples(study: Study, start: int, count: int) -> Array:
     if study.sampling.method != "grid":
         return values_at(study, unit_samples(study, start, count))
     places = _grid(study, start, count)
-    levels = (one.spread.levels for one in study.vary)
+    levels = (item.spread.levels for item in study.vary)
     return np.column_stack([level[place] for level, place in zip(levels, places, strict=True)])
 
 
@@ -89,16 +89,16 @@ def values_at(study: Study, unit: Array) -> Array:
         for column, place in zip(columns, mixed, strict=True):
             places[column] = place
     values = np.empty(np.shape(unit))
-    for column, (one, place) in enumerate(zip(study.vary, places, strict=True)):
-        values[:, column] = one.spread.at(place)
+    for column, (item, place) in enumerate(zip(study.vary, places, strict=True)):
+        values[:, column] = item.spread.at(place)
     return values
 
 
 def canonical(study: Study, places: Array) -> Array:
     """The same designs, each value of a list in one place only, so that equal ones are seen."""
     settled = np.clip(places, 0.0, 1.0)
-    for k, one in enumerate(study.vary):
-        spread: Any = one.spread
+    for k, item in enumerate(study.vary):
+        spread: Any = item.spread
         if spread.count:
             step = np.minimum(np.floor(settled[:, k] * spread.count), spread.count - 1)
             settled[:, k] = (step + 0.5) / spread.count
@@ -149,8 +149,8 @@ def _uniform(study: Study, use: int, start: int, count: int) -> Array:
     """Rows of one endless table of random numbers, (count, d), above 0 and below 1."""
     source, width = random_numbers(study.sampling.seed, use), len(study.vary)
     source.bit_generator.advance(start * width)  # type: ignore[attr-defined]  # one step a number
-    drawn = source.random((count, width))
-    return np.maximum(drawn, LEAST, out=drawn)
+    random = source.random((count, width))
+    return np.maximum(random, LEAST, out=random)
 
 
 def _shuffled(seed: int, column: int, size: int, start: int, count: int) -> Array:

@@ -119,7 +119,7 @@ class Searched(Result):
             "stood_still": self.stood_still,
             "computed": self.computed,
             "failures": dict(self.failures),
-            "volumes": [None if isnan(one) else one for one in self.volumes.tolist()],
+            "volumes": [None if isnan(volume) else volume for volume in self.volumes.tolist()],
             "designs": designs_told(study.paths, self.values, study.names, self.figures),
         }
 
@@ -176,8 +176,8 @@ def search(
             )
         )
     seed = study.sampling.seed if seed is None else seed
-    with ExitStack() as held:
-        evaluate = compute or held.enter_context(pooled(study, workers, cluster))
+    with ExitStack() as exitstack:
+        evaluate = compute or exitstack.enter_context(pooled(study, workers, cluster))
         return _search(_Archive(study, evaluate), population, generations, seed, progress)
 
 
@@ -187,10 +187,10 @@ def _search(
     problem = _StudyProblem(seen, population, generations, seed, progress or (lambda *_: None))
     solution = solve(problem)
     best = seen.rows(problem.values_of(solution.places))
-    found = _result(seen, problem.volumes, seen.some_of_front(best, population), seed)
+    result = _result(seen, problem.volumes, seen.some_of_front(best, population), seed)
     ended = len(problem.volumes.fronts) < generations or problem.is_still
     still = ended or solution.proof is not None
-    return replace(found, solver=solution.solver, proof=solution.proof, stood_still=still)
+    return replace(result, solver=solution.solver, proof=solution.proof, stood_still=still)
 
 
 class _StudyProblem(DesignProblem):
@@ -212,8 +212,8 @@ class _StudyProblem(DesignProblem):
 
     @property
     def spreads(self) -> list[Range | Choices]:
-        spreads = (one.spread for one in self.seen.study.vary)
-        return [one for one in spreads if isinstance(one, Range | Choices)]
+        spreads = (item.spread for item in self.seen.study.vary)
+        return [spread for spread in spreads if isinstance(spread, Range | Choices)]
 
     @property
     def first(self) -> Array:
@@ -260,12 +260,12 @@ def search_size(
     """
     if population is None and generations is None and study.size < LEAST_POPULATION:
         where = "vary" if study.sampling.method == "grid" else "sampling.designs"
-        told = Note(
+        note = Note(
             "got {size} designs; give {least_population} or more for a search",
             size=study.size,
             least_population=LEAST_POPULATION,
         )
-        raise ModelError(where, told)
+        raise ModelError(where, note)
     if population is None:
         few = study.size // FEWEST_GENERATIONS if generations is None else POPULATION
         population = max(LEAST_POPULATION, min(POPULATION, few))
@@ -277,8 +277,8 @@ def search_size(
 def breeding_time(study: Study, population: int) -> float:
     """Time to breed a generation, s, without computing it: from a search of random figures."""
     random, moments = np.random.default_rng(0), list[float]()
-    low = [-inf if one.at_least is None else one.at_least for one in study.outputs]
-    high = [inf if one.at_most is None else one.at_most for one in study.outputs]
+    low = [-inf if output.at_least is None else output.at_least for output in study.outputs]
+    high = [inf if output.at_most is None else output.at_most for output in study.outputs]
 
     def drawn(values: Array) -> Outcome:
         figures = random.random((len(values), len(low))).clip(low, high)
@@ -292,19 +292,19 @@ def breeding_time(study: Study, population: int) -> float:
 
 
 def _check(study: Study) -> None:
-    for number, one in enumerate(study.vary, 1):
-        if not isinstance(one.spread, Range | Choices):
-            told = Note(
+    for number, item in enumerate(study.vary, 1):
+        if not isinstance(item.spread, Range | Choices):
+            note = Note(
                 "{path} has a tolerance, which cannot be chosen; a search takes a range or a list, "
                 "and equipoise tolerance takes this",
-                path=one.path,
+                path=item.path,
             )
-            raise ModelError(f"vary[{number}]", told)
+            raise ModelError(f"vary[{number}]", note)
     if study.correlations:
         raise ModelError("correlations", Note("have no place in a search; leave them out"))
     if not study.objectives:
-        told = Note('none is to become small or large; give one of them make = "smallest"')
-        raise ModelError("outputs", told)
+        note = Note('none is to become small or large; give one of them make = "smallest"')
+        raise ModelError("outputs", note)
 
 
 def _result(seen: _Archive, volumes: Hypervolumes, told: Array, seed: int) -> Searched:
@@ -382,17 +382,17 @@ class _Archive:
         return np.array([key in self.numbers for key in _keys(values)], bool)
 
     def add(self, values: Array) -> None:
-        found = self.compute(values)
+        result = self.compute(values)
         begin = len(self.values)
         self.values = np.concatenate([self.values, values])
-        self.outcome = Outcome.joined([self.outcome, found])
-        costs = np.where(found.computed[:, None], found.figures[:, self.makes] * self.signs, 0.0)
+        self.outcome = Outcome.joined([self.outcome, result])
+        costs = np.where(result.computed[:, None], result.figures[:, self.makes] * self.signs, 0.0)
         self.costs = np.concatenate([self.costs, costs])
         beyond = (  # of each limit, over the range of the first figures
-            np.where(found.computed, sign * (found.figures[:, k] - limit) / self.ranges[k], 0.0)
+            np.where(result.computed, sign * (result.figures[:, k] - limit) / self.ranges[k], 0.0)
             for k, limit, sign in self.limits
         )
-        violations = np.column_stack([VIOLATIONS[found.reason], *beyond])
+        violations = np.column_stack([VIOLATIONS[result.reason], *beyond])
         self.violations = np.concatenate([self.violations, violations])
         fine = begin + np.flatnonzero(np.all(violations <= 0, axis=1))
         known = np.concatenate([self.front, fine])

@@ -89,8 +89,8 @@ class Best(Result):
 
     def to_dict(self) -> dict[str, Any]:
         """As plain values in SI units."""
-        told = designs_told(self.numbers, self.values, self.outputs, self.figures)
-        numbered = zip(self.designs.tolist(), told, strict=True)
+        values = designs_told(self.numbers, self.values, self.outputs, self.figures)
+        numbered = zip(self.designs.tolist(), values, strict=True)
         return {
             "by": dict(self.by),
             "front": self.front,

@@ -174,9 +174,9 @@ class Store(Result):
         ------
         UsageError : another process is writing, or nobody can.
         """
-        with ExitStack() as held:
+        with ExitStack() as exitstack:
             with as_usage_error(self.path, Note("cannot be written"), Note("make it writable")):
-                held.enter_context(locked(self.folder))
+                exitstack.enter_context(locked(self.folder))
                 for name in self.arrays:
                     chunks = _chunks_of(self.folder, name)
                     for left_over, _ in list(chunks.entries()):
@@ -255,29 +255,29 @@ def _put(folder: Folder, name: str, data: bytes) -> None:
 
 def _files(folder: Folder, name: str) -> set[int]:
     """Chunks of an array that have a file; an empty one was cut off by a failure of the power."""
-    found = set()
+    numbers = set()
     try:
         for chunk, status in _chunks_of(folder, name).entries():
             if chunk.isdecimal() and stat.S_ISLNK(status.st_mode):
                 raise LinkError(f"{name}/c/{chunk}", NO_LINKS)
             if chunk.isdecimal() and status.st_size:
-                found.add(int(chunk))
+                numbers.add(int(chunk))
     except FileNotFoundError:
         return set()
-    return found
+    return numbers
 
 
 @cache
 def versions() -> dict[str, str]:
     """What the last digit of a figure may depend on."""
-    found = {"equipoise": equipoise.__version__}
+    result = {"equipoise": equipoise.__version__}
     for library in ("numpy", "scipy", "numba"):
         try:
-            found[library] = version(library)
+            result[library] = version(library)
         except PackageNotFoundError:
-            found[library] = "none"
+            result[library] = "none"
     python = ".".join(map(str, sys.version_info[:2]))
-    return {**found, "python": python, "processor": platform.machine()}
+    return {**result, "python": python, "processor": platform.machine()}
 
 
 def open_store(path: str | os.PathLike[str]) -> Store:
@@ -337,8 +337,8 @@ def _opened(path: Path, folder: Folder, group: Any) -> Store:
     about: Mapping[str, Any] = group.attrs
     texts, made_with = _texts(about["study"]), _texts(about["versions"])
     study = loads(texts["study"])
-    wishes = tuple(Output(**one) for one in study["outputs"])
-    numbers, outputs = tuple(one["path"] for one in study["vary"]), tuple(w.name for w in wishes)
+    wishes = tuple(Output(**item) for item in study["outputs"])
+    numbers, outputs = tuple(item["path"] for item in study["vary"]), tuple(w.name for w in wishes)
     arrays = {name: group[name] for name in (*numbers, *outputs, REASON)}
     size, chunk = arrays[REASON].shape[0], arrays[REASON].chunks[0]
     if any((a.shape, a.chunks) != ((size,), (chunk,)) for a in arrays.values()):
@@ -385,7 +385,7 @@ def _files_of(folder: Folder) -> Any:
 def _codecs(array: zarr.Array[Any]) -> list[str]:
     """Names of what makes the bytes of a file of those of a chunk, in this order."""
     codecs: Sequence[Any] = array.compressors
-    return [str(one.to_dict()["name"]) for one in codecs]
+    return [str(codec.to_dict()["name"]) for codec in codecs]
 
 
 def checksum_of(content: Mapping[str, Any]) -> int:
@@ -400,10 +400,10 @@ def _crc32c(data: bytes) -> int:
 
 def _texts(packed: str) -> dict[str, str]:
     """Texts by name, from JSON."""
-    found = loads(packed)
-    if not all(isinstance(text, str) for text in found.values()):
+    texts = loads(packed)
+    if not all(isinstance(text, str) for text in texts.values()):
         raise ValueError("what is kept of the study or of the versions is no text")
-    return dict(found)
+    return dict(texts)
 
 
 @contextmanager

@@ -61,7 +61,7 @@ class Study:
         for name in ("vary", "outputs", "correlations"):
             object.__setattr__(self, name, tuple(getattr(self, name)))
         numbers = _numbers(self.model, self.vary)
-        vary = tuple(_as_in(one, *number) for one, number in zip(self.vary, numbers, strict=True))
+        vary = tuple(_as_in(item, *number) for item, number in zip(self.vary, numbers, strict=True))
         object.__setattr__(self, "vary", vary)
         for problem in _problems(self):
             raise problem
@@ -72,7 +72,7 @@ class Study:
     @property
     def paths(self) -> tuple[str, ...]:
         """Paths of the numbers that vary, in the order of the columns of all values."""
-        return tuple(one.path for one in self.vary)
+        return tuple(item.path for item in self.vary)
 
     @property
     def own(self) -> Array:
@@ -87,7 +87,7 @@ class Study:
     @property
     def shape(self) -> tuple[int, ...]:
         """Of a grid: values of each number; the last runs fastest."""
-        return tuple(len(one.spread.levels) for one in self.vary)
+        return tuple(len(item.spread.levels) for item in self.vary)
 
     @property
     def size(self) -> int:
@@ -114,12 +114,12 @@ class Study:
 
 def to_plain(study: Study) -> dict[str, Any]:
     """All but the model and the file as plain values, such as JSON takes; numbers in SI units."""
-    plain = {one.name: getattr(study, one.name) for one in fields(study)}
-    plain["outputs"] = [one.to_plain() for one in study.outputs]
-    plain["correlations"] = [asdict(one) for one in study.correlations]
+    plain = {item.name: getattr(study, item.name) for item in fields(study)}
+    plain["outputs"] = [output.to_plain() for output in study.outputs]
+    plain["correlations"] = [asdict(correlation) for correlation in study.correlations]
     plain["vary"] = [
-        {**asdict(one), "spread": {"kind": KEYS[type(one.spread)], **asdict(one.spread)}}
-        for one in study.vary
+        {**asdict(item), "spread": {"kind": KEYS[type(item.spread)], **asdict(item.spread)}}
+        for item in study.vary
     ]
     title = getattr(study.title, "texts", study.title)
     plain |= {"title": title, "sampling": asdict(study.sampling)}
@@ -129,15 +129,15 @@ def to_plain(study: Study) -> dict[str, Any]:
 def from_plain(plain: Mapping[str, Any], model: Model, file: str = "") -> Study:
     """The study of `to_plain`, exactly."""
     vary = []
-    for one in plain["vary"]:
-        spread = dict(one["spread"])
-        vary.append(Variable(**{**one, "spread": SPREADS[spread.pop("kind")](**spread)}))
+    for entry in plain["vary"]:
+        spread = dict(entry["spread"])
+        vary.append(Variable(**{**entry, "spread": SPREADS[spread.pop("kind")](**spread)}))
     made = {
         "title": worded(plain["title"]),
         "vary": tuple(vary),
-        "outputs": tuple(Output(**one) for one in plain["outputs"]),
+        "outputs": tuple(Output(**item) for item in plain["outputs"]),
         "sampling": Sampling(**plain["sampling"]),
-        "correlations": tuple(Correlation(**one) for one in plain["correlations"]),
+        "correlations": tuple(Correlation(**item) for item in plain["correlations"]),
     }
     return Study(**{**plain, **made}, model=model, file=file)
 
@@ -160,18 +160,18 @@ def _numbers(model: Model, vary: Sequence[Variable]) -> list[tuple[float, str | 
         )
     places: dict[str, str] = {}
     numbers = []
-    for number, one in enumerate(vary, 1):
-        where, path = f"vary[{number}]", one.path
+    for number, item in enumerate(vary, 1):
+        where, path = f"vary[{number}]", item.path
         if path in places:
-            told = Note(
+            note = Note(
                 "{path} varies in {places} already; leave one of them out",
                 path=path,
                 places=places[path],
             )
-            raise ModelError(f"{where}.path", told)
+            raise ModelError(f"{where}.path", note)
         if "/" in path:
-            told = Note("got {path!r}; no column can have / in its name, rename it", path=path)
-            raise ModelError(f"{where}.path", told)
+            note = Note("got {path!r}; no column can have / in its name, rename it", path=path)
+            raise ModelError(f"{where}.path", note)
         try:
             numbers.append(model.number(path))
         except ModelError as error:
@@ -197,8 +197,8 @@ def _as_in(one: Variable, value: float, dimension: str | None) -> Variable:
 def _problems(study: Study) -> Iterator[ModelError]:
     """What is wrong with a study beside its numbers, the first things first."""
     yield from wrong_text("title", study.title)
-    for number, one in enumerate(study.vary, 1):
-        yield from _wrong_spread(f"vary[{number}]", one, study)
+    for number, item in enumerate(study.vary, 1):
+        yield from _wrong_spread(f"vary[{number}]", item, study)
     yield from _wrong_sampling(study)
     yield from _wrong_correlations(study)
     yield from _wrong_outputs(study)
@@ -247,10 +247,10 @@ def _wrong_sampling(study: Study) -> Iterator[ModelError]:
         yield ModelError("sampling.method", unknown(sampling.method, METHODS, "method"))
     if sampling.method == "grid":
         if sampling.designs is not None:
-            told = Note(
+            note = Note(
                 "a grid has as many as its steps make, here {size}; leave it out", size=study.size
             )
-            yield ModelError("sampling.designs", told)
+            yield ModelError("sampling.designs", note)
         if study.size > MOST_DESIGNS:
             yield ModelError(
                 "sampling.method",
@@ -270,14 +270,14 @@ def _wrong_sampling(study: Study) -> Iterator[ModelError]:
 
 def _wrong_correlations(study: Study) -> Iterator[ModelError]:
     given: dict[frozenset[str], int] = {}
-    spreads = {one.path: one.spread for one in study.vary}
-    for number, one in enumerate(study.correlations, 1):
+    spreads = {item.path: item.spread for item in study.vary}
+    for number, correlation in enumerate(study.correlations, 1):
         where = f"correlations[{number}]"
         if study.sampling.method == "grid":
             yield ModelError(
                 where, Note("a grid has no correlations; leave them out, or take sobol")
             )
-        for end, path in enumerate((one.first, one.second), 1):
+        for end, path in enumerate((correlation.first, correlation.second), 1):
             if path not in spreads:
                 yield ModelError(f"{where}.between[{end}]", unknown(path, spreads, "[[vary]]"))
             elif isinstance(spreads[path], Choices):
@@ -289,23 +289,23 @@ def _wrong_correlations(study: Study) -> Iterator[ModelError]:
                         path=path,
                     ),
                 )
-        pair = frozenset((one.first, one.second))
+        pair = frozenset((correlation.first, correlation.second))
         if len(pair) == 1:
             yield ModelError(
                 f"{where}.between", Note("got one number twice; give two different ones")
             )
         if pair in given:
-            told = Note(
+            note = Note(
                 "is given in correlations[{given}] already; leave one out", given=given[pair]
             )
-            yield ModelError(f"{where}.between", told)
+            yield ModelError(f"{where}.between", note)
         given[pair] = number
-        if not -1 < one.coefficient < 1:
-            told = Note(
+        if not -1 < correlation.coefficient < 1:
+            note = Note(
                 "got {coefficient:g}; give a number between -1 and 1, without these",
-                coefficient=one.coefficient,
+                coefficient=correlation.coefficient,
             )
-            yield ModelError(f"{where}.coefficient", told)
+            yield ModelError(f"{where}.coefficient", note)
     try:
         np.linalg.cholesky(correlation_matrix(study.paths, study.correlations)[1])
     except np.linalg.LinAlgError:
@@ -323,12 +323,16 @@ def correlation_matrix(
 ) -> tuple[list[int], np.ndarray[Any, Any]]:
     """Which of the varied numbers are correlated, and the matrix of these, (k, k)."""
     columns = sorted(
-        {paths.index(path) for one in correlations for path in (one.first, one.second)}
+        {
+            paths.index(path)
+            for correlation in correlations
+            for path in (correlation.first, correlation.second)
+        }
     )
     matrix = np.eye(len(columns))
-    for one in correlations:
-        i, j = (columns.index(paths.index(path)) for path in (one.first, one.second))
-        matrix[i, j] = matrix[j, i] = one.coefficient
+    for item in correlations:
+        i, j = (columns.index(paths.index(path)) for path in (item.first, item.second))
+        matrix[i, j] = matrix[j, i] = item.coefficient
     return columns, matrix
 
 
@@ -357,12 +361,12 @@ def _wrong_outputs(study: Study) -> Iterator[ModelError]:
         where = f"outputs[{number}]"
         yield from _wrong_output(where, output, study.model.kind)
         if output.name in taken:
-            told = Note(
+            note = Note(
                 "got {name!r}, which is {taken}; give another name",
                 name=output.name,
                 taken=taken[output.name],
             )
-            yield ModelError(f"{where}.name", told)
+            yield ModelError(f"{where}.name", note)
         taken[output.name] = Note("the name of {place}", place=where)
 
 
@@ -372,22 +376,22 @@ def _wrong_output(where: str, output: Output, kind: str) -> Iterator[ModelError]
     yield from wrong_text(f"{where}.value", output.value)
     yield from wrong_text(f"{where}.name", output.name)
     if not output.name.strip() or not {"/", "\\"}.isdisjoint(output.name) or output.name[0] == ".":
-        told = Note(
+        note = Note(
             "got {name!r}; give a name without / and without a point in front", name=output.name
         )
-        yield ModelError(f"{where}.name", told)
+        yield ModelError(f"{where}.name", note)
     if output.of not in COMMANDS:
         yield ModelError(f"{where}.of", unknown(output.of, COMMANDS, "command"))
     elif (output.of == "tool") != (kind == "tool"):
         names = ["tool"] if kind == "tool" else ["analyze", "plant", "respond", "balance"]
-        told = Note(
+        note = Note(
             "got {of!r}, but the model is a tool; give {right}"
             if kind == "tool"
             else "got {of!r}, but the model is a linkage; give {right}",
             of=output.of,
             right=any_of(names),
         )
-        yield ModelError(f"{where}.of", told)
+        yield ModelError(f"{where}.of", note)
     for key, given, right in output.wrong_asks():
         yield ModelError(f"{where}.{key}", Note("got {given}; {right}", given=given, right=right))
     if None not in (output.at_least, output.at_most) and output.at_least > output.at_most:  # type: ignore[operator]

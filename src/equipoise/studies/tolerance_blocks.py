@@ -32,7 +32,7 @@ def tolerances_blocks(found: Tolerances, units: Units | None = None) -> Iterator
     if found.within is not None:
         yield Text(say("Every limit is kept by {share} of them.", share=_share(found.within)))
     yield _scatters(found, units)
-    if any(one.within is not None for one in found.scatters.values()):
+    if any(scatter.within is not None for scatter in found.scatters.values()):
         yield _kept(found, units)
     yield _causes(found, units)
     yield _variances(found, units)
@@ -44,13 +44,13 @@ def tolerances_blocks(found: Tolerances, units: Units | None = None) -> Iterator
 
 def _scatters(found: Tolerances, units: Units | None) -> Table:
     scatters = found.scatters.values()
-    every = sorted({p for one in scatters for p in one.percentiles})
-    shared = [p for p in every if all(p in one.percentiles for one in scatters)]
+    every = sorted({p for scatter in scatters for p in scatter.percentiles})
+    shared = [p for p in every if all(p in scatter.percentiles for scatter in scatters)]
     rows = []
-    for name, one in found.scatters.items():
+    for name, item in found.scatters.items():
         unit = unit_in(units, name)
-        told = (one.base, one.mean, one.deviation, *(one.percentiles[p] for p in shared))
-        rows.append((labelled(unit), *(in_unit(value, unit) for value in told)))
+        parts = (item.base, item.mean, item.deviation, *(item.percentiles[p] for p in shared))
+        rows.append((labelled(unit), *(in_unit(value, unit) for value in parts)))
     labels = ("", say("model"), say("mean"), say("deviation"), *(f"{p:g} %" for p in shared))
     title = say("Figures; the columns with % tell below what so many machines lie")
     return Table(title, tuple(map(Column, labels)), tuple(rows))
@@ -58,13 +58,13 @@ def _scatters(found: Tolerances, units: Units | None) -> Table:
 
 def _kept(found: Tolerances, units: Units | None) -> Table:
     rows = []
-    for name, one in found.scatters.items():
-        if one.within is None:
+    for name, scatter in found.scatters.items():
+        if scatter.within is None:
             continue
         unit = unit_in(units, name)
-        ends = (in_unit(end, unit) for end in (one.output.at_least, one.output.at_most))
-        beyond = (Value(100 * share, after=2) for share in (one.below, one.above))
-        inside = _share(one.within).replace(" %", "")
+        ends = (in_unit(end, unit) for end in (scatter.output.at_least, scatter.output.at_most))
+        beyond = (Value(100 * share, after=2) for share in (scatter.below, scatter.above))
+        inside = _share(scatter.within).replace(" %", "")
         rows.append((labelled(unit), *ends, *beyond, inside))
     limits = map(Column, ("", say("at least"), say("at most")))
     out = (Column(words, unit="%") for words in (say("below"), say("above")))
@@ -74,7 +74,7 @@ def _kept(found: Tolerances, units: Units | None) -> Table:
 
 def _share(share: IntervalEstimate) -> str:
     """A share with its interval: ``93.2 % (92.7 to 93.7 %)``."""
-    value, low, high = (percent(one, 2) for one in (share.value, share.low, share.high))
+    value, low, high = (percent(item, 2) for item in (share.value, share.low, share.high))
     return f"{value} % ({say('{low} to {high}', low=low, high=high)} %)"
 
 
@@ -83,24 +83,24 @@ def _causes(found: Tolerances, units: Units | None) -> Table:
     rows: list[tuple[Cell, ...]] = []
     for cause in found.causes:
         shares = (cause.halved, cause.removed) if kept else ()
-        cells = (None if one is None else Value(100 * one, after=digits) for one in shares)
+        cells = (None if share is None else Value(100 * share, after=digits) for share in shares)
         given = "; ".join(tolerance_told(found, path, units) for path in cause.numbers)
         gain = Value(100 * cause.gain, after=1)
         rows.append((named_together(cause.numbers, units), given, gain, *cells))
-    told = [say("variance less by")]
+    texts = [say("variance less by")]
     title = say("What half of a tolerance does, the most first")
     if found.unchanged is not None:
-        told += [say("keep limits with half"), say("keep limits without")]
+        texts += [say("keep limits with half"), say("keep limits without")]
         share = percent(found.unchanged, digits)
         title = say("{title}; with all of them {share} % keep limits", title=title, share=share)
-    columns = (Column(""), Column(say("tolerance")), *(Column(one, unit="%") for one in told))
+    columns = (Column(""), Column(say("tolerance")), *(Column(item, unit="%") for item in texts))
     return Table(title, columns, tuple(rows))
 
 
 def tolerance_told(found: Tolerances, path: str, units: Units | None) -> str:
     """A tolerance as one says it: ``+- 0.1000 mm`` or ``deviation 2.000 g``."""
     unit = unit_in(units, path)
-    (spread,) = (one.spread for one in found.study.vary if one.path == path)
+    (spread,) = (item.spread for item in found.study.vary if item.path == path)
     if isinstance(spread, Uniform):
         return f"+- {number(unit.of_si(spread.half_width))} {unit.name}".strip()
     assert isinstance(spread, Normal)
@@ -113,7 +113,7 @@ def tolerance_told(found: Tolerances, path: str, units: Units | None) -> str:
 def _variances(found: Tolerances, units: Units | None) -> Table:
     """The share of each cause in the variance of each figure."""
     names = [name for name in found.scatters if name in found.causes[0].effects]
-    causes = ((named_together(one.numbers, units), one) for one in found.causes)
+    causes = ((named_together(cause.numbers, units), cause) for cause in found.causes)
     rows = tuple((words, *_effects(cause, names)) for words, cause in causes)
     title = say("Share of the variance by cause, with what it does together with others, %")
     heads = (Column(unit_in(units, name).called) for name in names)
@@ -139,7 +139,7 @@ def advice(found: Tolerances, units: Units | None) -> str:
         return say(
             "No tolerance is worth tightening: half of any takes less than 1 % off the variance."
         )
-    limited = [name for name, one in found.scatters.items() if one.within is not None]
+    limited = [name for name, scatter in found.scatters.items() if scatter.within is not None]
     names = limited or [*found.scatters]
     of = say("the figures with limits") if limited else say("the figures")
     what = named_together(first.numbers, units)
@@ -164,8 +164,8 @@ def advice(found: Tolerances, units: Units | None) -> str:
 
 def _outside(found: Tolerances) -> Iterator[Note]:
     """Limits that the model itself does not keep."""
-    told = to_say("the model itself does not keep the limits of {name}; change its numbers first")
-    for name, one in found.scatters.items():
-        low, high = one.output.at_least, one.output.at_most
-        if (low is not None and one.base < low) or (high is not None and one.base > high):
-            yield Note(told, name=name)
+    text = to_say("the model itself does not keep the limits of {name}; change its numbers first")
+    for name, scatter in found.scatters.items():
+        low, high = scatter.output.at_least, scatter.output.at_most
+        if (low is not None and scatter.base < low) or (high is not None and scatter.base > high):
+            yield Note(text, name=name)

@@ -101,18 +101,18 @@ class Tolerances(Result):
             "computed": self.computed,
             "failures": dict(self.failures),
             "within": None if self.within is None else asdict(self.within),
-            "outputs": {name: one.to_dict() for name, one in self.scatters.items()},
+            "outputs": {name: scatter.to_dict() for name, scatter in self.scatters.items()},
             "rows": self.rows,
             "unchanged": self.unchanged,
             "tighten": [
                 {
-                    "numbers": list(one.numbers),
-                    "gain": one.gain,
-                    "within_halved": one.halved,
-                    "within_removed": one.removed,
-                    "outputs": {name: asdict(effect) for name, effect in one.effects.items()},
+                    "numbers": list(cause.numbers),
+                    "gain": cause.gain,
+                    "within_halved": cause.halved,
+                    "within_removed": cause.removed,
+                    "outputs": {name: asdict(effect) for name, effect in cause.effects.items()},
                 }
-                for one in self.causes
+                for cause in self.causes
             ],
             "notes": list(self.notes),
         }
@@ -146,8 +146,8 @@ def tolerance(
     UsageError : no machine can be computed.
     """
     _check(study)
-    with ExitStack() as held:
-        evaluate = compute or held.enter_context(pooled(study, workers, cluster))
+    with ExitStack() as exitstack:
+        evaluate = compute or exitstack.enter_context(pooled(study, workers, cluster))
         return _tolerances(study, evaluate, progress)
 
 
@@ -157,28 +157,28 @@ def _tolerances(study: Study, evaluate: Evaluator, progress: OnProgress | None) 
     step = min(study.chunk, SLOW_CHUNK)
     run = _Run(evaluate, step, study.chunk, progress, total)
     starts = range(0, study.size, study.chunk)
-    drawn = run.joined(samples(study, k, min(study.chunk, study.size - k)) for k in starts)
-    reasons = drawn.counts
-    there = np.sum(np.isfinite(drawn.figures), axis=0)
+    joined = run.joined(samples(study, k, min(study.chunk, study.size - k)) for k in starts)
+    reasons = joined.counts
+    there = np.sum(np.isfinite(joined.figures), axis=0)
     if not reasons[COMPUTED] or not np.all(there):
         raise UsageError(why_none(study.outputs, reasons, np.zeros(len(there))))
-    found = [run.joined([table]) for table in tables(study, rows)]
+    values = [run.joined([table]) for table in tables(study, rows)]
     base = run.compute(study.own[None]).figures[0]
-    told = _causes(study, causes, found)
+    text = _causes(study, causes, values)
     return Tolerances(
         study=study,
         designs=study.size,
         failures=failures(reasons),
-        within=share_of(_kept_all(study, drawn)) if _limited(study) else None,
+        within=share_of(_kept_all(study, joined)) if _limited(study) else None,
         scatters={
-            one.name: scatter_of(one, own, figures)
-            for one, own, figures in zip(study.outputs, base, drawn.figures.T, strict=True)
+            output.name: scatter_of(output, own, figures)
+            for output, own, figures in zip(study.outputs, base, joined.figures.T, strict=True)
         },
-        causes=tuple(sorted(told, key=lambda one: -one.gain)),
+        causes=tuple(sorted(text, key=lambda one: -one.gain)),
         rows=rows,
-        unchanged=_part(study, found[0]),
+        unchanged=_part(study, values[0]),
         computed=run.done,
-        notes=tuple(_notes(study, told, found)),
+        notes=tuple(_notes(study, text, values)),
     )
 
 
@@ -194,14 +194,14 @@ def machines_of(study: Study) -> int:
 
 
 def _check(study: Study) -> None:
-    for number, one in enumerate(study.vary, 1):
-        if not one.spread.tolerance:
+    for number, item in enumerate(study.vary, 1):
+        if not item.spread.tolerance:
             raise ModelError(
                 f"vary[{number}]",
                 Note(
                     "{path} has a range or a list, which is no tolerance; give normal = {{ "
                     "deviation = ... }} or uniform = {{ half_width = ... }}",
-                    path=one.path,
+                    path=item.path,
                 ),
             )
     causes = len(causes_of(study))
@@ -238,19 +238,19 @@ class _Run:
 
     def joined(self, parts: Iterable[Array]) -> Outcome:
         """What came of all parts (n, d)."""
-        found = []
+        result = []
         for part in parts:
             start = 0
             while start < len(part):
                 begin = monotonic()
-                found.append(self.compute(part[start : start + self.step]))
+                result.append(self.compute(part[start : start + self.step]))
                 if monotonic() - begin < QUICK and 2 * self.step <= self.most:
                     self.step *= 2
-                start += len(found[-1].reason)
-                self.done += len(found[-1].reason)
+                start += len(result[-1].reason)
+                self.done += len(result[-1].reason)
                 if self.progress is not None:
                     self.progress(self.done, self.total)
-        return Outcome.joined(found)
+        return Outcome.joined(result)
 
 
 # -- reading off -----------------------------------------------------------------------------------
@@ -274,15 +274,15 @@ def _part(study: Study, outcome: Outcome) -> float | None:
 def _causes(study: Study, causes: Sequence[Sequence[int]], found: Sequence[Outcome]) -> list[Cause]:
     by_output: dict[str, list[Effect]] = {}
     for k, output in enumerate(study.outputs):
-        of_output = effects([one.figures[:, k] for one in found], study.sampling.seed)
+        of_output = effects([item.figures[:, k] for item in found], study.sampling.seed)
         if of_output is not None:
             by_output[output.name] = of_output
     counted = [study.names[k] for k in _limited(study)] or list(study.names)
-    told = []
+    text = []
     for number, columns in enumerate(causes):
         each = {name: of_output[number] for name, of_output in by_output.items()}
         gains = [1 - each[name].halved ** 2 for name in counted if name in each]
-        told.append(
+        text.append(
             Cause(
                 numbers=tuple(study.paths[k] for k in columns),
                 effects=each,
@@ -291,16 +291,16 @@ def _causes(study: Study, causes: Sequence[Sequence[int]], found: Sequence[Outco
                 removed=_part(study, found[4 + 3 * number]),
             )
         )
-    return told
+    return text
 
 
 def _notes(study: Study, told: Sequence[Cause], found: Sequence[Outcome]) -> Iterator[str]:
     for k, output in enumerate(study.outputs):
         if output.name not in told[0].effects:
-            there = [bool(np.any(np.isfinite(one.figures[:, k]))) for one in found]
+            there = [bool(np.any(np.isfinite(item.figures[:, k]))) for item in found]
             what = "does not vary" if all(there) else "fails too often"
             yield f"{output.name} {what}, so that no tolerance is named as its cause"
-    failed = float(np.mean([np.mean(~one.computed) for one in found]))
+    failed = float(np.mean([np.mean(~item.computed) for item in found]))
     if failed > 0:
         yield (
             f"{100 * failed:.2g} % of the machines cannot be computed; causes are told apart by "

@@ -63,8 +63,10 @@ class Effect:
 def causes_of(study: Study) -> tuple[tuple[int, ...], ...]:
     """Columns that vary by themselves, or together because they are correlated."""
     groups = [{k} for k in range(len(study.paths))]
-    for one in study.correlations:
-        first, second = (study.paths.index(path) for path in (one.first, one.second))
+    for correlation in study.correlations:
+        first, second = (
+            study.paths.index(path) for path in (correlation.first, correlation.second)
+        )
         together = groups[first] | groups[second]
         for k in together:
             groups[k] = together
@@ -81,7 +83,7 @@ def tables(study: Study, rows: int) -> Iterator[Array]:
     places = sobol(2 * width, scrambling, BITS).random_base2(rows.bit_length() - 1)
     places += 0.5 / 2**BITS  # the middle of a cell: 0 is the end of a normal spread
     first, second = (values_at(study, half) for half in np.hsplit(places, 2))
-    centre = np.array([centre_of(one.spread) for one in study.vary])
+    centre = np.array([centre_of(item.spread) for item in study.vary])
     yield from (first, second)
     for cause in causes_of(study):
         columns = list(cause)
@@ -126,9 +128,9 @@ def _shares(
     base, other, swapped = base - middle, other - middle, swapped - middle
     mean, square = 0.5 * (base + other), 0.5 * (base**2 + other**2)
     terms = np.vstack([mean, square, other * (swapped - base), 0.5 * (base - swapped) ** 2])
-    told = _ratios(np.mean(terms, axis=1)[None])[0]
+    ratio = _ratios(np.mean(terms, axis=1)[None])[0]
     low, high = np.percentile(_ratios(_drawn_again(terms, seed)), [2.5, 97.5], axis=0)
-    every = [IntervalEstimate(*map(float, one)) for one in zip(told, low, high, strict=True)]
+    every = [IntervalEstimate(*map(float, item)) for item in zip(ratio, low, high, strict=True)]
     return [*zip(every[: len(swapped)], every[len(swapped) :], strict=True)]
 
 
@@ -146,8 +148,10 @@ def _drawn_again(terms: Array, seed: int) -> Array:
     blocks = np.array_split(mixed, min(BLOCKS, terms.shape[1]), axis=1)
     sums = np.array([block.sum(axis=1) for block in blocks])
     sizes = np.array([block.shape[1] for block in blocks])
-    drawn = generator.multinomial(len(blocks), np.full(len(blocks), 1 / len(blocks)), DRAWN_AGAIN)
-    means: Array = (drawn @ sums) / (drawn @ sizes)[:, None]
+    multinomial = generator.multinomial(
+        len(blocks), np.full(len(blocks), 1 / len(blocks)), DRAWN_AGAIN
+    )
+    means: Array = (multinomial @ sums) / (multinomial @ sizes)[:, None]
     return means
 
 

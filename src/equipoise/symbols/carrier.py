@@ -67,13 +67,13 @@ class Carrier:
 
     def named(self, items: Mapping[str, Mount] | Mapping[str, Gauge]) -> dict[complex, list[str]]:
         """Names of mounts or gauges by their places, of those that are seen from the side."""
-        found: dict[complex, list[str]] = {}
+        names: dict[complex, list[str]] = {}
         for name, item in items.items():
             if item.point is None and item.axis != "pitch":
                 continue
             place = self.reference if item.point is None else complex(*item.point[:2])
-            found.setdefault(place, []).append(name)
-        return found
+            names.setdefault(place, []).append(name)
+        return names
 
     @classmethod
     def of(cls, machine: Machine) -> Carrier | None:
@@ -143,10 +143,10 @@ def foot(place: complex, way: complex, one_sided: bool) -> list[Shape]:
 
 def mount(item: Mount, place: complex, way: complex) -> list[Shape]:
     """A mount at rest; way : to its ground, 0 where it is seen end on."""
-    held = foot(place, way, item.one_sided)
+    shapes = foot(place, way, item.one_sided)
     if not way:
-        return held
-    return [*strut(item, place, way), *ground(place, way), *held]
+        return shapes
+    return [*strut(item, place, way), *ground(place, way), *shapes]
 
 
 def gauge(place: complex, way: complex) -> list[Shape]:

@@ -37,7 +37,7 @@ def _off_links(scene: Scene, at: Array) -> Iterator[Array]:
     outlines = [(body.name, set(body.points), body.outline) for body in scene.bodies]
     outlines += [("", set(ends), ends) for ends in _springs(scene)]
     signs = [("", name, place[at]) for name, place in scene.places.items()]
-    middles = ((scene.places[one] + scene.places[other]) / 2 for one, other in _springs(scene))
+    middles = ((scene.places[item] + scene.places[other]) / 2 for item, other in _springs(scene))
     signs += [("", "", middle[at]) for middle in middles]
     signs += [(link, "", center[at]) for link, center in scene.mass_centers.items()]
     if scene.carrier is not None:
@@ -60,9 +60,9 @@ def _uncrossed(scene: Scene, at: Array) -> Iterator[Array]:
     edges = [{*ends} for ends in _springs(scene)]
     for body in scene.bodies:
         edges += [{*ends} for ends in pairwise((*body.outline, body.outline[0]))]
-    for one, other in combinations([ends for ends in edges if len(ends) == 2], 2):
-        if not one & other:
-            a, b, c, d = (scene.places[name][at] for name in (*sorted(one), *sorted(other)))
+    for edge, other in combinations([ends for ends in edges if len(ends) == 2], 2):
+        if not edge & other:
+            a, b, c, d = (scene.places[name][at] for name in (*sorted(edge), *sorted(other)))
             yield 1.0 * (_beside(scene, a, b, c, d) | _beside(scene, c, d, a, b))
 
 

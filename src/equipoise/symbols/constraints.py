@@ -45,14 +45,14 @@ def constraint_marks(constraints: Iterable[Constraint], bodies: Bodies) -> Itera
     """The signs on both lines of each, in another colour and dashed where these places miss it;
     none where a point is not there yet.
     """
-    for one in constraints:
-        if any(one.problems("", bodies)):
+    for constraint in constraints:
+        if any(constraint.problems("", bodies)):
             continue
-        legend = LEGENDS[one.misses(bodies) <= HOLDS]
-        for (body, start), (_, end) in one.lines(bodies):
+        legend = LEGENDS[constraint.misses(bodies) <= HOLDS]
+        for (body, start), (_, end) in constraint.lines(bodies):
             way = complex(*bodies[body][end]) - complex(*bodies[body][start])
             turn = way / abs(way) if way else 1.0
-            drawn = SIGNS[one.kind]
+            drawn = SIGNS[constraint.kind]
             for stroke in drawn.strokes:
                 shape = sign(legend[0], way * drawn.at, np.array(stroke) * turn)
                 yield BodyMark(body, start, shape, table="constraints", legend=legend)

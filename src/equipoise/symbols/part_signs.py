@@ -43,8 +43,8 @@ Sign = Callable[[Any, Surroundings], Iterator[BodyMark]]
 def sign_of(kind: type[PartKind]) -> Sign | None:
     """What draws parts of a kind; None where this has no sign of its own."""
     module, _, name = kind.sign.partition(":")
-    found: Sign | None = getattr(import_module(module), name) if module else None
-    return found
+    sign: Sign | None = getattr(import_module(module), name) if module else None
+    return sign
 
 
 def signs_of(table: str, part: PartKind, around: Surroundings) -> list[BodyMark]:

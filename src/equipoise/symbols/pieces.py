@@ -83,22 +83,22 @@ def pieces(scene: Scene, traced: Collection[str] = (), field: bool = True) -> li
     traced : points that have a sign of their own because their path is drawn.
     field : whether soil and tray are among it.
     """
-    found = [*_soil(scene)] if field else []
-    found += [*_carrier(scene), *_rows(scene), *_wheels(scene), *_stands(scene)]
-    found += [*_links(scene), *_drawn(scene, "springs")]
-    found += [*_springs(scene), *_cylinder(scene), Piece("pivots", tuple(_pivots(scene)))]
-    found += [
+    items = [*_soil(scene)] if field else []
+    items += [*_carrier(scene), *_rows(scene), *_wheels(scene), *_stands(scene)]
+    items += [*_links(scene), *_drawn(scene, "springs")]
+    items += [*_springs(scene), *_cylinder(scene), Piece("pivots", tuple(_pivots(scene)))]
+    items += [
         Piece("blocks", tuple(block()), Hold(guide.point, guide=guide.name), part=_part(guide))
         for guide in scene.guides
     ]
-    found += _drawn(scene, "riders")
-    found += [
+    items += _drawn(scene, "riders")
+    items += [
         Piece("joints", tuple(_marks(scene, body, traced)), _with(body)) for body in scene.bodies
     ]
     if field and scene.field is not None and scene.field.tray:
-        found.append(Piece("tray", (line("tray", *scene.field.tray),)))
-    found += _sense(scene)
-    return [piece for piece in found if piece.shapes]
+        items.append(Piece("tray", (line("tray", *scene.field.tray),)))
+    items += _sense(scene)
+    return [piece for piece in items if piece.shapes]
 
 
 def _part(guide: GuideSign) -> tuple[str, str]:
@@ -164,19 +164,19 @@ def _carrier(scene: Scene) -> Iterator[Piece]:
 def _wheels(scene: Scene) -> Iterator[Piece]:
     bodies = {body.name: body for body in scene.bodies}
     seen = set()
-    for one in sorted(scene.wheels, key=lambda one: -one.radius):
-        key = (one.link, one.center, round(one.radius / scene.unit))
-        if one.curve is None and key in seen:
+    for item in sorted(scene.wheels, key=lambda one: -one.radius):
+        key = (item.link, item.center, round(item.radius / scene.unit))
+        if item.curve is None and key in seen:
             continue
         seen.add(key)
-        if one.link == FRAME:
-            still = complex(scene.places[one.center][0])
-            yield Piece("wheels", (rim(still, one.radius, one.curve),), part=one.part)
+        if item.link == FRAME:
+            still = complex(scene.places[item.center][0])
+            yield Piece("wheels", (rim(still, item.radius, item.curve),), part=item.part)
             continue
-        body = bodies[one.link]
-        center = scene.local(body, scene.places[one.center])
-        shapes = tuple(wheel(center, one.radius, one.curve))
-        yield Piece("wheels", shapes, _with(body), part=one.part)
+        body = bodies[item.link]
+        center = scene.local(body, scene.places[item.center])
+        shapes = tuple(wheel(center, item.radius, item.curve))
+        yield Piece("wheels", shapes, _with(body), part=item.part)
     yield from _drawn(scene, "wheels")
 
 
@@ -267,10 +267,10 @@ def _body(scene: Scene, body: LinkOutline) -> Iterator[Shape]:
 
 def _springs(scene: Scene) -> Iterator[Piece]:
     for role, every in (("spring", scene.springs), ("planned", scene.planned)):
-        for one, other in every:
-            usual = float(abs(scene.places[other] - scene.places[one]).mean()) or 1.0
+        for item, other in every:
+            usual = float(abs(scene.places[other] - scene.places[item]).mean()) or 1.0
             shape = zigzag(0, usual, coils(usual, scene.unit), role)
-            yield Piece("springs", (shape,), Hold(one, to=other))
+            yield Piece("springs", (shape,), Hold(item, to=other))
 
 
 def _pivots(scene: Scene) -> Iterator[Shape]:
@@ -351,11 +351,11 @@ GROUND = ("field", "support", "rows")
 
 def placed(scene: Scene, every: Iterable[Piece], k: int) -> list[Shape]:
     """The shapes of pieces where they are at the k-th crank angle, in the axes of the frame."""
-    found: list[Shape] = []
+    shapes: list[Shape] = []
     for piece in every:
         track = piece.track(scene)
         if track is None:
-            found += piece.shapes
+            shapes += piece.shapes
             continue
-        found += [track.moved(shape, k) for shape in piece.shapes]
-    return found
+        shapes += [track.moved(shape, k) for shape in piece.shapes]
+    return shapes

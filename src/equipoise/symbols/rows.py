@@ -45,7 +45,7 @@ class Rows:
     @property
     def shown(self) -> tuple[Ghost, ...]:
         """Those of the others that are drawn."""
-        return tuple(one for one in self.others if one.places)
+        return tuple(part for part in self.others if part.places)
 
 
 ONE = Rows()

@@ -150,7 +150,9 @@ class Scene:
             springs := tuple((spring.point, spring.to) for spring in machine.springs),
             {name: link.angle for name, link in motion.links.items()},
             DriveSign.each(motion),
-            tuple((one.point, one.to) for one in planned if (one.point, one.to) not in springs),
+            tuple(
+                (item.point, item.to) for item in planned if (item.point, item.to) not in springs
+            ),
             _field(motion),
             Carrier.of(machine),
             marks=in_order(
@@ -186,7 +188,7 @@ class Scene:
     def ground(self, point: str) -> complex:
         """Way to what holds a point of the frame: down, or up where all that it holds hangs."""
         others = [(name, body.outline) for body in self.bodies for name in body.outline]
-        others += [(to, (one, to)) for one, to in (*self.springs, *self.planned)]
+        others += [(to, (item, to)) for item, to in (*self.springs, *self.planned)]
         ways = [
             self.places[other] - self.places[point]
             for name, outline in others

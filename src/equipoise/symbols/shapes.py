@@ -135,10 +135,10 @@ def pivot(place: complex, grounded: bool = True, way: complex = -1j) -> list[Sha
     """
     half, high = STAND
     foot, side = high * way, half * 1j * way
-    found = hatching(place, foot + 1.6 * side, foot - 1.6 * side, way) if grounded else []
+    shapes = hatching(place, foot + 1.6 * side, foot - 1.6 * side, way) if grounded else []
     reach = 1.6 if grounded else 1.0
     return [
-        *found,
+        *shapes,
         sign("stand", place, [0, foot - side, foot + side], closed=True),
         sign("rail", place, [foot - reach * side, foot + reach * side]),
     ]
@@ -157,13 +157,13 @@ def rails(
     side = way * -1j * meshing if meshing else side
     off, over = BLOCK[1] + 1, BLOCK[0] + 4
     ends = np.array([low, high])
-    found = []
+    shapes = []
     for s in (side, -side):
         offsets = np.array([-over * way, over * way]) + off * s
-        found.append(Shape("rail", ends, offsets))
+        shapes.append(Shape("rail", ends, offsets))
         if s == side and grounded:
-            found[:0] = _hatched(ends, offsets, side, unit)
-    return found
+            shapes[:0] = _hatched(ends, offsets, side, unit)
+    return shapes
 
 
 def slot(low: complex, high: complex) -> list[Shape]:

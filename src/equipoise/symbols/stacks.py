@@ -35,13 +35,13 @@ def _stacks(scene: Scene, k: int) -> list[list[str]]:
     """Names of links that cover each other, directly or by others between them."""
     bodies = [body for body in scene.bodies if len(body.outline) > 1]
     stacks = {body.name: [body.name] for body in bodies}
-    for one, other in combinations(bodies, 2):
-        if stacks[one.name] is not stacks[other.name] and _covers(scene, one, other, k):
-            stacks[one.name] += stacks[other.name]
+    for item, other in combinations(bodies, 2):
+        if stacks[item.name] is not stacks[other.name] and _covers(scene, item, other, k):
+            stacks[item.name] += stacks[other.name]
             for name in stacks[other.name]:
-                stacks[name] = stacks[one.name]
-    found = {id(stack): stack for stack in stacks.values() if len(stack) > 1}
-    return [*found.values()]
+                stacks[name] = stacks[item.name]
+    by_name = {id(stack): stack for stack in stacks.values() if len(stack) > 1}
+    return [*by_name.values()]
 
 
 def _covers(scene: Scene, one: LinkOutline, other: LinkOutline, k: int) -> bool:
@@ -81,9 +81,13 @@ def _without(scene: Scene, hidden: set[str]) -> Scene:
         mass_centers={
             name: place for name, place in scene.mass_centers.items() if name not in hidden
         },
-        wheels=tuple(one for one in scene.wheels if one.link not in hidden),
-        guides=tuple(one for one in scene.guides if one.point not in gone and one.on not in hidden),
+        wheels=tuple(wheel for wheel in scene.wheels if wheel.link not in hidden),
+        guides=tuple(
+            guide for guide in scene.guides if guide.point not in gone and guide.on not in hidden
+        ),
         springs=tuple(ends for ends in scene.springs if not {*ends} & gone),
         planned=tuple(ends for ends in scene.planned if not {*ends} & gone),
-        marks=tuple(one for one in scene.marks if one.body not in hidden and one.point not in gone),
+        marks=tuple(
+            mark for mark in scene.marks if mark.body not in hidden and mark.point not in gone
+        ),
     )

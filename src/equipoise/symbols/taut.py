@@ -38,7 +38,9 @@ def rack_sign(rack: Rack, around: Surroundings) -> Iterator[BodyMark]:
     its pin.
     """
     pair = (rack.rack, rack.carrier)
-    slider = next((one for one in around.joints.sliders if (one.link, one.on) == pair), None)
+    slider = next(
+        (slider for slider in around.joints.sliders if (slider.link, slider.on) == pair), None
+    )
     pins = around.joints.pins_between(rack.pinion, rack.carrier)
     if slider is None or len(pins) != 1:
         return

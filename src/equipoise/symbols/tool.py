@@ -75,21 +75,21 @@ class ToolScene:
     @cached_property
     def tracks(self) -> Mapping[str, tuple[PieceTrack, PieceTrack]]:
         """Of every seat: of what turns with the shaft, and of what stays upright."""
-        slopes, found = np.gradient(self.deflected, self.along, axis=1), {}
-        for one in self.seats:
+        slopes, pairs = np.gradient(self.deflected, self.along, axis=1), {}
+        for seat in self.seats:
             high, slope = (
-                np.array([np.interp(one.place, self.along, row) for row in rows])
+                np.array([np.interp(seat.place, self.along, row) for row in rows])
                 for rows in (self.deflected, slopes)
             )
-            place, none = one.place + 1j * high, np.zeros(len(high))
+            place, none = seat.place + 1j * high, np.zeros(len(high))
             turned, upright = (PieceTrack(place, by, none + 1) for by in (np.arctan(slope), none))
-            found[one.name] = turned, upright
-        return found
+            pairs[seat.name] = turned, upright
+        return pairs
 
     @property
     def unit(self) -> float:
         """Of signs, m, about."""
-        length, widest = self.shaft[-1].stop, max((one.edge for one in self.seats), default=0.0)
+        length, widest = self.shaft[-1].stop, max((seat.edge for seat in self.seats), default=0.0)
         return (length + 2 * widest) / WIDE
 
     @cached_property
@@ -111,12 +111,12 @@ class ToolScene:
             ("above", _body, True),
             ("above", _hands, False),
         )
-        found = [
-            (layer, one, turns, tuple(draw(one)))
+        values = [
+            (layer, seat, turns, tuple(draw(seat)))
             for layer, draw, turns in kinds
-            for one in self.seats
+            for seat in self.seats
         ]
-        return [one for one in found if one[3]]
+        return [item for item in values if item[3]]
 
     def at(self, k: int) -> list[Shape]:
         """Everything that is drawn at the k-th instant, from the back to the front."""
@@ -139,7 +139,7 @@ class ToolScene:
             side = np.full(len(x), 1j)
             places = [center + s * side * tube.diameter / 2 for s in (1, -1)]
             off = [(0 if tube.diameter else THIN) * s * side for s in (1, -1)]
-            around, offsets = (np.concatenate([one, other[::-1]]) for one, other in (places, off))
+            around, offsets = (np.concatenate([item, other[::-1]]) for item, other in (places, off))
             yield Shape("rim", around, offsets, closed=True)
 
 

@@ -58,13 +58,15 @@ def track_of(scene: Scene, hold: Hold | None, still: bool, unit: float) -> Piece
     """
     if hold is not None and hold.mount:
         return _strutted(scene, hold.mount, unit)
-    found = None if hold is None else _in_frame(scene, hold)
+    piece_track = None if hold is None else _in_frame(scene, hold)
     if scene.swing is None or still:
-        return found
-    if found is None:
+        return piece_track
+    if piece_track is None:
         zero = 0 * scene.crank_angle
-        found = PieceTrack(zero + 0j, zero, zero + 1)
-    return PieceTrack(scene.swung(found.place), found.angle + scene.swing.angle, found.stretch)
+        piece_track = PieceTrack(zero + 0j, zero, zero + 1)
+    return PieceTrack(
+        scene.swung(piece_track.place), piece_track.angle + scene.swing.angle, piece_track.stretch
+    )
 
 
 def _in_frame(scene: Scene, hold: Hold) -> PieceTrack:

@@ -53,19 +53,19 @@ def wheels_of(joints: Structure, bodies: Bodies, angles: Mapping[str, float]) ->
 
     angles : of the links in one pose, rad, which tell how curves lie that are no circles.
     """
-    for one in joints.couplings:
-        wheels = [*one.circles(partial(_distance, joints, bodies, one))]
-        shared = [joints.pins_between(body, one.carrier) for body, _ in wheels]
+    for coupling in joints.couplings:
+        wheels = [*coupling.circles(partial(_distance, joints, bodies, coupling))]
+        shared = [joints.pins_between(body, coupling.carrier) for body, _ in wheels]
         if not all(shared):
             continue  # a sketch may lack a pin
         pins = [points[0] for points in shared]
         curves: Iterable[Array | None] = repeat(None)
-        if isinstance(one, Gear) and one.law is not None:
-            driver, driven = (complex(*bodies[one.carrier][pin]) for pin in pins)
-            curves = _curves(one, one.law, driver - driven, angles)
+        if isinstance(coupling, Gear) and coupling.law is not None:
+            driver, driven = (complex(*bodies[coupling.carrier][pin]) for pin in pins)
+            curves = _curves(coupling, coupling.law, driver - driven, angles)
         for (body, radius), pin, curve in zip(wheels, pins, curves, strict=False):
             size = radius if curve is None else float(np.max(np.abs(curve)))
-            yield Wheel(body, pin, size, (one.table, one.name), curve)
+            yield Wheel(body, pin, size, (coupling.table, coupling.name), curve)
 
 
 def _distance(joints: Structure, bodies: Bodies, coupling: Coupling) -> float:
@@ -77,7 +77,7 @@ def _distance(joints: Structure, bodies: Bodies, coupling: Coupling) -> float:
 def _curves(gear: Gear, law: Law, centres: complex, angles: Mapping[str, float]) -> Curves:
     """Corners of driver's and driven gear's curve, in their axes: where the pitch point comes."""
     turned = {FRAME: 0.0, **angles}
-    driver, driven = (turned[one] - turned[gear.carrier] for one in (gear.driver, gear.driven))
+    driver, driven = (turned[item] - turned[gear.carrier] for item in (gear.driver, gear.driven))
     offset = driven - law(driver)[0]
     for turns, of_driver in ((1.0, True), (1 / abs(gear.speed_ratio), False)):
         x = np.linspace(0.0, 2 * np.pi * turns, CORNERS, endpoint=False)

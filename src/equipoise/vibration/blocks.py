@@ -236,8 +236,8 @@ def _drive(response: Response) -> Iterator[Block]:
     drive = response.drive
     rows = [_extremes(say("drive torque"), drive.torque_figures, ("torque", None))]
     if drive.speed is not None:
-        found = drive.speed.figures
-        rows.append(_extremes(say("crank speed"), found, ("angular speed", "rpm")))
+        figures = drive.speed.figures
+        rows.append(_extremes(say("crank speed"), figures, ("angular speed", "rpm")))
     labels = ("", say("mean"), say("largest"), say("smallest"), say("peak to peak"))
     yield Table.of(say("Drive, all rows together"), labels, rows)
     if drive.speed is None:

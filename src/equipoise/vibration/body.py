@@ -64,14 +64,14 @@ class SupportBody:
         if item.axis is not None:
             return np.asarray(np.eye(6)[3 + AXES.index(item.axis)])
         along = np.array(unit_vector(item.direction))
-        found: Array = self.wrench(along, item.point)
-        return found
+        values: Array = self.wrench(along, item.point)
+        return values
 
     def whole(self, moved: Periodic) -> Periodic:
         """All six coordinates (6, K + 1), of those that are free (D, K + 1)."""
-        found = np.zeros((len(FREEDOMS), moved.amplitudes.shape[-1]), complex)
-        found[self.free] = moved.amplitudes
-        return Periodic(found, moved.turns)
+        values = np.zeros((len(FREEDOMS), moved.amplitudes.shape[-1]), complex)
+        values[self.free] = moved.amplitudes
+        return Periodic(values, moved.turns)
 
     @cached_property
     def mass(self) -> Array:
@@ -195,15 +195,15 @@ def _shared(body: SupportBody, load: Array) -> dict[str, float]:
         for n, k in touching.items():
             stiffness += k * np.outer(rows[n], rows[n])
         settled = lstsq(stiffness, left, rcond=1e-12)[0]
-        found = {n: float(-k * (rows[n] @ settled)) for n, k in rates.items()}
-        kept = {n: k for n, k in rates.items() if not (mounts[n].one_sided and found[n] < 0)}
+        floats = {n: float(-k * (rows[n] @ settled)) for n, k in rates.items()}
+        kept = {n: k for n, k in rates.items() if not (mounts[n].one_sided and floats[n] < 0)}
         if kept.keys() == touching.keys():
             break
         touching = kept
     over = left - stiffness @ settled
     if np.linalg.norm(over) > LOOSE * (np.linalg.norm(load) + np.linalg.norm(left)):
         raise ModelError("support.mounts", _uncarried(body, over))
-    return {**{name: found.get(name, 0.0) for name in mounts}, **known}
+    return {**{name: floats.get(name, 0.0) for name in mounts}, **known}
 
 
 def _uncarried(body: SupportBody, over: Array) -> Note:
@@ -320,9 +320,9 @@ class MountContact:
 
 def contacts_of(body: SupportBody, rest: Rest) -> tuple[MountContact, ...]:
     """The mounts of a planar support."""
-    found = []
+    mount_contacts = []
     for name, mount in body.support.mounts.items():
         rates = mount.spring, mount.damper
         at = Reading.of(body, mount)
-        found.append(MountContact(name, at, rest.preload[name], *rates, mount.one_sided))
-    return tuple(found)
+        mount_contacts.append(MountContact(name, at, rest.preload[name], *rates, mount.one_sided))
+    return tuple(mount_contacts)

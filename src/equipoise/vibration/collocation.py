@@ -173,10 +173,10 @@ def solve(
         share = 1.0
         while True:
             tried = states + share * step.states
-            found = replace(
+            result = replace(
                 orbit, starts=starts + share * step.starts, slopes=_slopes(rates, tried)
             )
-            new = _misfit(found, tried, conditions)
+            new = _misfit(result, tried, conditions)
             if new <= 2 * misfit or share < 1 / 32 or not np.isfinite(misfit):
                 break
             share /= 4
@@ -184,8 +184,8 @@ def solve(
         change = float(np.max(np.abs(step.starts) / scale[:, None]))
         if not np.isfinite(change):
             return replace(orbit, change=np.inf)
-        starts, states, misfit = found.starts, tried, new
-        orbit = replace(found, monodromy=step.monodromy, change=change, rounds=number)
+        starts, states, misfit = result.starts, tried, new
+        orbit = replace(result, monodromy=step.monodromy, change=change, rounds=number)
         if share == 1.0 and (change < CLOSE or (change > last / 2 and last < SETTLED)):
             break  # there, or as near as rounding lets it come
         last = change

@@ -105,10 +105,10 @@ class Coupled:
         def rates(states: Array) -> Array:
             d = len(self.free)
             speed = self.crank_speed(states)
-            found = self.accelerations(table, states)
-            parts = [*states[d : 2 * d], *found[:d]]
+            accelerations = self.accelerations(table, states)
+            parts = [*states[d : 2 * d], *accelerations[:d]]
             if self.torque is not None:
-                parts += [found[d], np.ones_like(speed), np.zeros_like(speed)]
+                parts += [accelerations[d], np.ones_like(speed), np.zeros_like(speed)]
             return np.stack([np.asarray(part / (self.sense * speed)) for part in parts])
 
         return rates
@@ -150,10 +150,10 @@ class Coupled:
             d = 2 * len(self.free)
             return self.torque(states[d], states[d + 2])
         matrix, right = self._equations(table, states)
-        found = self.accelerations(table, states)
+        accelerations = self.accelerations(table, states)
         needed: Array = -right[3]
         for k, number in enumerate(self.free):
-            needed = needed + matrix[3, number] * found[k]
+            needed = needed + matrix[3, number] * accelerations[k]
         return needed
 
     def needed_torque(self, table: Sums, states: Array) -> Array:
@@ -189,7 +189,7 @@ class Coupled:
             first[0] * gy - first[1] * gx + table.load_moment - table.inertia_1 * speed * turning,
         ]
         changes = (*first_2, table.spin_1)
-        forces = [force - speed**2 * one for force, one in zip(forces, changes, strict=True)]
+        forces = [force - speed**2 * change for force, change in zip(forces, changes, strict=True)]
         for contact in self.contacts:
             parts = contact.at.wrench(contact.force(place, rate), place)
             forces = [force + part for force, part in zip(forces, parts, strict=True)]
@@ -231,12 +231,12 @@ class CouplingTable:
 
         turns = assemble(system.machine).cycle.turns
         s = np.linspace(0.0, 2 * pi * turns, KNOTS * turns + 1)
-        found = system.sums(s)
-        self.mass = found.mass
+        result = system.sums(s)
+        self.mass = result.mass
         columns: list[Array] = []
         self.complex: list[bool] = []
         for item in fields(Sums)[1:]:
-            values = np.broadcast_to(getattr(found, item.name), s.shape)
+            values = np.broadcast_to(getattr(result, item.name), s.shape)
             self.complex.append(np.iscomplexobj(values))
             columns += [values.real, values.imag] if self.complex[-1] else [values]
         table = np.column_stack(columns)
@@ -245,11 +245,11 @@ class CouplingTable:
 
     def at(self, theta: float) -> Sums:
         values = iter(self._spline(theta).tolist())
-        found = [
+        items = [
             np.array(complex(next(values), next(values)) if two else next(values))
             for two in self.complex
         ]
-        return Sums(self.mass, *found)
+        return Sums(self.mass, *items)
 
 
 def follow(
@@ -292,9 +292,9 @@ def follow(
                     evaluations=evaluations,
                 )
             )
-        found = system.accelerations(table.at(y[2 * d + 1]), states(y))
-        spin_up = 0.0 if system.torque is None else found[d]
-        return np.array([*y[d : 2 * d], *found[:d], spin_up, y[2 * d]])
+        accelerations = system.accelerations(table.at(y[2 * d + 1]), states(y))
+        spin_up = 0.0 if system.torque is None else accelerations[d]
+        return np.array([*y[d : 2 * d], *accelerations[:d], spin_up, y[2 * d]])
 
     span = float(time[0]), float(time[-1])
     least = ABSOLUTE * float(size_of_bodies(system.machine))
@@ -335,6 +335,6 @@ def settled(system: Coupled, s: Array) -> Array:
     begin = np.zeros(2 * len(system.free) + 2)
     begin[-2] = system.speed
     states = follow(system, np.concatenate([[0.0], np.abs(instants)]), begin, 0.0, TO_SETTLE)
-    found = np.empty((2 * len(system.free), len(s)))
-    found[:, order] = states[: 2 * len(system.free), 1:]
-    return found
+    values = np.empty((2 * len(system.free), len(s)))
+    values[:, order] = states[: 2 * len(system.free), 1:]
+    return values

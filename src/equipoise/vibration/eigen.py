@@ -28,13 +28,13 @@ def find_modes(mass: Array, damping: Array, stiffness: Array) -> tuple[Mode, ...
     # tells free motions apart.
     _, sizes, shapes = svd(stiffness)
     free = sizes <= STILL**2 * np.max(sizes, initial=0.0)
-    found = [Mode(0j, _scaled(shape)) for shape in shapes[free].astype(complex)]
+    modes = [Mode(0j, _scaled(shape)) for shape in shapes[free].astype(complex)]
     for value, vector in zip(values, vectors.T, strict=True):
         if abs(value) > least and value.imag >= -STILL * abs(value):
             swinging = value.imag > STILL * abs(value)
             eigenvalue = complex(value if swinging else value.real)
-            found.append(Mode(eigenvalue, _scaled(vector[:count])))
-    return tuple(sorted(found, key=lambda mode: (mode.natural_frequency, mode.eigenvalue.real)))
+            modes.append(Mode(eigenvalue, _scaled(vector[:count])))
+    return tuple(sorted(modes, key=lambda mode: (mode.natural_frequency, mode.eigenvalue.real)))
 
 
 def _scaled(shape: Array) -> Array:

@@ -85,12 +85,12 @@ def solve_exact(
     swings = 0.0 if linear is None else swings_in_a_turn(linear.modes, speed)
     try:
         jumps = system.jumps
-        found = steady(system, guesses, turns_of(machine), conditions_of(system), swings, jumps)
+        result = steady(system, guesses, turns_of(machine), conditions_of(system), swings, jumps)
     except ResponseError as error:
         if setting is not None and patient:
             check_stall(system, setting, error)
         raise
-    solution = ExactSolution(system, linear, found)
+    solution = ExactSolution(system, linear, result)
     if solution.toppled:
         raise ResponseError(NO_STEADY_STATE)
     return solution
@@ -215,10 +215,10 @@ class ExactSolution:
         """Motion of support and crank at those instants."""
         system, states = self.system, self.states
         place, rate = system.place_and_rate(states)
-        found = system.accelerations(self.sums, states)
+        accelerations = system.accelerations(self.sums, states)
         change = np.zeros_like(place)
-        change[list(system.free)] = found[: len(system.free)]
-        spin_up = np.zeros(len(self.crank_angle)) if system.torque is None else found[-1]
+        change[list(system.free)] = accelerations[: len(system.free)]
+        spin_up = np.zeros(len(self.crank_angle)) if system.torque is None else accelerations[-1]
         speed = system.crank_speed(states)
         return BaseMotion(place, rate, change, self.crank_angle, speed, spin_up, system.reference)
 
@@ -242,8 +242,8 @@ class ExactSolution:
         """Of samples (..., N) at those instants: by the crank angle of a constant mean speed."""
         backwards = self.system.sense < 0
         if self.sampling is not None:
-            found = self.sampling.periodic(samples)
-            return Periodic(found.amplitudes.conj(), self.turns) if backwards else found
+            periodic = self.sampling.periodic(samples)
+            return Periodic(periodic.amplitudes.conj(), self.turns) if backwards else periodic
         samples = np.roll(samples[..., ::-1], 1, axis=-1) if backwards else samples
         return Periodic.of(samples, self.turns)
 
@@ -290,30 +290,30 @@ class ExactSolution:
 
     def _gauges(self, body: SupportBody) -> dict[str, GaugeSignals]:
         ride = self.ride
-        found = {}
+        gauge_signals = {}
         for name, gauge in gauges_of(body).items():
             at = Reading.of(body, gauge)
-            found[name] = GaugeSignals(
+            gauge_signals[name] = GaugeSignals(
                 self.signal(at.displacement(ride.place)),
                 self.signal(at.velocity(ride.place, ride.rate)),
                 self.signal(at.acceleration(ride.place, ride.rate, ride.change)),
                 gauge.axis is not None,
             )
-        return found
+        return gauge_signals
 
     def _mounts(self) -> Mapping[str, MountForce]:
         if self.linear is None:
             return {}
         exciting = force_amplitudes(self.linear, self.speed)
-        found = {}
+        mount_forces = {}
         for contact in self.system.contacts:
             force = contact.force(self.ride.place, self.ride.rate)
             hands_on = exciting if contact.at.along is not None else exciting[:0]
             mount = mount_force(self.signal(force), 0.0, hands_on)
             if contact.one_sided:
                 mount = replace(mount, lifts_off=float(self.mean(force <= 0)), least=0.0)
-            found[contact.name] = mount
-        return found
+            mount_forces[contact.name] = mount
+        return mount_forces
 
     def _drive(self) -> DriveSignals:
         torque = self.signal(self.system.drive_torque(self.sums, self.states))

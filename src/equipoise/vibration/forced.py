@@ -52,8 +52,8 @@ def chosen_model(machine: Machine, model: str | None, drive: bool) -> Model:
         )
     if drive and machine.drive.motor is None:
         names = key_names("no_load_speed", "stall_torque")
-        told = Note("missing; give its {no_load_speed} and {stall_torque}", **names)
-        raise ModelError("drive.motor", told)
+        note = Note("missing; give its {no_load_speed} and {stall_torque}", **names)
+        raise ModelError("drive.motor", note)
     if drive and model not in {None, "exact"}:
         raise UsageError(
             Note("the speed follows from the motor in the model exact, not in {model}", model=model)
@@ -117,17 +117,17 @@ def steady_speed(machine: Machine, speed: float | str | None, drive: bool) -> fl
 
 def left_out(machine: Machine) -> list[Note | str]:
     """What the model file gives that does nothing in a steady vibration."""
-    found: list[Note | str] = list(idle_parts(machine.support))
+    sentences: list[Note | str] = list(idle_parts(machine.support))
     if machine.drive.acceleration:
         said = to_say("the drive's acceleration is left out: a steady vibration has a steady crank")
-        found.append(Note(said))
+        sentences.append(Note(said))
     if machine.support is not None and machine.support.planar and machine.has_planes:
         said = to_say("rocking moments do nothing: the support can neither roll nor yaw")
-        found.append(Note(said))
+        sentences.append(Note(said))
     if machine.rubs:
         said = to_say("friction in joints is left out: the support is shaken as without it")
-        found.append(Note(said))
-    return found
+        sentences.append(Note(said))
+    return sentences
 
 
 def excitation_model_of(model: str | None) -> ExcitationModel:
@@ -155,7 +155,7 @@ def models_of(machine: Machine) -> tuple[Model, ...]:
     known: tuple[Model, ...] = tuple(MODELS)
     if not machine.support.planar:
         known = ("linear", "torque", "moment")
-    return known if machine.has_crank else tuple(one for one in known if one not in WITH_CRANK)
+    return known if machine.has_crank else tuple(item for item in known if item not in WITH_CRANK)
 
 
 Progress = Callable[[int, int], None]
@@ -183,8 +183,8 @@ def follow_speeds(
     both: dict[float, float] = {}  # speeds with two states, and how much less one of them shakes
     for speed, up, down in zip(speeds, upward, downward[::-1], strict=True):
         ratio = _ratio(up, down)
-        found = down if up is None or (down is not None and ratio > 1) else up
-        louder.append(found or _patiently(machine, speed, drive))
+        result = down if up is None or (down is not None and ratio > 1) else up
+        louder.append(result or _patiently(machine, speed, drive))
         if abs(ratio - 1) > DIFFERENT:
             both[speed] = min(ratio, 1 / ratio)
     if not both:
@@ -205,24 +205,26 @@ def respond_exact(machine: Machine, speed: float, drive: bool) -> Response:
     support = machine.support
     if support is None or not any(mount.one_sided for mount in support.mounts.values()):
         return solve_exact(machine, speed, drive).response()
-    found: list[Response] = []
+    responses: list[Response] = []
     for reach in APPROACHES:
         speeds = [speed * share for share in reach]
         last = _along(machine, speeds, drive, lambda done: None, brief=False)[-1]
-        if last is not None and all(abs(_ratio(last, other) - 1) > DIFFERENT for other in found):
-            found.append(last)
-    if not found:
+        if last is not None and all(
+            abs(_ratio(last, other) - 1) > DIFFERENT for other in responses
+        ):
+            responses.append(last)
+    if not responses:
         return solve_exact(machine, speed, drive).response()
 
     def loudness(answer: Response) -> float:
         return sum(float(gauge.displacement.peak_to_peak) for gauge in answer.gauges.values())
 
-    louder = max(found, key=loudness)
+    louder = max(responses, key=loudness)
     said = to_say(
         "another steady state at this speed shakes {share} % as much; which of "
         "them the machine takes depends on the speeds it comes from"
     )
-    shares = (100 * _ratio(louder, other) for other in found if other is not louder)
+    shares = (100 * _ratio(louder, other) for other in responses if other is not louder)
     notes = (Note(said, share=f"{share:.0f}") for share in shares)
     return replace(louder, notes=(*louder.notes, *notes))
 
@@ -239,13 +241,13 @@ def _along(
     near = None
     for speed in speeds:
         try:
-            found = solve_exact(machine, speed, drive, near, patient=False)
+            exact_solution = solve_exact(machine, speed, drive, near, patient=False)
         except ResponseError:
             near = None
             answers.append(None)
         else:
-            near = found.found.orbit.at
-            answers.append(found.response(brief))
+            near = exact_solution.found.orbit.at
+            answers.append(exact_solution.response(brief))
         progress(len(answers))
     return answers
 
@@ -297,15 +299,15 @@ def respond(
     speed, linear = steady_speed(machine, speed, drive), None
     if model in get_args(ExcitationModel):
         linear = Linear.of(machine, cast(ExcitationModel, model))
-        found = respond_linear(linear, speed)
+        response = respond_linear(linear, speed)
     elif model == "coupled":
-        found = respond_coupled(Linear.of(machine, "torque"), speed)
+        response = respond_coupled(Linear.of(machine, "torque"), speed)
     else:
-        found = respond_exact(machine, speed, drive)
+        response = respond_exact(machine, speed, drive)
     if machine.support is None:
-        return replace(found, notes=(*left_out(machine), *found.notes))
-    near = warned(linear or Linear.of(machine, excitation_model_of(model)), found.speed)
-    return replace(found, notes=(*left_out(machine), *near, *found.notes))
+        return replace(response, notes=(*left_out(machine), *response.notes))
+    notes = warned(linear or Linear.of(machine, excitation_model_of(model)), response.speed)
+    return replace(response, notes=(*left_out(machine), *notes, *response.notes))
 
 
 def readings_of(machine: Machine, speed: float) -> Mapping[str, GaugeSignals] | None:

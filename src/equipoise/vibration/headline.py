@@ -44,7 +44,11 @@ def response_headline(response: Response, alone: bool = False) -> Iterator[Block
     """
     machine = response.machine
     analysis = analyze(machine, speed=response.speed, acceleration=0.0)
-    read = [one for one in assess(analysis, response.gauges) if one.figure.startswith("gauges.")]
+    read = [
+        figure_assessment
+        for figure_assessment in assess(analysis, response.gauges)
+        if figure_assessment.figure.startswith("gauges.")
+    ]
     first = verdict(tuple(read))
     if first is not None:
         words = say("{sentence}.", sentence=sentence(first, machine.crank_turns))
@@ -58,7 +62,7 @@ def response_headline(response: Response, alone: bool = False) -> Iterator[Block
     yield from map(Text, _resonances(response))
     if response.notes:
         yield Notes(response.notes[:MOST_NOTES])
-    low, high = sorted(abs(one) / PER_RPM for one in around(machine.drive, response.speed))
+    low, high = sorted(abs(item) / PER_RPM for item in around(machine.drive, response.speed))
     yield look_at_next(f'respond --speed "{low:.3g} rpm : {high:.3g} rpm"', "balance")
 
 
@@ -128,17 +132,20 @@ def _peaks(sweep: Sweep) -> Iterator[str]:
 
 def _loud(sweep: Sweep) -> Iterator[str]:
     """Loud resonances, the loudest first."""
-    loud = sorted((one for one in sweep.resonances if one.is_loud), key=lambda one: -one.share)
-    for one in loud[:MOST_LOUD]:
+    loud = sorted(
+        (resonance for resonance in sweep.resonances if resonance.is_loud),
+        key=lambda one: -one.share,
+    )
+    for item in loud[:MOST_LOUD]:
         values = {
-            "speed": brief(abs(one.speed) / PER_RPM),
-            "order": f"{one.order:.4g}",
-            "mode": one.mode,
+            "speed": brief(abs(item.speed) / PER_RPM),
+            "order": f"{item.order:.4g}",
+            "mode": item.mode,
         }
-        low, high = sorted(map(abs, one.avoid or (0.0, 0.0)))
+        low, high = sorted(map(abs, item.avoid or (0.0, 0.0)))
         avoided = to_say(
             "{speed} rpm: order {order} meets mode {mode}; keep away from {low} to {high} rpm"
         )
         harmless = to_say("{speed} rpm: order {order} meets mode {mode}, well damped")
         ends = {"low": brief(low / PER_RPM), "high": brief(high / PER_RPM)}
-        yield say(harmless if one.avoid is None else avoided, **values, **ends)
+        yield say(harmless if item.avoid is None else avoided, **values, **ends)

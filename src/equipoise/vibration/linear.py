@@ -129,15 +129,15 @@ class SupportExcitation:
         """Weight (3,), N, and where it acts (3,), m, of the support and of each row."""
         gravity = np.array([*self.machine.gravity, 0.0])
         support = self.body.support
-        found = [(support.mass * gravity, np.array(support.center_of_mass))]
+        pairs = [(support.mass * gravity, np.array(support.center_of_mass))]
         for row in rows_of(self.machine):
             place = self.pivot_of(row)
             if self.model == "moment":
                 center = self._mean_center + complex(*row.offset)
                 z = row.lateral + (self.across / self.machine.mass if self.machine.mass else 0.0)
                 place = np.array([center.real, center.imag, z])
-            found.append((self.machine.mass * gravity, place))
-        return found
+            pairs.append((self.machine.mass * gravity, place))
+        return pairs
 
     @property
     def across(self) -> float:
@@ -214,19 +214,19 @@ class SupportExcitation:
         present = forces(motion, self.pivot).outer
         loads, before = [*outer_loads(motion)], self._signals_of(present)
         rocks = self.model == "moment" and machine.has_planes
-        found = []
+        pairs = []
         for link, tip, _, _ in soil_loads(motion):
             added = []
             for unit in (1.0, 1j):
                 force = np.full(len(motion.crank_angle), unit, complex)
                 demands = demands_of(motion, [*loads, (link, tip, force, 0.0)])
-                one = self._signals_of(replace(present, loads=demands)) - before
+                value = self._signals_of(replace(present, loads=demands)) - before
                 if rocks:  # `across` asks the machine for its loads
                     couple = 1j * machine.links[link].plane_of(tip) * unit
-                    one[3:] = [[couple.real], [couple.imag]]
-                added.append(one)
-            found.append((added[0], added[1]))
-        return found
+                    value[3:] = [[couple.real], [couple.imag]]
+                added.append(value)
+            pairs.append((added[0], added[1]))
+        return pairs
 
     @cached_property
     def _by_square(self) -> tuple[Array, Array]:
@@ -390,15 +390,15 @@ class Linear:
 
     def wrench(self, speed: float) -> Periodic:
         """What excites the free coordinates (D, K + 1) at a speed, rad/s."""
-        found = self.excitation.at(speed)
-        amplitudes = found.amplitudes[self.body.free].copy()
+        result = self.excitation.at(speed)
+        amplitudes = result.amplitudes[self.body.free].copy()
         amplitudes[:, 0] += self.rest.unbalance[self.body.free]
-        return Periodic(amplitudes, found.turns)
+        return Periodic(amplitudes, result.turns)
 
     def wrench_at(self, theta: Array, speed: float) -> Array:
         """The same (D, P) at crank angles (P,), rad, not by orders."""
-        found = self.excitation.samples(theta, speed)[self.body.free]
-        return np.asarray(found + self.rest.unbalance[self.body.free, None])
+        sample = self.excitation.samples(theta, speed)[self.body.free]
+        return np.asarray(sample + self.rest.unbalance[self.body.free, None])
 
     def motion(self, speed: float) -> Periodic:
         """Displacements of the free coordinates (D, K + 1), m and rad, at a speed, rad/s.
@@ -423,8 +423,8 @@ class Linear:
     def impedance(self, frequency: Array) -> Array:
         """Wrench for a unit of each displacement (F, D, D) at angular frequencies (F,), rad/s."""
         frequency = frequency[:, None, None]
-        found: Array = self.stiffness - frequency**2 * self.mass + 1j * frequency * self.damping
-        return found
+        values: Array = self.stiffness - frequency**2 * self.mass + 1j * frequency * self.damping
+        return values
 
     def _resonant(self, impedance: Array, frequency: Array) -> bool:
         """Whether an order meets a mode that nothing damps, as near as rounding tells."""
@@ -452,11 +452,11 @@ def gauges_of(body: SupportBody) -> dict[str, Gauge]:
     if body.support.gauges:
         return dict(body.support.gauges)
     x, y, z = map(float, body.reference)
-    found = {}
+    gauges = {}
     for name in body.support.coordinates:
         if name in AXES:
-            found[name] = Gauge(axis=name)
+            gauges[name] = Gauge(axis=name)
         else:
             first, second, third = map(float, np.eye(3)[FREEDOMS.index(name)])
-            found[name] = Gauge((x, y, z), (first, second, third))
-    return found
+            gauges[name] = Gauge((x, y, z), (first, second, third))
+    return gauges

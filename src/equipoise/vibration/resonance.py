@@ -85,13 +85,13 @@ def nearest_loud(found: Iterable[Resonance], speed: float) -> Resonance:
     near it is.
     """
     every = tuple(found)
-    loud = [one for one in every if one.is_loud] or every
+    loud = [item for item in every if item.is_loud] or every
     return min(loud, key=lambda one: abs(abs(one.speed / speed) - 1))
 
 
 def resonance_note(found: Iterable[Resonance], speed: float) -> Note:
     """The nearest loud resonance (speed in rad/s), and between which speeds it is to be avoided."""
-    one = nearest_loud(found, speed)
+    resonance = nearest_loud(found, speed)
     of_one = to_say(
         "the nearest loud resonance is at {speed} rpm, where order {order} meets mode {mode} "
         "({frequency} Hz); no speed about it has to be avoided"
@@ -100,13 +100,13 @@ def resonance_note(found: Iterable[Resonance], speed: float) -> Note:
         "the nearest loud resonance is at {speed} rpm, where order {order} meets mode {mode} "
         "({frequency} Hz); keep away from {low} to {high} rpm"
     )
-    low, high = sorted(map(abs, one.avoid or (0.0, 0.0)))
+    low, high = sorted(map(abs, resonance.avoid or (0.0, 0.0)))
     return Note(
-        of_one if one.avoid is None else avoided,
-        speed=brief(abs(one.speed) / PER_RPM),
-        order=f"{one.order:.4g}",
-        mode=one.mode,
-        frequency=brief(one.frequency / (2 * pi)),
+        of_one if resonance.avoid is None else avoided,
+        speed=brief(abs(resonance.speed) / PER_RPM),
+        order=f"{resonance.order:.4g}",
+        mode=resonance.mode,
+        frequency=brief(resonance.frequency / (2 * pi)),
         low=number(low / PER_RPM),
         high=number(high / PER_RPM),
     )
@@ -114,9 +114,9 @@ def resonance_note(found: Iterable[Resonance], speed: float) -> Note:
 
 def within(found: Iterable[Resonance], speed: float) -> Iterator[Note]:
     """Which resonances amplify at a speed (rad/s) so much that it is to be kept away from."""
-    for one in found:
-        low, high = sorted(map(abs, one.avoid or (0.0, 0.0)))
-        if low <= abs(speed) <= high and one.avoid is not None:
+    for item in found:
+        low, high = sorted(map(abs, item.avoid or (0.0, 0.0)))
+        if low <= abs(speed) <= high and item.avoid is not None:
             said = to_say(
                 "the crank turns at a speed that is to be avoided: between {low} and {high} rpm "
                 "order {order} meets mode {mode} ({frequency} Hz), which amplifies it more than "
@@ -126,9 +126,9 @@ def within(found: Iterable[Resonance], speed: float) -> Iterator[Note]:
                 said,
                 low=brief(low / PER_RPM),
                 high=brief(high / PER_RPM),
-                order=f"{one.order:.4g}",
-                mode=one.mode,
-                frequency=brief(one.frequency / (2 * pi)),
+                order=f"{item.order:.4g}",
+                mode=item.mode,
+                frequency=brief(item.frequency / (2 * pi)),
             )
 
 
@@ -151,22 +151,22 @@ def resonances(linear: Linear, slowest: float, fastest: float) -> list[Resonance
 
     Those whose order the linkages do not excite in that mode are left out.
     """
-    found: list[tuple[float, float, int, Mode]] = []
+    parts: list[tuple[float, float, int, Mode]] = []
     low, high = sorted((abs(slowest), abs(fastest)))
     orders = linear.wrench(high).orders[1:]
     for place, mode in enumerate(linear.modes, 1):
         rate = mode.natural_frequency
         # The ends belong to the range, whatever rounding says.
         inside = (rate >= orders * low * (1 - 1e-12)) & (rate <= orders * high * (1 + 1e-12))
-        found += [
+        parts += [
             (copysign(rate / order, fastest), order, place, mode)
             for order in map(float, orders[inside & mode.swings])
         ]
-    loud = _loudness(linear, found)
+    loud = _loudness(linear, parts)
     return sorted(
         (
             Resonance(speed, order, place, mode.natural_frequency, share, _avoid(speed, mode))
-            for (speed, order, place, mode), share in zip(found, loud, strict=True)
+            for (speed, order, place, mode), share in zip(parts, loud, strict=True)
             if share >= QUIET
         ),
         key=lambda resonance: -abs(resonance.speed),

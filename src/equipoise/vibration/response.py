@@ -465,16 +465,16 @@ class Response(Result):
         """
         count = samples * self.turns
         phase = np.arange(count) * (2 * np.pi / samples)
-        found: list[tuple[str, str, Array]] = [(TIME_IN_PERIOD, "s", phase / abs(self.speed))]
+        parts: list[tuple[str, str, Array]] = [(TIME_IN_PERIOD, "s", phase / abs(self.speed))]
         if self.drive.speed is None:
-            found.append(("crank_angle", "rad", np.sign(self.speed) * phase))
+            parts.append(("crank_angle", "rad", np.sign(self.speed) * phase))
         backwards = self.speed < 0
 
         def sampled(signal: Periodic) -> Array:
             values = signal.samples(count)
             return np.roll(values[::-1], 1) if backwards else values
 
-        return [*found, *columns_of(self, self.declared, sampled, self.machine)]
+        return [*parts, *columns_of(self, self.declared, sampled, self.machine)]
 
 
 def in_words(multipliers: Array) -> list[Note]:

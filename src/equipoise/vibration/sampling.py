@@ -100,7 +100,9 @@ def between(answers: Mapping[float, Response | None]) -> list[float]:
 
 def _levels(answer: Response) -> Array:
     """RMS of whatever is drawn against speed, (C,), as points of a log axis; NaN where it is 0."""
-    read = [(one.displacement, one.velocity, one.acceleration) for one in answer.gauges.values()]
+    read = [
+        (gauge.displacement, gauge.velocity, gauge.acceleration) for gauge in answer.gauges.values()
+    ]
     signals = [*(signal for three in read for signal in three)]
     signals += [mount.force for mount in answer.mounts.values()]
     sizes = np.array([float(signal.vibration_rms) for signal in signals])

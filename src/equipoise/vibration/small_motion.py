@@ -58,12 +58,12 @@ def respond_linear(linear: Linear, speed: float) -> Response:
 
 def _gauges(linear: Linear, *motion: Periodic) -> dict[str, GaugeSignals]:
     """What gauges read of displacements, velocities and accelerations (D, K + 1)."""
-    found = {}
+    gauge_signals = {}
     for name, gauge in gauges_of(linear.body).items():
         row = linear.body.row(gauge)
-        moved, moving, change = (linear.seen_by(row, one) for one in motion)
-        found[name] = GaugeSignals(moved, moving, change, gauge.axis is not None)
-    return found
+        moved, moving, change = (linear.seen_by(row, item) for item in motion)
+        gauge_signals[name] = GaugeSignals(moved, moving, change, gauge.axis is not None)
+    return gauge_signals
 
 
 def _mounts(
@@ -121,8 +121,8 @@ def force_amplitudes(linear: Linear, speed: float) -> Array:
 def _torque(linear: Linear, speed: float) -> Periodic:
     """Torque on all cranks on solid ground."""
     motion = linear.excitation.motion.at(speed)
-    one = motion.periodic(forces(motion).drive_torque)
-    return reduce(add, (one.shifted(row.phase) for row in rows_of(linear.body.machine)))
+    periodic = motion.periodic(forces(motion).drive_torque)
+    return reduce(add, (periodic.shifted(row.phase) for row in rows_of(linear.body.machine)))
 
 
 # -- with the torque that the motion of the support takes from the drive ---------------------------
@@ -213,14 +213,14 @@ def respond_coupled(linear: Linear, speed: float) -> Response:
         return np.concatenate([rough.values(theta), (rough.derivative() * speed).values(theta)])
 
     turns = rough.turns
-    found = steady(system, [guess], turns, BoundaryConditions.periodic(system.count))
+    result = steady(system, [guess], turns, BoundaryConditions.periodic(system.count))
     theta = np.arange(SAMPLES * turns) * (2 * pi / SAMPLES)
-    states = found.orbit.at(np.mod(system.sense * theta, 2 * pi * turns))
+    states = result.orbit.at(np.mod(system.sense * theta, 2 * pi * turns))
     moved, moving, change = (
         Periodic.of(part, turns)
         for part in (*np.split(states, 2), system.accelerations(theta)(states))
     )
-    multipliers = found.multipliers(system.count)
+    multipliers = result.multipliers(system.count)
     plain = respond_linear(linear, speed)
     return replace(
         plain,
@@ -228,7 +228,7 @@ def respond_coupled(linear: Linear, speed: float) -> Response:
         gauges=_gauges(linear, moved, moving, change),
         mounts=_mounts(linear, moved, moving, speed)[0],
         motion=linear.body.whole(moved),
-        residual=found.residual,
+        residual=result.residual,
         multipliers=multipliers,
         notes=(*plain.notes, *in_words(multipliers)),
     )

@@ -122,10 +122,10 @@ def _mesh(intervals: int, period: float, jumps: Array) -> Array:
 def _first(tried: Iterable[Orbit | None]) -> Orbit:
     """The first solution that is stable, or else the first."""
     unstable = None
-    for found in tried:
-        if found is not None and _dies_out(found):
-            return found
-        unstable = unstable or found
+    for orbit in tried:
+        if orbit is not None and _dies_out(orbit):
+            return orbit
+        unstable = unstable or orbit
     if unstable is None:
         raise ResponseError(NO_STEADY_STATE)
     return unstable

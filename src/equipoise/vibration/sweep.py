@@ -147,13 +147,13 @@ class Sweep(Result):
     @cached_property
     def peaks(self) -> Mapping[str, list[tuple[float, float]]]:
         """Speed and value of the highest points of each gauge's peak-to-peak curve."""
-        found = {}
+        pairs = {}
         for name, curve in self.gauges.items():
             values = curve.peak_to_peak
             inner = (values[1:-1] > values[:-2]) & (values[1:-1] >= values[2:])
             tops = [(float(self.speed[k]), float(values[k])) for k in np.flatnonzero(inner) + 1]
-            found[name] = sorted(tops, key=lambda top: -top[1])
-        return found
+            pairs[name] = sorted(tops, key=lambda top: -top[1])
+        return pairs
 
     @property
     def _stability(self) -> list[bool] | None:
@@ -247,15 +247,15 @@ def sweep_speed(
         )
     linear = Linear.of(machine, excitation_model_of(model))
     met = resonances(linear, slowest, fastest)[:MOST_RESONANCES]
-    told = progress or _silent
+    text = progress or _silent
     respond = respond_coupled if model == "coupled" else respond_linear
     first = about(slowest, fastest, speeds, met, linear)
-    by_speed = answered(partial(respond, linear), first, _silent if model == "exact" else told)
+    by_speed = answered(partial(respond, linear), first, _silent if model == "exact" else text)
     grid, answers = np.array([*by_speed]), [*by_speed.values()]
-    found: list[str] = []
+    names: list[str] = []
     if model == "exact":  # one speed after the other, where that by orders bends
-        answers, found = follow_speeds(machine, grid.tolist(), drive, told)
-    notes = (*left_out(machine), *found, *_missing(grid, answers))
+        answers, names = follow_speeds(machine, grid.tolist(), drive, text)
+    notes = (*left_out(machine), *names, *_missing(grid, answers))
     return _gathered(machine, model, grid, answers, linear, met, notes)
 
 
@@ -279,10 +279,10 @@ def _noted(grid: Array, answers: list[Response | None]) -> Iterator[Note | str]:
     for speed, answer in zip(grid.tolist(), answers, strict=True):
         for note in () if answer is None else answer.notes:
             where.setdefault(_kind(note), []).append((speed, note))
-    for found in where.values():
-        note = found[0][1]
-        if len(found) < len(grid):
-            speeds = range_shown([speed for speed, _ in found])
+    for result in where.values():
+        note = result[0][1]
+        if len(result) < len(grid):
+            speeds = range_shown([speed for speed, _ in result])
             note = Note(to_say("{speeds}: {note}"), speeds=speeds, note=note)
         yield note
 
@@ -306,18 +306,18 @@ def _gathered(
     notes: tuple[Note | str, ...],
 ) -> Sweep:
     there = np.array([answer is not None for answer in answers])
-    found = [answer for answer in answers if answer is not None]
+    matching_answers = [answer for answer in answers if answer is not None]
     stable = there.copy()
-    stable[there] = [answer.stable is not False for answer in found]
+    stable[there] = [answer.stable is not False for answer in matching_answers]
     return Sweep(
         machine,
         model,
         grid,
-        {name: _gauge_curve(name, found, there) for name in found[0].gauges},
-        {name: _mount_curve(name, found, there) for name in found[0].mounts},
+        {name: _gauge_curve(name, matching_answers, there) for name in matching_answers[0].gauges},
+        {name: _mount_curve(name, matching_answers, there) for name in matching_answers[0].mounts},
         linear.modes,
         tuple(met),
-        _spread(there, np.array([answer.drive.fluctuation for answer in found])),
+        _spread(there, np.array([answer.drive.fluctuation for answer in matching_answers])),
         stable,
         (*notes, *_noted(grid, answers)),
     )
@@ -351,12 +351,12 @@ def _mount_curve(name: str, found: list[Response], there: Array) -> MountCurve:
 def _together(signals: list[Periodic]) -> Periodic:
     """Signals as one, amplitudes (signals, K + 1)."""
     count = max(len(signal.amplitudes) for signal in signals)
-    padded = [np.pad(one.amplitudes, (0, count - len(one.amplitudes))) for one in signals]
+    padded = [np.pad(signal.amplitudes, (0, count - len(signal.amplitudes))) for signal in signals]
     return Periodic(np.array(padded), signals[0].turns)
 
 
 def _spread(there: Array, values: Array) -> Array:
     """Values (there, ...) at their places among all speeds (S, ...), NaN at the others."""
-    found = np.full((len(there), *values.shape[1:]), np.nan)
-    found[there] = values
-    return found
+    numbers = np.full((len(there), *values.shape[1:]), np.nan)
+    numbers[there] = values
+    return numbers

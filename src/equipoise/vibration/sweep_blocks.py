@@ -54,14 +54,14 @@ def resonances_table(sweep: Sweep) -> Table:
     """Where orders of the crank meet modes."""
     rows = (
         (
-            Value(one.speed),
-            f"{one.order:.4g}",
-            str(one.mode),
-            Value(one.frequency / 2 / pi),
-            Value(100 * one.share),
-            say("no need") if one.avoid is None else Span(*one.avoid),
+            Value(resonance.speed),
+            f"{resonance.order:.4g}",
+            str(resonance.mode),
+            Value(resonance.frequency / 2 / pi),
+            Value(100 * resonance.share),
+            say("no need") if resonance.avoid is None else Span(*resonance.avoid),
         )
-        for one in sweep.resonances
+        for resonance in sweep.resonances
     )
     columns = (
         Column(say("crank speed"), *CRANK),

@@ -23,10 +23,10 @@ def arrows_of(analysis: Analysis, point: str, block: FloatBlock) -> list[Values]
 
     kind : ``velocity``, ``acceleration`` or ``force``.  array : its name in the block, (2 N,).
     """
-    found = [*_arrows(analysis, point)]
-    for one, values in found:
-        block.add(one["array"], values)
-    return [one for one, _ in found]
+    items = [*_arrows(analysis, point)]
+    for entry, values in items:
+        block.add(entry["array"], values)
+    return [item for item, _ in items]
 
 
 def _arrows(analysis: Analysis, point: str) -> Iterator[tuple[Values, Array]]:
@@ -43,10 +43,10 @@ def _arrows(analysis: Analysis, point: str) -> Iterator[tuple[Values, Array]]:
             yield _told(kind, f"arrow.{kind}", label, dimension), values
     joints = {} if analysis.solved is None else analysis.solved.joints
     for name in _joints_at(analysis, point, joints):
-        one = joints[name]
+        joint = joints[name]
         label = analysis.outputs[f"joints.{name}"].label()
-        label = say("{force}, on {body}", force=label, body=body_named(one.on))
-        yield _told("force", f"arrow.force.{name}", label, "force"), one.value
+        label = say("{force}, on {body}", force=label, body=body_named(joint.on))
+        yield _told("force", f"arrow.force.{name}", label, "force"), joint.value
 
 
 def _told(kind: str, array: str, label: str, dimension: Dimension) -> Values:
@@ -56,5 +56,5 @@ def _told(kind: str, array: str, label: str, dimension: Dimension) -> Values:
 
 def _joints_at(analysis: Analysis, point: str, joints: Mapping[str, Any]) -> list[str]:
     """Names of pins and sliding joints at a point."""
-    slides = {one.name for one in analysis.machine.sliders if one.point == point}
+    slides = {slider.name for slider in analysis.machine.sliders if slider.point == point}
     return [name for name in joints if name.partition("/")[0] == point or name in slides]

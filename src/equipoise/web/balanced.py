@@ -64,13 +64,13 @@ def balanced(base: Design, hold: bool = False) -> Balanced:
     def solve(_: Machine, plan: Balance) -> Balanced:
         plan = _held(base.machine, plan) if hold else plan
         free = _replaced(base, plan)
-        found = balance(_without_shafts(base.without(free)).machine, plan)
+        result = balance(_without_shafts(base.without(free)).machine, plan)
         if not (free or base.shafts):
-            return found
+            return result
         shown = base.machine.with_balance(None)
         before = _aims_of(shown, plan)
-        aims = {name: (before[name], after) for name, (_, after) in found.objectives.items()}
-        return replace(found, original=shown, objectives=aims)
+        aims = {name: (before[name], after) for name, (_, after) in result.objectives.items()}
+        return replace(result, original=shown, objectives=aims)
 
     own = base.machine.balance
     frees = own is not None and not own.changes_nothing
@@ -82,7 +82,7 @@ def _without_shafts(base: Design) -> Design:
     own, gone = base.own, base.shafts & base.own.links.keys()
     links = {name: link for name, link in own.links.items() if name not in gone}
     couplings: dict[str, Any] = {
-        table: tuple(one for one in getattr(own, table) if gone.isdisjoint(one.bodies))
+        table: tuple(item for item in getattr(own, table) if gone.isdisjoint(item.bodies))
         for table in coupling_kinds(Machine)
     }
     held = {point for link in links.values() for point in link.points}
@@ -96,8 +96,8 @@ def _without_shafts(base: Design) -> Design:
 def _advised(base: Design) -> Balanced:
     """As `advise` does it, in the place of all counterweights that there are."""
     weights = _weighted(base)
-    found = advise(base.without(weights).machine)
-    return beside(found, base.machine.with_balance(None)) if weights else found
+    result = advise(base.without(weights).machine)
+    return beside(result, base.machine.with_balance(None)) if weights else result
 
 
 def _weighted(base: Design) -> list[str]:
@@ -110,12 +110,12 @@ def _held(machine: Machine, plan: Balance) -> Balance:
     if machine.support is None or plan.phases is not None:
         return plan
     gauges = (Objective(f"gauges.{name}", "ripple") for name in machine.support.gauges)
-    return replace(plan, limits=(*plan.limits, *(Limit(one, ratio=1.0) for one in gauges)))
+    return replace(plan, limits=(*plan.limits, *(Limit(gauge, ratio=1.0) for gauge in gauges)))
 
 
 def _replaced(base: Design, plan: Balance) -> list[str]:
     """Links that have a counterweight on the pin where the plan may add mass."""
-    free = {(one.link, one.at) for one in plan.masses}
+    free = {(mass.link, mass.at) for mass in plan.masses}
     return [name for name in _weighted(base) if (name, pin_of(base.own, name)) in free]
 
 
@@ -132,7 +132,9 @@ def _replaced_shafts(base: Design, found: Balanced) -> list[str]:
 def _aims_of(machine: Machine, plan: Balance) -> dict[str, float]:
     """Value of each objective, SI units, as `balance` tells it."""
     if plan.phases is None:
-        return {one.name: Problem.value_of(machine, one) for one in plan.objectives}
+        return {
+            objective.name: Problem.value_of(machine, objective) for objective in plan.objectives
+        }
     search = PhaseSearch(machine, plan.objectives, plan.phases, plan.combine)
     return {term.objective.name: term.value_at(search.present) for term in search.cost.terms}
 
@@ -203,7 +205,7 @@ def _free_name(name: str, taken: set[str], *links: str) -> str:
 
 def _clean(own: Link, link: Link) -> Link:
     """A link whose point masses that are new have numbers as somebody would have given them."""
-    bodies = [one if one in own.bodies else _rounded(one) for one in link.bodies]
+    bodies = [body if body in own.bodies else _rounded(body) for body in link.bodies]
     return link.altered(bodies=tuple(bodies)) if bodies else link
 
 
@@ -265,10 +267,10 @@ def balanced_told(base: Computed, after: Computed, found: Balanced) -> Values:
             *(say("{link}: take off this shaft", link=name) for name in shafts),
             *(line for change in found.changes for line in sentences(change)),
         ],
-        "aims": [_aim(found, one, figures) for one in found.aims],
+        "aims": [_aim(found, aim, figures) for aim in found.aims],
         "figures": [_figure(found, name, *figures[name]) for name in names],
         "worse": list(worse_told(found)),
-        "gauges_worse": any(one.group == "gauges" for one in found.worse),
+        "gauges_worse": any(worse.group == "gauges" for worse in found.worse),
         "proof": " ".join(proof_told(found)),
         "notes": list(map(said, found.notes)),
     }
@@ -284,7 +286,7 @@ def _read(base: Computed, after: Computed) -> dict[str, tuple[float, float]]:
     if base.analysis.machine.drive.acceleration:  # which balancing leaves out
         return {}
     figures = figures_of(after.analysis, base.analysis)
-    pairs = {one["name"]: (one.get("before"), one["value"]) for one in figures}
+    pairs = {figure["name"]: (figure.get("before"), figure["value"]) for figure in figures}
     return {name: (a, b) for name, (a, b) in pairs.items() if a is not None and b is not None}
 
 
@@ -306,8 +308,10 @@ def _figure(found: Balanced, name: str, before: float, after: float) -> Values:
         label, unit = "mass of the links", display("mass", [before, after])
     else:
         output, _, measure = name.rpartition(".")
-        one, _ = declared(output) or (None, "")
-        whole = one is not None and one.part not in ("x", "y") and one.group in ("forces", "rows")
+        item, _ = declared(output) or (None, "")
+        whole = (
+            item is not None and item.part not in ("x", "y") and item.group in ("forces", "rows")
+        )
         main = whole and measure in MAIN
         label = figure_named(name, len(found.machine.rows))
         unit = shown_in(figure_unit(found, name), [before, after])
@@ -360,15 +364,15 @@ def begun(session: BalanceSession, message: Message) -> Reply:
 def computed(session: BalanceSession, base: Computed, message: Message) -> Balancing:
     """Balance a design; errors as of `balance`."""
     moved = base.moved
-    found = balanced(moved, message.flag("hold", False))
+    result = balanced(moved, message.flag("hold", False))
     with session.telling():
-        nothing = nothing_gained(found)
+        nothing = nothing_gained(result)
     if nothing is not None:
         return Balancing(nothing)
-    design = balanced_design(moved, found)
+    design = balanced_design(moved, result)
     after = solved(design)
     with session.telling():
-        return Balancing(design=design, content=balanced_told(base, after, found))
+        return Balancing(design=design, content=balanced_told(base, after, result))
 
 
 def adopted(

@@ -47,12 +47,12 @@ def with_cam(sketch: Sketch, driver: str, driven: str, spot: Spot, rides: str) -
     carrier, pin, joint = _carrier(sketch, driver, driven)
     sketch, point = _rider(sketch, driven, spot)
     if isinstance(joint, str) and point == joint:
-        told = Note(
+        note = Note(
             "{link} turns about {point}; choose another place of it, which the cam is to push",
             link=driven,
             point=point,
         )
-        raise UsageError(told)
+        raise UsageError(note)
     sketch, joint = _ahead(sketch, point, pin, joint, carrier)
     cam = _seated(sketch, Cam(driver, driven, carrier=carrier, rides=riding, point=point,
                               closed_by="groove" if rides == RIDES[0] else "ribs",
@@ -67,11 +67,13 @@ def _carrier(sketch: Sketch, driver: str, driven: str) -> tuple[str, str, Any]:
     joints = sketch.joints
     for carrier in (FRAME, *sketch.links):
         pins = joints.pins_between(driver, carrier)
-        held = joints.pins_between(driven, carrier)
+        pins_between = joints.pins_between(driven, carrier)
         ends = {driven, carrier}
-        guides = [one for one in sketch.sliders if {one.link, one.on} == ends]
-        if len({driver, driven, carrier}) == 3 and len(pins) == 1 == len(held) + len(guides):
-            return carrier, pins[0], (*held, *guides)[0]
+        guides = [slider for slider in sketch.sliders if {slider.link, slider.on} == ends]
+        if len({driver, driven, carrier}) == 3 and len(pins) == 1 == len(pins_between) + len(
+            guides
+        ):
+            return carrier, pins[0], (*pins_between, *guides)[0]
     raise UsageError(
         Note(
             "no body holds both {driver} by one pin and {driven} by one pin or slider; join the "
@@ -107,7 +109,7 @@ def _ahead(
     other = {key: clean(remainder(getattr(joint, key) + pi, 2 * pi), "angle")
              for key in ("direction", "angle")}  # fmt: skip
     turned = replace(joint, **other)
-    sliders = tuple(turned if one is joint else one for one in sketch.sliders)
+    sliders = tuple(turned if slider is joint else slider for slider in sketch.sliders)
     return replace(sketch, sliders=sliders), turned
 
 
@@ -126,12 +128,12 @@ def _seated(sketch: Sketch, cam: Cam, pin: str, joint: Slider | str) -> Cam:
         normal = _square(sketch, cam, joint, arm)
         far = float(dot(normal, arm))
     if far <= TOGETHER * sketch.size:
-        told = Note(
+        note = Note(
             "{point} lies where the cam of {link} turns; set it apart, by the cam's radius",
             point=cam.point,
             link=the(cam.driver),
         )
-        raise UsageError(told)
+        raise UsageError(note)
     if cam.rides == "roller":
         roller = _tidy(ROLLER * far)
         cam = replace(cam, roller_radius=roller, base_radius=clean(far - roller, "length"))
@@ -158,16 +160,16 @@ def _square(sketch: Sketch, cam: Cam, joint: Slider | str, arm: complex) -> comp
 def _cut(sketch: Sketch, cam: Cam, pin: str, joint: Slider | str) -> Sketch:
     """The sketch with a cam of the largest usual lift that can be cut."""
     refused: ModelError | None = None
-    for one in _moving(sketch, cam, pin, joint):
-        cams = (*sketch.rest.get("cams", ()), one)
-        found = replace(sketch, rest={**sketch.rest, "cams": cams})
+    for item in _moving(sketch, cam, pin, joint):
+        cams = (*sketch.rest.get("cams", ()), item)
+        result = replace(sketch, rest={**sketch.rest, "cams": cams})
         try:
-            machine = found.machine()
-            check_shape(machine, found.joints, fitted(machine, found.joints, one))
+            machine = result.machine()
+            check_shape(machine, result.joints, fitted(machine, result.joints, item))
         except ModelError as error:
             refused = error
         else:
-            return found
+            return result
     assert refused is not None
     raise refused
 

@@ -61,11 +61,16 @@ def _in_twos(document: Document, entry: Entry, own: Machine) -> Document:
     bearings: Mapping[str, Any] = document.content.get("bearings", {})
     if entry.values is None:
         gone = own.bearings.get(str(entry.place[-1]))
-        for name in [name for name, one in bearings.items() if gone and one["link"] == gone.link]:
+        for name in [
+            name for name, bearing in bearings.items() if gone and bearing["link"] == gone.link
+        ]:
             document = document.without(KeyPath(("bearings", name)))
         return document
     name, link = str(entry.name or entry.place[-1]), entry.values.get("link")
-    if link not in own.links or [one.get("link") for one in bearings.values()].count(link) != 1:
+    if (
+        link not in own.links
+        or [bearing.get("link") for bearing in bearings.values()].count(link) != 1
+    ):
         return document
     try:
         plane = parse(entry.values.get("plane"), "length")
@@ -73,7 +78,7 @@ def _in_twos(document: Document, entry: Entry, own: Machine) -> Document:
         return document  # its own reader tells what is wrong
     middle = own.links[str(link)].plane
     other = 2 * middle - plane if plane != middle else plane + APART
-    second = next(one for one in map(f"{name}{{}}".format, count(2)) if one not in bearings)
+    second = next(item for item in map(f"{name}{{}}".format, count(2)) if item not in bearings)
     values = {"link": link, "plane": format_exact(clean(other, "length"), "length")}
     return document.put(KeyPath(("bearings", second)), values)
 
@@ -86,7 +91,7 @@ def _in_a_cycle(document: Document, entry: Entry) -> Document:
     way, number = entry.place.parent, entry.place[-1]
     law: Any = way.parent.read(document.content)
     segments = law.get("segments", [])
-    overs = [parse(one["over"], "angle") for one in segments]
+    overs = [parse(segment["over"], "angle") for segment in segments]
     left = 2 * pi * law.get("turns", 1) - sum(overs)
     if not segments or abs(left) < ROUNDED:
         return document

@@ -49,9 +49,9 @@ def with_belt(
     belt = Belt(driver, driven, teeth=teeth, pitch=PITCHES[0], carrier=carrier)
     for wrong in belt.problems("belts", sketch.bodies):
         raise wrong
-    one, other = (sketch.places[_pin(sketch, body, carrier)] for body in (driver, driven))
-    room = FILLED * 2 * pi * abs(one - other) / sum(teeth)
-    pitch = next((one for one in PITCHES if one <= room), clean(room, "length"))
+    item, other = (sketch.places[_pin(sketch, body, carrier)] for body in (driver, driven))
+    room = FILLED * 2 * pi * abs(item - other) / sum(teeth)
+    pitch = next((pitch for pitch in PITCHES if pitch <= room), clean(room, "length"))
     return _added(sketch, replace(belt, pitch=pitch))
 
 
@@ -68,13 +68,13 @@ def with_rack(sketch: Sketch, driver: str, driven: str) -> Sketch:
             axis = sketch.places[_pin(sketch, pinion, slider.on)] - sketch.places[slider.point]
             off = axis / exp(1j * (slider.direction + sketch.pose(slider.on).angle))
             if abs(off.imag) <= TOGETHER * sketch.size:
-                told = Note(
+                note = Note(
                     "{pinion} turns about a point of the line of {rack}; set it beside the line, "
                     "by the radius of the pinion",
                     pinion=pinion,
                     rack=link,
                 )
-                raise UsageError(told)
+                raise UsageError(note)
             rack = Rack(
                 pinion,
                 link,
@@ -118,8 +118,8 @@ def _carrier(sketch: Sketch, driver: str, driven: str, told: str | None) -> str:
             return carrier
     carrier = told or FRAME
     body = next(
-        one for one in (driver, driven)
-        if one == carrier or len(_shared(sketch, one, carrier)) != 1
+        item for item in (driver, driven)
+        if item == carrier or len(_shared(sketch, item, carrier)) != 1
     )  # fmt: skip
     raise UsageError(
         Note(

@@ -70,7 +70,7 @@ class Design:
                 link = joined(machine.links[name], weight, place_of_pin(machine, name))
                 values: dict[str, Any] = {"bodies": link.bodies}
                 if not link.bodies:
-                    values = {one: getattr(link, one) for one in MASS_FIELDS}
+                    values = {mass_field: getattr(link, mass_field) for mass_field in MASS_FIELDS}
                 machine = machine.with_link(name, **values)
         return machine
 
@@ -162,7 +162,16 @@ def joined(link: Link, weight: Counterweight, pin: complex) -> Link:
     place, inertia = pin + weight.arm, weight.mass * weight.gyration**2
     if link.bodies:
         return link.with_added(weight.mass, clean_place(place), clean(inertia))
-    made = link.with_added(weight.mass, (place.real, place.imag), inertia)
-    assert made.mass is not None and made.center_of_mass is not None and made.inertia is not None
-    center = clean_place(complex(*made.center_of_mass))
-    return replace(made, mass=clean(made.mass), center_of_mass=center, inertia=clean(made.inertia))
+    with_added = link.with_added(weight.mass, (place.real, place.imag), inertia)
+    assert (
+        with_added.mass is not None
+        and with_added.center_of_mass is not None
+        and with_added.inertia is not None
+    )
+    center = clean_place(complex(*with_added.center_of_mass))
+    return replace(
+        with_added,
+        mass=clean(with_added.mass),
+        center_of_mass=center,
+        inertia=clean(with_added.inertia),
+    )

@@ -198,11 +198,11 @@ def begun(file: str | None) -> Callable[[], Desk]:
     def begin() -> Desk:
         own = disk and disk.now()
         session = Session(disk=own)
-        found = first.shown
+        result = first.shown
         if disk is not None and own is not None and own.text != disk.text:
             assert isinstance(own.model, Machine)
-            found = solved(Design(found.design.name, own.model))
-        session.open(found.design, found)
+            result = solved(Design(result.design.name, own.model))
+        session.open(result.design, result)
         return Desk(session, folder=folder)
 
     return begin

@@ -56,14 +56,14 @@ class Incomplete:
 
 def drawn(sketch: Sketch) -> Computed | Incomplete:
     """The machine that a sketch is, computed, or what it lacks."""
-    told = lacking(sketch)
-    if not told:
+    text = lacking(sketch)
+    if not text:
         try:
-            found = sketch.finished()
-            return replace(found, stand=_stand(found, sketch))
+            result = sketch.finished()
+            return replace(result, stand=_stand(result, sketch))
         except EquipoiseError as error:
-            told = error.told()
-    return Incomplete(sketch, told)
+            text = error.told()
+    return Incomplete(sketch, text)
 
 
 def _stand(found: Computed, sketch: Sketch) -> float:
@@ -79,11 +79,11 @@ def _stand(found: Computed, sketch: Sketch) -> float:
 
 def tried(sketch: Sketch) -> Incomplete:
     """What is dragged: it stands where it is drawn until it is let go."""
-    found = drawn(sketch)
+    result = drawn(sketch)
     return (
-        found
-        if isinstance(found, Incomplete)
-        else Incomplete(sketch, turning(found.analysis.machine))
+        result
+        if isinstance(result, Incomplete)
+        else Incomplete(sketch, turning(result.analysis.machine))
     )
 
 
@@ -191,7 +191,7 @@ def redrawn(sketch: Sketch, changes: list[Change]) -> Sketch:
 
 def fields_of_sketch(sketch: Sketch) -> dict[str, Field]:
     """Every number of a sketch by its path."""
-    return {one.path: one for one in _fields(sketch)}
+    return {item.path: item for item in _fields(sketch)}
 
 
 def _fields(sketch: Sketch) -> Iterator[Field]:
@@ -200,10 +200,12 @@ def _fields(sketch: Sketch) -> Iterator[Field]:
             "drive.speed", "drive", say("speed"), "angular speed", sketch.drive.speed, _with_speed
         )
     for body, points in sketch.bodies.items():
-        for one in measures_of(points):
-            path = one.path(KeyPath((FRAME,) if body == FRAME else ("links", body)))
-            put = partial(_measured, body, one)
-            yield Field(str(path), body, one.label, one.dimension, one.value, put, one)
+        for measure in measures_of(points):
+            path = measure.path(KeyPath((FRAME,) if body == FRAME else ("links", body)))
+            put = partial(_measured, body, measure)
+            yield Field(
+                str(path), body, measure.label, measure.dimension, measure.value, put, measure
+            )
     for point, place in sketch.frame.items():
         for axis, value in zip("xy", place, strict=True):
             put = partial(_placed, point, axis)
@@ -241,33 +243,37 @@ def _placed(point: str, axis: str, sketch: Sketch, value: float) -> Sketch:
 
 def scene_of(sketch: Sketch) -> Scene:
     """What there is to draw, at one place."""
-    one = np.ones(1)
+    values = np.ones(1)
     guides = tuple(
         GuideSign(
-            slider.name, slider.point, way * one, slider.on, *2 * (RAIL * sketch.extent * one,)
+            slider.name,
+            slider.point,
+            way * values,
+            slider.on,
+            *2 * (RAIL * sketch.extent * values,),
         )
         for slider in sketch.sliders
         for way in [np.exp(1j * (sketch.pose(slider.on).angle + slider.direction))]
     )
     centers = {
-        name: sketch.pose(name).out(link.center_of_mass) * one
+        name: sketch.pose(name).out(link.center_of_mass) * values
         for name, link in sketch.links.items()
         if link.center_of_mass is not None
     }
-    springs = tuple((one.point, one.to) for one in sketch.rest.get("springs", ()))
+    springs = tuple((item.point, item.to) for item in sketch.rest.get("springs", ()))
     joints, drive = sketch.joints, _sense(sketch)
     return Scene(
-        sketch.pose(drive.link).angle * one if drive.link else 0 * one,
+        sketch.pose(drive.link).angle * values if drive.link else 0 * values,
         tuple(sketch.frame),
         tuple(bodies_of(sketch.links)),
-        {name: place * one for name, place in sketch.places.items()},
+        {name: place * values for name, place in sketch.places.items()},
         joints.pinned_points,
         _radii(sketch),
         centers,
         tuple(_wheels(sketch)),
         guides,
         springs,
-        {name: pose.angle * one for name, pose in sketch.poses.items()},
+        {name: pose.angle * values for name, pose in sketch.poses.items()},
         (drive,),
         marks=in_order(
             (
@@ -337,7 +343,7 @@ def state_of_sketch(found: Incomplete, scale: Scale) -> tuple[Values, bytes]:
         "arrows_at": None,
         "arrows": [],
         "status": status_of_sketch(found),
-        "fields": [scale.told(one) for one in fields_of_sketch(sketch).values()],
+        "fields": [scale.told(item) for item in fields_of_sketch(sketch).values()],
         **{key: [] for key in ("traced", "figures", "outputs", "charts", "orders", "notes")},
     }
     content["arrays"] = block.told

@@ -32,7 +32,7 @@ from equipoise.web.messages import Change, Drag, Setting
 
 MOST_SAMPLES = 2880
 """Crank angles in a cycle of many turns, which has fewer in each."""
-OTHER_SIDE = {one: other for pair in ALTERNATIVES for one, other in (pair, pair[::-1])}
+OTHER_SIDE = {item: other for pair in ALTERNATIVES for item, other in (pair, pair[::-1])}
 HELD = to_say(
     "the stroke of the drive sets where {name} is at this crank angle, and it comes as near as it "
     "can; change the stroke, or other points"
@@ -87,10 +87,10 @@ def solved(design: Design, near: Computed | None = None, stuck: bool = True) -> 
     try:
         turns = assemble(machine, known).cycle.turns
     except MotionError:
-        found = swing(machine) if stuck else None
-        if found is None:
+        result = swing(machine) if stuck else None
+        if result is None:
             raise
-        machine, swings, turns = found.machine, found.note, 1
+        machine, swings, turns = result.machine, result.note, 1
     count = min(ANGLES, max(LEAST_ANGLES, MOST_SAMPLES // turns))
     return Computed(design, analyze(machine, count), swings=swings)
 
@@ -126,26 +126,26 @@ def edited(base: Computed, changes: Iterable[Change], near: Computed | None = No
         design = design.with_machine(design.own.with_constraints_met(base.design.own))
     if near is not None and near.along is not None:  # so this one needs something along too
         with suppress(EquipoiseError):
-            if (found := _agreeing(base, design, goals, near)) is not None:
-                return found
+            if (agreeing := _agreeing(base, design, goals, near)) is not None:
+                return agreeing
     near = near or base
     try:
         return _told(_assembled(design, goals, near, base.swings is not None), goals)
     except (MobilityError, ModelError):
-        if (found := _agreeing(base, design, goals, near)) is None:
+        if (agreeing := _agreeing(base, design, goals, near)) is None:
             raise
-        return found
+        return agreeing
 
 
 def _agreeing(base: Computed, design: Design, goals: Goals, near: Computed) -> Computed | None:
     """The design with what has to go along so that all joints fit, if that can be told."""
     if base.motion.linkage.shared is None:
         return None
-    found = following(base.motion, design.own, goals)
-    if found is None:
+    result = following(base.motion, design.own, goals)
+    if result is None:
         return None
-    fitting = solved(design.with_machine(found.machine), near, base.swings is not None)
-    return replace(fitting, along=found.note if found.spots else None)
+    fitting = solved(design.with_machine(result.machine), near, base.swings is not None)
+    return replace(fitting, along=result.note if result.spots else None)
 
 
 def _set(design: Design, change: Setting) -> Design:
@@ -163,7 +163,7 @@ def _moved(base: Computed, design: Design, change: Drag) -> tuple[Design, comple
     if change.name not in movable(machine):
         raise UsageError(unknown(change.name, movable(machine), "point that can be moved"))
     _check_sample(motion, change)
-    to = held({name: one.place[change.at] for name, one in motion.points.items()}, change)
+    to = held({name: point.place[change.at] for name, point in motion.points.items()}, change)
     frame, links = dict(machine.frame), dict(machine.links)
     if change.name in frame:
         frame[change.name] = clean_place(to, extent_of(machine), DRAGGED)
@@ -250,13 +250,13 @@ def _assembled(design: Design, goals: Goals, near: Computed, stuck: bool) -> Com
     there on neither side, such as a block's beside its line, comes as near as it can.
     """
     try:
-        found = solved(design, near, stuck)
+        result = solved(design, near, stuck)
     except MotionError:
         other = _turned_over(design, goals, stuck)
         if other is None:
             raise
         return other
-    return found if _reaches(found, goals) else _turned_over(design, goals, stuck) or found
+    return result if _reaches(result, goals) else _turned_over(design, goals, stuck) or result
 
 
 def _turned_over(design: Design, goals: Goals, stuck: bool) -> Computed | None:
@@ -267,11 +267,11 @@ def _turned_over(design: Design, goals: Goals, stuck: bool) -> Computed | None:
         assembly = {**design.own.assembly, joint: OTHER_SIDE[side]}
         try:
             other = design.with_machine(replace(design.own, assembly=assembly))
-            found = solved(other, None, stuck)
+            computed = solved(other, None, stuck)
         except EquipoiseError:
             continue
-        if _reaches(found, goals):
-            return found
+        if _reaches(computed, goals):
+            return computed
     return None
 
 
@@ -304,7 +304,7 @@ def _missed(found: Computed, goals: Goals) -> list[str]:
 def _told(found: Computed, goals: Goals) -> Computed:
     """The same, with why the end of a cylinder, or a driven block, is not where it was put."""
     machine = found.design.own
-    points = {one.name: one.point for one in machine.sliders}
+    points = {slider.name: slider.point for slider in machine.sliders}
     pushing: list[Pushing] = [machine.drive, *machine.drives]
     for drive in pushing:
         for name in {*(drive.between or ()), points.get(drive.slider)} & {*_missed(found, goals)}:

@@ -51,12 +51,12 @@ def stroked(sketch: Sketch, entry: Entry) -> Entry:
     if length is None or (drive is not None and drive.pushes):
         return entry
     ends = length, length + LONGER * (abs(length) or sketch.extent)
-    told = [format_exact(clean(end, "length"), "length") for end in ends]
-    found: dict[str, Any] = {**values, "stroke": {"between": told}}
+    texts = [format_exact(clean(end, "length"), "length") for end in ends]
+    items: dict[str, Any] = {**values, "stroke": {"between": texts}}
     if values.get("link") in sketch.links:
         angle = clean(sketch.poses[str(values["link"])].angle, "angle")
-        found.setdefault("start", format_exact(angle, "angle"))
-    return replace(entry, values=found)
+        items.setdefault("start", format_exact(angle, "angle"))
+    return replace(entry, values=items)
 
 
 def _pushed(sketch: Sketch, values: Mapping[str, Any]) -> float | None:
@@ -64,14 +64,14 @@ def _pushed(sketch: Sketch, values: Mapping[str, Any]) -> float | None:
     between, places = values.get("between"), sketch.places
     if isinstance(between, list) and len(between) == 2 and {*map(str, between)} <= places.keys():
         return abs(places[between[1]] - places[between[0]])
-    named = (one for one in sketch.sliders if one.name == values.get("slider"))
-    return next((sketch.travel(one) for one in named), None)
+    named = (slider for slider in sketch.sliders if slider.name == values.get("slider"))
+    return next((sketch.travel(item) for item in named), None)
 
 
 def _tables(session: EntrySession, message: Message) -> Iterator[Reply]:
     with session.telling():
-        told = tables_of(plain_of(session.base()))
-    yield Reply({"type": "tables", "seq": message.seq, **told})
+        tables = tables_of(plain_of(session.base()))
+    yield Reply({"type": "tables", "seq": message.seq, **tables})
 
 
 def _entry(session: EntrySession, message: Message) -> Iterator[Reply]:

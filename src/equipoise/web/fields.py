@@ -226,8 +226,8 @@ def fields_of(design: Design) -> dict[str, Field]:
         _planting,
         _mounts,
     )
-    found = [field for part in parts for field in part(design.own)]
-    fields = {field.path: field for field in (*found, *_weights(design))}
+    values = [field for part in parts for field in part(design.own)]
+    fields = {field.path: field for field in (*values, *_weights(design))}
     if not design.own.expressions:
         return fields
     given = WorkedOut(design.own.expressions, amounts_of(design.own.parameters))
@@ -282,11 +282,11 @@ def _numbers(
     path: KeyPath, group: str, of: str, item: Frozen, without: tuple[str, ...] = ()
 ) -> Iterator[Field]:
     """Those keys of an object that are numbers and are given, by their words after `of`."""
-    for key, one in numbers_of(item).items():
-        value = getattr(item, one.field)
+    for key, number in numbers_of(item).items():
+        value = getattr(item, number.field)
         if value is not None and key not in without:
-            dimension = one.kind.dimension if isinstance(one.kind, Quantity) else None
-            word = say(one.word or key.replace("_", " "))
+            dimension = number.kind.dimension if isinstance(number.kind, Quantity) else None
+            word = say(number.word or key.replace("_", " "))
             label = listed(of, word) if of else word
             yield _field(path / key, group, label, dimension, value)
 
@@ -324,7 +324,7 @@ def _bodies(where: KeyPath, name: str, link: Link) -> Iterator[Field]:
         if body.assumed:
             of = say("{body}, assumed", body=of)
         known = quantities_of(body).items()
-        left_out = (key for key, one in known if getattr(body, key) == one.default)
+        left_out = (key for key, item in known if getattr(body, key) == item.default)
         yield from _numbers(path, name, of, body, (*left_out,))
         if body.at is not None and not isinstance(body.at, str):
             yield from _point(path / "at", name, listed(of, say("centre")), body.at)
@@ -332,10 +332,12 @@ def _bodies(where: KeyPath, name: str, link: Link) -> Iterator[Field]:
 
 def _measures(where: KeyPath, body: str, points: Mapping[str, Vector]) -> Iterator[Field]:
     """Lengths and directions between the points of a body."""
-    for one in measures_of(points):
-        put, path = partial(_measured, body, one), str(one.path(where))
-        place = where / "points" / one.moves / 0 if one.is_component(points) else None
-        yield Field(path, body, one.label, one.dimension, one.value, put, one, place)
+    for measure in measures_of(points):
+        put, path = partial(_measured, body, measure), str(measure.path(where))
+        place = where / "points" / measure.moves / 0 if measure.is_component(points) else None
+        yield Field(
+            path, body, measure.label, measure.dimension, measure.value, put, measure, place
+        )
 
 
 def _measured(

@@ -31,18 +31,18 @@ Values = dict[str, Any]
 
 def signals_of(analysis: Analysis) -> Signals:
     """Signals over the crank angle (N,), complex for vectors; none where masses are missing."""
-    found = analysis.solved
-    if found is None:
+    solved = analysis.solved
+    if solved is None:
         return {}
-    signals = {"shaking_force": found.shaking_force.value}
+    signals = {"shaking_force": solved.shaking_force.value}
     if analysis.machine.has_planes:
-        signals["rocking_moment"] = found.across.rocking_moment.value
+        signals["rocking_moment"] = solved.across.rocking_moment.value
     signals |= {
         name: analysis.outputs[name].values
-        for name, one in told_signals().items()
-        if one.group == "forces" and not one.part and name in analysis.outputs
+        for name, told_signal in told_signals().items()
+        if told_signal.group == "forces" and not told_signal.part and name in analysis.outputs
     }
-    signals |= {f"joint.{name}": joint.size for name, joint in found.joints.items()}
+    signals |= {f"joint.{name}": joint.size for name, joint in solved.joints.items()}
     return signals | _together(analysis)
 
 
@@ -114,15 +114,15 @@ class _Read:
 def _figures(read: _Read, old: _Read | None) -> Iterator[Values]:
     size, several = _size_of(read.motion.machine), "rows.shaking_force" in read.signals
     loudest = max(read.loudest, 0.0 if old is None else old.loudest)
-    for name, one in told_signals().items():
+    for name, told_signal in told_signals().items():
         if name not in read.signals:
             continue
         values = read.signals[name]
         least = NOTHING * loudest * (1.0 if _is_force(name) else size)
-        label = one.say("", several)
+        label = told_signal.say("", several)
         for measure, (shown, of) in MEASURES.items():
             value = _plain(of(read.motion, values), least)
-            unit = display(one.dimension)
+            unit = display(told_signal.dimension)
             entry = {
                 "name": f"{name}.{measure}",
                 "signal": label,
@@ -143,18 +143,18 @@ def told_signals() -> dict[str, Declared]:
 
     The size of a vector stands before its components.
     """
-    found = {
-        name: one
-        for name, one in DECLARED.items()
-        if (one.group == "forces" and one.compared) or (one.group == "rows" and one.summed)
+    by_name = {
+        name: item
+        for name, item in DECLARED.items()
+        if (item.group == "forces" and item.compared) or (item.group == "rows" and item.summed)
     }
     whole = {
-        name: name.removesuffix(f".{one.part}") if one.part in ("x", "y") else name
-        for name, one in found.items()
+        name: name.removesuffix(f".{item.part}") if item.part in ("x", "y") else name
+        for name, item in by_name.items()
     }
     order = list(dict.fromkeys(whole.values()))
-    first = sorted(found, key=lambda name: (order.index(whole[name]), name != whole[name]))
-    return {name: found[name] for name in first}
+    first = sorted(by_name, key=lambda name: (order.index(whole[name]), name != whole[name]))
+    return {name: by_name[name] for name in first}
 
 
 def _is_force(name: str) -> bool:
@@ -163,8 +163,10 @@ def _is_force(name: str) -> bool:
 
 def _with_parts(signals: Signals) -> Signals:
     """Signals with the components of vectors beside them."""
-    vectors = {name: one for name, one in signals.items() if np.iscomplexobj(one)}
-    parts = {f"{name}.{axis}": part for name, one in vectors.items() for axis, part in _xy(one)}
+    vectors = {name: signal for name, signal in signals.items() if np.iscomplexobj(signal)}
+    parts = {
+        f"{name}.{axis}": part for name, vector in vectors.items() for axis, part in _xy(vector)
+    }
     return {**signals, **parts}
 
 
@@ -194,9 +196,9 @@ def was_of(before: float | None, value: float | None) -> str:
     """What a figure was, and by how much it has changed; nothing where it is the same."""
     if before is None or value is None:
         return ""
-    told = compared(before, value)
-    was, _, by = told["texts"]
-    return "" if told["way"] == "same" else " · ".join(filter(None, (was, by)))
+    text = compared(before, value)
+    was, _, by = text["texts"]
+    return "" if text["way"] == "same" else " · ".join(filter(None, (was, by)))
 
 
 def _in(unit: Display, value: float | None) -> float | None:
@@ -221,7 +223,7 @@ def charts_of(analysis: Analysis, signals: Signals) -> list[Values]:
         return []
     there = _told(signals)
     charts = [
-        chart(name, [_choice(analysis, signals, one) for one in (f"{ROWS}{name}", name)])
+        chart(name, [_choice(analysis, signals, item) for item in (f"{ROWS}{name}", name)])
         for name in dict.fromkeys(name.removeprefix(ROWS) for name in there)
     ]
     joints = [name for name in signals if name.startswith("joint.")]
@@ -242,7 +244,12 @@ def chart(
     x : ``angle``, ``order``, or the array that it runs over, with its unit and the machine's place.
     chooser : what is chosen; without, it follows what is chosen elsewhere.
     """
-    return {"name": name, "x": x, "chooser": chooser, "choices": [one for one in choices if one]}
+    return {
+        "name": name,
+        "x": x,
+        "chooser": chooser,
+        "choices": [choice for choice in choices if choice],
+    }
 
 
 def _choice(analysis: Analysis, signals: Signals, name: str) -> Values | None:
@@ -254,13 +261,13 @@ def _choice(analysis: Analysis, signals: Signals, name: str) -> Values | None:
     output = name if joint == name else f"joints.{joint}"
     if name not in signals or output not in analysis.outputs:
         return None
-    one = analysis.outputs[output]
-    shown = display(one.dimension)
+    item = analysis.outputs[output]
+    shown = display(item.dimension)
     of = None if name != output else ROWS if name.startswith(ROWS) else ""
     parts = "xy" if np.iscomplexobj(signals[name]) else ("",)
     return {
         "name": name.removeprefix(ROWS),
-        "label": capital(one.label()),
+        "label": capital(item.label()),
         "of": of,
         "unit": shown.name,
         "factor": shown.factor,
@@ -274,7 +281,9 @@ def _choice(analysis: Analysis, signals: Signals, name: str) -> Values | None:
 
 def _told(signals: Signals) -> list[str]:
     """Names of signals of frame and drive, those of all rows first, without parts of vectors."""
-    whole = [name for name, one in told_signals().items() if one.part not in ("x", "y")]
+    whole = [
+        name for name, told_signal in told_signals().items() if told_signal.part not in ("x", "y")
+    ]
     return sorted((n for n in whole if n in signals), key=lambda n: not n.startswith(ROWS))
 
 

@@ -50,14 +50,14 @@ class Following:
 
     @property
     def note(self) -> Note:
-        told = [
+        values = [
             Note("{what} of the frame", what=point)
             if body == FRAME
             else Note("{point} of {body!r}", point=point, body=body)
             for body, point in self.spots
         ]
         return Note(
-            "{spots} went along, so that all joints still fit", spots=all_of(told, commas=True)
+            "{spots} went along, so that all joints still fit", spots=all_of(values, commas=True)
         )
 
 
@@ -199,9 +199,9 @@ def _costs(machine: Machine, spots: Sequence[Spot], moved: set[str]) -> Array:
     """What it costs to move points of bodies by a unit of length, (n,)."""
     far, ring = dict.fromkeys(moved, 0), moved
     for steps in count(1):
-        beside = {point for points in machine.bodies.values() if ring & points.keys()
+        matching_bodies = {point for points in machine.bodies.values() if ring & points.keys()
                   for point in points}  # fmt: skip
-        ring = beside - far.keys()
+        ring = matching_bodies - far.keys()
         far |= dict.fromkeys(ring, steps)
         if not ring:
             break

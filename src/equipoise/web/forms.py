@@ -28,15 +28,15 @@ def forms_of(of: type[keys.Frozen]) -> dict[str, Values]:
     Each has its controls, those of required keys first, and what the JSON Schema says of keys that
     go together.
     """
-    found: dict[str, Values] = {}
-    for one in _tables_of(of):
-        own = own_keys(one)
+    by_name: dict[str, Values] = {}
+    for table in _tables_of(of):
+        own = own_keys(table)
         controls = [control_of(key, own) for key in own.values()]
-        found[one.__name__] = {
-            "rule": one.conditions,
+        by_name[table.__name__] = {
+            "rule": table.conditions,
             "controls": sorted(controls, key=lambda control: not control["required"]),
         }
-    return found
+    return by_name
 
 
 def _tables_of(of: type[keys.Frozen]) -> Iterator[type[keys.Frozen]]:
@@ -44,27 +44,27 @@ def _tables_of(of: type[keys.Frozen]) -> Iterator[type[keys.Frozen]]:
     names: set[str] = set()
     waiting = [of]
     while waiting:
-        one = waiting.pop()
-        if one.__name__ not in names:
-            names.add(one.__name__)
-            yield one
-            inner = (entry_of(key.kind) for key in tables_below(one).values())
+        item = waiting.pop()
+        if item.__name__ not in names:
+            names.add(item.__name__)
+            yield item
+            inner = (entry_of(key.kind) for key in tables_below(item).values())
             waiting += [table.type for table in inner if table is not None]
 
 
 def word_in_forms(name: str) -> str:
     """What forms of the tables of a linkage call a key; the key where they have several words."""
-    words = {word_of(one) for one in _keys_of_linkages().get(name, ())}
+    words = {word_of(keys_of_linkage) for keys_of_linkage in _keys_of_linkages().get(name, ())}
     return words.pop() if len(words) == 1 else name
 
 
 @cache
 def _keys_of_linkages() -> Mapping[str, tuple[keys.Key, ...]]:
-    found: dict[str, tuple[keys.Key, ...]] = {}
+    by_name: dict[str, tuple[keys.Key, ...]] = {}
     for table in _tables_of(document_of("linkage")):
-        for name, one in own_keys(table).items():
-            found[name] = (*found.get(name, ()), one)
-    return MappingProxyType(found)
+        for name, own_key in own_keys(table).items():
+            by_name[name] = (*by_name.get(name, ()), own_key)
+    return MappingProxyType(by_name)
 
 
 def control_of(one: keys.Key, beside: Mapping[str, keys.Key]) -> Values:
@@ -130,8 +130,8 @@ def _one_or(kind: keys.OneOr) -> Values:
 
 
 def _place(kind: keys.Point) -> Values:
-    told = {"named": kind.named, "space": kind.space, "axes": kind.axes}
-    return {"kind": "place", "unit": _unit("length"), **told}
+    text = {"named": kind.named, "space": kind.space, "axes": kind.axes}
+    return {"kind": "place", "unit": _unit("length"), **text}
 
 
 CONTROLS: Mapping[type[keys.Kind], Callable[[Any], Values]] = {

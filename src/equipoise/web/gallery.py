@@ -33,10 +33,10 @@ def pictured() -> Iterator[tuple[Values, bytes]]:
         drawing, data = _drawn(name)
         text = ASIDE.sub("", " ".join(said(machine.description).split()))
         line = END.split(text, maxsplit=1)[0]
-        told = {"name": name, "title": said(machine.title), "line": line}
-        told["kind"] = headings[section_of(machine)]
-        told["words"] = f"{search_words(machine)} {text}"
-        yield {**told, **drawing}, data
+        statement = {"name": name, "title": said(machine.title), "line": line}
+        statement["kind"] = headings[section_of(machine)]
+        statement["words"] = f"{search_words(machine)} {text}"
+        yield {**statement, **drawing}, data
 
 
 @cache
@@ -48,5 +48,5 @@ def _drawn(name: str) -> tuple[Values, bytes]:
     scene = Scene.of(analyze(opened_example(name).machine, SAMPLES).motion)
     block = FloatBlock()
     moves_of(scene, block)
-    told = {"at": clear_angle(scene), "scene": stage_of(scene, ()), "arrays": block.told}
-    return told, block.data
+    text = {"at": clear_angle(scene), "scene": stage_of(scene, ()), "arrays": block.told}
+    return text, block.data

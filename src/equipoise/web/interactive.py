@@ -143,7 +143,7 @@ class Interactive:
         """
         linkage = self.motion.linkage
         try:
-            signals = [one.name for one in self.outputs if not one.name.startswith(ROWS)]
+            signals = [output.name for output in self.outputs if not output.name.startswith(ROWS)]
             names = [*signals, *pose_signals(linkage)]
             plain = javascript(linkage, names)
         except UsageError as error:

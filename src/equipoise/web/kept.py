@@ -49,18 +49,18 @@ class DesignsSession(Protocol):
 
 
 def _save(session: DesignsSession, message: Message) -> Iterator[Reply]:
-    found, disk, history = session.current(), session.disk, session.history
+    current, disk, history = session.current(), session.disk, session.history
     if disk is None or history is None:
-        raise UsageError(Note(NOT_OF_FILE, name=found.design.name))
+        raise UsageError(Note(NOT_OF_FILE, name=current.design.name))
     first = history.first
     text = dumps(first.machine) if isinstance(first, Design) else disk.text
-    disk.save(found.design.machine)
+    disk.save(current.design.machine)
     yield from session.told(message.seq)
     yield disk.told(message.seq, text)
 
 
 def _download(session: DesignsSession, message: Message) -> Iterator[Reply]:
-    found = session.current()
+    current = session.current()
     if message.text("kind") in SLOW:
         with session.telling():
             what = say("making the file")
@@ -69,14 +69,14 @@ def _download(session: DesignsSession, message: Message) -> Iterator[Reply]:
     def everything(language: str) -> Iterator[Reply]:
         """All that a page could be told of the design."""
         other = type(session)()
-        other.open(found.design, found)
-        other.wanted = tuple(one.name for one in found.analysis.outputs)
+        other.open(current.design, current)
+        other.wanted = tuple(output.name for output in current.analysis.outputs)
         yield from other.receive(Message("speak", None, {"languages": [language]}))
         yield from other.receive(Message("ready", None, {}))
         yield from other.tell_more()
 
     with session.telling():
-        content, data = downloaded(found, message, everything)
+        content, data = downloaded(current, message, everything)
     yield Reply({"type": "file", "seq": message.seq, **content}, data)
 
 
@@ -84,10 +84,10 @@ def _gallery(session: DesignsSession, message: Message) -> Iterator[Reply]:
     pictures = pictured()
     while True:
         with session.telling():  # left where this waits: whoever goes on may be another thread
-            one = next(pictures, None)
-        if one is None:
+            picture = next(pictures, None)
+        if picture is None:
             break
-        content, data = one
+        content, data = picture
         yield Reply({"type": "pictured", "seq": message.seq, **content}, data)
     yield Reply({"type": "gallery", "seq": message.seq})
 

@@ -82,7 +82,7 @@ def _pivoted(sketch: Sketch) -> list[str]:
 
 def _listed(names: Sequence[str], several: str) -> str:
     """Names in a sentence; several : how the last is joined to those before."""
-    found = [name for name in names if name]
-    if len(found) < 2:
-        return "".join(found)
-    return say(several, names=", ".join(found[:-1]), last=found[-1])
+    matching_names = [name for name in names if name]
+    if len(matching_names) < 2:
+        return "".join(matching_names)
+    return say(several, names=", ".join(matching_names[:-1]), last=matching_names[-1])

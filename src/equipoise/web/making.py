@@ -127,5 +127,5 @@ def made(sketch: Sketch, asked: Message) -> tuple[Sketch, str]:
         raise UsageError(unknown(do, OPERATIONS, "operation"))
     label, operation = OPERATIONS[do]
     named = asked.values.get("name") or asked.values.get("point") or asked.values.get("link")
-    told = say(label)
-    return operation(sketch, asked), f"{told} {named}" if isinstance(named, str) else told
+    text = say(label)
+    return operation(sketch, asked), f"{text} {named}" if isinstance(named, str) else text

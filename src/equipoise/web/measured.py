@@ -47,5 +47,5 @@ def measured_told(
             count = SAMPLES * found.motion.turns
         at = np.arange(count) * own / count
         block.add(f"measured.{name}", np.interp(at, np.arange(own), values, period=own))
-    told = {"told": [*compared.told], "left_out": [*compared.left_out]}
-    return {"name": record.name, **told}
+    text = {"told": [*compared.told], "left_out": [*compared.left_out]}
+    return {"name": record.name, **text}

@@ -77,11 +77,11 @@ class Measure:
             given = Measured(value, "length", "mm")
             raise UsageError(Note("got a length of {given}; give more than 0", given=given))
         size, angle = hypot(way.real, way.imag), phase(way)
-        found = start + (rect(value, angle) if self.dimension == "length" else rect(size, value))
+        total = start + (rect(value, angle) if self.dimension == "length" else rect(size, value))
         if others:
             centers = [start, *(complex(*points[name]) for name in others)]
             now = complex(*points[self.moves])
-            radii = [abs(found - start), *(abs(now - center) for center in centers[1:])]
+            radii = [abs(total - start), *(abs(now - center) for center in centers[1:])]
             near = REACHED * sum(radii)
             places = [
                 place
@@ -91,8 +91,8 @@ class Measure:
             if self.dimension == "angle" or len(others) > 1 or not places:
                 names = all_of([f"{name}–{self.moves}" for name in others])
                 raise UsageError(Note("{names} would not stay as long as locked", names=names))
-            found = min(places, key=lambda place: abs(place - now))
-        return found.real, found.imag
+            total = min(places, key=lambda place: abs(place - now))
+        return total.real, total.imag
 
 
 def measures_of(points: Mapping[str, Vector]) -> Iterator[Measure]:

@@ -210,7 +210,7 @@ class Message:
     def files(self) -> Mapping[str, str]:
         """Texts of CSV files by their names."""
         files = self.values.get("files", {})
-        if not isinstance(files, dict) or not all(isinstance(one, str) for one in files.values()):
+        if not isinstance(files, dict) or not all(isinstance(file, str) for file in files.values()):
             _wrong(f"{self.kind}: files", files, Note("texts of files by their names"))
         return files
 
@@ -270,7 +270,7 @@ def _is_plain(value: object, deep: int) -> bool:
     """Whether a file could have it, so deep at most."""
     if isinstance(value, dict | list):
         inner = value.values() if isinstance(value, dict) else value
-        return deep > 0 and all(_is_plain(one, deep - 1) for one in inner)
+        return deep > 0 and all(_is_plain(item, deep - 1) for item in inner)
     return isinstance(value, str | int | float)
 
 
@@ -295,7 +295,7 @@ def _change(edit: object) -> Change:
         _wrong("an edit", edit, Note("one of set, move and move_mass, with a name"))
     kind, name = given[0], edit[given[0]]
     keep = edit.get("keep", [])
-    if not isinstance(keep, list) or not all(isinstance(one, str) for one in keep):
+    if not isinstance(keep, list) or not all(isinstance(item, str) for item in keep):
         _wrong("keep", keep, Note("a list of points"))
     if kind == "set":
         return Setting(name, _typed(edit), tuple(keep))

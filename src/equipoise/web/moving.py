@@ -102,11 +102,11 @@ def _aimed(sketch: Sketch, number: int, slider: Slider) -> Sketch:
 
 def straight(sketch: Sketch, links: Iterable[str], digits: int = DIGITS) -> Sketch:
     """Links in whose axes nothing but points is told get axes from their first to their second."""
-    told = {body for key, one in sketch.entries() for body in _axes_of(key, one)}
+    values = {body for key, item in sketch.entries() for body in _axes_of(key, item)}
     for name in links:
         link = sketch.links.get(name)
         given = link is not None and link.has_mass and not link.only_assumed
-        if link is None or given or name in told or len(link.points) < 2:
+        if link is None or given or name in values or len(link.points) < 2:
             continue
         places = {point: sketch.pose(name).out(at) for point, at in link.points.items()}
         first, second, *_ = places.values()

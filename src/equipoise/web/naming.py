@@ -34,11 +34,11 @@ def _names(value: Any, kind: Kind | None, what: What) -> Iterator[tuple[str, str
         for field, inner in _fields(value):
             yield from _names(getattr(value, field), inner, what)
     elif isinstance(value, tuple):
-        for one in value:
-            yield from _names(one, kind, what)
+        for item in value:
+            yield from _names(item, kind, what)
     elif isinstance(value, Mapping):
-        for one in value.values():
-            yield from _names(one, kind, what)
+        for item in value.values():
+            yield from _names(item, kind, what)
     elif isinstance(value, str) and _is_name(kind, what):
         yield what, value
     elif isinstance(value, str) and value.startswith(JOINTS):
@@ -56,13 +56,15 @@ def renamed_in(value: Any, what: What, old: str, new: str) -> Any:
 
 def _renamed(value: Any, kind: Kind | None, what: What, names: tuple[str, str]) -> Any:
     if isinstance(value, Frozen):
-        found = {f: _renamed(getattr(value, f), inner, what, names) for f, inner in _fields(value)}
-        changes = {field: one for field, one in found.items() if one != getattr(value, field)}
+        renameds = {
+            f: _renamed(getattr(value, f), inner, what, names) for f, inner in _fields(value)
+        }
+        changes = {field: item for field, item in renameds.items() if item != getattr(value, field)}
         return replace(value, **changes) if changes else value
     if isinstance(value, tuple):
-        return tuple(_renamed(one, kind, what, names) for one in value)
+        return tuple(_renamed(item, kind, what, names) for item in value)
     if isinstance(value, Mapping):
-        return {key: _renamed(one, kind, what, names) for key, one in value.items()}
+        return {key: _renamed(item, kind, what, names) for key, item in value.items()}
     if isinstance(value, str) and value.startswith(JOINTS):
         return _joint_renamed(value, what, *names)
     if isinstance(value, str) and value.startswith(COUPLED) and what == "link":

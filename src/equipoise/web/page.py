@@ -59,7 +59,7 @@ class Page:
         """Answer until the page is closed."""
         await self.socket.accept()
         # What computes has a task of its own each: a page that is closed waits for none of them.
-        tasks = [asyncio.create_task(one) for one in (self._read(), self._work(), self._talk())]
+        tasks = [asyncio.create_task(item) for item in (self._read(), self._work(), self._talk())]
         try:
             await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
         finally:
@@ -151,11 +151,11 @@ class Page:
         loop, do = asyncio.get_running_loop(), do or self.work.do
         try:
             while True:
-                one = await loop.run_in_executor(lane, do, partial(next, replies, None))
-                if one is None:
+                run_in_executor = await loop.run_in_executor(lane, do, partial(next, replies, None))
+                if run_in_executor is None:
                     self.whole = loop.time()
                     break
-                await self._send(one)
+                await self._send(run_in_executor)
                 if to is not None and to.preview and await self._overtaken(loop.time()):
                     break
         except Exception as error:  # whatever it is, the last good state is still there

@@ -74,9 +74,9 @@ def _over_crank(found: Computed, output: str) -> Chart:
     from equipoise.web.figures import capital
 
     outputs = found.analysis.outputs
-    one = outputs[f"{ROWS}{output}" if f"{ROWS}{output}" in outputs else output]
-    label = one.label()
-    what = [(label, one.dimension, {ALL: one.drawn})]
+    item = outputs[f"{ROWS}{output}" if f"{ROWS}{output}" in outputs else output]
+    label = item.label()
+    what = [(label, item.dimension, {ALL: item.drawn})]
     return replace(over_crank(found.analysis, "output", capital(label), what), keys=())
 
 

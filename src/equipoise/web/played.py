@@ -24,7 +24,7 @@ def played(found: Computed, replies: Iterable[Reply], language: str) -> str:
     UsageError : the page has not been built.
     """
     built = assets()
-    told = {
+    text = {
         "replies": [_written(reply) for reply in replies],
         "wanted": first_of(found.design.machine)[1],
     }
@@ -32,7 +32,7 @@ def played(found: Computed, replies: Iterable[Reply], language: str) -> str:
         title = said(found.design.machine.title) or found.design.name
     body = (
         '<main id="equipoise-live" data-played="equipoise-played"></main>',
-        data("equipoise-played", told),
+        data("equipoise-played", text),
         script(built["equipoise.js"].decode()),
     )
     return document(

@@ -166,7 +166,7 @@ def compared_with(
         a record over time needs a machine that turns.
     """
     known = _known(analysis, gauges)
-    found, left_out = {}, []
+    result, left_out = {}, []
     for column in record.columns:
         output = known.get(column.name.lower().replace(" ", "_"))
         if output is None:
@@ -183,8 +183,8 @@ def compared_with(
                     unit=unit,
                 )
             )
-        found[name] = column.values
-    if not found:
+        result[name] = column.values
+    if not result:
         raise UsageError(
             at_place(
                 record.name, Note("no column is an output of this machine; {right}", right=RIGHT)
@@ -192,7 +192,7 @@ def compared_with(
         )
     angle = _angles(record, analysis)
     cycle = analysis.crank_angle, analysis.motion.turns, analysis.motion.speed
-    signals = {name: _over(angle, values, *cycle) for name, values in found.items()}
+    signals = {name: _over(angle, values, *cycle) for name, values in result.items()}
     shift = _shift(signals, analysis) if record.over == "time" else 0
     signals = {name: np.roll(values, shift) for name, values in signals.items()}
     said = [*_sizes(signals, analysis)]
@@ -206,15 +206,15 @@ def compared_with(
 
 def _known(analysis: Analysis, gauges: Sequence[str]) -> dict[str, tuple[str, Dimension | None]]:
     """Outputs by name and by label, in small letters and without spaces."""
-    found = {}
-    for one in analysis.outputs:
-        for called in (one.label(), one.name):
-            found[called.lower().replace(" ", "_")] = one.name, one.dimension
+    pairs = {}
+    for item in analysis.outputs:
+        for called in (item.label(), item.name):
+            pairs[called.lower().replace(" ", "_")] = item.name, item.dimension
     for gauge in gauges:
         output = f"gauges.{gauge}"
         for called in (DECLARED["gauges.{}"].say(gauge), gauge, output):
-            found[called.lower().replace(" ", "_")] = output, "length"
-    return found
+            pairs[called.lower().replace(" ", "_")] = output, "length"
+    return pairs
 
 
 def _angles(record: MeasuredSignals, analysis: Analysis) -> Array:
@@ -261,10 +261,10 @@ def _shift(signals: Mapping[str, Array], analysis: Analysis) -> int:
         if name not in analysis.outputs or np.any(np.isnan(values)):
             continue
         model = analysis.outputs[name].values
-        one, other = (x - np.mean(x) for x in (np.real(model), values))
-        size = float(np.sqrt(np.sum(one**2) * np.sum(other**2)))
+        item, other = (x - np.mean(x) for x in (np.real(model), values))
+        size = float(np.sqrt(np.sum(item**2) * np.sum(other**2)))
         if size:
-            product = np.fft.rfft(one) * np.conj(np.fft.rfft(other))
+            product = np.fft.rfft(item) * np.conj(np.fft.rfft(other))
             total += np.fft.irfft(product, len(total)) / size
     return int(np.argmax(total))
 
@@ -274,13 +274,17 @@ def _sizes(signals: Mapping[str, Array], analysis: Analysis) -> Iterator[str]:
     for name, values in signals.items():
         if name not in analysis.outputs:
             continue
-        one = analysis.outputs[name]
+        output = analysis.outputs[name]
         there = np.isfinite(values)
-        rms = (float(np.sqrt(np.mean(np.square(x[there])))) for x in (values, np.real(one.values)))
-        measured, model = (told(x, one.dimension) if one.dimension else f"{x:.4g}" for x in rms)
+        rms = (
+            float(np.sqrt(np.mean(np.square(x[there])))) for x in (values, np.real(output.values))
+        )
+        measured, model = (
+            told(x, output.dimension) if output.dimension else f"{x:.4g}" for x in rms
+        )
         yield say(
             "{output}: RMS measured {measured}, model {model}",
-            output=one.label(),
+            output=output.label(),
             measured=measured,
             model=model,
         )

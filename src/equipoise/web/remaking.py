@@ -73,7 +73,7 @@ def separated(sketch: Sketch, point: str, link: str | None = None) -> Sketch:
     if body == FRAME:
         return freed(sketch, point)
     name = new_point(sketch)
-    points = {name if one == point else one: place for one, place in sketch.bodies[body].items()}
+    points = {name if item == point else item: place for item, place in sketch.bodies[body].items()}
     return sketch.with_points(body, points)
 
 
@@ -111,34 +111,40 @@ def without_point(sketch: Sketch, point: str) -> Sketch:
 def without_link(sketch: Sketch, link: str) -> Sketch:
     """One link less; points of the frame stay."""
     check_link(sketch, link)
-    links = {name: one for name, one in sketch.links.items() if name != link}
+    links = {name: item for name, item in sketch.links.items() if name != link}
     poses = {name: sketch.poses[name] for name in links}
     return _tidied(replace(sketch, links=links, poses=poses))
 
 
 def without_slider(sketch: Sketch, name: str) -> Sketch:
     """One sliding joint less; its block goes with it, where that is nothing else."""
-    found = next((one for one in sketch.sliders if one.name == name), None)
-    if found is None:
-        raise UsageError(unknown(name, [one.name for one in sketch.sliders], "slider"))
-    sketch = replace(sketch, sliders=tuple(one for one in sketch.sliders if one is not found))
-    block = sketch.links[found.link]
+    result = next((slider for slider in sketch.sliders if slider.name == name), None)
+    if result is None:
+        raise UsageError(unknown(name, [slider.name for slider in sketch.sliders], "slider"))
+    sketch = replace(
+        sketch, sliders=tuple(slider for slider in sketch.sliders if slider is not result)
+    )
+    block = sketch.links[result.link]
     bare = len(block.points) == 1 and (not block.has_mass or block.only_assumed)
-    if bare and all(one.link != found.link for one in sketch.sliders):
-        return without_link(sketch, found.link)
+    if bare and all(slider.link != result.link for slider in sketch.sliders):
+        return without_link(sketch, result.link)
     return _tidied(sketch)
 
 
 def without_coupling(table: str, sketch: Sketch, name: str) -> Sketch:
     """One coupling of a list less."""
     entries = [*sketch.entries()]
-    found = [k for k, (key, one) in enumerate(entries) if key == table and one.name == name]
-    if not found:
-        names = [one.name for key, one in entries if key == table]
+    matching_entries = [
+        k for k, (key, item) in enumerate(entries) if key == table and item.name == name
+    ]
+    if not matching_entries:
+        names = [item.name for key, item in entries if key == table]
         raise UsageError(unknown(name, names, coupling_kinds(Machine)[table].noun))
-    sketch = sketch.with_entries(entries[: found[0]] + entries[found[0] + 1 :])
+    sketch = sketch.with_entries(
+        entries[: matching_entries[0]] + entries[matching_entries[0] + 1 :]
+    )
     plan: Balance | None = sketch.rest.get("balance")
-    outputs = [] if plan is None else [one.output for one in plan.asked]
+    outputs = [] if plan is None else [objective.output for objective in plan.asked]
     own = f"{table}.{name}"
     if any(output == own or output.startswith(f"{own}.") for output in outputs):
         sketch = replace(sketch, rest={**sketch.rest, "balance": None})
@@ -149,13 +155,13 @@ def _tidied(sketch: Sketch) -> Sketch:
     """Without what names points, links or joints that are gone."""
     named = joint_names(sketch.joints)
     kept = [
-        (key, one)
-        for key, one in sketch.entries()
-        if (one.joint in named if key == "joints" else _held(key, one, sketch.bodies))
+        (key, item)
+        for key, item in sketch.entries()
+        if (item.joint in named if key == "joints" else _held(key, item, sketch.bodies))
     ]
     if sketch.drive is not None and not _there(sketch, sketch.drive):
         sketch = replace(sketch, drive=None)
-    drives = tuple(one for one in sketch.rest.get("drives", ()) if _there(sketch, one))
+    drives = tuple(item for item in sketch.rest.get("drives", ()) if _there(sketch, item))
     gone = {
         key: None
         for key in TABLES
@@ -163,7 +169,7 @@ def _tidied(sketch: Sketch) -> Sketch:
         if not _there(sketch, value)
     }  # fmt: skip
     bearings = sketch.rest.get("bearings") or {}
-    kept_on = {name: one for name, one in bearings.items() if one.link in sketch.links}
+    kept_on = {name: bearing for name, bearing in bearings.items() if bearing.link in sketch.links}
     rest = {**sketch.rest, **gone, "bearings": kept_on, "drives": drives}
     return replace(sketch, rest=rest).with_entries(kept)
 
@@ -208,7 +214,7 @@ def renamed_point(sketch: Sketch, old: str, new: str) -> Sketch:
     """A point with another name, wherever it is named."""
     for body in sketch.holders(old):
         planes = {} if body == FRAME else dict(sketch.links[body].planes)
-        points = {new if one == old else one: at for one, at in sketch.bodies[body].items()}
+        points = {new if item == old else item: at for item, at in sketch.bodies[body].items()}
         if body != FRAME and sketch.links[body].bodies:
             made = renamed_in(sketch.links[body].bodies, "point", old, new)
             link = sketch.links[body].altered(points=points, bodies=made)
@@ -220,7 +226,7 @@ def renamed_point(sketch: Sketch, old: str, new: str) -> Sketch:
         else:
             sketch = sketch.with_points(body, points)
         if old in planes:
-            planes = {new if one == old else one: z for one, z in planes.items()}
+            planes = {new if item == old else item: z for item, z in planes.items()}
             there = replace(sketch.links[body], planes=planes)
             sketch = replace(sketch, links={**sketch.links, body: there})
     return _retold(sketch, "point", old, new)
@@ -228,17 +234,17 @@ def renamed_point(sketch: Sketch, old: str, new: str) -> Sketch:
 
 def _renamed_link(sketch: Sketch, old: str, new: str) -> Sketch:
     """A link with another name, wherever it is named."""
-    found: dict[str, Any] = {
-        key: {new if one == old else one: value for one, value in getattr(sketch, key).items()}
+    values: dict[str, Any] = {
+        key: {new if item == old else item: value for item, value in getattr(sketch, key).items()}
         for key in ("links", "poses", "counterweights")
     }
-    return _retold(replace(sketch, **found), "link", old, new)
+    return _retold(replace(sketch, **values), "link", old, new)
 
 
 def _retold(sketch: Sketch, what: What, old: str, new: str) -> Sketch:
     """The tables of a sketch, which name a point or link by its new name."""
     rest = {key: renamed_in(value, what, old, new) for key, value in sketch.rest.items()}
-    found: dict[str, Any] = {
+    values: dict[str, Any] = {
         key: renamed_in(getattr(sketch, key), what, old, new) for key in ("drive", "sliders")
     }
-    return replace(sketch, rest=rest, **found)
+    return replace(sketch, rest=rest, **values)

@@ -29,8 +29,8 @@ class Reply:
 
 def refused(seq: int | None, error: EquipoiseError, language: str = "en") -> Reply:
     """Say why something cannot be done, in a language."""
-    told = _shortened(error.told(language, lines=True), error.lines)
-    content: dict[str, Any] = {"type": "refused", "seq": seq, "message": told}
+    shortened = _shortened(error.told(language, lines=True), error.lines)
+    content: dict[str, Any] = {"type": "refused", "seq": seq, "message": shortened}
     what = error
     if isinstance(error, ModelError):
         what = EquipoiseError(error.what)

@@ -146,8 +146,8 @@ def _drop(session: ViewSession, message: Message) -> None:
 
 def _go(session: ViewSession, message: Message) -> None:
     name = message.text("name")
-    found = session.seen.variants.of(name)
-    session.go_to(found, say("go to {name}", name=name))
+    result = session.seen.variants.of(name)
+    session.go_to(result, say("go to {name}", name=name))
 
 
 def _against(session: ViewSession, message: Message) -> None:
@@ -160,9 +160,11 @@ def _record(session: ViewSession, message: Message) -> Iterator[Reply]:
     if text:
         analysis = session.shown.analysis
         record = record_of_text(message.text("name", "record.csv"), text)
-        found = compared_with(record, analysis, gauges_of(session.shown))
-        beside = [name for name in found.signals if name in analysis.outputs and not charted(name)]
-        session.wanted = tuple(dict.fromkeys((*session.wanted, *beside)))[-MOST_OUTPUTS:]
+        compared = compared_with(record, analysis, gauges_of(session.shown))
+        matching_signals = [
+            name for name in compared.signals if name in analysis.outputs and not charted(name)
+        ]
+        session.wanted = tuple(dict.fromkeys((*session.wanted, *matching_signals)))[-MOST_OUTPUTS:]
     session.seen.record = record
     yield from session.told(message.seq)
 

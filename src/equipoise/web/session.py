@@ -126,30 +126,30 @@ class Session:
     def _edit(self, message: Message) -> Iterator[Reply]:
         commit, problem = message.flag("commit", True), None
         with self.lock, self.telling():
-            base, found = self.base(), None
+            base, preview = self.base(), None
             try:
-                found = changed(base, message.changes(), commit, self.preview)
+                preview = changed(base, message.changes(), commit, self.preview)
             except EquipoiseError as error:
                 problem = error
-            if found is None and commit:  # the last place of a drag at which it could be
-                found = self.preview
-            if found is not None and commit:
-                found = settled(found) if isinstance(found, Computed) else found
-                self._go(self._past.then(found.design, message.label), found)
-            elif found is not None:
-                self.preview = found
+            if preview is None and commit:  # the last place of a drag at which it could be
+                preview = self.preview
+            if preview is not None and commit:
+                preview = settled(preview) if isinstance(preview, Computed) else preview
+                self._go(self._past.then(preview.design, message.label), preview)
+            elif preview is not None:
+                self.preview = preview
         if problem is not None:
             yield refused(message.seq, problem, self.language)
-        if found is not None:
+        if preview is not None:
             yield from self.told(message.seq)
 
     def _make(self, message: Message) -> Iterator[Reply]:
         with self.lock, self.telling():
             base = sketch_of(self.base(), message.whole("at", 0))
             sketch, label = made(base, message)
-            found = drawn(sketch)
-            self._go(self._past.then(found.design, label), found)
-            self._measure(found, False)
+            result = drawn(sketch)
+            self._go(self._past.then(result.design, label), result)
+            self._measure(result, False)
             named = message.text("do") == "delete" and message.text("what") in ("point", "link")
             notes = [*lost(base, sketch)] if named else []
         yield from self.told(message.seq, *notes)
@@ -228,24 +228,24 @@ class Session:
     @property
     def has_more(self) -> bool:
         """Whether there is more to tell of the design, which takes longer."""
-        told, against = self.more_told
+        text, against = self.more_told
         if not isinstance(self.found, Computed):
             return False
-        return self.view is not told or self._against is not against
+        return self.view is not text or self._against is not against
 
     def tell_more(self) -> Iterator[Reply]:
         """What takes too long to be told at every move of a drag; ends when the design changes."""
         wanted = self.more_wanted()
         if wanted is None:
             return
-        found, against, sweep = wanted
-        told = more(found, against, sweep, lambda: self.view is not found)
+        result, against, sweep = wanted
+        text = more(result, against, sweep, lambda: self.view is not result)
         while True:
             with self.telling():  # left where this waits: whoever goes on may be another thread
-                one = next(told, None)
-            if one is None:
+                item = next(text, None)
+            if item is None:
                 return
-            content, data = one
+            content, data = item
             yield Reply({"seq": None, **content}, data)
 
     def more_wanted(self) -> tuple[Computed, Computed | None, bool] | None:
@@ -256,12 +256,12 @@ class Session:
         The design, the one that figures are compared with, and whether the response over speed is
         wanted; None where the design is unfinished by now.
         """
-        found = self.view
-        if not isinstance(found, Computed):
+        view = self.view
+        if not isinstance(view, Computed):
             return None
-        sweep, against = self.more_told[0] is not found, self._against
-        self.more_told = found, against
-        return found, against, sweep
+        sweep, against = self.more_told[0] is not view, self._against
+        self.more_told = view, against
+        return view, against, sweep
 
     @contextmanager
     def telling(self) -> Iterator[None]:
@@ -337,29 +337,29 @@ class Session:
         if now[0] is before[0] and now[1] is before[1]:
             return
         with self.telling():
-            shaken = response_of(self.shown)
+            response = response_of(self.shown)
         self.response_told, self.more_told = now, (None, None)
-        if shaken is not None:
-            content, data = shaken
+        if response is not None:
+            content, data = response
             yield Reply({"type": "response", "seq": seq, **content}, data)
 
     def _state(self, seq: int | None) -> Reply:
         assert self.scale is not None
-        found, history = self.view, self._past
-        if isinstance(found, Incomplete):
-            content, data = state_of_sketch(found, self.scale)
+        view, history = self.view, self._past
+        if isinstance(view, Incomplete):
+            content, data = state_of_sketch(view, self.scale)
         else:
-            content, data = self._state_of(found)
-            fields = fields_of(found.design).values()
-            content["fields"] = [self.scale.told(one) for one in fields]
+            content, data = self._state_of(view)
+            fields = fields_of(view.design).values()
+            content["fields"] = [self.scale.told(item) for item in fields]
         now = self.found if self.preview is None else None
         file = self.disk and self.disk.kept(
             now.design.machine if isinstance(now, Computed) else None
         )
         steps = [len(history.past), len(history.future)]
         content["wording"] = wording_of(words_of(self._machine))
-        told = {"undo": history.undo, "redo": history.redo, "steps": steps, "file": file}
-        return Reply({"type": "state", "seq": seq, **told, **content}, data)
+        text = {"undo": history.undo, "redo": history.redo, "steps": steps, "file": file}
+        return Reply({"type": "state", "seq": seq, **text, **content}, data)
 
     def _state_of(self, found: Computed) -> tuple[Values, bytes]:
         seen = self.seen

@@ -82,7 +82,7 @@ def response_of(shown: Computed) -> tuple[Values, bytes] | None:
     if not can_be_shaken(machine):
         return None
     try:
-        found = responded(shown)
+        response = responded(shown)
     except EquipoiseError as error:
         return {
             "charts": [],
@@ -91,7 +91,7 @@ def response_of(shown: Computed) -> tuple[Values, bytes] | None:
             "swing": None,
             "modes": [],
         }, b""
-    return _told(shown, found, block), block.data
+    return _told(shown, response, block), block.data
 
 
 def swept(shown: Computed, progress: Callable[[int, int], None]) -> tuple[Values, bytes] | None:
@@ -100,12 +100,12 @@ def swept(shown: Computed, progress: Callable[[int, int], None]) -> tuple[Values
     progress : as of `sweep_speed`; what it raises ends the work.
     """
     try:
-        found = responded(shown)
-        curves = _curves(shown, found.speed, progress)
+        response = responded(shown)
+        curves = _curves(shown, response.speed, progress)
     except EquipoiseError:  # of which `response_of` has told
         return None
     block = FloatBlock()
-    content = _told(shown, found, block)
+    content = _told(shown, response, block)
     block.add("sweep.speed", curves.speed)
     choices: list[Values] = []
     for name, curve in curves.gauges.items():
@@ -114,7 +114,7 @@ def swept(shown: Computed, progress: Callable[[int, int], None]) -> tuple[Values
         label = say("{gauge} against speed, peak to peak", gauge=_spoken(name))
         choices.append(gauge_choice(name, label, curve.rotation, array, log=True))
     rpm = display("angular speed", (), "rpm")
-    over = {"array": "sweep.speed", "unit": rpm.name, "factor": rpm.factor, "at": found.speed}
+    over = {"array": "sweep.speed", "unit": rpm.name, "factor": rpm.factor, "at": response.speed}
     content["charts"].append(chart("sweep", choices, x=over))
     content["arrays"] = block.told
     return content, block.data
@@ -156,10 +156,10 @@ def _modes(scene: Scene, found: Response) -> Iterator[Values]:
     support = found.machine.support
     assert support is not None
     for number, mode in enumerate(found.modes, 1):
-        one = ModeSwing.of(scene, number, mode, support.coordinates)
-        parts = (complex(one.amplitudes[FREEDOMS.index(name)]) for name in PLANAR)
+        item = ModeSwing.of(scene, number, mode, support.coordinates)
+        parts = (complex(item.amplitudes[FREEDOMS.index(name)]) for name in PLANAR)
         shape = [number for part in parts for number in (part.real, part.imag)]
-        yield {"told": list(one.told), "seen": one.seen, "shape": shape}
+        yield {"told": list(item.told), "seen": item.seen, "shape": shape}
 
 
 def _spoken(name: str) -> str:
@@ -232,9 +232,9 @@ def _told_against(
         others = {} if against is None else of(against)
     except EquipoiseError:
         others = {}
-    told = [_shown(name, one, others.get(name)) for name, one in figures.items()]
+    values = [_shown(name, figure, others.get(name)) for name, figure in figures.items()]
     notes = list(map(said, planted(found).notes)) if kind == "planting" else []
-    return {"type": kind, "figures": told, "compared": bool(others), "notes": notes}
+    return {"type": kind, "figures": values, "compared": bool(others), "notes": notes}
 
 
 def _shown(name: str, one: _Told, other: _Told | None) -> Values:
@@ -245,9 +245,9 @@ def _shown(name: str, one: _Told, other: _Told | None) -> Values:
         return shown.factor * value if isfinite(value) else None
 
     now = there(one.value)
-    told = {"name": name, "label": one.label, "unit": shown.name, "value": now}
+    text = {"name": name, "label": one.label, "unit": shown.name, "value": now}
     was = {} if other is None else {"was": was_of(there(other.value), now)}
-    return {**told, "text": text_of(now), **was}
+    return {**text, "text": text_of(now), **was}
 
 
 READ = {"peak_to_peak": to_say("peak to peak"), "vibration_rms": to_say("RMS")}
@@ -279,9 +279,9 @@ def _strokes(found: Computed) -> _Figures:
 
 def _strokes_of(analysis: Analysis) -> Iterator[tuple[str, _Told]]:
     machine = analysis.machine
-    for name, one in analysis.strokes.items():
+    for name, stroke in analysis.strokes.items():
         of_joint = partial(_of_joint, machine, name)
-        yield from _declared_of(f"strokes.{name}", joint_named(name), one, of_joint)
+        yield from _declared_of(f"strokes.{name}", joint_named(name), stroke, of_joint)
     for table, name, figures in figures_by_name(analysis):
         yield from _declared_of(f"{table}.{name}", name.replace(" to ", " → "), figures, _own)
     yield from _losses_of(analysis)
@@ -293,9 +293,9 @@ def _losses_of(analysis: Analysis) -> Iterator[tuple[str, _Told]]:
     if losses is None:
         return
     word = say("mean loss")
-    for name, one in losses.joints.items():
+    for name, joint in losses.joints.items():
         label = f"{joint_named(name)}: {word}"
-        yield f"friction.joints.{name}.loss", _Told(label, one.loss, "power")
+        yield f"friction.joints.{name}.loss", _Told(label, joint.loss, "power")
     yield "friction.loss", _Told(f"{say('all joints')}: {word}", losses.loss, "power")
     if losses.efficiency is not None:
         yield "friction.efficiency", _Told(say("efficiency"), losses.efficiency, None)
@@ -306,8 +306,8 @@ def _of_joint(machine: Machine, name: str, kind: Field[Any]) -> Dimension | None
 
 
 def _own(kind: Field[Any]) -> Dimension | None:
-    found: Dimension | None = kind.metadata["dimension"]
-    return found
+    dimension: Dimension | None = kind.metadata["dimension"]
+    return dimension
 
 
 def _declared_of(
@@ -340,9 +340,9 @@ def _planted(found: Computed) -> _Figures:
         return {}
     figures = planted(found).figures
     return {
-        name: _Told(figure_named(name), float(figures[name]), told.dimension, told.unit)
+        name: _Told(figure_named(name), float(figures[name]), text.dimension, text.unit)
         for name in (*FIGURES, *(name for name in figures if of_all_arms(name) in FIGURES))
         if name in figures
-        for told in [cell(float(figures[name]), name)]
-        if told is not None
+        for text in [cell(float(figures[name]), name)]
+        if text is not None
     }

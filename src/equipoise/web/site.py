@@ -137,7 +137,7 @@ def write_site(
         fresh.rename(target)
     finally:
         shutil.rmtree(fresh, ignore_errors=True)
-    missing = [name for name, one in packages.items() if "/" not in one["file_name"]]
+    missing = [name for name, package in packages.items() if "/" not in package["file_name"]]
     return Site(target, first, tuple(sorted(missing)))
 
 
@@ -246,17 +246,17 @@ def _packages(
             entries[name] = dict(lock["packages"][name])
             wanted += entries[name]["depends"]
     local = {}
-    for one in entries.values():
-        file = one["file_name"]
+    for entry in entries.values():
+        file = entry["file_name"]
         if wheels is None or not (wheels / file).is_file():
             continue
         data = _read(wheels, file)
-        if hashlib.sha256(data).hexdigest() != one["sha256"]:
+        if hashlib.sha256(data).hexdigest() != entry["sha256"]:
             raise UsageError(
                 Note("{file} is damaged: its hash is not that of the lock file", file=wheels / file)
             )
         local[file] = data
-        one["file_name"] = f"wheels/{file}"
+        entry["file_name"] = f"wheels/{file}"
     return entries, local
 
 

@@ -17,8 +17,8 @@ from equipoise.web.edits import Computed, solved
 
 UNTITLED = "untitled"
 REST = tuple(
-    {one.name for one in fields(Machine)}.difference(
-        (one.name for one in fields(MachineDraft)), ("assembly", "position")
+    {item.name for item in fields(Machine)}.difference(
+        (item.name for item in fields(MachineDraft)), ("assembly", "position")
     )
 )
 """Fields of a machine that a sketch hands on as they are; sides and places follow from it."""
@@ -46,7 +46,11 @@ class Sketch(MachineDraft):
             arm = LinkPlacement(0j, angle).out(own.links[name].points[anchor])
             poses[name] = LinkPlacement(complex(motion.points[anchor].place[at]) - arm, angle)
         rest = {key: getattr(own, key) for key in REST}
-        weights = {name: one for name, one in found.design.counterweights.items() if one.mass}
+        weights = {
+            name: counterweight
+            for name, counterweight in found.design.counterweights.items()
+            if counterweight.mass
+        }
         return cls(own.frame, own.links, poses, own.drive, own.sliders, rest,
                    float(motion.crank_angle[at]), found.design.name, weights)  # fmt: skip
 
@@ -79,13 +83,13 @@ class Sketch(MachineDraft):
 
     def entries(self) -> Iterator[tuple[str, Any]]:
         """What has names of links and points in it, with the field that it stands in."""
-        yield from (("sliders", one) for one in self.sliders)
+        yield from (("sliders", slider) for slider in self.sliders)
         for key in LISTS:
-            yield from ((key, one) for one in self.rest.get(key, ()))
+            yield from ((key, item) for item in self.rest.get(key, ()))
 
     def with_entries(self, entries: list[tuple[str, Any]]) -> Sketch:
         """The same with other ones."""
-        of = {key: tuple(one for name, one in entries if name == key) for key in
+        of = {key: tuple(item for name, item in entries if name == key) for key in
               ("sliders", *LISTS)}  # fmt: skip
         rest = {**self.rest, **{key: of[key] for key in LISTS}}
         return replace(self, sliders=of["sliders"], rest=rest)
@@ -111,5 +115,5 @@ class Sketch(MachineDraft):
         EquipoiseError : it cannot be computed; the sentence says why.
         """
         machine = self.settled()
-        weights = {one: w for one, w in self.counterweights.items() if one in self.links}
+        weights = {item: w for item, w in self.counterweights.items() if item in self.links}
         return solved(Design(self.name, machine, weights))

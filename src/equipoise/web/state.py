@@ -101,21 +101,21 @@ def state_of(
 
 def outputs_of(analysis: Analysis) -> list[Values]:
     """What can be drawn over the crank angle."""
-    told = {
+    by_name = {
         dimension: {"unit": shown.name, "factor": shown.factor}
-        for dimension in {one.dimension for one in analysis.outputs}
+        for dimension in {output.dimension for output in analysis.outputs}
         for shown in [display(dimension)]
     }
     groups = {group: say(title) for group, title in GROUPS.items()}
     return [
         {
-            "name": one.name,
-            "label": one.label(),
-            "group": groups[one.group],
-            "winds": one.dimension == "angle",
-            **told[one.dimension],
+            "name": output.name,
+            "label": output.label(),
+            "group": groups[output.group],
+            "winds": output.dimension == "angle",
+            **by_name[output.dimension],
         }
-        for one in analysis.outputs
+        for output in analysis.outputs
     ]
 
 
@@ -168,9 +168,9 @@ def _spectra(analysis: Analysis, signals: dict[str, Array]) -> Iterator[tuple[st
     if analysis.solved is None:
         return
     turns = analysis.motion.turns
-    for one in analysis.outputs.ordered:
-        if one.declared.compared:
-            yield one.name, _sizes(analysis.by_order[one.name])
+    for item in analysis.outputs.ordered:
+        if item.declared.compared:
+            yield item.name, _sizes(analysis.by_order[item.name])
     whole = signals.get("rows.shaking_force")
     if whole is not None:
         yield "rows.shaking_force.x", _sizes(Periodic.of(whole.real, turns))
@@ -203,7 +203,9 @@ def first_of(machine: Machine) -> tuple[str, tuple[str, ...]]:
     """
     lifts = tuple(
         dict.fromkeys(
-            _motion_of(machine, one.driven) for one in machine.couplings if one.contact == "surface"
+            _motion_of(machine, coupling.driven)
+            for coupling in machine.couplings
+            if coupling.contact == "surface"
         )
     )
     moved = [link for link in pinned(machine) if len(machine.links[link].points) > 1]

@@ -53,7 +53,7 @@ def is_store(path: str) -> bool:
 def stores_in(folder: Path) -> list[str]:
     """Names of the stores that lie in a folder itself; links to elsewhere are left out."""
     try:
-        return sorted(one.name for one in os.scandir(folder) if _looks_so(one))
+        return sorted(item.name for item in os.scandir(folder) if _looks_so(item))
     except OSError:
         return []
 
@@ -142,8 +142,8 @@ class StoreDesk:
         block.add("reason", np.where(reasons == COMPUTED, 0, reasons))
         block.add("kept", inside)
         columns = [*self._columns()]
-        for one, values in zip(columns, rows.T, strict=True):
-            block.add(f"column.{one['name']}", values)
+        for column, values in zip(columns, rows.T, strict=True):
+            block.add(f"column.{column['name']}", values)
         good, counts = self._counts
         refused = [
             {"why": say(words), "code": code, "count": int(counts[code])}
@@ -156,12 +156,12 @@ class StoreDesk:
             "name": self.name,
             "title": self.store.title,
             "columns": columns,
-            "own": None if self._own is None else [float(one) for one in self._own],
+            "own": None if self._own is None else [float(item) for item in self._own],
             "size": self.store.size,
             "drawn": len(numbers),
             "computed": int(counts[COMPUTED]),
             "kept": good,
-            "limited": any(one.limited for one in self.store.wishes),
+            "limited": any(wish.limited for wish in self.store.wishes),
             "refused": refused,
             "best": self._best,
             "arrays": block.told,
@@ -174,9 +174,9 @@ class StoreDesk:
         by the first figure where the study makes nothing small or large.
         """
         wishes = self.store.wishes
-        by = None if any(one.make for one in wishes) else {one.name: None for one in wishes[:1]}
+        by = None if any(wish.make for wish in wishes) else {wish.name: None for wish in wishes[:1]}
         try:
-            return [int(one) for one in best(self.store, BEST, by, nearest=True).designs]
+            return [int(design) for design in best(self.store, BEST, by, nearest=True).designs]
         except UsageError:
             return []
 

@@ -48,7 +48,7 @@ def entered(design: Design, entry: Entry) -> Design:
         kind = kind_at(document.of, entry.place)
         names = amounts_of(design.own.parameters)
         values = {
-            name: _worked_out(kind.type, name, one, names) for name, one in entry.values.items()
+            name: _worked_out(kind.type, name, value, names) for name, value in entry.values.items()
         }
         document = document.put(entry.place, values, entry.name)
     own = completed(document, entry, design.own).machine(entry.files)
@@ -61,12 +61,12 @@ def _worked_out(of: type[Frozen], name: str, value: Any, names: Names) -> Any:
 
     names : parameters.  An expression that has them, or the sign of expressions, stays as it is.
     """
-    one = own_keys(of).get(name)
-    if one is None or not isinstance(one.kind, Quantity) or not isinstance(value, str):
+    item = own_keys(of).get(name)
+    if item is None or not isinstance(item.kind, Quantity) or not isinstance(value, str):
         return value
     if value.startswith(SIGN):
         return value
-    dimension = one.kind.dimension
+    dimension = item.kind.dimension
     try:
         worked_out = parse_expression(value.strip(), dimension, names)
     except UsageError:
@@ -101,8 +101,8 @@ def tables_of(machine: Machine) -> Values:
     whole["entries"] = [_entry(of, document.content, KeyPath())]
     bodies = {name: dict(points) for name, points in machine.bodies.items()}
     groups = [whole, *_groups(machine, of, document.content, KeyPath(), "")]
-    found = ((name, declared(name)) for name in balanced_names(machine))
-    outputs = {name: one[0].say(one[1]) for name, one in found if one is not None}
+    result = ((name, declared(name)) for name in balanced_names(machine))
+    outputs = {name: item[0].say(item[1]) for name, item in result if item is not None}
     return {"groups": groups, "forms": forms_of(of), "bodies": bodies, "outputs": outputs}
 
 
@@ -113,14 +113,14 @@ def _groups(
 
     name : what the entry is called.
     """
-    for key, one in tables_below(of).items():
-        inner = entry_of(one.kind)
+    for key, item in tables_below(of).items():
+        inner = entry_of(item.kind)
         assert inner is not None
         at = place / key
-        many = {Tables: "list", Named: "named"}.get(type(one.kind), "one")
-        words = {"word": word_of(one), "text": text_of(one), "of": name}
+        many = {Tables: "list", Named: "named"}.get(type(item.kind), "one")
+        words = {"word": word_of(item), "text": text_of(item), "of": name}
         group = _group(at, inner.type, many, words)
-        group["required"] = one.required and many == "one"
+        group["required"] = item.required and many == "one"
         if entry is None:
             group["needs"] = name
         held = (entry or {}).get(key)
@@ -130,15 +130,15 @@ def _groups(
             group["result"] = _mass_of(machine, str(place[-1]))
         yield group
         for below, value in entries:
-            called = str(below[-1]) if many == "named" else _called(one, below)
+            called = str(below[-1]) if many == "named" else _called(item, below)
             yield from _groups(machine, inner.type, value, below, called)
         if not entries and many == "one":
-            yield from _groups(machine, inner.type, None, at, word_of(one))
+            yield from _groups(machine, inner.type, None, at, word_of(item))
 
 
 def _group(place: KeyPath, of: type[Frozen], many: str, words: Values) -> Values:
-    told = {"place": [*place], "where": place.shown, "form": of.__name__}
-    return {**told, "many": many, "needs": "", **words}
+    text = {"place": [*place], "where": place.shown, "form": of.__name__}
+    return {**text, "many": many, "needs": "", **words}
 
 
 def _entries(held: Any, place: KeyPath, many: str) -> Iterator[tuple[KeyPath, Any]]:
@@ -146,9 +146,9 @@ def _entries(held: Any, place: KeyPath, many: str) -> Iterator[tuple[KeyPath, An
     if many == "one":
         yield from [] if held is None else [(place, held)]
     elif many == "list":
-        yield from ((place / number, one) for number, one in enumerate(held or ()))
+        yield from ((place / number, item) for number, item in enumerate(held or ()))
     else:
-        yield from ((place / name, one) for name, one in (held or {}).items())
+        yield from ((place / name, item) for name, item in (held or {}).items())
 
 
 def _called(one: Any, place: KeyPath) -> str:
@@ -159,8 +159,8 @@ def _called(one: Any, place: KeyPath) -> str:
 def _entry(of: type[Frozen], entry: Mapping[str, Any], place: KeyPath) -> Values:
     own = own_keys(of)
     values = {name: value for name, value in entry.items() if name in own}
-    shown = ((one, values[name]) for name, one in own.items() if name in values)
-    said = [f"{word_of(one)} {_brief(_said(one, value))}" for one, value in shown]
+    shown = ((item, values[name]) for name, item in own.items() if name in values)
+    said = [f"{word_of(item)} {_brief(_said(item, value))}" for item, value in shown]
     return {
         "place": [*place],
         "where": place.shown,
@@ -175,7 +175,7 @@ def _entry(of: type[Frozen], entry: Mapping[str, Any], place: KeyPath) -> Values
 
 def _is_assumed(value: Any) -> bool:
     """Whether tables are such that what is given takes their place."""
-    return isinstance(value, list) and all(one.get("assumed") for one in value)
+    return isinstance(value, list) and all(item.get("assumed") for item in value)
 
 
 def _said(one: Key, value: Any) -> Any:

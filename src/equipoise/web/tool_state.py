@@ -52,29 +52,29 @@ class ToolFigures:
     @cached_property
     def whole(self) -> dict[str, tuple[str, float, Dimension, str | None]]:
         """Figures by their name: label, value (SI units), dimension and unit."""
-        return {name: one for name, *one in self._figures()}  # type: ignore[misc]
+        return {name: item for name, *item in self._figures()}  # type: ignore[misc]
 
     def _figures(self) -> Iterator[tuple[str, str, float, Dimension, str | None]]:
         yield "mass", say("mass of the tool"), self.tool.mass, "mass", "kg"
         planes = {"vertical": self.modes.planes[0]}
         if not self.modes.alike:
             planes["lateral"] = self.modes.planes[1]
-        for plane, found in planes.items():
-            for k, hertz in enumerate(found.cycles_per_second, 1):
+        for plane, result in planes.items():
+            for k, hertz in enumerate(result.cycles_per_second, 1):
                 if hertz > 0:
-                    told = say("natural frequency {number}, {plane}", number=k, plane=say(plane))
-                    yield f"{plane}.{k}", told, float(hertz), "frequency", "Hz"
+                    text = say("natural frequency {number}, {plane}", number=k, plane=say(plane))
+                    yield f"{plane}.{k}", text, float(hertz), "frequency", "Hz"
         if self.exposure is None:
             return
         for what, hands in self.exposure.named.items():
             for name, grip in hands.items():
-                told = say(
+                text = say(
                     "weighted acceleration at {hand}, {state}", hand=name, state=say(NAMED[what])
                 )
-                yield f"{what}.{name}", told, float(grip.a_hv[0]), "acceleration", "m/s^2"
+                yield f"{what}.{name}", text, float(grip.a_hv[0]), "acceleration", "m/s^2"
         for name, day in self.exposure.days.items():
-            told = say("A(8) at {hand}", hand=name)
-            yield f"day.{name}", told, float(day.a8), "acceleration", "m/s^2"
+            text = say("A(8) at {hand}", hand=name)
+            yield f"day.{name}", text, float(day.a8), "acceleration", "m/s^2"
 
 
 def tool_state(now: ToolFigures, first: ToolFigures) -> tuple[Values, bytes]:
@@ -95,7 +95,7 @@ def tool_state(now: ToolFigures, first: ToolFigures) -> tuple[Values, bytes]:
         "views": [*_views(now)],
         "figures": [*_compared(now, first)],
         "charts": [*_charts(now, first if changed else None, block)],
-        "notes": [said(one) for one in now.modes.notes],
+        "notes": [said(note) for note in now.modes.notes],
     }
     content["arrays"] = block.told
     return content, block.data
@@ -110,15 +110,15 @@ def _scene(scene: ToolScene) -> Values:
     Shapes are as in `drawing.stage_of`.
     """
     low, high = scene.box
-    found = scene.pieces()
+    pieces = scene.pieces()
     roles = sorted(
-        {"rim", "zero"} & LOOKS.keys() | {s.role for *_, shapes in found for s in shapes}
+        {"rim", "zero"} & LOOKS.keys() | {s.role for *_, shapes in pieces for s in shapes}
     )
     return {
-        "tubes": [[one.start, one.stop, one.diameter] for one in scene.shaft],
+        "tubes": [[item.start, item.stop, item.diameter] for item in scene.shaft],
         "stations": [
-            {"name": one.name, "place": one.place, "told": told(one.place, "length", "mm")}
-            for one in scene.seats
+            {"name": seat.name, "place": seat.place, "told": told(seat.place, "length", "mm")}
+            for seat in scene.seats
         ],
         "pieces": [
             {
@@ -127,7 +127,7 @@ def _scene(scene: ToolScene) -> Values:
                 "turns": turns,
                 "shapes": shapes_of(shapes),
             }
-            for layer, seat, turns, shapes in found
+            for layer, seat, turns, shapes in pieces
         ],
         "looks": {role: LOOKS[role].css(UNIT) for role in roles},
         "box": [low.real, low.imag, high.real, high.imag],
@@ -176,7 +176,7 @@ def _at_work(tool: Tool, along: Array, swing: float) -> Iterator[Values]:
 
 def _parts(shape: Array) -> list[float]:
     flat = np.asarray(shape, complex).view(float).ravel()
-    return [float(f"{one:.5g}") for one in flat]
+    return [float(f"{item:.5g}") for item in flat]
 
 
 # -- figures and curves ----------------------------------------------------------------------------

@@ -122,17 +122,17 @@ class ToolDesk:
                 raise UsageError(Note("a tool has no joints to be dragged; set a number of it"))
             values[change.path] = self._value(change)
         try:
-            found = ToolStep(values, self._tool(values), message.label)
-            _ = found.figures.whole
+            tool_step = ToolStep(values, self._tool(values), message.label)
+            _ = tool_step.figures.whole
         except (ModelError, UsageError):
             if not commit or self.preview is None:
                 raise
-            found = self.preview  # the last place of a slider at which it could be
+            tool_step = self.preview  # the last place of a slider at which it could be
         if commit:
             self.past = (*self.past[1 - MOST_STEPS :], self.now)
-            self.now, self.future, self.preview = found, (), None
+            self.now, self.future, self.preview = tool_step, (), None
         else:
-            self.preview = found
+            self.preview = tool_step
 
     def _value(self, change: Setting) -> float:
         """What a number is set to, SI units."""
@@ -154,9 +154,9 @@ class ToolDesk:
             ) from None
 
     def _tool(self, values: Mapping[str, float]) -> Tool:
-        found = self.template.machine(values)
-        assert isinstance(found, Tool)
-        return found
+        tool = self.template.machine(values)
+        assert isinstance(tool, Tool)
+        return tool
 
     def _step(self, way: str) -> None:
         where = self.past if way == "undo" else self.future
@@ -183,16 +183,20 @@ class ToolDesk:
 
             if language not in LANGUAGES:
                 raise UsageError(unknown(language, LANGUAGES, "language of reports"))
-            found = ToolFindings(self.now.tool, text, name)
-            text, name, mime = report_page(found, language), f"{stem}-report.html", "text/html"
+            tool_findings = ToolFindings(self.now.tool, text, name)
+            text, name, mime = (
+                report_page(tool_findings, language),
+                f"{stem}-report.html",
+                "text/html",
+            )
         elif kind != "model":
             raise UsageError(
                 Note("{kind}: that is there for linkages; of a tool, model or report", kind=kind)
             )
-        told: Values = {"type": "file", "seq": message.seq, "name": name, "mime": mime}
+        statement: Values = {"type": "file", "seq": message.seq, "name": name, "mime": mime}
         if kind == "model":
-            told["files"] = files
-        return Reply(told, text.encode())
+            statement["files"] = files
+        return Reply(statement, text.encode())
 
     # -- what it is told ---------------------------------------------------------------------------
 
@@ -211,12 +215,12 @@ class ToolDesk:
             "file": self.disk and self.disk.kept(None if self.preview else self.now.tool),
         }
         fields = [*self._fields()]
-        told = {"type": "tool", "seq": seq, "name": self.name, "fields": fields, **history}
-        return Reply({**told, **content}, data)
+        text = {"type": "tool", "seq": seq, "name": self.name, "fields": fields, **history}
+        return Reply({**text, **content}, data)
 
     def _numbers(self) -> dict[str, FileNumber]:
-        found = self.template.numbers()
-        return {path: one for path, one in found.items() if not path.startswith(NOT_SHOWN)}
+        numbers = self.template.numbers()
+        return {path: item for path, item in numbers.items() if not path.startswith(NOT_SHOWN)}
 
     def _fields(self) -> Iterator[Values]:
         """Numbers as `fields` tells those of a linkage."""
@@ -228,7 +232,7 @@ class ToolDesk:
             if path.endswith(".position"):
                 low, high = 0.0, length
             group, known = _group(self.first.tool, path)
-            told = {
+            text = {
                 "path": path,
                 "group": group,
                 "heading": group,
@@ -239,7 +243,7 @@ class ToolDesk:
                 "step": (high - low) / 1000,
                 "kind": "number",
             }
-            yield {**told, **_written(number, value, self.template.unit(path))}
+            yield {**text, **_written(number, value, self.template.unit(path))}
 
 
 def _group(tool: Tool, path: str) -> tuple[str, int]:

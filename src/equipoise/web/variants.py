@@ -46,7 +46,7 @@ class Variants:
                 Note("{most} variants are kept already; delete one of them", most=MOST)
             )
         letters = (a + b for b in ("", *"23456789") for a in ascii_uppercase)
-        name = next(one for one in letters if one not in self.kept)
+        name = next(letter for letter in letters if letter not in self.kept)
         return Variants(MappingProxyType({**self.kept, name: found}), VARIANT + name)
 
     def of(self, name: str) -> Computed:
@@ -71,14 +71,14 @@ class Variants:
             raise UsageError(
                 Note("there is a variant of the name {to!r} already; give another", to=to)
             )
-        kept = {to if one == name else one: found for one, found in self.kept.items()}
+        kept = {to if item == name else item: result for item, result in self.kept.items()}
         against = VARIANT + to if self.against == VARIANT + name else self.against
         return Variants(MappingProxyType(kept), against)
 
     def without(self, name: str) -> Variants:
         """The same without one of them."""
         self.of(name)
-        kept = {one: found for one, found in self.kept.items() if one != name}
+        kept = {item: result for item, result in self.kept.items() if item != name}
         against = STEP if self.against == VARIANT + name else self.against
         return Variants(MappingProxyType(kept), against)
 
@@ -101,44 +101,46 @@ class Variants:
 
         Of every figure the smallest is best; none is where all are the same.
         """
-        every = [one.analysis for one in (*self.kept.values(), now)]
-        figures = [_named(figures_of(one)) for one in every]
-        names = [name for name in figures[-1] if all(name in one for one in figures)]
-        rows = [_row([one[name] for one in figures]) for name in names]
+        every = [item.analysis for item in (*self.kept.values(), now)]
+        figures = [_named(figures_of(item)) for item in every]
+        names = [name for name in figures[-1] if all(name in figure for figure in figures)]
+        rows = [_row([figure[name] for figure in figures]) for name in names]
         rows += _gauges((*self.kept.values(), now))
-        masses = [one.machine.mass for one in every]
+        masses = [item.machine.mass for item in every]
         if all(masses):
             unit = display("mass", masses)
             words = {"label": say("mass of the links"), "unit": unit.name}
             values = [unit.factor * mass for mass in masses]
-            rows.append(_row([{**words, "value": one, "text": text_of(one)} for one in values]))
+            rows.append(
+                _row([{**words, "value": value, "text": text_of(value)} for value in values])
+            )
         return {"kept": [*self.kept], "against": self.against, "rows": rows}
 
 
 def _named(figures: list[Values]) -> dict[str, Values]:
-    return {one["name"]: one for one in figures}
+    return {figure["name"]: figure for figure in figures}
 
 
 def _gauges(every: Sequence[Computed]) -> Iterator[Values]:
     """What gauges read peak to peak, where every design has the same and a steady state."""
     try:
-        found = [responded(one).gauges for one in every if can_be_shaken(one.design.machine)]
+        items = [responded(item).gauges for item in every if can_be_shaken(item.design.machine)]
     except EquipoiseError:
         return
-    if len(found) < len(every):
+    if len(items) < len(every):
         return
-    for name in (one for one in found[-1] if all(one in gauges for gauges in found)):
-        read = [gauges[name].displacement.peak_to_peak for gauges in found]
+    for name in (item for item in items[-1] if all(item in gauges for gauges in items)):
+        read = [gauges[name].displacement.peak_to_peak for gauges in items]
         output = DECLARED["gauges.{}"].say(name)
-        dimension: Dimension = "angle" if found[-1][name].rotation else "length"
+        dimension: Dimension = "angle" if items[-1][name].rotation else "length"
         unit = display(dimension, read, "mrad" if dimension == "angle" else None)
         words = {"label": say("{output}, peak to peak", output=output), "unit": unit.name}
-        values = [float(unit.factor * one) for one in read]
-        yield _row([{**words, "value": one, "text": text_of(one)} for one in values])
+        values = [float(unit.factor * item) for item in read]
+        yield _row([{**words, "value": value, "text": text_of(value)} for value in values])
 
 
 def _row(cells: list[Values]) -> Values:
-    values = [one["value"] for one in cells]
+    values = [cell["value"] for cell in cells]
     known = [abs(value) for value in values if value is not None]
     least, most = min(known, default=0.0), max(known, default=0.0)
     best = [
@@ -146,5 +148,5 @@ def _row(cells: list[Values]) -> Values:
         for number, value in enumerate(values)
         if value is not None and most - least > SAME * most and abs(value) - least <= SAME * most
     ]
-    texts = [one["text"] for one in cells]
+    texts = [cell["text"] for cell in cells]
     return {"label": cells[-1]["label"], "unit": cells[-1]["unit"], "texts": texts, "best": best}

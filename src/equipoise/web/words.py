@@ -51,5 +51,5 @@ def spoken_in(language: str) -> dict[str, Any]:
     with speaking(language):
         charts = explained()
     words = words_of(language)
-    told = {"language": language, "languages": LANGUAGES, "words": words, "explained": charts}
-    return told | {"particles": rules() if language == "ko" else None}
+    text = {"language": language, "languages": LANGUAGES, "words": words, "explained": charts}
+    return text | {"particles": rules() if language == "ko" else None}

@@ -121,22 +121,22 @@ class Foreground:
             return
         wanted = session.more_wanted()
         if wanted is not None:
-            found, against, sweep = wanted
-            self._begin(None, found, against, sweep)
+            result, against, sweep = wanted
+            self._begin(None, result, against, sweep)
 
     def wants_reply(self) -> bool:
         """Whether a reply of the task that runs is about the design that is shown."""
-        task, found = self._running[0]
-        return task.message is not None or self.desk.session.view is found
+        task, result = self._running[0]
+        return task.message is not None or self.desk.session.view is result
 
     def result_of_task(self, data: Buffer) -> None:
         """Take the end of a task: of a balance, the design that came of it."""
-        task, found = self._running.popleft()
+        task, result = self._running.popleft()
         balancing = pickle.loads(data) if memoryview(data) else None
         if isinstance(balancing, Balancing):
-            assert task.message is not None and found is not None
+            assert task.message is not None and result is not None
             message = task.message
-            self._replies = balanced.adopted(self.desk.session, found, balancing, message)
+            self._replies = balanced.adopted(self.desk.session, result, balancing, message)
             self._message = message
         elif task.message is not None:
             self._answer(task.message)
@@ -180,8 +180,8 @@ class Foreground:
             session = self.desk.session
             if message.kind == "balance":
                 self._replies = iter([balanced.begun(session, message)])
-            found = session.current() if message.kind in OF_MACHINE else None
-            self._begin(message, found, None, sweep=False)
+            current = session.current() if message.kind in OF_MACHINE else None
+            self._begin(message, current, None, sweep=False)
         else:
             self._message, self._replies = message, self.desk.receive(message)
 
@@ -195,7 +195,7 @@ class Foreground:
         self, message: Message | None, found: Computed | None, against: Computed | None, sweep: bool
     ) -> None:
         session = self.desk.session
-        design, other = (None if one is None else one.design for one in (found, against))
+        design, other = (None if item is None else item.design for item in (found, against))
         task = SlowTask(design, other, message, sweep, session.wanted, session.language)
         self._running.append((task, found))
         self.tasks.append(pickle.dumps(task))
@@ -278,19 +278,19 @@ class Background:
         session = Session(language=task.language)
         result = b""
         try:
-            found = None if task.design is None else solved(task.design)
-            if found is not None:
-                session.open(found.design, found)
+            outcome = None if task.design is None else solved(task.design)
+            if outcome is not None:
+                session.open(outcome.design, outcome)
                 session.wanted = task.wanted
             if task.message is None:
-                assert found is not None
+                assert outcome is not None
                 against = None if task.against is None else solved(task.against)
                 with session.telling():
-                    for content, data in more(found, against, task.sweep, lambda: False):
+                    for content, data in more(outcome, against, task.sweep, lambda: False):
                         yield "reply", packed(Reply({"seq": None, **content}, data))
             elif task.message.kind == "balance":
-                assert found is not None
-                result = pickle.dumps(balanced.computed(session, found, task.message))
+                assert outcome is not None
+                result = pickle.dumps(balanced.computed(session, outcome, task.message))
             else:
                 for reply in session.receive(task.message):
                     yield "reply", packed(reply)

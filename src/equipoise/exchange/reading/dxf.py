@@ -53,7 +53,7 @@ def read(data: bytes, marks: Marks, unit: float | None) -> Read:
         raise
     except Exception as error:  # of many kinds, where a file is damaged
         raise ModelError("", NONE) from error
-    if damaged := next((one for one in warnings if one.startswith(DAMAGED)), ""):
+    if damaged := next((warning for warning in warnings if warning.startswith(DAMAGED)), ""):
         line = damaged.partition(" near line ")[2].partition(" ")[0]
         raise ModelError(
             "", Note("near line {line} of the drawing a number is damaged; save it anew", line=line)
@@ -79,10 +79,10 @@ def _heard() -> Iterator[list[str]]:
 
 def _drawing(document: Any, unit: float | None) -> Drawing:
     drawing = Drawing("")
-    told = UNITS.get(int(document.header.get("$INSUNITS", 0)))
-    if unit is None and told is None:
+    units = UNITS.get(int(document.header.get("$INSUNITS", 0)))
+    if unit is None and units is None:
         drawing.note("the drawing tells no unit and is taken for millimetres; --unit tells another")
-    scale = unit or told or MILLIMETRE
+    scale = unit or units or MILLIMETRE
     for entity in _entities(document, document.modelspace()):
         _add(drawing, entity, scale)
     return drawing
@@ -92,7 +92,7 @@ def _entities(document: Any, entities: Iterable[Any]) -> Iterator[Any]:
     """What is seen, with blocks taken apart."""
     hidden = {layer.dxf.name.casefold() for layer in document.layers
               if layer.is_off() or layer.is_frozen()}  # fmt: skip
-    left = deque((one, 0) for one in entities)
+    left = deque((entity, 0) for entity in entities)
     for count in count_from(1):
         if not left:
             return
@@ -116,7 +116,11 @@ def _entities(document: Any, entities: Iterable[Any]) -> Iterator[Any]:
             )
         else:
             single = entity.multi_insert() if entity.mcount > 1 else (entity,)
-            parts = [(one, deep + 1) for part in single for one in part.virtual_entities()]
+            parts = [
+                (virtual_entity, deep + 1)
+                for part in single
+                for virtual_entity in part.virtual_entities()
+            ]
             left.extendleft(reversed(parts))
 
 
@@ -162,7 +166,7 @@ def _check_size(spline: Any) -> None:
 
 def _check_flat(path: Any, layer: str) -> None:
     """Links may lie above one another, each at its own height; none may lie askew."""
-    heights = [float(one.z) for one in path.control_vertices()]
+    heights = [float(control_vertex.z) for control_vertex in path.control_vertices()]
     low, high = min(heights), max(heights)
     if high - low > SKEW * max(map(abs, path.control_vertices())):
         raise ModelError(
@@ -180,7 +184,7 @@ def _check_flat(path: Any, layer: str) -> None:
 def _corners(path: Any, scale: float) -> Iterator[complex]:
     """The start, and the end of every piece."""
     yield _place(path.start.x, path.start.y, scale)
-    yield from (_place(one.end.x, one.end.y, scale) for one in path.commands())
+    yield from (_place(command.end.x, command.end.y, scale) for command in path.commands())
 
 
 def _place(x: float, y: float, scale: float) -> complex:

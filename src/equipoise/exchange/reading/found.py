@@ -63,9 +63,9 @@ class Imported:
 
     def shown_in(self, units: Mapping[Dimension, str]) -> Imported:
         """With a file that asks for units, by what they are of."""
-        told = ShownUnits(**{one.replace(" ", "_"): unit for one, unit in units.items()})
-        outline = replace(self.outline, rest={**self.outline.rest, "units": told})
-        machine = self.machine and replace(self.machine, units=told)
+        shown_units = ShownUnits(**{item.replace(" ", "_"): unit for item, unit in units.items()})
+        outline = replace(self.outline, rest={**self.outline.rest, "units": shown_units})
+        machine = self.machine and replace(self.machine, units=shown_units)
         return replace(self, machine=machine, outline=outline)
 
     def blocks(self) -> Iterator[Block]:
@@ -75,18 +75,20 @@ class Imported:
         pins = sum(len(bodies) - 1 for bodies in joints.pins.values())
         counts = {"link": len(outline.links), "pin": pins, "sliding joint": len(outline.sliders),
                   "gear": len(outline.joints.couplings)}  # fmt: skip
-        told = ", ".join(f"{n} {what}{'s' * (n != 1)}" for what, n in counts.items() if n)
-        yield Text(f"{told}; mobility {outline.mobility}")
+        text = ", ".join(f"{n} {what}{'s' * (n != 1)}" for what, n in counts.items() if n)
+        yield Text(f"{text}; mobility {outline.mobility}")
         heads = ("link", "points", Column("mass", "mass"))
         yield Table.of("", heads, (self._row(name, link) for name, link in outline.links.items()))
         if self.missing:
-            yield Notes(tuple(f"missing: {one}" for one in self.missing))
+            yield Notes(tuple(f"missing: {item}" for item in self.missing))
         if self.notes:
             yield Notes(self.notes)
 
     def _row(self, name: str, link: Link) -> Iterable[object]:
         pinned = self.outline.joints.pins
-        points = (f"{one} (frame)" if FRAME in pinned.get(one, ()) else one for one in link.points)
+        points = (
+            f"{point} (frame)" if FRAME in pinned.get(point, ()) else point for point in link.points
+        )
         mass = Value(link.mass) if link.mass is not None else "open"
         return name, ", ".join(points), mass
 
@@ -94,8 +96,8 @@ class Imported:
         """The model file, with lines to fill in for what is open."""
         from equipoise.schema.models import text_of
 
-        open_now = [f"# missing: {one}\n" for one in self.missing]
-        notes = [f"# {one}\n" for one in self.notes]
+        open_now = [f"# missing: {item}\n" for item in self.missing]
+        notes = [f"# {note}\n" for note in self.notes]
         machine = self.machine or self.outline.machine()
         text = text_of(machine, {})
         for name in self.massless:
@@ -168,8 +170,8 @@ def _meshed(outline: MachineDraft) -> Machine:
     """The machine, whose gears start so that they come to where they are drawn."""
     machine = outline.settled()
     for number, gear in enumerate(machine.gears):
-        found = move(machine, [outline.crank_angle]).links[gear.driven].angle[0]
-        off = remainder(outline.poses[gear.driven].angle - float(found), 2 * pi)
+        result = move(machine, [outline.crank_angle]).links[gear.driven].angle[0]
+        off = remainder(outline.poses[gear.driven].angle - float(result), 2 * pi)
         gears = [*machine.gears]
         gears[number] = replace(gear, start=gear.start + off)
         machine = replace(machine, gears=tuple(gears))
@@ -205,7 +207,7 @@ def _crank(outline: MachineDraft, wanted: str, told: str) -> tuple[str, str]:
         return wanted, ""
     if told in turning:
         return told, ""
-    by_name = [one for one in turning if one.casefold().startswith(CRANKS)]
+    by_name = [item for item in turning if item.casefold().startswith(CRANKS)]
     tried = [*dict.fromkeys((*by_name, *turning))][:MOST]
     able = [name for name in tried if _turns(outline, name)] if outline.mobility == 1 else []
     if not able:

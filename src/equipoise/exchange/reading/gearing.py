@@ -36,7 +36,7 @@ def gears(
     for name, factors in space.sums:
         wanted = {joint: factor * float(np.sign(space.joints[joint].axis @ normal))
                   for joint, factor in factors.items()}  # fmt: skip
-        able = [one for one in _fitting(around, chains, wanted) if one.driven not in moved]
+        able = [item for item in _fitting(around, chains, wanted) if item.driven not in moved]
         if not able:
             raise ModelError(
                 name,
@@ -57,7 +57,7 @@ def _joints(outline: MachineDraft, link: str) -> int:
 
 def _chain(space: Space, link_of: Mapping[str, str], body: str) -> Iterator[str]:
     """Hinges whose angles add up to that of a link."""
-    holding = {link_of[one.child]: one for one in space.joints.values()}
+    holding = {link_of[joint.child]: joint for joint in space.joints.values()}
     while body != FRAME and (joint := holding.pop(body, None)) is not None:
         if joint.kind == "hinge":
             yield joint.name
@@ -94,8 +94,8 @@ def _ratio(
 ) -> float | None:
     """The ratio r of which driven - r driver + (r - 1) carrier is a multiple of a sum, if any."""
     joints = [*(driven | driver | carrier | wanted.keys())]
-    told = np.array([[joint in chain for joint in joints] for chain in (driven, driver, carrier)])
-    own, geared, carried = told.astype(float)
+    values = np.array([[joint in chain for joint in joints] for chain in (driven, driver, carrier)])
+    own, geared, carried = values.astype(float)
     sides = np.column_stack([own - carried, carried - geared])
     right = np.array([wanted.get(joint, 0.0) for joint in joints])
     (scale, scaled), _, rank, _ = lstsq(sides, right)

@@ -55,8 +55,8 @@ def toward(axis: Array) -> Array:
         return np.diag([1.0, -1.0, -1.0])
     x, y, w = across
     cross = np.array([[0, -w, y], [w, 0, -x], [-y, x, 0]])
-    found: Array = np.eye(3) + cross + cross @ cross / (1 + along)
-    return found
+    values: Array = np.eye(3) + cross + cross @ cross / (1 + along)
+    return values
 
 
 def _between(geom: Element) -> tuple[Frame3, float]:

@@ -65,4 +65,4 @@ def _pose(places: Sequence[complex]) -> LinkPlacement:
 def free(name: str, taken: Iterable[str]) -> str:
     """A name with a number that is not taken."""
     used = {*taken}
-    return next(one for one in (f"{name}{number}" for number in count(1)) if one not in used)
+    return next(item for item in (f"{name}{number}" for number in count(1)) if item not in used)

@@ -54,56 +54,56 @@ class _File:
             raise ModelError(
                 "", Note("it has more than {most} connectors and links; give a linkage", most=MOST)
             )
-        for one in root.findall("connector"):
-            if _layer(one) == DRAWN:
+        for part in root.findall("connector"):
+            if _layer(part) == DRAWN:
                 continue
-            place = complex(number(one, "x", "0"), number(one, "y", "0")) * unit
-            rpm = number(one, "rpm", "0") if one.get("input") == "true" else None
-            name = self._free(one.get("name") or f"C{_id(one)}")
-            still = one.get("anchor") == "true"
-            self.connectors[_id(one)] = _Connector(name, place, still, rpm)
+            place = complex(number(part, "x", "0"), number(part, "y", "0")) * unit
+            rpm = number(part, "rpm", "0") if part.get("input") == "true" else None
+            name = self._free(part.get("name") or f"C{_id(part)}")
+            still = part.get("anchor") == "true"
+            self.connectors[_id(part)] = _Connector(name, place, still, rpm)
 
     def _free(self, name: str) -> str:
-        taken = [one.name for one in self.connectors.values()]
+        taken = [connector.name for connector in self.connectors.values()]
         return name if name not in taken else free(f"{name} ", taken)
 
     def read(self) -> Read:
         links = self._links()
-        points = {name: [self.connectors[one].name for one in ids] for name, ids in links.items()}
-        places = {one.name: one.place for one in self.connectors.values()}
+        points = {name: [self.connectors[item].name for item in ids] for name, ids in links.items()}
+        places = {connector.name: connector.place for connector in self.connectors.values()}
         held = {point for own in points.values() for point in own}
-        slots = [slot for one in self.root.findall("connector")
-                 if one.get("slider") == "true" and (slot := self._slot(one, links))]  # fmt: skip
+        slots = [slot for part in self.root.findall("connector")
+                 if part.get("slider") == "true" and (slot := self._slot(part, links))]  # fmt: skip
         guides = {slot.through for slot in slots if slot.on == FRAME}
-        frame = [one.name for one in self.connectors.values() if one.still
-                 and (one.name in held or one.name in guides)]  # fmt: skip
+        frame = [connector.name for connector in self.connectors.values() if connector.still
+                 and (connector.name in held or connector.name in guides)]  # fmt: skip
         crank, speed = self._driven(links)
         outline = outline_of("", places, points, frame, slots)
         return Read(outline, crank, speed, tuple(self.notes))
 
     def _links(self) -> dict[str, list[str]]:
         """Connectors by number of each link that moves; those that are fastened are one."""
-        found: dict[str, list[str]] = {}
+        texts: dict[str, list[str]] = {}
         names: dict[str, str] = {}
-        for one in (*self.root.findall("Link"), *self.root.findall("element")):
-            if _layer(one) == DRAWN:
+        for item in (*self.root.findall("Link"), *self.root.findall("element")):
+            if _layer(item) == DRAWN:
                 continue
-            if one.get("gear") == "true" or one.get("actuator") == "true":
+            if item.get("gear") == "true" or item.get("actuator") == "true":
                 raise ModelError(
-                    called(one),
+                    called(item),
                     Note("gears and linear actuators are not read; leave them out in Linkage"),
                 )
-            ids = [_id(part) for part in one.findall("connector") if _id(part) in self.connectors]
+            ids = [_id(part) for part in item.findall("connector") if _id(part) in self.connectors]
             if len(ids) < 2 or all(self.connectors[part].still for part in ids):
                 continue
-            name = one.get("name") or f"link{_id(one)}"
-            name = name if name not in found and name != FRAME else free(f"{name} ", found)
-            names[_id(one)], found[name] = name, ids
-            fastened = names.get(one.get("fastenlink", ""))
+            name = item.get("name") or f"link{_id(item)}"
+            name = name if name not in texts and name != FRAME else free(f"{name} ", texts)
+            names[_id(item)], texts[name] = name, ids
+            fastened = names.get(item.get("fastenlink", ""))
             if fastened is not None and fastened != name:
-                found[fastened] += [part for part in found.pop(name) if part not in found[fastened]]
-                names[_id(one)] = fastened
-        return found
+                texts[fastened] += [part for part in texts.pop(name) if part not in texts[fastened]]
+                names[_id(item)] = fastened
+        return texts
 
     def _slot(self, one: Element, links: Mapping[str, list[str]]) -> SlotLine | None:
         """The line between two connectors on which one slides."""
@@ -129,23 +129,27 @@ class _File:
         return SlotLine(me.name, on, start.name, phase(end.place - start.place))
 
     def _driven(self, links: Mapping[str, list[str]]) -> tuple[str, float | None]:
-        inputs = [(key, one) for key, one in self.connectors.items() if one.rpm is not None]
+        inputs = [
+            (key, connector)
+            for key, connector in self.connectors.items()
+            if connector.rpm is not None
+        ]
         if len(inputs) > 1:
             self.notes.append("of several inputs the first is the drive")
-        for key, one in inputs:
+        for key, item in inputs:
             link = next((name for name, ids in links.items() if key in ids), "")
-            if link and one.rpm is not None:
-                return link, -one.rpm * pi / 30 or None
+            if link and item.rpm is not None:
+                return link, -item.rpm * pi / 30 or None
         return "", None
 
 
 def _id(element: Element) -> str:
-    found = element.get("id", "")
-    if not found.strip().lstrip("-").isdecimal():
+    result = element.get("id", "")
+    if not result.strip().lstrip("-").isdecimal():
         raise ModelError(
-            called(element), Note("its id is {given!r}; give a whole number", given=found[:40])
+            called(element), Note("its id is {given!r}; give a whole number", given=result[:40])
         )
-    return found.strip()
+    return result.strip()
 
 
 def _layer(element: Element) -> int:

@@ -93,16 +93,16 @@ def numbers(
     text = element.get(key, default)
     if text is None:
         raise ModelError(called(element), Note("missing; give {key}", key=key))
-    found = [*_floats(text.replace(",", " "))]
+    items = [*_floats(text.replace(",", " "))]
     wanted = " or ".join(map(str, count))
-    if None in found or (count and len(found) not in count):
+    if None in items or (count and len(items) not in count):
         shown = text if len(text) <= 60 else f"{text[:57]}..."
         what = Note("{count} numbers", count=wanted) if count else Note("numbers")
         raise ModelError(
             called(element),
             at_place(key, Note("got {shown!r}; give {what}", shown=shown, what=what)),
         )
-    return tuple(one for one in found if one is not None)
+    return tuple(item for item in items if item is not None)
 
 
 def number(element: Element, key: str, default: str | None = None) -> float:

@@ -118,9 +118,9 @@ class _Model:
             elif element.tag == "site":
                 self._site(element, at)
             elif element.tag == "geom":
-                one = self._with_defaults(element, at.kind)
-                found = geoms.lumps(one, self._axes(one))
-                lumps += [None if own is None else own.placed(at.axes) for own in found]
+                node = self._with_defaults(element, at.kind)
+                result = geoms.lumps(node, self._axes(node))
+                lumps += [None if own is None else own.placed(at.axes) for own in result]
         return lumps
 
     def _body(self, element: Element, outside: _Within) -> None:
@@ -128,14 +128,14 @@ class _Model:
         solid = Solid(name, outside.axes @ self._axes(element))
         self.space.add(solid)
         at = self._of_class(element, _Within(name, solid.axes, outside.kind))
-        joints = [self._with_defaults(one, at.kind) for one in element.findall("joint")]
+        joints = [self._with_defaults(part, at.kind) for part in element.findall("joint")]
         if element.find("freejoint") is not None:
             raise ModelError(
                 called(element), Note("it moves freely in space; give a planar machine")
             )
         self._hang(element, joints, outside.body, solid)
         shapes = self._inside(element, at)
-        lumps = [one for one in shapes if one is not None]
+        lumps = [shape for shape in shapes if shape is not None]
         inertial = element.find("inertial")
         if inertial is not None and self.from_geoms != "true":
             solid.lump = self._inertial(inertial).placed(solid.axes)
@@ -148,12 +148,12 @@ class _Model:
 
     def _hang(self, element: Element, given: list[Element], parent: str, solid: Solid) -> None:
         """By its joints, one after the other, with bodies without mass between them."""
-        joints = [self._joint(one, element, number, len(given), solid)
-                  for number, one in enumerate(given, 1)]  # fmt: skip
-        self.dofs += [one.name for one in joints]
+        joints = [self._joint(item, element, number, len(given), solid)
+                  for number, item in enumerate(given, 1)]  # fmt: skip
+        self.dofs += [joint.name for joint in joints]
         if not joints:
             self.space.rigid.append((parent, solid.name))
-        if sorted(one.kind for one in joints) == ["hinge", "slide", "slide"]:
+        if sorted(joint.kind for joint in joints) == ["hinge", "slide", "slide"]:
             self.space.loose.append(solid.name)
             return
         for joint in joints:
@@ -190,8 +190,8 @@ class _Model:
         return Lump(number(element, "mass"), np.zeros(3), moments).placed(axes)
 
     def _site(self, element: Element, at: _Within) -> None:
-        one = self._with_defaults(element, at.kind)
-        place = at.axes.out(np.array(numbers(one, "pos", "0 0 0", (3,))))
+        node = self._with_defaults(element, at.kind)
+        place = at.axes.out(np.array(numbers(node, "pos", "0 0 0", (3,))))
         if name := element.get("name"):
             self.sites[name] = at.body, place
             self.space.solids[at.body].points[name] = place
@@ -236,24 +236,24 @@ class _Model:
     # -- what holds and drives -----------------------------------------------------------------
 
     def _equalities(self) -> None:
-        held = (one for group in self.root.findall("equality") for one in group)
-        for place, one in enumerate(held, 1):
-            if one.get("active") == "false":
+        held = (item for group in self.root.findall("equality") for item in group)
+        for place, entry in enumerate(held, 1):
+            if entry.get("active") == "false":
                 continue
-            name = one.get("name") or f"{one.tag} {place}"
-            if one.tag == "connect":
-                self._connect(one, name)
-            elif one.tag == "weld":
-                if any(numbers(one, "relpose", "0")[:7]):
+            name = entry.get("name") or f"{entry.tag} {place}"
+            if entry.tag == "connect":
+                self._connect(entry, name)
+            elif entry.tag == "weld":
+                if any(numbers(entry, "relpose", "0")[:7]):
                     raise ModelError(
                         name, Note("its relpose is not read; weld bodies as they are drawn")
                     )
-                self.space.rigid.append(self._bodies(one, name))
-            elif one.tag in ("joint", "tendon"):
-                self._sum(one, name)
+                self.space.rigid.append(self._bodies(entry, name))
+            elif entry.tag in ("joint", "tendon"):
+                self._sum(entry, name)
             else:
                 raise ModelError(
-                    name, Note("<{tag}> is not read; give connect, weld or joint", tag=one.tag)
+                    name, Note("<{tag}> is not read; give connect, weld or joint", tag=entry.tag)
                 )
 
     def _connect(self, one: Element, name: str) -> None:
@@ -300,28 +300,30 @@ class _Model:
             raise ModelError(
                 name, Note("only angles of hinges in a straight line can be gears; leave it out")
             )
-        self.space.sums.append((name, {key: one for key, one in factors.items() if key}))
+        self.space.sums.append((name, {key: factor for key, factor in factors.items() if key}))
 
     def _springs(self) -> None:
         for group in self.root.findall("tendon/spatial"):
-            sites = [one.get("site", "") for one in group.findall("site")]
+            sites = [part.get("site", "") for part in group.findall("site")]
             if len(sites) != 2 or len(group) != 2:
                 self.space.note("tendons of more than two sites are left out")
                 continue
-            ends = [(self._known(self.sites, one, called(group))[0], one) for one in sites]
+            ends = [(self._known(self.sites, site, called(group))[0], site) for site in sites]
             stiffness, *_ = numbers(group, "stiffness", "0")
             length, *rest = numbers(group, "springlength", "-1")
-            if stiffness <= 0 or length < 0 or any(one != length for one in rest):
+            if stiffness <= 0 or length < 0 or any(item != length for item in rest):
                 self.space.note("tendons without a stiffness and one springlength are left out")
                 continue
             self.space.pulls.append(Pull((ends[0], ends[1]), stiffness, length))
 
     def _driven(self) -> None:
         """The hinge of an actuator, and its speed by the first key."""
-        actuators = [one for group in self.root.findall("actuator") for one in group]
-        known = [one.get("joint", "") for one in actuators]
-        self.space.driven = next((one for one in known if one in self.space.joints), "")
-        if left := [one for one in actuators if one.get("joint") != self.space.driven]:
+        actuators = [item for group in self.root.findall("actuator") for item in group]
+        known = [actuator.get("joint", "") for actuator in actuators]
+        self.space.driven = next((item for item in known if item in self.space.joints), "")
+        if left := [
+            actuator for actuator in actuators if actuator.get("joint") != self.space.driven
+        ]:
             self.space.note(f"{len(left)} other actuators are left out")
         key = self.root.find("keyframe/key")
         rates = numbers(key, "qvel", "") if key is not None else ()
@@ -332,8 +334,8 @@ class _Model:
 def _first(root: Element, tag: str) -> Element:
     """The attributes of all elements of a kind together, of which the last one counts."""
     merged = Element(tag)
-    for one in root.findall(tag):
-        merged.attrib.update(one.attrib)
+    for part in root.findall(tag):
+        merged.attrib.update(part.attrib)
     return merged
 
 
@@ -343,8 +345,8 @@ def _defaults(
     """Attributes by tag, by class; a class has those of the one around it too."""
     for element in root.findall("default"):
         own = {tag: dict(values) for tag, values in (known or {}).items()}
-        for one in element:
-            own[one.tag] = {**own.get(one.tag, {}), **one.attrib}
+        for item in element:
+            own[item.tag] = {**own.get(item.tag, {}), **item.attrib}
         yield from (
             (name, own) for name in (element.get("class", ""), "main" if top else "") if name
         )

@@ -37,9 +37,9 @@ class Pinning:
     def at(self, link: str, place: complex) -> int | None:
         """The point of a link at a place of the frame, m."""
         near, pose = SAME * self.size, self.pose(link)
-        found = (one for one, local in self.points[link].items()
+        result = (item for item, local in self.points[link].items()
                  if abs(pose.out(local) - place) <= near)  # fmt: skip
-        return next(found, None)
+        return next(result, None)
 
     def put(self, link: str, place: complex, wish: str) -> int:
         """One more point of a link."""
@@ -85,11 +85,11 @@ class Pinning:
         holders = Counter(chain.from_iterable(self.points.values()))
         taken: dict[str, int] = {}
         for number, _ in sorted(holders.items(), key=lambda one: (-one[1], one[0])):
-            taken[next(one for one in self._names(number) if one not in taken)] = number
+            taken[next(name for name in self._names(number) if name not in taken)] = number
         return {number: name for name, number in taken.items()}
 
     def _names(self, number: int) -> Iterator[str]:
-        wishes = [one for one, _ in Counter(self.wishes[number]).most_common()]
+        wishes = [item for item, _ in Counter(self.wishes[number]).most_common()]
         yield from wishes
         link = next(link for link, points in self.points.items() if number in points)
         yield f"{link}-{wishes[0]}"

@@ -48,7 +48,7 @@ def planar(space: Space, told: SpatialOptions) -> Read:
     flat = _Flat(space)
     sliders = [*flat.joined()]
     names = flat.pins.named()
-    points = {link: {names[one]: place for one, place in own.items()}
+    points = {link: {names[item]: place for item, place in own.items()}
               for link, own in flat.pins.points.items()}  # fmt: skip
     slides = tuple(Slider(link, names[point], on, names[through], *angles)
                    for link, point, on, through, *angles in sliders)  # fmt: skip
@@ -84,13 +84,13 @@ def _closed(space: Space, pair: str) -> Loop3:
     for end in ends:
         if end not in known:
             raise UsageError(at_place("--pin", unknown(end, known, "body or site")))
-    (one, place), (other, there) = (known[end] for end in ends)
-    return Loop3(pair, (one, other), (place, there))
+    (item, place), (other, there) = (known[end] for end in ends)
+    return Loop3(pair, (item, other), (place, there))
 
 
 def _plane(space: Space) -> Array:
     """Directions x and y of the plane (2, 3), in space."""
-    hinges = [one for one in space.joints.values() if one.kind == "hinge"]
+    hinges = [joint for joint in space.joints.values() if joint.kind == "hinge"]
     if not hinges:
         raise ModelError("", Note("no body turns about a joint; give a linkage with hinges"))
     normal, first = hinges[0].axis, hinges[0].name
@@ -137,13 +137,13 @@ def _merged(space: Space) -> dict[str, str]:
             name = root[name]
         return name
 
-    for one, other in space.rigid:
-        first, second = sorted((top(one), top(other)), key=order.__getitem__)
+    for item, other in space.rigid:
+        first, second = sorted((top(item), top(other)), key=order.__getitem__)
         root[second] = first
-    found = {name: FRAME if top(name) == WORLD else top(name) for name in root}
-    if FRAME in found and top(FRAME) != WORLD:
+    texts = {name: FRAME if top(name) == WORLD else top(name) for name in root}
+    if FRAME in texts and top(FRAME) != WORLD:
         raise ModelError(f"body {FRAME!r}", Note("it moves; give it another name"))
-    return found
+    return texts
 
 
 class _Flat:
@@ -171,7 +171,7 @@ class _Flat:
 
     def _pose(self, solid: Solid) -> LinkPlacement:
         """Its axes, along the first of its own that lies in the plane."""
-        lying = (one for one in solid.axes.turn.T if abs(one @ self.normal) < SKEW)
+        lying = (item for item in solid.axes.turn.T if abs(item @ self.normal) < SKEW)
         way = self.flat(next(lying, self.plane[0]))
         return LinkPlacement(self.flat(solid.axes.origin), phase(way))
 
@@ -189,8 +189,8 @@ class _Flat:
                 pins.pin(joint.name, (on, place), (link, place))
         for loop in self.space.loops:
             links = self._apart(f"loop {loop.name!r}", *loop.bodies)
-            one, other = zip(links, map(self.flat, loop.places), strict=True)
-            pins.pin(loop.name, one, other)
+            item, other = zip(links, map(self.flat, loop.places), strict=True)
+            pins.pin(loop.name, item, other)
         for joint in joints:
             if joint.kind == "slide":
                 yield self._slider(joint)
@@ -206,15 +206,15 @@ class _Flat:
 
     def _apart(self, where: str, *bodies: str) -> tuple[str, str]:
         """The links of two bodies that are joined."""
-        one, other = (self.link_of[body] for body in bodies)
-        if one == other:
+        item, other = (self.link_of[body] for body in bodies)
+        if item == other:
             raise ModelError(where, Note("both of its bodies are one link; leave it out"))
-        return one, other
+        return item, other
 
     def mass(self, link: str) -> dict[str, Any]:
         """Masses of a link, where all parts of it tell theirs."""
-        parts = [one for name, one in self.space.solids.items() if self.link_of[name] == link]
-        lumps = [one.lump for one in parts if one.lump is not None]
+        parts = [solid for name, solid in self.space.solids.items() if self.link_of[name] == link]
+        lumps = [part.lump for part in parts if part.lump is not None]
         if len(lumps) < len(parts):
             return {}
         whole = together(lumps)

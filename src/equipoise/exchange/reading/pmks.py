@@ -54,13 +54,13 @@ def read(text: str, unit: float | None) -> Read:
     forces, _ = _until_empty(rest)
     chosen = _whole(choices[:1])
     scale = unit or (UNITS[chosen] if chosen < len(UNITS) else 0.01)
-    found = [_joint(one, scale) for one in joints]
+    values = [_joint(joint, scale) for joint in joints]
     speed = _whole(integers.partition(",")[0]) * pi / 30
     notes = ["masses are left out: PMKS+ does not tell their units"]
     if forces:
         notes.append("forces are left out: PMKS+ does not tell when they act")
     clockwise = _whole(settings, signed=False) & CLOCKWISE
-    return _machine(found, links, -speed if clockwise else speed, notes)
+    return _machine(values, links, -speed if clockwise else speed, notes)
 
 
 @dataclass(frozen=True)
@@ -75,11 +75,11 @@ class _Joint:
 def _machine(
     joints: Sequence[_Joint], links: Sequence[str], speed: float, notes: list[str]
 ) -> Read:
-    by_key = {one.key: one for one in joints}
+    by_key = {joint.key: joint for joint in joints}
     points: dict[str, str] = {}
-    for one in joints:
-        name = one.name or one.key
-        points[one.key] = name if name not in points.values() else free(name, points.values())
+    for entry in joints:
+        name = entry.name or entry.key
+        points[entry.key] = name if name not in points.values() else free(name, points.values())
     made: dict[str, list[str]] = {}
     slots: list[SlotLine] = []
     extra: dict[str, complex] = {}
@@ -92,17 +92,19 @@ def _machine(
                 Note("it has a joint {unknown!r} that the file has not", unknown=unknown[0]),
             )
         own = [by_key[key] for key in keys]
-        slide = next((one for one in own if one.flags & SLIDING), None)
+        slide = next((item for item in own if item.flags & SLIDING), None)
         if slide is not None:
             slots += _slots(own, slide, points, extra)
         elif text[:1] == "Y" and keys:
             name = free(name, made) if name in made or name == FRAME or not name else name
             made[name] = [points[key] for key in dict.fromkeys(keys)]
-            if any(one.flags & INPUT and one.flags & STILL for one in own):
+            if any(item.flags & INPUT and item.flags & STILL for item in own):
                 crank = crank or name
-    places = {points[one.key]: one.place for one in joints} | extra
+    places = {points[joint.key]: joint.place for joint in joints} | extra
     held = {point for own in made.values() for point in own}
-    frame = [points[one.key] for one in joints if one.flags & STILL and points[one.key] in held]
+    frame = [
+        points[joint.key] for joint in joints if joint.flags & STILL and points[joint.key] in held
+    ]
     outline = outline_of("", places, made, [*frame, *extra], slots)
     return Read(outline, crank, speed or None, tuple(notes))
 
@@ -115,11 +117,11 @@ def _slots(
         raise ModelError(
             f"joint {slide.name!r}", Note("it slides on a link that moves, which is not read")
         )
-    for one in own:
-        if one is not slide:
+    for item in own:
+        if item is not slide:
             through = free("G", [*points.values(), *extra])
             extra[through] = slide.place
-            yield SlotLine(points[one.key], FRAME, through, slide.angle)
+            yield SlotLine(points[item.key], FRAME, through, slide.angle)
 
 
 def _joint(text: str, scale: float) -> _Joint:

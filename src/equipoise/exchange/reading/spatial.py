@@ -44,8 +44,8 @@ class Frame3:
 
     def out(self, place: Array) -> Array:
         """Where a place (3,) in these axes is in those around them."""
-        found: Array = self.origin + self.turn @ place
-        return found
+        values: Array = self.origin + self.turn @ place
+        return values
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,14 +63,14 @@ class Lump:
 
 def together(lumps: list[Lump]) -> Lump:
     """Several as one."""
-    mass = sum(one.mass for one in lumps)
+    mass = sum(lump.mass for lump in lumps)
     if not mass:
         return Lump(0.0, lumps[0].center, np.zeros((3, 3)))
-    center = sum((one.mass * one.center for one in lumps), np.zeros(3)) / mass
+    center = sum((lump.mass * lump.center for lump in lumps), np.zeros(3)) / mass
     inertia = np.zeros((3, 3))
-    for one in lumps:
-        arm = one.center - center
-        inertia += one.inertia + one.mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
+    for item in lumps:
+        arm = item.center - center
+        inertia += item.inertia + item.mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
     return Lump(mass, center, inertia)
 
 
@@ -167,9 +167,9 @@ class Space:
     def hold(self, body: str) -> None:
         """Let a body stand still, without the joints and bodies between it and the world."""
         self.rigid.append((WORLD, body))
-        while held := [key for key, one in self.joints.items() if one.child == body]:
-            body = self.joints[held[0]].parent
-            self._drop(held[0], {})
+        while matching_joints := [key for key, joint in self.joints.items() if joint.child == body]:
+            body = self.joints[matching_joints[0]].parent
+            self._drop(matching_joints[0], {})
             self.rigid.append((WORLD, body))
 
     def _drop(self, joint: str, instead: Mapping[str, str]) -> None:
@@ -182,7 +182,7 @@ class Space:
                 new = instead.get(key, key)
                 if new in self.joints:
                     left[new] = left.get(new, 0.0) + factor
-            self.sums[number] = name, {key: one for key, one in left.items() if one}
+            self.sums[number] = name, {key: item for key, item in left.items() if item}
 
     def tie_shafts(self) -> None:
         """Make one of bodies that turn together about one axis, as linkages in a row do."""
@@ -191,14 +191,14 @@ class Space:
             factors = self.sums[number][1]
             if len(factors) != 2 or sum(factors.values()) != 0:
                 continue
-            one, other = (self.joints[key] for key in sorted(factors, key=order.index))
-            apart = np.linalg.norm(np.cross(other.place - one.place, one.axis))
-            reach = np.linalg.norm(one.place) + np.linalg.norm(other.place)
-            same = one.parent == other.parent and float(one.axis @ other.axis) > 1 - 1e-9
+            entry, other = (self.joints[key] for key in sorted(factors, key=order.index))
+            apart = np.linalg.norm(np.cross(other.place - entry.place, entry.axis))
+            reach = np.linalg.norm(entry.place) + np.linalg.norm(other.place)
+            same = entry.parent == other.parent and float(entry.axis @ other.axis) > 1 - 1e-9
             if same and apart <= 1e-9 * (1 + reach):
-                self.rigid.append((one.child, other.child))
-                self._drop(other.name, {other.name: one.name})
-        self.sums = [one for one in self.sums if one[1]]
+                self.rigid.append((entry.child, other.child))
+                self._drop(other.name, {other.name: entry.name})
+        self.sums = [item for item in self.sums if item[1]]
 
 
 def direction(where: str, given: tuple[float, ...]) -> Array:
@@ -212,27 +212,27 @@ def direction(where: str, given: tuple[float, ...]) -> Array:
     length = float(np.linalg.norm(vector))
     if length < 1e-12:
         raise ModelError(where, Note("its axis has no length; give one such as 0 0 1"))
-    found: Array = vector / length
-    return found
+    values: Array = vector / length
+    return values
 
 
 def turned(axis: Array, angle: float) -> Array:
     """Rotation about an axis of length 1 by an angle, rad: (3, 3)."""
     x, y, z = axis
     cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-    found: Array = np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
-    return found
+    values: Array = np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
+    return values
 
 
 def by_euler(angles: tuple[float, ...], order: str) -> Array:
     """Rotation by angles (rad) about the axes of an order, each turned by those before it; in
     capitals about axes that stay.
     """
-    found = np.eye(3)
+    values = np.eye(3)
     for angle, letter in zip(angles, order, strict=True):
-        one = turned(np.eye(3)["xyz".index(letter.lower())], angle)
-        found = found @ one if letter.islower() else one @ found
-    return found
+        item = turned(np.eye(3)["xyz".index(letter.lower())], angle)
+        values = values @ item if letter.islower() else item @ values
+    return values
 
 
 def by_quaternion(where: str, given: tuple[float, ...]) -> Array:
@@ -240,7 +240,7 @@ def by_quaternion(where: str, given: tuple[float, ...]) -> Array:
     length = float(np.linalg.norm(given))
     if length < 1e-12:
         raise ModelError(where, Note("its quat has no length; give one such as 1 0 0 0"))
-    w, *rest = (one / length for one in given)
+    w, *rest = (item / length for item in given)
     vector = np.array(rest)
     sine = float(np.linalg.norm(vector))
     return turned(vector / sine, 2 * np.arctan2(sine, w)) if sine > 1e-300 else np.eye(3)

@@ -126,10 +126,10 @@ def skeleton(drawing: Drawing, marks: Marks) -> Read:
 
 def _check(drawing: Drawing, marks: Marks) -> None:
     every: list[DrawnLine | Ring] = [*drawing.strokes, *drawing.rings, *drawing.areas]
-    known = dict.fromkeys(name for one in every for name in one.names)
+    known = dict.fromkeys(name for item in every for name in item.names)
     for option in ("frame", "guide", "link"):
         for name in getattr(marks, option):
-            if name.casefold() not in {one.casefold() for one in known}:
+            if name.casefold() not in {item.casefold() for item in known}:
                 raise ModelError(
                     "",
                     at_place(
@@ -161,18 +161,18 @@ class _Skeleton:
         self.drawing, self.marks = drawing, marks
         frames, guides = marks.frame or FRAMES, marks.guide or GUIDES
         every: list[DrawnLine | Ring] = [*drawing.strokes, *drawing.rings]
-        self.grounds = [one for one in every if _named(one, frames)]
-        self.guides = [one for one in drawing.strokes if _named(one, guides)]
-        taken = {id(one) for one in (*self.grounds, *self.guides)}
-        beside = [one for one in every if _first((*one.names, "")[0]) in BESIDE]
+        self.grounds = [item for item in every if _named(item, frames)]
+        self.guides = [stroke for stroke in drawing.strokes if _named(stroke, guides)]
+        taken = {id(ground) for ground in (*self.grounds, *self.guides)}
+        beside = [item for item in every if _first((*item.names, "")[0]) in BESIDE]
         if beside:
             drawn = "paths, parts, springs, gears, belts, racks and cams"
             drawing.note(f"{len(beside)} lines and circles of {drawn} are left out")
-        taken |= {id(one) for one in beside}
-        lines = [one for one in drawing.strokes if id(one) not in taken]
-        rings = [one for one in drawing.rings if one not in beside]
-        corners = sum(len(one.places) for one in (*lines, *self.grounds, *self.guides)
-                      if isinstance(one, DrawnLine))  # fmt: skip
+        taken |= {id(item) for item in beside}
+        lines = [stroke for stroke in drawing.strokes if id(stroke) not in taken]
+        rings = [ring for ring in drawing.rings if ring not in beside]
+        corners = sum(len(line.places) for line in (*lines, *self.grounds, *self.guides)
+                      if isinstance(line, DrawnLine))  # fmt: skip
         if max(corners, len(rings)) > MOST:
             raise ModelError(
                 "",
@@ -181,12 +181,12 @@ class _Skeleton:
                     most=MOST,
                 ),
             )
-        places = [place for one in drawing.strokes for place in one.places]
+        places = [place for stroke in drawing.strokes for place in stroke.places]
         xs, ys = zip(*((place.real, place.imag) for place in places), strict=True)
         self.size = max(max(xs) - min(xs), max(ys) - min(ys))
         self.near = marks.together or TOGETHER * self.size
         self.pivots = self._pivots(rings, lines)
-        self.joints: list[complex] = [one.center for one in self.pivots]
+        self.joints: list[complex] = [pivot.center for pivot in self.pivots]
         self.bodies = [*self._bodies(lines)]
 
     def read(self) -> Read:
@@ -196,17 +196,17 @@ class _Skeleton:
             )
         points = self._points()
         names = self._names([strokes for strokes, _ in self.bodies])
-        links = {name: [points[one] for one in corners]
+        links = {name: [points[corner] for corner in corners]
                  for name, (_, corners) in zip(names, self.bodies, strict=True)}  # fmt: skip
         places = {name: self.joints[number] for number, name in points.items()}
-        frame = [points[one] for one in points if self._still(one)]
+        frame = [points[point] for point in points if self._still(point)]
         slots = []
         for guide in self.guides:
             on = self._carrier(guide, links)
             own = frame if on == FRAME else links[on]
             start, end = guide.places[0], guide.places[-1]
-            near = (one for one in points if guide.distance(self.joints[one]) <= self.near)
-            sliding = [points[one] for one in near if points[one] not in own]
+            near = (point for point in points if guide.distance(self.joints[point]) <= self.near)
+            sliding = [points[item] for item in near if points[item] not in own]
             if sliding:
                 through = free("G", places)
                 places[through] = start
@@ -220,7 +220,7 @@ class _Skeleton:
     def _hints(self, links: Mapping[str, Sequence[str]], frame: Sequence[str]) -> Iterator[str]:
         """Ends that nearly meet, and links that are joined to nothing."""
         ends = sorted({number for _, corners in self.bodies for number in corners})
-        gaps = (abs(self.joints[one] - self.joints[other]) for one, other in combinations(ends, 2))
+        gaps = (abs(self.joints[end] - self.joints[other]) for end, other in combinations(ends, 2))
         near = min((gap for gap in gaps if self.near < gap < NEARLY * self.size), default=0.0)
         if near:
             wide = float(f"{2e3 * near:.1g}")
@@ -248,15 +248,15 @@ class _Skeleton:
         about another pivot, such as a gear, or about a whole link that begins in its middle, such
         as a flywheel.
         """
-        found: list[Ring] = []
+        items: list[Ring] = []
         for ring in sorted(rings, key=lambda one: one.radius):
             if not 0 < ring.radius < PIVOT * self.size:
                 continue
-            inside = [one for one in found if abs(one.center - ring.center) <= ring.radius]
-            apart = any(abs(one.center - ring.center) > self.near for one in inside)
+            inside = [item for item in items if abs(item.center - ring.center) <= ring.radius]
+            apart = any(abs(item.center - ring.center) > self.near for item in inside)
             if not apart and not any(self._swallows(ring, line) for line in lines):
-                found = [*(one for one in found if one not in inside), ring]
-        return found
+                items = [*(item for item in items if item not in inside), ring]
+        return items
 
     def _swallows(self, ring: Ring, line: DrawnLine) -> bool:
         off = [abs(place - ring.center) for place in line.places]
@@ -264,14 +264,14 @@ class _Skeleton:
 
     def _bodies(self, lines: Sequence[DrawnLine]) -> Iterator[tuple[list[DrawnLine], list[int]]]:
         """Strokes of each link, and the numbers of its corners; a line drawn twice is one."""
-        groups = [[one for one in lines if _named(one, [name])] for name in self.marks.link]
-        grouped = {id(one) for group in groups for one in group}
-        groups += [[one] for one in lines if id(one) not in grouped]
+        groups = [[line for line in lines if _named(line, [name])] for name in self.marks.link]
+        grouped = {id(item) for group in groups for item in group}
+        groups += [[line] for line in lines if id(line) not in grouped]
         seen = set()
         for group in groups:
-            corners = [*dict.fromkeys(self._joint(z) for one in group for z in one.places)]
+            corners = [*dict.fromkeys(self._joint(z) for item in group for z in item.places)]
             on = (number for number, ring in enumerate(self.pivots)
-                  if any(one.distance(ring.center) <= self.near for one in group))  # fmt: skip
+                  if any(item.distance(ring.center) <= self.near for item in group))  # fmt: skip
             corners = [*dict.fromkeys((*corners, *on))]
             if len(corners) < 2:
                 self.drawing.note("lines that lie wholly in a circle of a pivot are left out")
@@ -285,29 +285,29 @@ class _Skeleton:
             if abs(place - ring.center) <= max(1.01 * ring.radius, self.near):
                 return number
         known = (n for n, other in enumerate(self.joints) if abs(place - other) <= self.near)
-        found = next(known, None)
-        if found is None:
+        count = next(known, None)
+        if count is None:
             self.joints.append(place)
-            found = len(self.joints) - 1
-        return found
+            count = len(self.joints) - 1
+        return count
 
     def _points(self) -> dict[int, str]:
         """Names of the corners that links have: the word that stands there, else A to Z, then P1
         and so on.
         """
         used = dict.fromkeys(number for _, corners in self.bodies for number in corners)
-        found: dict[int, str] = {}
+        texts: dict[int, str] = {}
         for place, word in self.drawing.words:
-            near = (one for one in used if abs(self.joints[one] - place) <= self.near)
-            if (at := next(near, None)) is not None and word not in found.values():
-                found.setdefault(at, word)
+            near = (item for item in used if abs(self.joints[item] - place) <= self.near)
+            if (at := next(near, None)) is not None and word not in texts.values():
+                texts.setdefault(at, word)
         names = (*ascii_uppercase, *(f"P{number}" for number in range(1, len(used) + 1)))
-        free_names = (name for name in names if name not in found.values())
-        return {one: found.get(one) or next(free_names) for one in used}
+        free_names = (name for name in names if name not in texts.values())
+        return {item: texts.get(item) or next(free_names) for item in used}
 
     def _names(self, links: Sequence[Sequence[DrawnLine]]) -> Iterator[str]:
         """The first name that is that of one link alone, or a number."""
-        own = [dict.fromkeys(name.removeprefix(LINK) for one in strokes for name in one.names)
+        own = [dict.fromkeys(name.removeprefix(LINK) for stroke in strokes for name in stroke.names)
                for strokes in links]  # fmt: skip
         taken: set[str] = {FRAME}
         for names in own:
@@ -324,15 +324,17 @@ class _Skeleton:
         nothing marks the frame, in a circle at the end of one link only.
         """
         place = self.joints[number]
-        for one in self.grounds:
+        for ground in self.grounds:
             off = (
-                abs(place - one.center) - one.radius
-                if isinstance(one, Ring)
-                else one.distance(place)
+                abs(place - ground.center) - ground.radius
+                if isinstance(ground, Ring)
+                else ground.distance(place)
             )
             if off <= self.near:
                 return True
-        if any(one.holds(place) or one.distance(place) <= self.near for one in self.drawing.areas):
+        if any(
+            area.holds(place) or area.distance(place) <= self.near for area in self.drawing.areas
+        ):
             return True
         links = sum(number in corners for _, corners in self.bodies)
         return not (self.grounds or self.drawing.areas) and number < len(self.pivots) and links == 1

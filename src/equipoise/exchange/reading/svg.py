@@ -161,11 +161,11 @@ class _Reader:
         elif element.tag == "path":
             path = self._library(element, self.shapes.Path, element.get("d", ""))
             for part in path.as_subpaths():
-                ends = [(one.end.x, one.end.y) for one in part if one.end is not None]
+                ends = [(item.end.x, item.end.y) for item in part if item.end is not None]
                 yield ends, type(part[-1]).__name__ == "Close"
 
 
 def _style(element: Element, key: str) -> str:
     """A value of the attribute `style`."""
-    found = re.search(rf"(?:^|;)\s*{key}\s*:\s*([^;]+)", element.get("style", ""))
-    return found[1].strip() if found else ""
+    match = re.search(rf"(?:^|;)\s*{key}\s*:\s*([^;]+)", element.get("style", ""))
+    return match[1].strip() if match else ""

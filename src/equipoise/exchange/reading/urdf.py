@@ -42,10 +42,10 @@ def read(root: Element, told: SpatialOptions) -> Read:
     ModelError : it is no tree, or does not move in one plane.
     """
     space = Space(root.get("name") or "")
-    links = {_named(one): one for one in root.findall("link")}
-    joints = {_named(one): one for one in root.findall("joint")}
-    ends = {name: (_end(one, "parent", links), _end(one, "child", links))
-            for name, one in joints.items()}  # fmt: skip
+    links = {_named(part): part for part in root.findall("link")}
+    joints = {_named(part): part for part in root.findall("joint")}
+    ends = {name: (_end(joint, "parent", links), _end(joint, "child", links))
+            for name, joint in joints.items()}  # fmt: skip
     _check_tree(links, ends)
     root_link = next(iter(links.keys() - {child for _, child in ends.values()}))
     _add(space, links[root_link], Frame3())
@@ -72,8 +72,8 @@ def _named(element: Element) -> str:
 
 def _end(joint: Element, tag: str, links: dict[str, Element]) -> str:
     """The link at an end of a joint."""
-    found = joint.find(tag)
-    name = "" if found is None else found.get("link", "")
+    result = joint.find(tag)
+    name = "" if result is None else result.get("link", "")
     if name not in links:
         raise ModelError(
             called(joint), Note("its {tag} {name!r} is no link of the file", tag=tag, name=name)
@@ -136,7 +136,9 @@ def _hang(space: Space, joint: Element, parent: str, link: Element) -> None:
     axes = space.solids[parent].axes @ _origin(joint)
     _add(space, link, axes)
     dynamics = joint.find("dynamics")
-    if dynamics is not None and any(number(dynamics, one, "0") for one in ("damping", "friction")):
+    if dynamics is not None and any(
+        number(dynamics, name, "0") for name in ("damping", "friction")
+    ):
         space.note("damping and friction of joints are left out")
     if kind == "fixed":
         solid = space.solids[child]
@@ -157,8 +159,8 @@ def _hang(space: Space, joint: Element, parent: str, link: Element) -> None:
 def _axis(joint: Element, axes: Frame3) -> Array:
     axis = joint.find("axis")
     given = (1.0, 0.0, 0.0) if axis is None else numbers(axis, "xyz", "1 0 0", (3,))
-    found: Array = axes.turn @ direction(called(joint), given)
-    return found
+    values: Array = axes.turn @ direction(called(joint), given)
+    return values
 
 
 def _mimics(space: Space, joints: dict[str, Element]) -> None:
@@ -167,8 +169,8 @@ def _mimics(space: Space, joints: dict[str, Element]) -> None:
         if mimic is None:
             continue
         other = mimic.get("joint", "")
-        hinges = [one for one in (name, other)
-                  if one in space.joints and space.joints[one].kind == "hinge"]  # fmt: skip
+        hinges = [item for item in (name, other)
+                  if item in space.joints and space.joints[item].kind == "hinge"]  # fmt: skip
         if len(hinges) < 2:
             raise ModelError(called(joint), Note("it mimics what is no hinge; leave it out"))
         space.sums.append((called(joint), {name: 1.0, other: -number(mimic, "multiplier", "1")}))

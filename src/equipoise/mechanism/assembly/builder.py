@@ -206,7 +206,7 @@ class Builder:
         """The point that stands for a sliding joint in the table of sides; "" where it is the
         name of another joint.
         """
-        names = self.pinned.union(one.name for one in self.machine.sliders)
+        names = self.pinned.union(slider.name for slider in self.machine.sliders)
         return "" if slider.point in names else slider.point
 
     def side(self, joint: str, words: tuple[str, str], meaning: str, point: str = "") -> float:

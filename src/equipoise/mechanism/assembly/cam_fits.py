@@ -101,7 +101,7 @@ def fitted(machine: Machine, joints: Structure, cam: Cam) -> CamFit:
             ),
         )
     ends = {cam.driven, cam.carrier}
-    guides = [one for one in joints.sliders if {one.link, one.on} == ends]
+    guides = [slider for slider in joints.sliders if {slider.link, slider.on} == ends]
     pins = joints.pins_between(cam.driven, cam.carrier)
     wanted = {(1, 0)} if cam.lift is not None else {(0, 1)} if cam.swing is not None else BOTH
     if (len(guides), len(pins)) not in wanted:
@@ -142,8 +142,8 @@ def _on_guide(machine: Machine, cam: Cam, cam_pin: str, guide: Guide, where: str
         face = 1 / guide.turn if cam.normal is None else np.exp(1j * cam.normal)
         way = face * guide.turn
         if _is(way.real < STEEPEST):
-            told = Note("the face does not look along the guide; turn it by 180 deg, or less")
-            raise ModelError(f"{where}.normal", told)
+            note = Note("the face does not look along the guide; turn it by 180 deg, or less")
+            raise ModelError(f"{where}.normal", note)
         reach = np.where(way.real < STEEPEST, np.nan, way.real)[()]
         rest = (cam.base_radius - dot(way, shift)) / reach
         normal = way * n
@@ -231,10 +231,10 @@ def check_shape(machine: Machine, joints: Structure, fit: CamFit) -> None:
     for demand in _demands(fit.cam):
         least, angle = lowest(fit.shape(fit.knots), demand.value, fit.knots)
         if least <= 0:
-            told = demand.told(least, degrees(angle))
+            note = demand.told(least, degrees(angle))
             if demand.mended:
-                told = _with_radius(told, machine, joints, fit.cam)
-            raise ModelError(place_in_file(joints, fit.cam), told)
+                note = _with_radius(note, machine, joints, fit.cam)
+            raise ModelError(place_in_file(joints, fit.cam), note)
 
 
 def _with_radius(told: Note, machine: Machine, joints: Structure, cam: Cam) -> Note:
@@ -306,7 +306,7 @@ def _spread(knots: Array) -> Array:
     ends = np.append(knots, knots[0] + 2 * pi)
     counts = np.maximum(FEWEST, np.ceil(np.diff(ends) / WIDEST)).astype(int)
     pairs = zip(ends + BESIDE, ends[1:] - BESIDE, counts, strict=False)
-    return np.concatenate([np.linspace(*one) for one in pairs])
+    return np.concatenate([np.linspace(*pair) for pair in pairs])
 
 
 def _demands(cam: Cam) -> Iterator[Demand]:

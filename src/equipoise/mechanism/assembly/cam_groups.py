@@ -119,15 +119,15 @@ class CamLoop(CouplingLoop):
         (_, w, a), (_, w_r, a_r) = carrier.turn, poses[self.by.body].turn
         y, y1, y2 = self.displaced(poses)
         if fit.guide is None:
-            told = kernels.swung(y, y1, y2, w_r, a_r, carrier.angle, w, a, fit.rest, fit.sense)
-            off = link.turn[0] * np.exp(-1j * told[0])
+            parts = kernels.swung(y, y1, y2, w_r, a_r, carrier.angle, w, a, fit.rest, fit.sense)
+            off = link.turn[0] * np.exp(-1j * parts[0])
             half = 2 * off.imag / (1 + off.real)  # twice the tangent of half the angle
-            return [(half, link.turn[1] - told[1], link.turn[2] - told[2])[level]]
+            return [(half, link.turn[1] - parts[1], link.turn[2] - parts[2])[level]]
         ends = (*link.point(self.on.arm), *carrier.point(self.base.arm))
         way = travelled(*ends, *carrier.turn, fit.guide.along)
         slip = w_r - w
-        told = fit.rest + y, y1 * slip, y1 * (a_r - a) + y2 * slip * slip
-        return [way[level] - told[level]]
+        parts = fit.rest + y, y1 * slip, y1 * (a_r - a) + y2 * slip * slip
+        return [way[level] - parts[level]]
 
     def touching(self, poses: Poses) -> tuple[Any, Any]:
         """Where the two touch, and the common normal."""
@@ -225,12 +225,12 @@ def _touch(fit: CamFit) -> list[Step]:
         inputs = (place, f"p({fit.pin})", f"y1({name})")
         towards = KernelCall(kernels.rate_swung, inputs, (fit.sense,), (rate,))
         rising = KernelCall(kernels.forth_swung, (pressed, f"p({fit.pin})"), (fit.sense,), forth)
-    ends, found = (place, f"p({fit.cam_pin})", rate), (contact, f"normal({name})")
+    ends, parts = (place, f"p({fit.cam_pin})", rate), (contact, f"normal({name})")
     if fit.face is None:
-        return [towards, KernelCall(kernels.touch_round, ends, (cam.roller_radius,), found), rising]
+        return [towards, KernelCall(kernels.touch_round, ends, (cam.roller_radius,), parts), rising]
     more = (*ends, f"u({cam.driven})", f"y1({name})")
     sense = fit.sense if fit.guide is None else 0.0
-    return [towards, KernelCall(kernels.touch_flat, more, (fit.face, sense), found), rising]
+    return [towards, KernelCall(kernels.touch_flat, more, (fit.face, sense), parts), rising]
 
 
 def _at(cam: Cam) -> str:

@@ -122,11 +122,11 @@ class CamShape:
     @cached_property
     def contact(self) -> tuple[Array, Array]:
         """Where cam and follower touch, m, and the common normal, complex, from the cam's axis."""
-        one = self.ride
+        ride = self.ride
         touching: tuple[Array, Array] = (
-            kernels.flat_contact(one.place, one.place_1, one.turn_1, one.normal)
+            kernels.flat_contact(ride.place, ride.place_1, ride.turn_1, ride.normal)
             if self.flat
-            else kernels.round_contact(one.place, one.place_1, self.radius)
+            else kernels.round_contact(ride.place, ride.place_1, self.radius)
         )
         return touching
 
@@ -165,17 +165,17 @@ class CamShape:
     @property
     def curvature(self) -> Array:
         """Of the curve of roller or edge (N,), 1/m; positive where convex."""
-        one = self.ride
-        bend: Array = kernels.round_curvature(one.place, one.place_1, one.place_2)
+        ride = self.ride
+        bend: Array = kernels.round_curvature(ride.place, ride.place_1, ride.place_2)
         return bend
 
     @property
     def radius_of_curvature(self) -> Array:
         """Of the cam's surface (N,), m: positive where convex; zero and less where undercut."""
-        one = self.ride
+        ride = self.ride
         if self.flat:
-            rates = one.place_1, one.place_2, one.turn_1, one.turn_2
-            radius: Array = kernels.flat_radius(one.place, *rates, one.normal)
+            rates = ride.place_1, ride.place_2, ride.turn_1, ride.turn_2
+            radius: Array = kernels.flat_radius(ride.place, *rates, ride.normal)
             return radius
         with np.errstate(divide="ignore"):
             return 1 / self.curvature - self.radius
@@ -214,8 +214,8 @@ def lowest(
     width, best = 2 * pi / GRID, (np.inf, 0.0)
     for _ in range(4):
         with np.errstate(all="ignore"):
-            found = np.broadcast_to(value(shape.at(angles)), angles.shape)
-        values = np.nan_to_num(found, nan=-np.inf)
+            result = np.broadcast_to(value(shape.at(angles)), angles.shape)
+        values = np.nan_to_num(result, nan=-np.inf)
         k = int(highest_at(-values, smooth=False))
         if not values[k] >= best[0] - ROUNDING * abs(best[0]):  # else lower by rounding alone
             best = float(values[k]), float(angles[k])

@@ -198,7 +198,7 @@ class _Grid:
 
     def coupled_winding(self, name: str) -> int:
         """Turns of a driven body in one cycle, or a longer cycle in which they are whole."""
-        coupling = next(one for one in self.machine.couplings if one.name == name)
+        coupling = next(coupling for coupling in self.machine.couplings if coupling.name == name)
         carrier = self.windings[coupling.carrier]
         relative = self.windings[coupling.driver] - carrier
         if relative == 0:

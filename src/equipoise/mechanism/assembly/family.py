@@ -74,7 +74,7 @@ class Family:
         """Steps that solve all machines at once; None where a running angle has to be counted on
         from a machine's own cycle.
         """
-        if any(one.machine.pushers for one in self.linkages):
+        if any(linkage.machine.pushers for linkage in self.linkages):
             return None
         known = (FRAME, self.first.machine.drive.link)
         steps: list[Step] = []
@@ -170,7 +170,7 @@ def _beside(values: tuple[Any, ...]) -> Any:
         return beside(values)
 
     def law(angles: Any) -> tuple[Array, ...]:
-        rows = (one(row) for one, row in zip(values, angles, strict=True))
+        rows = (value(row) for value, row in zip(values, angles, strict=True))
         return tuple(map(np.array, zip(*rows, strict=True)))
 
     return law
@@ -220,7 +220,7 @@ def _listed_holders(of: type[Frozen]) -> Iterator[tuple[tuple[str | type, ...], 
         known = keys_of(kind).items()
         yield (
             (table, int),
-            {name for name, one in known if isinstance(innermost(one.kind), Quantity)},
+            {name for name, item in known if isinstance(innermost(item.kind), Quantity)},
         )
 
 
@@ -259,18 +259,20 @@ def with_columns(machine: Machine, columns: Columns) -> Machine:
     ------
     UsageError : there is no such number, or it cannot be a column.
     """
-    held: dict[KeyPath, dict[Part, Array]] = {}
+    rows_of_values: dict[KeyPath, dict[Part, Array]] = {}
     for path, column in columns.items():
         whole, part = _split(_path(path))
-        held.setdefault(whole, {})[part] = column
-    for whole, parts in held.items():
+        rows_of_values.setdefault(whole, {})[part] = column
+    for whole, parts in rows_of_values.items():
         try:
             _check_holder(whole, parts.keys(), type(machine))
             machine = changed(machine, whole, partial(_filled, parts), with_fields)
             _check_outlines(machine)
             _check_shapes(machine)
         except (KeyError, IndexError):
-            paths = (KeyPath((*whole, *((one,) if isinstance(one, str) else one))) for one in parts)
+            paths = (
+                KeyPath((*whole, *((part,) if isinstance(part, str) else part))) for part in parts
+            )
             raise _no_column(" and ".join(map(str, paths))) from None
     return machine
 
@@ -317,7 +319,7 @@ def _check_outlines(machine: Machine) -> None:
 
 def _check_shapes(machine: Machine) -> None:
     """Whether the relations of couplings are formulas of their numbers."""
-    if not all(one.has_formula for one in machine.couplings):
+    if not all(coupling.has_formula for coupling in machine.couplings):
         raise KeyError
 
 

@@ -185,11 +185,11 @@ class Flank:
     def loop(self, end: Callable[[str, str], End]) -> CouplingLoop:
         """The same as an equation; `end` finds points of bodies from their anchors."""
         coupling = self.coupling
-        on, by = (end(one.body, one.point) for one in (self.driven, self.driver))
+        on, by = (end(item.body, item.point) for item in (self.driven, self.driver))
         rides = None
-        for own, one in ((on, self.driven), (by, self.driver)):
-            if one.guide is not None:
-                rides = Rides(own, end(coupling.carrier, one.guide.base), one.guide.along)
+        for own, entry in ((on, self.driven), (by, self.driver)):
+            if entry.guide is not None:
+                rides = Rides(own, end(coupling.carrier, entry.guide.base), entry.guide.along)
         placed = replace(self, arm=end(coupling.carrier, self.pin).arm)
         kernel, numbers = coupling.relation
         return CouplingLoop(coupling.name, coupling.table, on, by, coupling.carrier, kernel,
@@ -240,8 +240,8 @@ def contact(builder: Builder, joints: Structure, coupling: Coupling) -> Flank:
     driver, driven = (CarrierJoint.of(joints, coupling, *end) for end in ends)
     carrier, way = coupling.carrier, 0j
     centres = builder.arm(carrier, pins[1], pins[0]) if all(pins) else 0j
-    for one in (driver, driven):
-        way = way if one.guide is None else one.guide.along
+    for item in (driver, driven):
+        way = way if item.guide is None else item.guide.along
 
     def others() -> Iterator[tuple[str, Any, list[str]]]:
         points = builder.machine.points_of(carrier)
@@ -276,4 +276,4 @@ def _pins(joints: Structure, coupling: Coupling) -> tuple[str, str]:
 def _guides(joints: Structure, coupling: Coupling) -> list[Any]:
     """Guides of the body that slides on the carrier."""
     ends = (coupling.slides, coupling.carrier)
-    return [one for one in joints.sliders if (one.link, one.on) == ends]
+    return [slider for slider in joints.sliders if (slider.link, slider.on) == ends]

@@ -78,9 +78,9 @@ class FullTurn:
         ends = [0] if margin[0] <= margin[1] else []
         least = float(np.min(margin))
         lowest = sorted([*ends, *dips], key=lambda k: max(margin[k], least + EQUAL))[:MOST_DIPS]
-        found = self.zoom(group, self.theta[lowest]) if lowest else []
-        found.append((float(self.theta[highest_at(-margin)]), least))
-        angles, values = np.array(sorted(found)).T
+        pairs = self.zoom(group, self.theta[lowest]) if lowest else []
+        pairs.append((float(self.theta[highest_at(-margin)]), least))
+        angles, values = np.array(sorted(pairs)).T
         k = highest_at(-values, smooth=False)
         return float(np.min(values)), float(angles[k])
 
@@ -89,9 +89,9 @@ class FullTurn:
         values, width = angles, self.theta[1]
         for _ in range(4):
             near = angles[:, None] + np.linspace(-width, width, 41)
-            found = self.margin(group, near.ravel()).reshape(near.shape)
-            best = np.arange(len(near)), np.argmin(found, axis=1)
-            angles, values, width = near[best], found[best], width / 18
+            result = self.margin(group, near.ravel()).reshape(near.shape)
+            best = np.arange(len(near)), np.argmin(result, axis=1)
+            angles, values, width = near[best], result[best], width / 18
         return [*zip(angles.tolist(), values.tolist(), strict=True)]
 
     def margin(self, group: Group, theta: Array) -> Array:
@@ -155,7 +155,7 @@ class FullTurn:
         spans = [*self._spans(group)]
         if len(spans) != 2:  # where one of the links is none of the file
             return None
-        (one, first, own), (other, second, its) = spans
+        (item, first, own), (other, second, its) = spans
         state = self.state(self.theta)
         apart = np.abs(state[f"p({first})"] - state[f"p({second})"])
         return Note(
@@ -166,7 +166,7 @@ class FullTurn:
             first=first,
             second=second,
             joint=group.reactions[-1].at,
-            one=key_text(one),
+            one=key_text(item),
             other=key_text(other),
             least=_length(float(np.min(apart))),
             most=_length(float(np.max(apart))),
@@ -215,7 +215,7 @@ class FullTurn:
 
 def _only_between(ranges: Sequence[tuple[float, float]], names: Note | str) -> Note:
     """Tell between which crank angles, rad, a dyad can be closed; the first of many."""
-    told = all_of(
+    sentence = all_of(
         [
             Note("from {low} to {high}", low=_in_degrees(a), high=_in_degrees(b))
             for a, b in ranges[:MOST_RANGES]
@@ -227,12 +227,12 @@ def _only_between(ranges: Sequence[tuple[float, float]], names: Note | str) -> N
             "crank angle, the first {told}",
             names=names,
             count=len(ranges),
-            told=told,
+            told=sentence,
         )
     return Note(
         "the crank cannot turn fully: {names} reach each other only {told} of crank angle",
         names=names,
-        told=told,
+        told=sentence,
     )
 
 

@@ -69,7 +69,7 @@ def _dyad(
         builder.pinned.add(inner.name)
     margin = f"s({inner.name})"
     known = [*(name for outer in outers for name in outer.inputs), *more]
-    found = (*u(first), *u(second), *(p(at) if at else ()), margin)
+    parts = (*u(first), *u(second), *(p(at) if at else ()), margin)
     reach = [step for outer in outers for step in builder.reach(outer.body, outer.point)]
     builder.add({first: reactions[0].at, second: reactions[1].at}, [at] if at else [])
     kernel, places, numbers = forces
@@ -78,7 +78,7 @@ def _dyad(
     return Group(
         "dyad",
         (first, second),
-        (*reach, KernelCall(motion[0], (*known,), motion[1], found)),
+        (*reach, KernelCall(motion[0], (*known,), motion[1], parts)),
         (
             KernelCall(kernel, (*places, *demands), numbers, results),
             *(builder.hand_over(reaction) for reaction in reactions[:2]),
@@ -123,7 +123,7 @@ def _through(
     arms = (builder.arm(link, first.point, pin), builder.arm(other, second.point, pin))
     reach = builder.reach(closed.here, pivot)
     places = (f"p({first.point})", f"p({second.point})", f"p({pin})")
-    found = _dyad(
+    dyad = _dyad(
         builder,
         (first, second),
         (first.reaction(), second.reaction(), pin_reaction(pin, other, link)),
@@ -132,7 +132,7 @@ def _through(
         at=pin,
         more=(*p(pivot), *u(closed.here)[1:], *u(closed.there)[1:]),
     )
-    return replace(found, motion=(*reach, *found.motion), through=True)
+    return replace(dyad, motion=(*reach, *dyad.motion), through=True)
 
 
 def rrp(builder: Builder, pinned: Outer, sliding: Outer, pin: str) -> Group:
@@ -183,9 +183,9 @@ def rpr(builder: Builder, block: Outer, other: Outer, slider: Slider) -> Group:
 
 def prp(builder: Builder, first: Outer, second: Outer, pin: str) -> Group:
     """Two links on known guides, joined by a pin; there is only one way to assemble them."""
-    near, far = first.rail, second.rail
+    rail, far = first.rail, second.rail
     shapes: list[complex] = []
-    for outer, guide in ((first, near), (second, far)):
+    for outer, guide in ((first, rail), (second, far)):
         shift = guide.turn * builder.arm(outer.link, guide.point, pin)
         shapes += (guide.along, shift, guide.turn)
     turns = (f"u({first.body})", f"u({second.body})")
@@ -194,9 +194,9 @@ def prp(builder: Builder, first: Outer, second: Outer, pin: str) -> Group:
         (first, second),
         (first.reaction(pin), second.reaction(pin), pin_reaction(pin, second.link, first.link)),
         (kernels.prp, tuple(shapes)),
-        (joint_kernels.prp_forces, turns, (near.along, far.along)),
+        (joint_kernels.prp_forces, turns, (rail.along, far.along)),
         at=pin,
-        dead=Note("the lines of {near!r} and {far!r} are parallel", near=near.name, far=far.name),
+        dead=Note("the lines of {near!r} and {far!r} are parallel", near=rail.name, far=far.name),
     )
     return replace(group, jams=True)
 
@@ -237,8 +237,8 @@ def rpp(builder: Builder, pinned: Outer, sliding: Outer, slider: Slider) -> Grou
 
 def hung(builder: Builder, joints: Structure, links: Iterable[str]) -> Group | None:
     """The first of links, pushed to angles that are known, that is pinned to a known link."""
-    outers = (one for link in links for one in outer_joints(builder, joints, link))
-    pin = next((one for one in outers if one.guide is None), None)
+    outers = (outer_joint for link in links for outer_joint in outer_joints(builder, joints, link))
+    pin = next((outer for outer in outers if outer.guide is None), None)
     if pin is None:
         return None
     ground = replace(pin.reaction(), force=demand_names(pin.link)[0])  # which is all that it needs

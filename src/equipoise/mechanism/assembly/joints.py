@@ -42,16 +42,16 @@ class Structure:
         count = 3 * len(free)
         for bodies in self.pins.values():
             members = sum(body in free for body in bodies)
-            held = any(body in fixed for body in bodies)
-            count -= 2 * max(members - (not held), 0)
+            is_so = any(body in fixed for body in bodies)
+            count -= 2 * max(members - (not is_so), 0)
         for slider in self.sliders:
             ends = {slider.link, slider.on}
             count -= 2 * (ends <= both and bool(ends & free))
         for name, rider in self.tracked.items():
             ends = {name, rider.on}
             count -= 2 * (ends <= both and bool(ends & free))
-        for one in self.couplings:
-            ends = {one.driver, one.driven, one.carrier}
+        for coupling in self.couplings:
+            ends = {coupling.driver, coupling.driven, coupling.carrier}
             count -= ends <= both and bool(ends & free)
         return count
 
@@ -68,7 +68,7 @@ class Structure:
     @property
     def needed(self) -> Structure:
         """The same without all but the first of the sliding joints between two bodies."""
-        first = {frozenset((one.link, one.on)): one for one in reversed(self.sliders)}
+        first = {frozenset((slider.link, slider.on)): slider for slider in reversed(self.sliders)}
         return replace(self, sliders=tuple(s for s in self.sliders if s in first.values()))
 
     @property
@@ -132,8 +132,8 @@ def undetermined(joints: Structure, drives: Sequence[str]) -> list[str]:
     known = [FRAME, *drives]
     others = [link for link in joints.bodies[1:] if link not in drives]
     while others:
-        found = (group for group in subsets(joints, others) if joints.freedom(group, known) <= 0)
-        if not (group := next(found, ())):
+        result = (group for group in subsets(joints, others) if joints.freedom(group, known) <= 0)
+        if not (group := next(result, ())):
             break
         known += group
         others = [link for link in others if link not in group]
@@ -187,7 +187,7 @@ def drive_pivot(joints: Structure, drive: str, where: str = "drive.link") -> str
 
 def place_in_file(joints: Structure, coupling: Coupling) -> str:
     """Where a coupling stands in the model file, such as ``belts[2]``."""
-    alike = [one for one in joints.couplings if one.table == coupling.table]
+    alike = [item for item in joints.couplings if item.table == coupling.table]
     return f"{coupling.table}[{alike.index(coupling) + 1}]"
 
 
@@ -207,10 +207,10 @@ def coupling_pins(joints: Structure, coupling: Coupling) -> tuple[str, str]:
 
 def _alike(bodies: Bodies, pins: Iterable[str]) -> Note | str:
     """Ask after a point that is no pin, but would be one if its name had the case of another."""
-    seen: dict[str, tuple[str, str]] = {}
+    pairs: dict[str, tuple[str, str]] = {}
     for body, points in bodies.items():
         for point in points:
-            first, at = seen.setdefault(form_of(point), (point, body))
+            first, at = pairs.setdefault(form_of(point), (point, body))
             if point != first and body != at and point not in pins:
                 name = min(first, point)
                 return Note(
@@ -253,7 +253,7 @@ def _check_mobility(joints: Structure, drives: Sequence[str], alike: Note | str)
 
 
 def _count(joints: Structure) -> Note | str:
-    coupled = Counter(one.counted for one in joints.couplings)
+    coupled = Counter(coupling.counted for coupling in joints.couplings)
     inner = sum(len(rider.slides) for rider in joints.riders.values())
     parts = [
         _number(len(joints.bodies) - 1 - len(joints.riders), MOVING_LINKS),
@@ -299,7 +299,9 @@ def subsets(joints: Structure, links: list[str]) -> Iterator[tuple[str, ...]]:
     touching: dict[str, set[str]] = {link: set() for link in links}
     groups = [*joints.pins.values(), *((s.link, s.on) for s in joints.sliders)]
     groups += [(name, rider.on) for name, rider in joints.tracked.items()]
-    groups += [(one.driver, one.driven, one.carrier) for one in joints.couplings]
+    groups += [
+        (coupling.driver, coupling.driven, coupling.carrier) for coupling in joints.couplings
+    ]
     for bodies in groups:
         members = [body for body in bodies if body in touching]
         for member in members:

@@ -87,7 +87,7 @@ class Linkage(Brief):
     def grounded(self) -> tuple[str, ...]:
         """Driven links that turn about points of the frame."""
         hung = {link for group in self.groups if group.kind == "hung" for link in group.links}
-        return tuple(one.link for one in self.machine.driven if one.link not in hung)
+        return tuple(item.link for item in self.machine.driven if item.link not in hung)
 
     @cached_property
     def motion(self) -> tuple[Step, ...]:
@@ -116,7 +116,10 @@ class Linkage(Brief):
         """Every joint, the pins of the drives first."""
         if self.shared is not None:
             decided = self.shared.decided
-            return (*self.shared.reactions, *(one for group in decided for one in group.reactions))
+            return (
+                *self.shared.reactions,
+                *(reaction for group in decided for reaction in group.reactions),
+            )
         drives = (pin_reaction(self.anchors[link], link, FRAME) for link in self.grounded)
         return (*drives, *(reaction for group in self.groups for reaction in group.reactions))
 
@@ -124,9 +127,9 @@ class Linkage(Brief):
     def named_reactions(self) -> tuple[tuple[str, Reaction], ...]:
         """Joints by their names in outputs."""
         return tuple(
-            (name_in_outputs(self.joints, one), one)
-            for one in self.reactions
-            if not self.joints.hides(one.name, one.on, one.by)
+            (name_in_outputs(self.joints, reaction), reaction)
+            for reaction in self.reactions
+            if not self.joints.hides(reaction.name, reaction.on, reaction.by)
         )
 
     @cached_property
@@ -154,8 +157,8 @@ class Linkage(Brief):
         if "cycle" not in self.memory:
             check = None if self.shared is None else self.shared.check
             self.memory["cycle"] = close(self.machine, self.groups, self.near, check)
-        kept: Cycle = self.memory["cycle"]
-        return kept
+        cycle: Cycle = self.memory["cycle"]
+        return cycle
 
     def of(self, machine: Machine) -> Linkage:
         """The same linkage for a machine that differs in nothing but masses, speed or gravity."""
@@ -188,10 +191,10 @@ def assemble(machine: Machine, near: Cycle | None = None) -> Linkage:
     ModelError : an assembly side is missing or idle, two pins coincide, a property is given of
         what is no such joint.
     """
-    kept = machine.__dict__.get("_linkage")
-    if kept is None:
-        kept = replace(ordered(machine, structure(machine)), near=near)
-        names = [name for name, _ in kept.named_reactions]
+    linkage = machine.__dict__.get("_linkage")
+    if linkage is None:
+        linkage = replace(ordered(machine, structure(machine)), near=near)
+        names = [name for name, _ in linkage.named_reactions]
         for name in names:
             if names.count(name) > 1:  # outputs go by the names of joints
                 raise ModelError(
@@ -202,16 +205,16 @@ def assemble(machine: Machine, near: Cycle | None = None) -> Linkage:
                         name=name,
                     ),
                 )
-        decided = not (kept.shared and kept.shared.count)
+        decided = not (linkage.shared and linkage.shared.count)
         slots = machine.pins_in_slots
-        for where, joint, one in given_properties(machine, kept.joints, kept.reactions):
+        for where, joint, item in given_properties(machine, linkage.joints, linkage.reactions):
             slot = slots.get(joint.name)
-            if one.radius and slot and (wrong := slot.too_sharp(one.radius)):
+            if item.radius and slot and (wrong := slot.too_sharp(item.radius)):
                 raise ModelError(f"{where}.radius", wrong)
-            if decided and one.stiffness is not None:
+            if decided and item.stiffness is not None:
                 raise ModelError(f"{where}.stiffness", DECIDED)
-        machine.__dict__["_linkage"] = kept
-    return kept
+        machine.__dict__["_linkage"] = linkage
+    return linkage
 
 
 def ordered(
@@ -335,19 +338,22 @@ def _grouped(
     tried : of joints, the side to take, whatever the file has.
     """
     mode = machine.assembly.get(MODE)
-    named = {*joints.pins, *(name for one in machine.sliders for name in (one.name, one.point))}
+    named = {
+        *joints.pins,
+        *(name for slider in machine.sliders for name in (slider.name, slider.point)),
+    }
     if mode not in (None, *MODES) and MODE not in named:  # else it is the side of that joint
-        told = Note("got {leaf!r}; give {choice}", leaf=mode, choice=choice(MODES))
-        raise ModelError(f"assembly.{MODE}", told)
+        note = Note("got {leaf!r}; give {choice}", leaf=mode, choice=choice(MODES))
+        raise ModelError(f"assembly.{MODE}", note)
     if mode not in MODES:
         mode = MODES[0] if joints.surplus else None
     drives = {machine.drive.link: drive_pivot(joints, machine.drive.link)}
     pushed = []
-    for number, one in enumerate(machine.drives, 1):
-        if one.pushes and not joints.pins_between(FRAME, one.link):
-            pushed.append(one.link)
+    for number, drive in enumerate(machine.drives, 1):
+        if drive.pushes and not joints.pins_between(FRAME, drive.link):
+            pushed.append(drive.link)
         else:
-            drives[one.link] = drive_pivot(joints, one.link, f"drives[{number}].link")
+            drives[drive.link] = drive_pivot(joints, drive.link, f"drives[{number}].link")
     points, running = set(machine.frame), {FRAME, *drives}
     builder = Builder(machine, points=points, running=running, told=dict(start), mode=mode,
                       tried=tried)  # fmt: skip

@@ -72,7 +72,7 @@ class LoopForces:
         ):
             units = zip(*loop.wrenches(poses, sense), strict=True)  # of forces, then of couples
             for name, unit in zip(reaction.outputs, units, strict=False):
-                state[name] = sum(part * one for part, one in zip(parts, unit, strict=True))
+                state[name] = sum(part * item for part, item in zip(parts, unit, strict=True))
             if isinstance(loop, CouplingLoop):
                 state[f"p({reaction.at})"] = loop.place(poses)
                 state[f"T({loop.name})"] = parts[0]
@@ -160,16 +160,18 @@ def loop_group(
         builder.size(),
         tuple(link for link in links if link not in joints.riders),
     )
-    told = builder.told.get(f"reference({unsolved.reference})")
-    if told is not None:
-        solved = replace(unsolved, start=told[:, 0])
+    text = builder.told.get(f"reference({unsolved.reference})")
+    if text is not None:
+        solved = replace(unsolved, start=text[:, 0])
     else:
         run(before, builder.now)
         solved, loops = _solve_start(builder, before, unsolved, loops, near)
     builder.add(maker.anchors, {maker.anchors[link] for link in links})
     builder.running.update(place.link for place in solved.tree if place.counted)
     reactions = tuple(maker.reaction(loop) for loop in loops)
-    hand_over = tuple(builder.hand_over(one) for one in reactions if one.by not in links)
+    hand_over = tuple(
+        builder.hand_over(reaction) for reaction in reactions if reaction.by not in links
+    )
     reach = tuple(
         step
         for reaction in reactions
@@ -212,12 +214,12 @@ class Maker:
         loops = self.pinned_and_sliding()  # from the anchors that this has found
         reachable = {*self.builder.rank, *self.links}
         before: list[Step] = []
-        for one in self.joints.couplings:
-            ends = {one.driver, one.driven, one.carrier}
+        for coupling in self.joints.couplings:
+            ends = {coupling.driver, coupling.driven, coupling.carrier}
             if ends <= reachable and ends & set(self.links):
                 for body in self.roots(ends, loops):
                     before += self.builder.running_angle(body)
-                loops.append(self.coupling(one))
+                loops.append(self.coupling(coupling))
         return tuple(before), tuple(loops)
 
     def pinned_and_sliding(self) -> list[Loop]:
@@ -244,16 +246,16 @@ class Maker:
         """
         placed = set(self.builder.rank)
         while True:
-            found: dict[str, int] = {}
+            counts: dict[str, int] = {}
             for k, loop in enumerate(loops):
                 for end, other in ((loop.on, loop.by), (loop.by, loop.on)):
-                    new = end.body not in placed | found.keys() and other.body in placed
+                    new = end.body not in placed | counts.keys() and other.body in placed
                     if new and self.places(loop, end):
-                        found[end.body] = k
+                        counts[end.body] = k
                         self.anchors[end.body] = end.point
-            self.holds |= found
-            placed |= found.keys()
-            if not found:
+            self.holds |= counts
+            placed |= counts.keys()
+            if not counts:
                 loose = (
                     link for link in self.links if link not in placed | self.joints.tracked.keys()
                 )
@@ -355,7 +357,9 @@ def _solve_start(
                 crank_angle=degrees(position.crank_angle),
             ),
         )
-    standing = _standing(loops, {one.name: one.start for one in builder.machine.couplings})
+    standing = _standing(
+        loops, {coupling.name: coupling.start for coupling in builder.machine.couplings}
+    )
     steps = max(2, ceil(abs(position.crank_angle) / (2 * pi) * STEPS_PER_TURN))
     path = np.linspace(0.0, position.crank_angle, steps)
     state = initial_state(builder.machine, path)
@@ -371,7 +375,7 @@ def _solve_start(
         q = rough.solve(np.array(guess), there, path[-1])
         poses = rough.poses(there, q)
         _check_near(builder, poses, position, group)
-        start = np.array([one for place in group.tree for one in place.values(poses)])
+        start = np.array([item for place in group.tree for item in place.values(poses)])
         if position.crank_angle != 0:
             start = group.follow(start, known, path[backwards])[0][:, -1]
         if not meshes:
@@ -435,16 +439,16 @@ def _check_near(builder: Builder, poses: Poses, position: Position, group: LoopG
     """A solution far from the position in the file may be another assembly of the links."""
     for link, anchor in zip(group.links, group.anchors, strict=True):
         for name in builder.machine.assembled_points(link).keys() & position.points.keys():
-            found = complex(poses[link].place_of(builder.arm(link, anchor, name)))
-            if abs(found - complex(*position.points[name])) > FAR * group.size:
+            result = complex(poses[link].place_of(builder.arm(link, anchor, name)))
+            if abs(result - complex(*position.points[name])) > FAR * group.size:
                 raise ModelError(
                     f"position.points.{name}",
                     Note(
                         "too rough: the links meet with {name} at ({real:.4g}, {imag:.4g}) mm; "
                         "give a place nearer to where it is",
                         name=name,
-                        real=found.real * 1000.0,
-                        imag=found.imag * 1000.0,
+                        real=result.real * 1000.0,
+                        imag=result.imag * 1000.0,
                     ),
                 )
 

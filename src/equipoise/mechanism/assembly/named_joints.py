@@ -24,12 +24,12 @@ def named_joints(joints: Structure, reactions: Sequence[Reaction]) -> ReactionsB
     which stands for all of its forces.
     """
     named: ReactionsByName = {}
-    for one in reactions:
-        if joints.hides(one.name, one.on, one.by):
+    for reaction in reactions:
+        if joints.hides(reaction.name, reaction.on, reaction.by):
             continue
-        family = family_of(one.kind)
-        for name in dict.fromkeys((name_in_outputs(joints, one), one.name)):
-            named.setdefault(family + name, []).append(one)
+        family = family_of(reaction.kind)
+        for name in dict.fromkeys((name_in_outputs(joints, reaction), reaction.name)):
+            named.setdefault(family + name, []).append(reaction)
     return named
 
 
@@ -37,21 +37,21 @@ def joint_names(joints: Structure) -> set[str]:
     """Names that forces of joints may have in outputs, in whatever order links are solved."""
     names = {name for point, bodies in joints.pins.items() for name in _pin_names(joints, point)
              if not joints.hides(point, *bodies)}  # fmt: skip
-    names |= {family_of("slider") + one.name for one in joints.sliders
-              if not joints.hides(one.name, one.link, one.on)}  # fmt: skip
-    return names | {f"{one.table}.{one.name}" for one in joints.couplings}
+    names |= {family_of("slider") + slider.name for slider in joints.sliders
+              if not joints.hides(slider.name, slider.link, slider.on)}  # fmt: skip
+    return names | {f"{coupling.table}.{coupling.name}" for coupling in joints.couplings}
 
 
 def pin_radii(joints: Structure, given: Iterable[JointProperties]) -> dict[str, float]:
     """Radii of pins by point, m; of a pin of several links the largest that is given."""
     radii: dict[str, float] = {}
     by_name = {name: point for point in joints.pins for name in _pin_names(joints, point)}
-    for one in given:
-        if one.radius is not None and (point := by_name.get(one.joint)) is not None:
+    for item in given:
+        if item.radius is not None and (point := by_name.get(item.joint)) is not None:
             if point in joints.riders:
                 rider = joints.riders[point]
                 point = rider.held[rider.link][point]
-            radii[point] = max(one.radius, radii.get(point, 0.0))
+            radii[point] = max(item.radius, radii.get(point, 0.0))
     return radii
 
 
@@ -73,19 +73,19 @@ def given_properties(
     named, seen = named_joints(joints, reactions), dict[str, str]()
     varying = {(coupling.table, coupling.name) for coupling in machine.couplings
                if coupling.special}  # fmt: skip
-    for where, one in numbered("joints", machine.joints):
-        if one.joint not in named:
-            raise ModelError(f"{where}.joint", unknown(one.joint, named, "joint"))
-        for joint in named[one.joint]:
+    for where, item in numbered("joints", machine.joints):
+        if item.joint not in named:
+            raise ModelError(f"{where}.joint", unknown(item.joint, named, "joint"))
+        for joint in named[item.joint]:
             if (before := seen.setdefault(joint.force, where)) != where:
-                told = Note(
+                note = Note(
                     "{joint!r} has its properties in {before}; give them in one table",
-                    joint=one.joint,
+                    joint=item.joint,
                     before=before,
                 )
-                raise ModelError(f"{where}.joint", told)
+                raise ModelError(f"{where}.joint", note)
             in_slot = joint.name in joints.riders
             varies = (joint.kind, joint.name) in varying
-            for problem in wrong_of_kind(where, one, joint.kind, in_slot, varies):
+            for problem in wrong_of_kind(where, item, joint.kind, in_slot, varies):
                 raise problem
-            yield where, joint, one
+            yield where, joint, item

@@ -84,7 +84,7 @@ class LoopGroup:
     @cached_property
     def turning(self) -> Array:
         """Which of the unknowns (n,) are angles."""
-        return np.array([one for place in self.tree for one in place.turning])
+        return np.array([item for place in self.tree for item in place.turning])
 
     def run(self, state: State) -> None:
         """Solve at every crank angle; follow the branch where no solution is known nearby."""
@@ -239,7 +239,7 @@ class LoopGroup:
 
     def follow_each(self, start: Array, known: Poses, theta: Array) -> Levels:
         here = start
-        found: list[Levels] = []
+        levels: list[Levels] = []
         for k, angle in enumerate(theta):
             now = {body: pose.pick((..., k)) for body, pose in known.items()}
             guess = here
@@ -248,14 +248,14 @@ class LoopGroup:
                 if k:
                     self.check(np.all(self.sizes(here - guess) <= 10 * JUMP), angle)
             except BranchError as error:
-                self.off_track(error, theta[:k], [q for q, *_ in found])
+                self.off_track(error, theta[:k], [q for q, *_ in levels])
                 raise
             q1, q2 = self.derivatives(here, now)
-            found.append((here, q1, q2))
+            levels.append((here, q1, q2))
             if k + 1 < len(theta):
                 step = theta[k + 1] - angle
                 here = here + q1 * step + q2 * (0.5 * step * step)
-        q, q1, q2 = (np.stack(level, axis=-1) for level in zip(*found, strict=True))
+        q, q1, q2 = (np.stack(level, axis=-1) for level in zip(*levels, strict=True))
         return q, q1, q2
 
     def off_track(self, error: BranchError, theta: Array, followed: Sequence[Array]) -> None:

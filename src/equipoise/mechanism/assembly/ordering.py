@@ -83,13 +83,13 @@ def _agreeing(builder: Builder, joints: Structure, links: tuple[str, ...]) -> Gr
     if builder.told and f"reference({named})" not in builder.told:
         return None
     drives = [drive.link for drive in builder.machine.driven]
-    near = None if builder.told else _guided(builder, joints, links)
-    if joints.freedom(links, builder.rank) < 0 and not (near or builder.machine.position):
+    position = None if builder.told else _guided(builder, joints, links)
+    if joints.freedom(links, builder.rank) < 0 and not (position or builder.machine.position):
         raise held_fast(joints, drives)
     before = replace(builder, rank=dict(builder.rank), anchors=dict(builder.anchors),
                      points=set(builder.points), running=set(builder.running))  # fmt: skip
     try:
-        group = loop_group(builder, joints, links, near)
+        group = loop_group(builder, joints, links, position)
     except MotionError:
         raise held_fast(joints, drives) from None
     solved = next(step for step in group.motion if isinstance(step, LoopGroup))
@@ -103,7 +103,7 @@ def _agreeing(builder: Builder, joints: Structure, links: tuple[str, ...]) -> Gr
 def _guided(builder: Builder, joints: Structure, links: tuple[str, ...]) -> Position | None:
     """Where a single link is at crank angle 0, if a guide on a known body tells its angle."""
     link, outers = links[0], outer_joints(builder, joints, links[0])
-    guides = [(one.body, one.guide) for one in outers if one.guide is not None]
+    guides = [(outer.body, outer.guide) for outer in outers if outer.guide is not None]
     if len(links) > 1 or not guides:
         return None
     now = poses_in(builder.now, builder.anchors.items())
@@ -111,12 +111,14 @@ def _guided(builder: Builder, joints: Structure, links: tuple[str, ...]) -> Posi
     turn = complex(now[body].turn[0][0] * guide.along * guide.turn)
     label = next(iter(builder.machine.assembled_points(link)))
     rows, ways = [], []
-    for one in outers:
-        at = now[one.body].place_of(builder.arm(one.body, builder.anchors[one.body], one.point))[0]
-        own = one.point if one.guide is None else one.guide.point
+    for item in outers:
+        at = now[item.body].place_of(
+            builder.arm(item.body, builder.anchors[item.body], item.point)
+        )[0]
+        own = item.point if item.guide is None else item.guide.point
         at -= turn * builder.arm(link, label, own)
-        along = 1.0 if one.guide is None else now[one.body].turn[0][0] * one.guide.along
-        for line in (along, 1j * along) if one.guide is None else (along,):
+        along = 1.0 if item.guide is None else now[item.body].turn[0][0] * item.guide.along
+        for line in (along, 1j * along) if item.guide is None else (along,):
             rows.append([-line.imag, line.real])
             ways.append((line.conjugate() * at).imag)
     place = lstsq(np.array(rows), np.array(ways))[0]
@@ -131,11 +133,11 @@ def held(builder: Builder, joints: Structure, link: str) -> bool:
 def _coupled(builder: Builder, joints: Structure, unknown: list[str]) -> Group | None:
     """A link pinned to its coupling's carrier, with driver and carrier known, if there is one."""
     known = builder.rank
-    for one in joints.couplings:
-        ready = one.driven in unknown and {one.driver, one.carrier} <= known.keys()
-        freedom = joints.freedom([one.driven], known) if ready else 1
+    for coupling in joints.couplings:
+        ready = coupling.driven in unknown and {coupling.driver, coupling.carrier} <= known.keys()
+        freedom = joints.freedom([coupling.driven], known) if ready else 1
         if freedom == 0 or (freedom < 0 and joints.surplus):
-            group: Group = contact_of(builder, joints, one).group(builder, joints)
+            group: Group = contact_of(builder, joints, coupling).group(builder, joints)
             return group
     return None
 

@@ -56,11 +56,11 @@ class Closed:
     def misfit(self) -> Note:
         """Say which opposite sides differ, and by how much."""
         pairs = zip(self.sides[::2], self.sides[1::2], strict=True)
-        (one, a), (other, b) = max(pairs, key=lambda pair: float(abs(pair[0][1] - pair[1][1])))
+        (item, a), (other, b) = max(pairs, key=lambda pair: float(abs(pair[0][1] - pair[1][1])))
         return Note(
             "opposite sides of a parallel linkage are equal, and {one} is {a:.7g} mm, {other} "
             "{b:.7g} mm, {apart:.4g} mm apart; give both one length",
-            one=one,
+            one=item,
             a=a * 1e3,
             other=other,
             b=b * 1e3,
@@ -112,7 +112,7 @@ def surplus_cranks(machine: Machine, joints: Structure) -> frozenset[str]:
                 for body in bodies if body != link]  # fmt: skip
         if len(held) == len({body for body, _ in held}) == len({pt for _, pt in held}) == 2:
             between.setdefault(frozenset(body for body, _ in held), []).append((link, dict(held)))
-    return frozenset(chain.from_iterable(_beyond(machine, *one) for one in between.items()))
+    return frozenset(chain.from_iterable(_beyond(machine, *item) for item in between.items()))
 
 
 def _beyond(
@@ -148,4 +148,4 @@ def pointed(builder: Builder, held: list[Outer]) -> Group | None:
     reach = [step for outer in held for step in builder.reach(outer.body, outer.point)]
     builder.add({link: first})
     motion = KernelCall(kernels.pointed, (*p(first), *p(second)), (arm,), u(link))
-    return Group("pointed", (link,), (*reach, motion), (), tuple(one.reaction() for one in held))
+    return Group("pointed", (link,), (*reach, motion), (), tuple(item.reaction() for item in held))

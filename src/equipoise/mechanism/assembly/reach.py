@@ -73,21 +73,21 @@ class Reach:
         """The range and what ends it."""
         low, high, (first, second) = _told(self.low), _told(self.high), self.stops
         if str(first) == str(second):
-            told = Note(
+            text = Note(
                 "the crank cannot turn fully: it stops at {low} and at {high}, where {first}",
                 low=low,
                 high=high,
                 first=first,
             )
         else:
-            told = Note(
+            text = Note(
                 "the crank cannot turn fully: it stops at {low} ({first}) and at {high} ({second})",
                 low=low,
                 high=high,
                 first=first,
                 second=second,
             )
-        return Note("{reason}; there are other such ranges", reason=told) if self.others else told
+        return Note("{reason}; there are other such ranges", reason=text) if self.others else text
 
 
 def reach(linkage: Assembled) -> Reach | None:
@@ -161,7 +161,7 @@ def _start(linkage: Assembled, stuck: MotionError) -> tuple[float, int]:
 
 def _closed(linkage: Assembled, theta: Array) -> Array:
     """At which crank angles (N,) all dyads can be closed."""
-    dyads = [one for one in linkage.groups if one.margin is not None]
+    dyads = [item for item in linkage.groups if item.margin is not None]
     pairs = zip(margins_at(linkage, theta, through=True), dyads, strict=True)
     good = [margin > _least(group) for margin, group in pairs]
     return np.all(good, axis=0) if good else np.ones(theta.shape, bool)
@@ -175,9 +175,9 @@ def margins_at(linkage: Assembled, theta: Array, through: bool = False) -> list[
     with np.errstate(all="ignore"):
         state = run(linkage.motion, linkage.start(theta))
     return [
-        np.broadcast_to(state[one.margin], theta.shape)
-        for one in linkage.groups
-        if one.margin is not None and (through or not one.through)
+        np.broadcast_to(state[item.margin], theta.shape)
+        for item in linkage.groups
+        if item.margin is not None and (through or not item.through)
     ]
 
 

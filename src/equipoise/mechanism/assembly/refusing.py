@@ -23,14 +23,14 @@ from equipoise.quantities.units import HUGE, TINY
 def wrong(machine: Machine, base: Linkage, columns: Columns) -> Array:
     """Which of the designs (P,) no machine can have."""
     count = max((len(column) for column in columns.values()), default=1)
-    found = np.zeros((count, 1), dtype=bool)
+    values = np.zeros((count, 1), dtype=bool)
     with np.errstate(all="ignore"):
         for column in columns.values():
             size = np.abs(column)
-            found |= ~((size <= HUGE) & ((size >= TINY) | (size == 0)))
+            values |= ~((size <= HUGE) & ((size >= TINY) | (size == 0)))
         for right in _demands(machine, base):
-            found |= np.logical_not(right)
-    return found[:, 0]
+            values |= np.logical_not(right)
+    return values[:, 0]
 
 
 def _demands(machine: Machine, base: Linkage) -> Iterator[Any]:
@@ -38,7 +38,7 @@ def _demands(machine: Machine, base: Linkage) -> Iterator[Any]:
     for body in (FRAME, *machine.links):
         points = machine.bodies[body]
         places = [planar(points[point]) for point in points if point in base.joints.pins]
-        yield from (one != other for one, other in combinations(places, 2))
+        yield from (place != other for place, other in combinations(places, 2))
     for link in machine.links.values():
         if link.mass is not None and link.inertia is not None:
             yield (link.mass >= 0) & (link.inertia >= 0)
@@ -54,7 +54,7 @@ def _demands(machine: Machine, base: Linkage) -> Iterator[Any]:
 
 
 def _has_surfaces(machine: Machine) -> bool:
-    return any(one.contact == "surface" for one in machine.couplings)
+    return any(coupling.contact == "surface" for coupling in machine.couplings)
 
 
 def _distance(machine: Machine, base: Linkage, coupling: Coupling) -> Any:

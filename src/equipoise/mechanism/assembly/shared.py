@@ -91,10 +91,10 @@ LINED_UP = Note("parallel linkages go on through their change points with one dr
 
 def least(matrix: Array, right: Array) -> Array:
     """Least solutions (N, m, k) of equations (N, n, m) with right sides (N, n, k)."""
-    found = np.empty((matrix.shape[0], matrix.shape[2], right.shape[2]))
+    values = np.empty((matrix.shape[0], matrix.shape[2], right.shape[2]))
     for some in in_blocks(matrix):
-        found[some] = _least_by_products(matrix[some], right[some])
-    return found
+        values[some] = _least_by_products(matrix[some], right[some])
+    return values
 
 
 def in_blocks(matrix: Array) -> Iterator[slice]:
@@ -110,14 +110,14 @@ def _least_by_products(matrix: Array, right: Array) -> Array:
     probe = np.cos(np.arange(matrix.shape[1]))  # of no meaning: shows how much errors can grow
     probe = np.broadcast_to(probe[:, None], (*matrix.shape[:2], 1))
     try:
-        told = np.linalg.solve(products, np.concatenate([right, probe], axis=-1))
+        text = np.linalg.solve(products, np.concatenate([right, probe], axis=-1))
     except np.linalg.LinAlgError:
         return _least_by_rows(matrix, right)
-    found = np.asarray(across @ told[..., :-1])
-    sizes = np.max(np.abs(told[..., -1]), axis=-1) * np.trace(products, axis1=1, axis2=2)
+    values = np.asarray(across @ text[..., :-1])
+    sizes = np.max(np.abs(text[..., -1]), axis=-1) * np.trace(products, axis1=1, axis2=2)
     if not np.all(apart := sizes < APART):
-        found[~apart] = _least_by_rows(matrix[~apart], right[~apart])
-    return found
+        values[~apart] = _least_by_rows(matrix[~apart], right[~apart])
+    return values
 
 
 def _least_by_rows(matrix: Array, right: Array) -> Array:
@@ -126,10 +126,10 @@ def _least_by_rows(matrix: Array, right: Array) -> Array:
     sizes = np.abs(np.diagonal(triangle, axis1=-2, axis2=-1))
     clear = np.min(sizes, axis=-1) > CLEAR * np.max(sizes, axis=-1)
     triangle[~clear] = np.eye(triangle.shape[-1])
-    found = across @ np.linalg.solve(np.swapaxes(triangle, -1, -2), right)
+    value = across @ np.linalg.solve(np.swapaxes(triangle, -1, -2), right)
     if not np.all(clear):
-        found[~clear] = parts_of(matrix[~clear])[0] @ right[~clear]
-    return np.asarray(found)
+        value[~clear] = parts_of(matrix[~clear])[0] @ right[~clear]
+    return np.asarray(value)
 
 
 def parts_of(matrix: Array) -> tuple[Array, Array]:
@@ -152,9 +152,9 @@ def agreeing(pushes: Callable[[Array, Array], Array], senses: Array) -> tuple[Ar
     idle = np.zeros(senses.shape, bool)
     changed = np.zeros(senses.shape, bool)
     for step in range(STEPS_AT_ONCE + len(senses) * (len(senses) + 2)):
-        found = pushes(senses, idle)
-        wrong = np.where(idle, 0.0, -found * senses)
-        against = wrong > NO_SIGN * np.max(np.abs(found), initial=0.0)
+        result = pushes(senses, idle)
+        wrong = np.where(idle, 0.0, -result * senses)
+        against = wrong > NO_SIGN * np.max(np.abs(result), initial=0.0)
         if not np.any(against):
             break
         if step >= STEPS_AT_ONCE:
@@ -188,21 +188,21 @@ class FitCondition:
         theta, size = state["theta"], self.size
         poses = {body: replace(pose, angle=state.get(f"phi({body})", running_angle(state, body)))
                  for body, pose in poses.items()}  # fmt: skip
-        misfits = [np.broadcast_to(gap(one, poses, size), np.shape(theta)) for one in self.loops]
+        misfits = [np.broadcast_to(gap(loop, poses, size), np.shape(theta)) for loop in self.loops]
         worst, at = np.unravel_index(np.argmax(misfits), np.shape(misfits))
         if misfits[worst][at] <= AGREES * size:
             return next(self.off_at_start(poses), "")
-        told = too_short(self.groups, state, size)
-        return told or _beside(self.loops[worst], misfits[worst], theta, at, size)
+        sentence = too_short(self.groups, state, size)
+        return sentence or _beside(self.loops[worst], misfits[worst], theta, at, size)
 
     def off_at_start(self, poses: Poses) -> Iterator[Note]:
         """Say of couplings that start a link at another angle than other joints have it."""
         for loop in self.loops:
             if isinstance(loop, CouplingLoop) and not loop.slides:
-                given, found = self.starts[loop.name], float(np.ravel(poses[loop.on.body].angle)[0])
-                if given and abs(np.exp(1j * (given - found)) - 1) > AGREES:
+                given, value = self.starts[loop.name], float(np.ravel(poses[loop.on.body].angle)[0])
+                if given and abs(np.exp(1j * (given - value)) - 1) > AGREES:
                     yield Note(AT_START, name=loop.name, link=loop.on.body, given=degrees(given),
-                               found=degrees(np.angle(np.exp(1j * found))))  # fmt: skip
+                               found=degrees(np.angle(np.exp(1j * value))))  # fmt: skip
 
 
 def gap(loop: Loop, poses: Poses, size: float) -> Any:
@@ -226,7 +226,7 @@ def _beside(loop: Loop, misfit: Array, theta: Array, at: Any, size: float) -> No
 
 def too_short(groups: Sequence[Group], state: State, size: float) -> Note | str:
     """Say of the link that two pins hold which distance of them is needed."""
-    found = []
+    result = []
     for group in groups:
         if group.kind != "pointed":
             continue
@@ -235,8 +235,8 @@ def too_short(groups: Sequence[Group], state: State, size: float) -> Note | str:
         needed = np.abs(state[second] - state[first]) + 0 * state["theta"]
         off = np.abs(needed - abs(call.parameters[0]))
         at = int(np.argmax(off))
-        found.append((off[at], at, group.links[0], first[2:-1], second[2:-1], needed, call))
-    if not found or (worst := max(found, key=lambda one: one[0]))[0] <= AGREES * size:
+        result.append((off[at], at, group.links[0], first[2:-1], second[2:-1], needed, call))
+    if not result or (worst := max(result, key=lambda one: one[0]))[0] <= AGREES * size:
         return ""
     off, at, link, first, second, needed, call = worst
     low, high = float(np.min(needed)), float(np.max(needed))
@@ -294,7 +294,11 @@ class Shared(LoopForces):
     def pins(self) -> dict[str, Reaction]:
         """The pin about which each driven link turns, by the link."""
         anchors = dict(zip(self.group.links, self.group.anchors, strict=True))
-        pins = {(one.on, one.at): one for one in self.reactions if one.kind == "pin"}
+        pins = {
+            (reaction.on, reaction.at): reaction
+            for reaction in self.reactions
+            if reaction.kind == "pin"
+        }
         return {drive: pins[drive, anchors[drive]] for drive in self.drives}
 
     def demanded(self, state: State) -> tuple[Any, Any]:
@@ -323,8 +327,8 @@ class Shared(LoopForces):
             for (k, name), flank, off in zip(pairs, flanks, idle, strict=True):
                 state[f"flank({name})"] = senses[k] = flank
                 state[IDLE.format(name)] = off
-            found = self.solve(state, poses, senses)
-            return np.array([found[k][0] for k, _ in pairs])
+            result = self.solve(state, poses, senses)
+            return np.array([result[k][0] for k, _ in pairs])
 
         agreeing(pushes, np.array([senses[k] for k, _ in pairs]))
         return senses
@@ -343,21 +347,21 @@ class Shared(LoopForces):
         demand = self.demand(state) / rows
         right = np.moveaxis(demand.reshape(-1, *demand.shape[-2:]), 0, -1)
         if self.compliance:
-            told = np.concatenate(
+            values = np.concatenate(
                 [
                     self.by_stiffness(*parts_of(matrix[some]), idle[some]) @ right[some]
                     for some in in_blocks(matrix)
                 ]
             )
         else:
-            told = least(matrix, right)
-        told *= ~idle[..., None]  # of rounding
-        told *= units[:, None]
-        found = np.moveaxis(told, (-1, 1), (1, 0)).reshape(len(units), *demand.shape[:-1])
+            values = least(matrix, right)
+        values *= ~idle[..., None]  # of rounding
+        values *= units[:, None]
+        result = np.moveaxis(values, (-1, 1), (1, 0)).reshape(len(units), *demand.shape[:-1])
         count = len(self.drives)
-        state.update((f"torque({drive})", one)
-                     for drive, one in zip(self.drives, found[-count:], strict=True))  # fmt: skip
-        strengths = iter(found)
+        state.update((f"torque({drive})", item)
+                     for drive, item in zip(self.drives, result[-count:], strict=True))  # fmt: skip
+        strengths = iter(result)
         return [[next(strengths) for _ in range(loop.unknowns)] for loop in self.loops]
 
     def balance(
@@ -386,8 +390,8 @@ class Shared(LoopForces):
         """
         if not self.count:
             return
-        if told := self.fit.misfit(state, self.poses(state)):
-            raise MobilityError(Note("{count}: {told}", count=self.count, told=told))
+        if misfit := self.fit.misfit(state, self.poses(state)):
+            raise MobilityError(Note("{count}: {told}", count=self.count, told=misfit))
         if len(self.drives) > 1:
             self.check_drives(state)
         if self.compliance:
@@ -481,8 +485,8 @@ def _span_of_joints(machine: Machine, joints: Structure, apart: set[str]) -> flo
     its size, and counts only where nothing else does.  1 where all joints of each body coincide.
     """
     ends = [(body, point) for point, bodies in joints.pins.items() for body in bodies]
-    ends += [(one.link, one.point) for one in joints.sliders]
-    through = [(one.on, one.through) for one in joints.sliders]
+    ends += [(slider.link, slider.point) for slider in joints.sliders]
+    through = [(slider.on, slider.through) for slider in joints.sliders]
 
     def span(named: list[tuple[str, str]]) -> float:
         places: dict[str, list[complex]] = {}
@@ -510,19 +514,19 @@ def shared(
     maker.anchors = {link: builder.anchors[link] for link in links}
     loops = [loop for loop in maker.pinned_and_sliding()
              if apart.isdisjoint((loop.on.body, loop.by.body))]  # fmt: skip
-    loops += [maker.coupling(one) for one in joints.couplings if one.driven in links]
+    loops += [maker.coupling(coupling) for coupling in joints.couplings if coupling.driven in links]
     loops.sort(key=lambda loop: (loop.name, loop.on.body) != (pivot, links[0]))
     anchors = tuple(maker.anchors.values())
     size = _span_of_joints(builder.machine, joints, apart)
     whole = LoopGroup(links, anchors, ((FRAME, pivot),), (), tuple(loops), (), size)
     reactions = tuple(map(maker.reaction, loops))
-    every = (*reactions, *(one for group in decided for one in group.reactions))
-    named = {family_of(one.kind) + name_in_outputs(joints, one): one.force for one in every}
+    every = (*reactions, *(reaction for group in decided for reaction in group.reactions))
+    named = {family_of(item.kind) + name_in_outputs(joints, item): item.force for item in every}
     given = given_properties(builder.machine, joints, every)
     compliance = {
-        joint.force: 1 / one.stiffness for _, joint, one in given if one.stiffness is not None
+        joint.force: 1 / item.stiffness for _, joint, item in given if item.stiffness is not None
     }
-    starts = {one.name: one.start for one in joints.couplings}
+    starts = {coupling.name: coupling.start for coupling in joints.couplings}
     fit = FitCondition(whole.equations, groups, size, starts)
     drives = tuple(drive.link for drive in builder.machine.driven if drive.link in links)
     return Shared(
@@ -532,11 +536,11 @@ def shared(
 
 def _decided(builder: Builder, joints: Structure, groups: tuple[Group, ...]) -> tuple[Group, ...]:
     """Groups on which none of the others hangs, and which no joint more holds than they need."""
-    left, found = set(builder.rank), []
+    left, result = set(builder.rank), []
     for group in reversed(groups):
         others = left.difference(group.links)
         own = group.kind != "pointed" and not group.through
         if own and joints.freedom(group.links, others) == 0:
-            found.append(group)
+            result.append(group)
             left = others
-    return tuple(found)
+    return tuple(result)

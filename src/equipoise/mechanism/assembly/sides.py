@@ -89,8 +89,8 @@ class Choice:
         yield f"# {self.meaning}"
         for k in (self.side,) if self.why else (0, 1):
             given = self.gives[k] and f"{self.gives[k]}{taken and f', with {taken}'}"
-            told = "; ".join(filter(None, [given, self.why]))
-            yield f"{'' if k == self.side else '# or '}{self.entry(k)}{told and f'  # {told}'}"
+            text = "; ".join(filter(None, [given, self.why]))
+            yield f"{'' if k == self.side else '# or '}{self.entry(k)}{text and f'  # {text}'}"
 
     def entry(self, k: int) -> str:
         """In the table of sides, with one of the words."""
@@ -110,18 +110,18 @@ def chosen(builder: Builder, group: Group, assumed: Mapping[str, tuple[int, str]
     evidence = (
         [] if position is None else [(position.crank_angle, "as in [position]", _in_position)]
     )
-    for theta, told, distances in (*evidence, (0.0, "as drawn", _as_drawn)):
-        states = [_state(builder, one, theta) for one in both]
+    for theta, text, distances in (*evidence, (0.0, "as drawn", _as_drawn)):
+        states = [_state(builder, item, theta) for item in both]
         gives = tuple(_given_by(builder, group, state, theta) for state in states)
         off = [max(distances(builder, group, state), default=np.inf) for state in states]
         best = int(off[1] < off[0])
         if all(gives) and off[best] <= min(ROUGH * float(builder.size()), CLEARER * off[1 - best]):
-            side, why = best, told
+            side, why = best, text
             break
     else:
         for theta in ANGLES:  # the first at which the links can be joined
             gives = tuple(
-                _given_by(builder, group, _state(builder, one, theta), theta) for one in both
+                _given_by(builder, group, _state(builder, item, theta), theta) for item in both
             )
             if all(gives):
                 break
@@ -210,23 +210,23 @@ def decided(
 
     turns_fully : raises an `EquipoiseError` where the crank does not with these sides, by joint.
     """
-    known = {one.inner: one.words[one.side] for one in choices}
-    undecided = [one for one in choices if not one.why]
+    known = {choice.inner: choice.words[choice.side] for choice in choices}
+    undecided = [choice for choice in choices if not choice.why]
     if not 0 < len(undecided) <= MOST_TRIED:
         return {}
     good: list[tuple[int, ...]] = []
     for numbers in product((0, 1), repeat=len(undecided)):
-        taken = {one.inner: one.words[k] for one, k in zip(undecided, numbers, strict=True)}
+        taken = {item.inner: item.words[k] for item, k in zip(undecided, numbers, strict=True)}
         try:
             turns_fully(known | taken)
         except EquipoiseError:
             continue
         good.append(numbers)
-    found = {}
-    for one, taken_sides in zip(undecided, zip(*good, strict=True), strict=False):
+    pairs = {}
+    for entry, taken_sides in zip(undecided, zip(*good, strict=True), strict=False):
         alone = len(set(taken_sides)) == 1 and len(good) < 2 ** len(undecided)
-        found[one.inner] = (taken_sides[0], TURNS if alone else "")
-    return found
+        pairs[entry.inner] = (taken_sides[0], TURNS if alone else "")
+    return pairs
 
 
 def missing(machine: Machine, choices: Sequence[Choice], idle: Iterable[str] = ()) -> ModelError:
@@ -242,9 +242,9 @@ def missing(machine: Machine, choices: Sequence[Choice], idle: Iterable[str] = (
             meaning=first.meaning,
         )
     else:
-        where, parts = "assembly", series([one.wrong_at_joint for one in choices])
+        where, parts = "assembly", series([choice.wrong_at_joint for choice in choices])
         what = Note("{parts}; give each its side in [assembly]", parts=parts)
-    joints = [one.joint for one in choices]
+    joints = [choice.joint for choice in choices]
     for name in idle:
         hint = meant(name, joints)
         entry = Note("{name!r} is no inner joint of a dyad", name=name)
@@ -252,9 +252,9 @@ def missing(machine: Machine, choices: Sequence[Choice], idle: Iterable[str] = (
         what = Note("{sentence} ({entry})", sentence=what, entry=entry)
     table = [] if machine.assembly else ["[assembly]"]
     taken: list[str] = []
-    for one in choices:
-        table += one.lines(", ".join(taken))
-        if not one.why:
-            taken.append(one.entry(one.side))
+    for item in choices:
+        table += item.lines(", ".join(taken))
+        if not item.why:
+            taken.append(item.entry(item.side))
     error = ModelError(where, what).with_paste(Paste(tuple(table), LEADING))
     return error.with_topic("a-side-is-missing-in-assembly")

@@ -56,23 +56,23 @@ def with_cures(linkage: Assembled, error: MotionError) -> MotionError:
     if not machine.has_crank or (isinstance(error, BranchError) and error.rider):
         return _in_its_slot(machine, error)
     try:
-        found = range_of(linkage, error)
+        reach = range_of(linkage, error)
     except MotionError:
         return error
-    if found.is_point:
+    if reach.is_point:
         return error
-    swing = swing_within(linkage, found)
+    swing = swing_within(linkage, reach)
     lines = [motion_line(swing.law)]
     cure: Note = SWING_ALONE if machine.drive.motor or machine.drive.flywheel else SWING
     if not isinstance(error, ChangePointError):
-        message = Note(WITH_CURE, reason=found.note, cure=cure)
+        message = Note(WITH_CURE, reason=reach.note, cure=cure)
         if isinstance(error, RangeError):
             if error.lengths is not None:
-                lengths = Note(WITH_CURE, reason=found.note, cure=error.lengths)
+                lengths = Note(WITH_CURE, reason=reach.note, cure=error.lengths)
                 message = Note(WITH_CURE, reason=lengths, cure=cure)
-            stuck: MotionError = RangeError(message, error.ranges, reason=found.note)
+            stuck: MotionError = RangeError(message, error.ranges, reason=reach.note)
         else:
-            stuck = type(error)(message, reason=found.note)
+            stuck = type(error)(message, reason=reach.note)
         return stuck.with_paste(_paste(lines, swing))
     if error.joint:
         cure = MODE_OR_SWING
@@ -93,7 +93,7 @@ def _in_its_slot(machine: Machine, error: MotionError) -> MotionError:
     if not isinstance(error, BranchError) or not error.rider:
         return error
     slot = machine.pins_in_slots[error.rider]
-    place = next(f"{table}[{k + 1}]" for table, k, one in machine.elements if one is slot)
+    place = next(f"{table}[{k + 1}]" for table, k, item in machine.elements if item is slot)
     return BranchError(at_place(place, Note(BEYOND, crank_angle=degrees(error.crank_angle))))
 
 

@@ -71,7 +71,7 @@ class Across:
         return self._on_frame(self.inertia, self.weights, self.outer)
 
     def _on_frame(self, *needed: Needed) -> VectorSignal:
-        whole: Any = sum(value for one in needed for value in one.values())
+        whole: Any = sum(value for item in needed for value in item.values())
         return VectorSignal(full(self.motion, -1j * whole, complex))
 
     @cached_property
@@ -81,49 +81,51 @@ class Across:
         for needed in (self.inertia, self.weights, self.loads, self.springs):
             for link, value in needed.items():
                 total[link] = total[link] + value
-        return self.statics.couples(total, {k: one.value for k, one in self.exerted.items()})
+        return self.statics.couples(
+            total, {k: joint_force.value for k, joint_force in self.exerted.items()}
+        )
 
     @cached_property
     def tilting_moments(self) -> Mapping[str, JointForce]:
         """Moment about x and y in each joint, N m, about its own plane."""
-        found = []
+        result = []
         for name, couple in self._couples.items():
             on, by = self.exerted[name].on, self.exerted[name].by
-            found.append((name, JointForce(full(self.motion, 1j * couple, complex), on, by)))
-        return NamedItems("joint", found)
+            result.append((name, JointForce(full(self.motion, 1j * couple, complex), on, by)))
+        return NamedItems("joint", result)
 
     @cached_property
     def bearings(self) -> Mapping[str, JointForce]:
         """Force of each bearing on its link, N."""
         given = self.motion.machine.bearings
-        found = {}
+        result = {}
         for name, bearing in given.items():
-            both = {at: one.plane for at, one in given.items() if one.link == bearing.link}
+            both = {at: item.plane for at, item in given.items() if item.link == bearing.link}
             other = sum(both.values()) - bearing.plane
             _, pin = self.statics.pin_of(bearing.link)
             if pin.name not in self._couples:
                 continue
             force = self.exerted[pin.name]
             lever = (other - pin.plane) * force.value - self._couples[pin.name]
-            found[name] = replace(force, value=lever / (other - bearing.plane))
-        return NamedItems("bearing", found.items())
+            result[name] = replace(force, value=lever / (other - bearing.plane))
+        return NamedItems("bearing", result.items())
 
 
 def exerted_in(solved: Pass) -> dict[str, JointForce]:
     """Force in each joint, and whatever else bodies push each other with, by name."""
-    motion, found = solved.motion, dict(solved.joints)
+    motion, by_name = solved.motion, dict(solved.joints)
 
     def put(name: str, force: Any, on: str, by: str) -> None:
-        found[name] = JointForce(full(motion, force, complex), on, by)
+        by_name[name] = JointForce(full(motion, force, complex), on, by)
 
-    for name, one in motion.linkage.named_reactions:
-        if one.kind not in JOINTS:
-            put(name, solved.state[one.force], one.on, one.by)
+    for name, item in motion.linkage.named_reactions:
+        if item.kind not in JOINTS:
+            put(name, solved.state[item.force], item.on, item.by)
     for drive in motion.machine.pushers:
         (on, _, way), (by, *_) = pushes(motion, drive)
         name = PUSH.format(drive.link)
         put(name, solved.state[name] * way, on, by)
-    return found
+    return by_name
 
 
 def needed_by_inertia(motion: Motion, link: str, own: tuple[Any, Any]) -> Any:
@@ -147,31 +149,31 @@ def masses_across(motion: Motion) -> tuple[dict[str, Any], dict[str, Any]]:
 
 def pushes_across(motion: Motion, acting: Iterable[Acting]) -> dict[str, Any]:
     """What holds forces at points of links."""
-    links, found = motion.machine.links, dict[str, Any]()
+    links, values = motion.machine.links, dict[str, Any]()
     for link, point, force, _ in acting:
-        found[link] = found.get(link, 0.0) - links[link].plane_of(point) * force
-    return found
+        values[link] = values.get(link, 0.0) - links[link].plane_of(point) * force
+    return values
 
 
 def springs_across(motion: Motion) -> dict[str, Any]:
     """What holds force elements, and preloads of couplings, in the plane of their driven link."""
-    found = pushes_across(motion, acting_elements(motion))
+    values = pushes_across(motion, acting_elements(motion))
     for driven, ends in acting_preloads(motion):
         plane = motion.machine.links[driven].plane
         for link, _, force, _ in ends:
-            found[link] = found.get(link, 0.0) - plane * force
-    return found
+            values[link] = values.get(link, 0.0) - plane * force
+    return values
 
 
 def apart(whole: Across, exerted: Mapping[str, JointForce], shape: tuple[int, ...]) -> Across:
     """What links do across the plane, by cause and link: arrays of a shape (C, L, N)."""
 
     def by(cause: int, needed: Needed) -> Needed:
-        found = {}
+        result = {}
         for k, link in enumerate(whole.motion.machine.links):
-            found[link] = np.zeros(shape, complex)
-            found[link][cause, k] = needed.get(link, 0.0)
-        return found
+            result[link] = np.zeros(shape, complex)
+            result[link][cause, k] = needed.get(link, 0.0)
+        return result
 
     parts = (whole.inertia, whole.weights, whole.loads, whole.springs, whole.outer)
     inertia, weights, loads, springs, outer = map(by, (0, 2, 3, 4, 3), parts)

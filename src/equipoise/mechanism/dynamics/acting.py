@@ -38,7 +38,7 @@ def spring_demands(motion: Motion) -> dict[str, Demand]:
     ModelError : the ends of a spring with a free length meet, or a link turns beyond where the
         torque of a torsion spring is known.
     """
-    preloads = (one for _, ends in acting_preloads(motion) for one in ends)
+    preloads = (end for _, ends in acting_preloads(motion) for end in ends)
     return demands_of(motion, chain(acting_elements(motion), preloads))
 
 
@@ -102,7 +102,7 @@ def soil_loads(motion: Motion) -> Iterator[Acting]:
 
 
 def _acting(motion: Motion, reaction: str | None) -> Iterator[Acting]:
-    for load in (one for one in motion.machine.loads if one.reaction == reaction):
+    for load in (item for item in motion.machine.loads if item.reaction == reaction):
         yield load.link, load.point, *load_at(load, motion.crank_angle)
 
 

@@ -180,14 +180,14 @@ def _jerks(machine: Machine) -> Iterator[Note]:
     """Where laws of drives let accelerations jump, and with them all forces."""
     for link, law in machine.laws.items():
         angles = [f"{degrees(at):.4g}" for at in law.jumps(2)]
-        more = [] if len(angles) <= MOST_JUMPS else ["..."]
+        labels = [] if len(angles) <= MOST_JUMPS else ["..."]
         if angles:
             yield Note(
                 "the acceleration that the drive of {link!r} commands jumps at crank angle "
                 "{angles} deg, an infinite jerk, and forces jump there; laws such as cycloidal, "
                 "3-4-5 or s-curve do not",
                 link=link,
-                angles=", ".join([*angles[:MOST_JUMPS], *more]),
+                angles=", ".join([*angles[:MOST_JUMPS], *labels]),
             )
 
 

@@ -139,9 +139,9 @@ def bearing_lives(forces: Forces) -> Mapping[str, BearingLife]:
     if not motion.whole_cycle or motion.acceleration or not motion.speed:
         return {}
     rolling = {
-        name: (reaction, one.bearing)
-        for name, (reaction, one) in joint_properties(motion).items()
-        if one.bearing is not None and name in forces.joints
+        name: (reaction, item.bearing)
+        for name, (reaction, item) in joint_properties(motion).items()
+        if item.bearing is not None and name in forces.joints
     }
     states = tuple(working_states(forces)) if rolling else ()
     return {name: _life_over(states, name, *both) for name, both in rolling.items()}
@@ -156,7 +156,7 @@ def _life_over(
 
     def mean(signals: Iterable[Array]) -> float:
         each = zip(states, signals, strict=True)
-        return sum(state.share * float(state.forces.motion.mean(one)) for state, one in each)
+        return sum(state.share * float(state.forces.motion.mean(item)) for state, item in each)
 
     speed, top = mean(turns), max(float(np.max(size)) for size in sizes)
     load, p = 0.0, bearing.exponent

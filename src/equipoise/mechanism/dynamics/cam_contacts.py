@@ -55,16 +55,16 @@ class CamFigures:
 def cam_figures(motion: Motion, forces: Forces | None) -> Mapping[str, CamFigures]:
     """Figures of every cam, by name."""
     whole = forces if motion.whole_cycle else None
-    lifts = {} if whole is None else {one.cam.name: one for one in let_go(whole)}
-    found = {}
+    lifts = {} if whole is None else {item.cam.name: item for item in let_go(whole)}
+    by_name = {}
     for fit in fits_of(motion.machine, motion.linkage.joints):
-        one = lifts.get(fit.cam.name)
-        limited = one is not None and isfinite(one.speed)
-        speed, at = (one.speed, one.at) if one is not None and limited else (None, None)
-        lost = () if one is None else one.ranges
+        entry = lifts.get(fit.cam.name)
+        limited = entry is not None and isfinite(entry.speed)
+        speed, at = (entry.speed, entry.at) if entry is not None and limited else (None, None)
+        lost = () if entry is None else entry.ranges
         radius, where = sharpest(fit)
-        found[fit.cam.name] = CamFigures(radius, where, speed, at, lost)
-    return found
+        by_name[fit.cam.name] = CamFigures(radius, where, speed, at, lost)
+    return by_name
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,11 +148,11 @@ def _lowest(name: str, forces: Forces, squares: Array) -> tuple[float, float]:
     step, at, least = theta[1] - theta[0], theta[places], squares[places]
     for _ in range(ROUNDS):
         near = np.clip(at[:, None] + step * np.linspace(-1, 1, 2 * FINER + 1), *ends)
-        found = _squares(*_at_rest(name, _forces_at(forces, near.ravel()))).reshape(near.shape)
-        best = np.argmin(found, axis=1)[:, None]
-        better = np.take_along_axis(found, best, 1)[:, 0] < least * (1 - ROUNDING)
+        result = _squares(*_at_rest(name, _forces_at(forces, near.ravel()))).reshape(near.shape)
+        best = np.argmin(result, axis=1)[:, None]
+        better = np.take_along_axis(result, best, 1)[:, 0] < least * (1 - ROUNDING)
         at = np.where(better, np.take_along_axis(near, best, 1)[:, 0], at)
-        least = np.where(better, np.take_along_axis(found, best, 1)[:, 0], least)
+        least = np.where(better, np.take_along_axis(result, best, 1)[:, 0], least)
         step /= FINER
     k = int(highest_at(-least, smooth=False))
     return float(np.sqrt(least[k])), float(at[k] % (2 * np.pi * motion.turns))

@@ -47,7 +47,7 @@ class ElasticLink:
         """
         inside = float(np.clip(place.real, 0.0, self.places[-1]))
         bent, turned, longer = (
-            np.array([np.interp(inside, self.places, one) for one in values.T])
+            np.array([np.interp(inside, self.places, item) for item in values.T])
             for values in (self.deflection, self.slope, self.stretch)
         )
         return np.asarray(longer + 1j * bent + 1j * turned * (place - inside))
@@ -68,11 +68,11 @@ def elastic_link(loads: SectionLoads) -> ElasticLink | None:
     cuts = [loads.in_cut(Cut(np.broadcast_to(place, count), False)) for place in places[1:]]
     first = loads.in_cut(Cut(np.zeros(count), True))
     every = [first, *cuts]
-    bent = _summed(np.array([one.bending for one in every]), length)
+    bent = _summed(np.array([item.bending for item in every]), length)
     slope = bent / (modulus * section.second_moment)
     deflection = _summed(slope, length)
     chord = deflection[-1] / length
-    stretch = _summed(np.array([one.axial for one in every]), length) / (modulus * section.area)
+    stretch = _summed(np.array([item.axial for item in every]), length) / (modulus * section.area)
     rod, frequency = loads.mass.rod, None
     if rod > 0:
         frequency = natural_frequency(modulus, section.second_moment, rod, length)

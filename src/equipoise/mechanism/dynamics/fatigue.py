@@ -73,7 +73,7 @@ def rainflow(load: Array, repeats: bool = False) -> LoadCycles:
     if repeats:
         load = np.roll(load, -int(np.argmax(np.abs(load))))
         load = np.append(load, load[0])
-    found: list[tuple[float, float, float]] = []
+    parts: list[tuple[float, float, float]] = []
     open_ends: list[float] = []
     for value in reversals(load).tolist():
         open_ends.append(value)
@@ -83,24 +83,24 @@ def rainflow(load: Array, repeats: bool = False) -> LoadCycles:
                 break
             mean = (first + second) / 2
             if len(open_ends) > 3:
-                found.append((abs(second - first), mean, 1.0))
+                parts.append((abs(second - first), mean, 1.0))
                 del open_ends[-3:-1]
             else:  # it begins at the start of the load, with which nothing closes it
-                found.append((abs(second - first), mean, 0.5))
+                parts.append((abs(second - first), mean, 0.5))
                 del open_ends[0]
     for first, second in pairwise(open_ends):
-        found.append((abs(second - first), (first + second) / 2, 0.5))
+        parts.append((abs(second - first), (first + second) / 2, 0.5))
     if repeats and open_ends:  # what is left pairs up, as the load comes back to its begin
-        found = _paired(found)
-    ranges, means, counts = np.array(found).reshape(-1, 3).T
+        parts = _paired(parts)
+    ranges, means, counts = np.array(parts).reshape(-1, 3).T
     return LoadCycles(ranges, means, counts)
 
 
 def _paired(cycles: list[tuple[float, float, float]]) -> list[tuple[float, float, float]]:
     """Cycles with both halves of each that is cut in two made one."""
-    whole = [one for one in cycles if one[2] == 1.0]
-    halves = sorted(one[:2] for one in cycles if one[2] == 0.5)
-    return whole + [(*one, 1.0) for one in halves[::2]]
+    whole = [cycle for cycle in cycles if cycle[2] == 1.0]
+    halves = sorted(cycle[:2] for cycle in cycles if cycle[2] == 0.5)
+    return whole + [(*half, 1.0) for half in halves[::2]]
 
 
 def amplitudes_about_zero(cycles: LoadCycles, tensile_strength: float | None) -> Array:
@@ -135,8 +135,8 @@ class WoehlerLine:
         """To failure (K,), at amplitudes (K,), Pa."""
         amplitudes = np.asarray(amplitudes, float)
         with np.errstate(divide="ignore", over="ignore"):
-            found = self.knee * (self.limit / amplitudes) ** self.slope
-        return np.where(self.endless & (amplitudes < self.limit), inf, found)
+            value = self.knee * (self.limit / amplitudes) ** self.slope
+        return np.where(self.endless & (amplitudes < self.limit), inf, value)
 
 
 def damage(cycles: LoadCycles, line: WoehlerLine, tensile_strength: float | None = None) -> float:

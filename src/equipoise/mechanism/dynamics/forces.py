@@ -140,7 +140,7 @@ class Forces(Exerted, Displayed):
     @property
     def friction_loss(self) -> Array:
         """Power (N,) that all joints lose by friction, W."""
-        losses = [one.loss for one in self.frictions.values()]
+        losses = [friction.loss for friction in self.frictions.values()]
         return full(self.motion, sum(losses, start=np.zeros(())), float)
 
     @property
@@ -180,7 +180,8 @@ class Forces(Exerted, Displayed):
         """Work of each drive in a cycle, J; crank angles have to be those of a whole cycle."""
         angle = 2 * np.pi * self.motion.turns * np.sign(self.motion.speed)
         return {
-            link: float(self.motion.mean(one) * angle) for link, one in self._work_by_angle.items()
+            link: float(self.motion.mean(column) * angle)
+            for link, column in self._work_by_angle.items()
         }
 
     @property
@@ -190,14 +191,14 @@ class Forces(Exerted, Displayed):
         """
         angle = 2 * np.pi * self.motion.turns
         return {
-            link: float(self.motion.mean(np.abs(one)) * angle)
-            for link, one in self._work_by_angle.items()
+            link: float(self.motion.mean(np.abs(column)) * angle)
+            for link, column in self._work_by_angle.items()
         }
 
     @cached_property
     def _work_by_angle(self) -> dict[str, Array]:
         """Work of each drive by crank angle (N,), N m, by the name of its link."""
-        return {link: one * self.motion.way(link) for link, one in self.drives.items()}
+        return {link: drive * self.motion.way(link) for link, drive in self.drives.items()}
 
     @cached_property
     def across(self) -> Across:
@@ -281,8 +282,8 @@ def _units(motion: Motion, rate: int) -> Mapping[str, Units]:
     name = UNITS.format(rate)
     if name not in motion.state:
         motion.state[name] = {link: _units_of(motion, link, rate) for link in motion.machine.links}
-    kept: Mapping[str, Units] = motion.state[name]
-    return kept
+    units: Mapping[str, Units] = motion.state[name]
+    return units
 
 
 def _units_of(motion: Motion, link: str, rate: int) -> Units:
@@ -426,8 +427,8 @@ def _with_friction(
         for body, own in unit.items():
             if body not in total:
                 total[body] = np.zeros(shape, complex), np.zeros(shape)
-            for part, one in zip(total[body], own, strict=True):
-                part[at] += friction.effort * one
+            for part, item in zip(total[body], own, strict=True):
+                part[at] += friction.effort * item
     return total
 
 
@@ -435,12 +436,12 @@ def _split_frictions(
     whole: Forces, links: Sequence[str], shape: tuple[int, ...]
 ) -> dict[str, JointFriction]:
     """The friction of each joint, (C, L, N)."""
-    found = {}
-    for name, one in whole.frictions.items():
+    joint_frictions = {}
+    for name, friction in whole.frictions.items():
         effort = np.zeros(shape)
-        effort[CAUSES.index("friction"), _owner(links, one)] = one.effort
-        found[name] = replace(one, effort=effort)
-    return found
+        effort[CAUSES.index("friction"), _owner(links, friction)] = friction.effort
+        joint_frictions[name] = replace(friction, effort=effort)
+    return joint_frictions
 
 
 def _causes(whole: Forces, link: str) -> list[Demand]:

@@ -77,15 +77,15 @@ class FrictionLaw:
         """From speeds (J, N) of the joints, and the signs that count where they are 0."""
         grip, given = np.zeros((2, *rates.shape))
         for k, joint in enumerate(joints):
-            one, reach = joint.given, joint.reach
+            item, reach = joint.given, joint.reach
             mu = np.full(rates.shape[1:], joint.coefficient)
-            if one.static_friction is not None and one.stribeck_speed is not None:
-                slides = reach * rates[k] / one.stribeck_speed
-                mu = mu + (one.static_friction - mu) * np.exp(-(slides**2))
+            if item.static_friction is not None and item.stribeck_speed is not None:
+                slides = reach * rates[k] / item.stribeck_speed
+                mu = mu + (item.static_friction - mu) * np.exp(-(slides**2))
             grip[k] = senses[k] * mu * reach
-            drag, damping = one.drag_torque, one.torsional_damping
+            drag, damping = item.drag_torque, item.torsional_damping
             if joint.slider is not None:
-                drag, damping = one.drag_force, one.damping
+                drag, damping = item.drag_force, item.damping
             given[k] = senses[k] * drag + damping * rates[k]
         return cls(tuple(joints), rates, grip, given)
 
@@ -247,8 +247,8 @@ def _grown(law: FrictionLaw, press: Press) -> tuple[Array, Array]:
     while np.any(going := (share < 1) & (step >= LAST_STEP)):
         some = np.flatnonzero(going)
         tried = np.minimum(share[some] + step[some], 1.0)
-        found, good = _newton(law.at(some), press.at(some), efforts[:, some], tried)
-        efforts[:, some[good]], share[some[good]] = found[:, good], tried[good]
+        result, good = _newton(law.at(some), press.at(some), efforts[:, some], tried)
+        efforts[:, some[good]], share[some[good]] = result[:, good], tried[good]
         step[some] *= np.where(good, 1.0, 0.5)
     return efforts, share
 
@@ -265,14 +265,14 @@ def law_of(motion: Motion) -> FrictionLaw:
 
 def unit_demands(motion: Motion, joints: Sequence[RubbingJoint]) -> list[dict[str, Demand]]:
     """What holds a unit of friction in each joint, on both its bodies."""
-    found = []
+    demands = []
     for joint in joints:
         ends: list[Acting] = [(joint.on, None, 0j, 1.0), (joint.by, None, 0j, -1.0)]  # type: ignore[list-item]
         if joint.slider is not None:
             at, along = motion.point(joint.slider.point).place, direction(motion, joint)
             ends = [(joint.on, at, along, 0.0), (joint.by, at, -along, 0.0)]
-        found.append(demands_of(motion, ends))
-    return found
+        demands.append(demands_of(motion, ends))
+    return demands
 
 
 def direction(motion: Motion, joint: RubbingJoint) -> Array:
@@ -284,21 +284,21 @@ def direction(motion: Motion, joint: RubbingJoint) -> Array:
 
 def pressing_parts(solved: Pass, joints: Sequence[RubbingJoint], shape: tuple[int, ...]) -> Array:
     """Parts (J, 2, ..., N) of what presses in joints, of a pass whose values have a shape."""
-    motion, found = solved.motion, []
+    motion, values = solved.motion, []
     for joint in joints:
         reaction, state = joint.reaction, solved.state
         if joint.mesh is not None:
             push = np.broadcast_to(state[f"T({reaction.name})"], shape).real
-            found.append((push, np.zeros(shape)))
+            values.append((push, np.zeros(shape)))
             continue
         force = np.broadcast_to(state[reaction.force], shape)
         if joint.slider is None:
-            found.append((force.real, force.imag))
+            values.append((force.real, force.imag))
             continue
         arm = state[f"p({reaction.at})"] - motion.point(joint.slider.point).place
         moment = np.broadcast_to(state[reaction.couple or ""], shape) + cross(arm, force)
-        found.append((cross(direction(motion, joint), force), moment))
-    return np.array(found)
+        values.append((cross(direction(motion, joint), force), moment))
+    return np.array(values)
 
 
 def with_friction(motion: Motion, demands: Demands, like: Pass | None = None) -> Pass:
@@ -312,19 +312,19 @@ def with_friction(motion: Motion, demands: Demands, like: Pass | None = None) ->
     """
     law = law_of(motion)
     units = unit_demands(motion, law.joints)
-    found = like
-    if found is None and motion.machine.switches:
-        found = reactions(motion, demands)
+    result = like
+    if result is None and motion.machine.switches:
+        result = reactions(motion, demands)
     efforts = np.zeros_like(law.rates)
     for _ in range(FLANKS):
-        press = press_of(motion, demands, law.joints, units, found)
+        press = press_of(motion, demands, law.joints, units, result)
         efforts, whole = balanced(law, press, efforts)
         if np.any(whole < 1):
             raise _locked(motion, law, press, efforts, whole)
         solved = reactions(motion, added(demands, units, efforts), like)
-        if found is None or like is not None or _same_flanks(found, solved):
+        if result is None or like is not None or _same_flanks(result, solved):
             break
-        found = solved
+        result = solved
     size, _ = law.pressing(press.parts(efforts))
     frictions = [
         JointFriction(

@@ -138,7 +138,7 @@ def _fatigue(loads: SectionLoads) -> tuple[float | None, float | None]:
         return None, None
     line = WoehlerLine(section.fatigue_limit, section.knee_cycles, section.slope)
     worst, largest = 0.0, 0.0
-    for cut in (one for one in loads.cuts if one.fixed):
+    for cut in (item for item in loads.cuts if item.fixed):
         for stress in loads.in_fibres(loads.in_cut(cut)):
             counted = rainflow(stress, repeats=True)
             worst = max(worst, damage(counted, line, section.tensile_strength))

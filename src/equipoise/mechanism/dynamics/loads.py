@@ -96,11 +96,11 @@ def work_in_cycle(machine: Machine, load: Load) -> LoadWork:
 def _edges(load: Load, turns: int) -> Array:
     """Crank angles of a cycle between which a load and its motion are smooth, from 0 on."""
     cycle = 2 * pi * turns
-    found = [np.arange(0.0, cycle, PIECE)]
+    values = [np.arange(0.0, cycle, PIECE)]
     if load.table is not None:
         again = np.arange(0.0, cycle - 1.0, 2 * pi * load.table.turns)
-        found.append(np.add.outer(again, load.table.crank_angle).ravel())
+        values.append(np.add.outer(again, load.table.crank_angle).ravel())
     for angle, every in load.jumps:
-        found.append(np.arange(0.0, cycle - 1.0, 2 * pi * every) + angle)
-    angles = np.concatenate(found)
+        values.append(np.arange(0.0, cycle - 1.0, 2 * pi * every) + angle)
+    angles = np.concatenate(values)
     return np.unique(np.append(np.mod(angles, cycle), cycle))

@@ -41,7 +41,7 @@ class Losses:
     @property
     def loss(self) -> float:
         """That all joints lose."""
-        return sum(one.loss for one in self.joints.values())
+        return sum(joint.loss for joint in self.joints.values())
 
     @property
     def efficiency(self) -> float | None:
@@ -61,8 +61,10 @@ def losses_of(forces: Forces) -> Losses | None:
         return None
     turn = 2 * pi / abs(motion.speed)
     joints = {
-        name: JointLoss(float(motion.mean(one.loss)), float(motion.mean(one.sliding_power)) * turn)
-        for name, one in forces.frictions.items()
+        name: JointLoss(
+            float(motion.mean(friction.loss)), float(motion.mean(friction.sliding_power)) * turn
+        )
+        for name, friction in forces.frictions.items()
     }
     loads = np.asarray(generalized_force(motion, forces.loads) * motion.speed)
     return Losses(joints, float(motion.mean(forces.power)), float(motion.mean(loads)))

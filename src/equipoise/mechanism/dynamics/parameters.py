@@ -149,12 +149,14 @@ def _across(motion: Motion, solved: Pass) -> Across:
             needed_by_inertia(motion, name, own),
             kernels.weight_demand(motion.state[f"u({name})"], *own, gravity)[0],
         )
-        for found, part in zip((inertia, weights), parts, strict=True):
-            found[name] = np.zeros((size, angles), complex)
-            found[name][rows][: len(ACROSS)] = part
+        for result, part in zip((inertia, weights), parts, strict=True):
+            result[name] = np.zeros((size, angles), complex)
+            result[name][rows][: len(ACROSS)] = part
     exerted = {
-        name: replace(one, value=np.pad(one.value, ((0, len(ACROSS) * count), (0, 0))))
-        for name, one in exerted_in(solved).items()
+        name: replace(
+            joint_force, value=np.pad(joint_force.value, ((0, len(ACROSS) * count), (0, 0)))
+        )
+        for name, joint_force in exerted_in(solved).items()
     }
     return Across(motion, inertia, weights, {}, {}, exerted)
 
@@ -246,10 +248,10 @@ def _rows(motion: Motion, output: str, size: float) -> Array:
     rate = (9.81 / size) ** 0.5
     parts: list[Array] = []
     for case in (motion.at(0.0, 0.0), motion.at(rate, 0.0), motion.at(0.0, rate**2)):
-        found = regressor(case).of_machine
-        if output not in found:
-            raise UsageError(unknown(output, found, "output"))
-        array = found[output] / (1.0 if output.endswith("force") else size)
+        of_machine = regressor(case).of_machine
+        if output not in of_machine:
+            raise UsageError(unknown(output, of_machine, "output"))
+        array = of_machine[output] / (1.0 if output.endswith("force") else size)
         parts += [array.real.T, array.imag.T] if np.iscomplexobj(array) else [array.T]
     return np.concatenate(parts)
 

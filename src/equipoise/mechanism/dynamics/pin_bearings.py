@@ -27,9 +27,9 @@ def joint_properties(motion: Motion) -> dict[str, tuple[Reaction, JointPropertie
     if not motion.machine.joints:
         return {}
     linkage = motion.linkage
-    names = {one.force: name for name, one in linkage.named_reactions}
+    names = {item.force: name for name, item in linkage.named_reactions}
     given = given_properties(linkage.machine, linkage.joints, linkage.reactions)
-    return {names[reaction.force]: (reaction, one) for _, reaction, one in given
+    return {names[reaction.force]: (reaction, item) for _, reaction, item in given
             if reaction.force in names}  # fmt: skip
 
 
@@ -47,10 +47,10 @@ class PlainBearing:
 
 def plain_bearings(motion: Motion, joints: Mapping[str, JointForce]) -> Mapping[str, PlainBearing]:
     """Plain bearings by joint: pins whose radius and width are given."""
-    found = {}
-    for name, (reaction, one) in joint_properties(motion).items():
-        if one.width is not None and one.radius is not None and name in joints:
-            pressure = joints[name].size / (one.width * 2 * one.radius)
-            sliding = np.abs(ring_speed(motion, reaction)) * one.radius
-            found[name] = PlainBearing(pressure, pressure * sliding)
-    return found
+    by_name = {}
+    for name, (reaction, item) in joint_properties(motion).items():
+        if item.width is not None and item.radius is not None and name in joints:
+            pressure = joints[name].size / (item.width * 2 * item.radius)
+            sliding = np.abs(ring_speed(motion, reaction)) * item.radius
+            by_name[name] = PlainBearing(pressure, pressure * sliding)
+    return by_name

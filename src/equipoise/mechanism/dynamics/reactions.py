@@ -190,7 +190,7 @@ class Pass:
         """What each drive exerts, by the name of its link: a torque on that, N m, or the force
         with which it pushes its ends apart, or its sliding link ahead, N.
         """
-        named = {one.link: PUSH if one.pushes else TORQUE for one in self.motion.machine.driven}
+        named = {item.link: PUSH if item.pushes else TORQUE for item in self.motion.machine.driven}
         return {
             link: full(self.motion, self.state[name.format(link)], float)
             for link, name in named.items()
@@ -236,14 +236,18 @@ class Pass:
         preload : what is to be told of that of a coupling.
         """
         kinds = coupling_kinds(type(self.motion.machine))
-        found: dict[str, dict[str, CouplingForce]] = {
+        coupling_forces: dict[str, dict[str, CouplingForce]] = {
             table: NamedItems(kind.noun, ()) for table, kind in kinds.items()
         }
-        reactions = {one.name: one for one in self.motion.linkage.reactions if one.kind in kinds}
-        for one in self.motion.machine.couplings:
-            force = self._force(one, reactions[one.name], preload(one))
-            found[one.table][one.name] = force
-        return found
+        reactions = {
+            reaction.name: reaction
+            for reaction in self.motion.linkage.reactions
+            if reaction.kind in kinds
+        }
+        for coupling in self.motion.machine.couplings:
+            force = self._force(coupling, reactions[coupling.name], preload(coupling))
+            coupling_forces[coupling.table][coupling.name] = force
+        return coupling_forces
 
     def force_on(self, name: str) -> CouplingForce:
         """Force of a coupling by its name, without a preload."""
@@ -253,9 +257,9 @@ class Pass:
     @property
     def contacts(self) -> dict[str, JointForce]:
         """Forces at one place in every joint and coupling, by name."""
-        pushing = {one.name for one in self.motion.machine.couplings if one.pushes}
+        pushing = {coupling.name for coupling in self.motion.machine.couplings if coupling.pushes}
         groups = self.couplings(lambda _: 0.0).values()
-        forces = {name: one for group in groups for name, one in group.items() if name in pushing}
+        forces = {name: item for group in groups for name, item in group.items() if name in pushing}
         return {**self.joints, **forces}
 
     @property
@@ -285,7 +289,7 @@ class Pass:
 
     def _force(self, coupling: Coupling, reaction: Reaction, preload: Any) -> CouplingForce:
         at = Push(self.state, reaction, self.motion.linkage.joints, coupling, preload)
-        parts = {name: full(self.motion, one, float) for name, one in coupling.parts(at).items()}
+        parts = {name: full(self.motion, part, float) for name, part in coupling.parts(at).items()}
         force = full(self.motion, at.force, complex)
         return CouplingForce(force, reaction.on, reaction.by, parts)
 
@@ -304,15 +308,17 @@ def reactions(motion: Motion, demands: Mapping[str, Demand], like: Pass | None =
 def _pushed(motion: Motion, demands: Mapping[str, Demand], like: Pass | None) -> Pass:
     """The same where forces drive: as large as it takes for their links to need no torque."""
     pushers = motion.machine.pushers
-    torques = [TORQUE.format(one.link) for one in pushers]
+    torques = [TORQUE.format(pusher.link) for pusher in pushers]
 
     def needed(by: Mapping[str, Demand]) -> Array:
         """Torques (..., N, P) that the links need."""
         state = _passed(motion, by, like).state
         return np.stack([full(motion, state[name], float) for name in torques], -1)
 
-    acting = [((body, at, way, 0.0) for body, at, way in pushes(motion, one)) for one in pushers]
-    units = [demands_of(motion, one) for one in acting]
+    acting = [
+        ((body, at, way, 0.0) for body, at, way in pushes(motion, pusher)) for pusher in pushers
+    ]
+    units = [demands_of(motion, item) for item in acting]
     none = dict.fromkeys(motion.machine.links, (0j, 0.0))
     levers = np.stack([needed(none | unit) for unit in units], -1)
     forces = np.linalg.solve(levers, -needed(demands)[..., None])[..., 0]
@@ -321,11 +327,11 @@ def _pushed(motion: Motion, demands: Mapping[str, Demand], like: Pass | None) ->
         for body, (push, turning) in unit.items():
             own = total.get(body, (0j, 0.0))
             total[body] = own[0] + forces[..., k] * push, own[1] + forces[..., k] * turning
-    found = _passed(motion, total, like)
-    for k, one in enumerate(pushers):
-        found.state[torques[k]] = 0.0 * forces[..., k]
-        found.state[PUSH.format(one.link)] = forces[..., k]
-    return found
+    passed = _passed(motion, total, like)
+    for k, entry in enumerate(pushers):
+        passed.state[torques[k]] = 0.0 * forces[..., k]
+        passed.state[PUSH.format(entry.link)] = forces[..., k]
+    return passed
 
 
 def _passed(motion: Motion, demands: Mapping[str, Demand], like: Pass | None) -> Pass:

@@ -196,8 +196,8 @@ class SectionLoads:
     @property
     def stresses(self) -> Array:
         """Normal stress (2, K, N) in the left and the right outermost fibre, Pa."""
-        found = [self.in_fibres(self.in_cut(cut)) for cut in self.cuts]
-        return np.stack(found, axis=1)
+        values = [self.in_fibres(self.in_cut(cut)) for cut in self.cuts]
+        return np.stack(values, axis=1)
 
 
 def section_loads(motion: Motion, solved: Pass, link: str) -> SectionLoads:
@@ -280,7 +280,7 @@ def _acting_on(motion: Motion, solved: Pass, link: str) -> Iterator[tuple[Any, A
             if body == link:
                 couple = 0.0 if reaction.couple is None else state[reaction.couple]
                 yield state[f"p({reaction.at})"], sign * state[reaction.force], sign * couple
-    beside: Iterator[Acting] = chain(
+    actings: Iterator[Acting] = chain(
         acting.acting_loads(motion),
         acting.acting_elements(motion),
         *(ends for _, ends in acting.acting_preloads(motion)),
@@ -288,7 +288,7 @@ def _acting_on(motion: Motion, solved: Pass, link: str) -> Iterator[tuple[Any, A
         _rubbing(motion, solved),
     )
     anchor = state[f"p({motion.linkage.anchors[link]})"]
-    for body, point, force, torque in beside:
+    for body, point, force, torque in actings:
         if body == link:
             named = isinstance(point, str)
             place = anchor if point is None else motion.point(point).place if named else point

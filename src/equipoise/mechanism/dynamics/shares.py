@@ -49,7 +49,7 @@ class Shares(HasCouplings, Brief):
     @property
     def of_machine(self) -> dict[str, Array]:
         """All but the forces in joints and couplings, by name."""
-        known = {one.name: getattr(self, one.name) for one in fields(Shares)}
+        known = {item.name: getattr(self, item.name) for item in fields(Shares)}
         if self.across is not None:
             known |= {name: getattr(self.across, name).value for name in OF_FRAME}
         return {name: value for name, value in known.items() if isinstance(value, np.ndarray)}
@@ -80,19 +80,21 @@ class Split(Shares):
         return dict(zip(self.links, self._array(output).sum(axis=0), strict=True))
 
     def _array(self, output: str) -> Array:
-        found = self.of_machine
+        of_machine = self.of_machine
         for name, joint in self.joints.items():
-            found[f"joints.{name}"] = joint.value
+            of_machine[f"joints.{name}"] = joint.value
             if isinstance(joint, SliderForce):
-                found[f"joints.{name}.moment"] = joint.moment
+                of_machine[f"joints.{name}.moment"] = joint.moment
         for name, effort in self.drives.items():
-            found |= {f"drives.{name}.{what}": effort for what in ("torque", "force")}
+            of_machine |= {f"drives.{name}.{what}": effort for what in ("torque", "force")}
         for table, forces in self.couplings.items():
             for name, force in forces.items():
-                found[f"{table}.{name}"] = force.value
-                found |= {f"{table}.{name}.{part}": one for part, one in force.parts.items()}
+                of_machine[f"{table}.{name}"] = force.value
+                of_machine |= {f"{table}.{name}.{part}": item for part, item in force.parts.items()}
         if self.across is not None:
-            found |= {f"bearings.{name}": one.value for name, one in self.across.bearings.items()}
-        if output not in found:
-            raise UsageError(unknown(output, found, "output"))
-        return found[output]
+            of_machine |= {
+                f"bearings.{name}": bearing.value for name, bearing in self.across.bearings.items()
+            }
+        if output not in of_machine:
+            raise UsageError(unknown(output, of_machine, "output"))
+        return of_machine[output]

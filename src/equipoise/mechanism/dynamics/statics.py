@@ -56,39 +56,42 @@ def contacts(linkage: Any) -> tuple[BodyContact, ...]:
     that of its link; one of two links that are alike midway between them.
     """
     machine, order = linkage.machine, linkage.joints.bodies.index
-    ends = {name: _ends(linkage, one) for name, one in linkage.named_reactions
-            if one.kind in JOINTS}  # fmt: skip
+    ends = {name: _ends(linkage, item) for name, item in linkage.named_reactions
+            if item.kind in JOINTS}  # fmt: skip
     held = {end for both in ends.values() for end in both if FRAME in both}
-    found = []
-    for name, one in linkage.named_reactions:
-        if one.kind not in JOINTS:
-            plane = machine.links[one.on].plane
-            found.append(BodyContact(name, one.on, one.by, plane, False))
+    body_contacts = []
+    for name, entry in linkage.named_reactions:
+        if entry.kind not in JOINTS:
+            plane = machine.links[entry.on].plane
+            body_contacts.append(BodyContact(name, entry.on, entry.by, plane, False))
             continue
         by, on = sorted(ends[name], key=order)
-        points = {one.on: one.at, one.by: one.at}
-        if rider := linkage.joints.riders.get(one.name):
+        points = {entry.on: entry.at, entry.by: entry.at}
+        if rider := linkage.joints.riders.get(entry.name):
             points = {body: next(iter(own.values())) for body, own in rider.held.items()}
             by, on = rider.on, rider.link
-        elif one.kind == "slider":
-            slider = next(s for s in machine.sliders if s.name == one.name)
+        elif entry.kind == "slider":
+            slider = next(s for s in machine.sliders if s.name == entry.name)
             points = {slider.link: slider.point, slider.on: slider.through}
-        found.append(BodyContact(name, on, by, _plane_between(machine, points, held), True))
-    return tuple(found)
+        body_contacts.append(BodyContact(name, on, by, _plane_between(machine, points, held), True))
+    return tuple(body_contacts)
 
 
 def pushing(linkage: Any) -> Iterator[BodyContact]:
     """Every drive that pushes: along a sliding joint in the plane of that, and between two points
     in the plane of a link's, midway between those of two links.
     """
-    machine, planes = linkage.machine, {one.name: one.plane for one in contacts(linkage)}
+    machine, planes = (
+        linkage.machine,
+        {contact.name: contact.plane for contact in contacts(linkage)},
+    )
     for drive in machine.pushers:
         by, on = ends_of(machine, drive)
         if drive.slider:
             plane = planes[drive.slider]
         else:
             points = zip((by, on), drive.between, strict=True)
-            held = [machine.links[body].plane_of(one) for body, one in points if body != FRAME]
+            held = [machine.links[body].plane_of(item) for body, item in points if body != FRAME]
             plane = sum(held) / len(held)
         yield BodyContact(PUSH.format(drive.link), on, by, plane, False)
 
@@ -101,9 +104,9 @@ def _ends(linkage: Any, reaction: Any) -> tuple[str, str]:
 def _plane_between(machine: Mechanism, points: Mapping[str, str], held: set[str]) -> float:
     """Plane of a joint of two bodies, each with its point there."""
     ends = [(body, machine.links[body], point) for body, point in points.items() if body != FRAME]
-    told = [link.planes[point] for _, link, point in ends if point in link.planes]
+    values = [link.planes[point] for _, link, point in ends if point in link.planes]
     loose = [link.plane for body, link, _ in ends if body not in held]
-    planes = told[:1] or (loose if len(loose) == 1 else [link.plane for _, link, _ in ends])
+    planes = values[:1] or (loose if len(loose) == 1 else [link.plane for _, link, _ in ends])
     return sum(planes) / len(planes)
 
 
@@ -128,12 +131,12 @@ class Statics:
     @cached_property
     def bearing(self) -> tuple[BodyContact, ...]:
         """Those that bear couples."""
-        return tuple(one for one in self.contacts if one.bears)
+        return tuple(contact for contact in self.contacts if contact.bears)
 
     @cached_property
     def open(self) -> tuple[str, ...]:
         """Names of joints whose couples statics leaves open."""
-        held = {end for one in self.bearing for end in one.ends if FRAME in one.ends}
+        held = {end for item in self.bearing for end in item.ends if FRAME in item.ends}
         free = [link for link in self.links if link not in held]
         return tuple(_open(self.machine, self.contacts, free))
 
@@ -142,28 +145,28 @@ class Statics:
         times their forces, by name.
         """
         needed = _used(self.by_needed[number], self.links)
-        return needed, _used(self.by_plane[number], [one.name for one in self.contacts])
+        return needed, _used(self.by_plane[number], [contact.name for contact in self.contacts])
 
     def pin_of(self, link: str) -> tuple[int, BodyContact]:
         """The joint by which a link turns in its bearings, and its number among `bearing`."""
         return next(
-            (k, one) for k, one in enumerate(self.bearing) if (one.on, one.by) == (link, FRAME)
+            (k, item) for k, item in enumerate(self.bearing) if (item.on, item.by) == (link, FRAME)
         )
 
     def couples(self, needed: Mapping[str, Array], exerted: Mapping[str, Array]) -> dict[str, Any]:
         """Couple of each joint by name, as a sum of planes times forces, N m; of those that follow
         from the forces that are told.
         """
-        found, planes = {}, {one.name: one.plane for one in self.contacts}
-        for number, one in enumerate(self.bearing):
+        values, planes = {}, {contact.name: contact.plane for contact in self.contacts}
+        for number, item in enumerate(self.bearing):
             by_needed, by_plane = self.factors(number)
             levers = {k: factor * planes[k] for k, factor in by_plane.items() if planes[k]}
-            if not {one.name, *levers} <= exerted.keys():
+            if not {item.name, *levers} <= exerted.keys():
                 continue
             terms = [factor * needed[link] for link, factor in by_needed.items()]
             terms += [lever * exerted[name] for name, lever in levers.items()]
-            found[one.name] = sum(terms, start=0.0)
-        return found
+            values[item.name] = sum(terms, start=0.0)
+        return values
 
     def told(self) -> Iterator[Note]:
         """A sentence on what is open."""
@@ -184,38 +187,40 @@ def _used(row: Array, names: Sequence[str]) -> dict[str, float]:
 
 def _signs(links: Sequence[str], joints: Sequence[BodyContact]) -> Array:
     """(L, K): 1 where a joint acts on a link, -1 where the link is what acts."""
-    return np.array([[(one.on == k) - (one.by == k) for one in joints] for k in links], dtype=float)
+    return np.array(
+        [[(joint.on == k) - (joint.by == k) for joint in joints] for k in links], dtype=float
+    )
 
 
 def statics(linkage: Any) -> Statics:
     """How couples go from link to link in a linkage."""
     machine, all_of = linkage.machine, (*contacts(linkage), *pushing(linkage))
-    links, bearing = tuple(machine.links), [one for one in all_of if one.bears]
+    links, bearing = tuple(machine.links), [item for item in all_of if item.bears]
     signs = _signs(links, bearing)
-    fixed = np.array([FRAME in (one.on, one.by) for one in bearing])
-    held = np.any(signs[:, fixed] != 0, axis=1)
-    found = np.zeros((len(bearing), len(links)))
+    fixed = np.array([FRAME in (item.on, item.by) for item in bearing])
+    is_so = np.any(signs[:, fixed] != 0, axis=1)
+    values = np.zeros((len(bearing), len(links)))
     # first what links without a joint in the frame hand on, then what all others bear
-    found[np.ix_(~fixed, ~held)] = pinv(signs[np.ix_(~held, ~fixed)])
-    rest = np.eye(len(links)) - signs[:, ~fixed] @ found[~fixed]
-    found[fixed] = pinv(signs[np.ix_(held, fixed)]) @ rest[held]
-    return Statics(machine, all_of, found, -found @ _signs(links, all_of))
+    values[np.ix_(~fixed, ~is_so)] = pinv(signs[np.ix_(~is_so, ~fixed)])
+    rest = np.eye(len(links)) - signs[:, ~fixed] @ values[~fixed]
+    values[fixed] = pinv(signs[np.ix_(is_so, fixed)]) @ rest[is_so]
+    return Statics(machine, all_of, values, -values @ _signs(links, all_of))
 
 
 def _open(machine: Any, joints: Sequence[BodyContact], free: Sequence[str]) -> Iterator[str]:
     """Joints by which links hand couples on that could go another way as well."""
-    bearing = [one for one in joints if one.bears]
+    bearing = [joint for joint in joints if joint.bears]
     for group in _chains(free, bearing):
-        own = [one for one in bearing if group & {one.on, one.by}]
+        own = [item for item in bearing if group & {item.on, item.by}]
         if len(own) > len(group) and not all(_flat(machine, link, joints) for link in group):
-            yield from (one.name for one in own)
+            yield from (item.name for item in own)
 
 
 def _chains(links: Iterable[str], joints: Sequence[BodyContact]) -> list[set[str]]:
     """Links in sets that hang together by joints among themselves."""
     groups = [{link} for link in links]
-    for one in joints:
-        met = [group for group in groups if group & {one.on, one.by}]
+    for joint in joints:
+        met = [group for group in groups if group & {joint.on, joint.by}]
         if len(met) == 2:
             met[0].update(met[1])
             groups.remove(met[1])
@@ -225,9 +230,11 @@ def _chains(links: Iterable[str], joints: Sequence[BodyContact]) -> list[set[str
 def _flat(machine: Any, link: str, joints: Sequence[BodyContact]) -> bool:
     """Whether all that acts on a link lies in one plane."""
     body = machine.links[link]
-    planes = {one.plane for one in joints if link in (one.on, one.by)}
+    planes = {joint.plane for joint in joints if link in (joint.on, joint.by)}
     planes |= {plane for mass, _, plane in masses_of(body) if mass}
-    planes |= {body.plane_of(one.point) for one in machine.loads if one.link == link and one.point}
+    planes |= {
+        body.plane_of(item.point) for item in machine.loads if item.link == link and item.point
+    }
     ends = (end for *_, element in machine.force_elements for end in element.points)
     planes |= {body.plane_of(point) for on, point in ends if on == link}
     planting = machine.planting

@@ -78,7 +78,7 @@ def undecided(linkage: Linkage) -> Undecided:
 
 def idle_told(linkage: Linkage, solved: State) -> Iterator[Note]:
     """A sentence on teeth that bear nothing at some crank angles, as neither flank agrees."""
-    names = [one.name for one in linkage.joints.couplings]
+    names = [coupling.name for coupling in linkage.joints.couplings]
     idle = [name for name in names if np.any(solved.get(IDLE.format(name), False))]
     if idle:
         yield Note(
@@ -90,27 +90,27 @@ def idle_told(linkage: Linkage, solved: State) -> Iterator[Note]:
 
 def refuse_unbounded(linkage: Linkage, output: str) -> None:
     """Raise a `UsageError` for an output of a joint whose force has no bound."""
-    found = _kept(linkage, _growing)
-    if any(output.partition(".")[2].startswith(name) for name in found.unbounded):
-        *_, told = found.told()
-        raise UsageError(told)
+    result = _kept(linkage, _growing)
+    if any(output.partition(".")[2].startswith(name) for name in result.unbounded):
+        *_, text = result.told()
+        raise UsageError(text)
 
 
 def hidden(motion: Motion) -> tuple[str, ...]:
     """Joints whose force has no bound at some of the crank angles of a motion, or between them."""
-    shared, found = motion.linkage.shared, _kept(motion.linkage, _growing)
-    if shared is None or not found.unbounded:
+    shared, result = motion.linkage.shared, _kept(motion.linkage, _growing)
+    if shared is None or not result.unbounded:
         return ()
     bounded = not motion.whole_cycle and np.all(shared.strength(motion.state) > WEAK)
-    return () if bounded else found.unbounded
+    return () if bounded else result.unbounded
 
 
 def _kept(linkage: Linkage, find: Callable[[Linkage], Undecided]) -> Undecided:
     name = find.__name__
     if name not in linkage.memory:
         linkage.memory[name] = find(linkage)
-    found: Undecided = linkage.memory[name]
-    return found
+    result: Undecided = linkage.memory[name]
+    return result
 
 
 def _found(linkage: Linkage) -> Undecided:
@@ -141,7 +141,7 @@ def _growing(linkage: Linkage) -> Undecided:
 
 
 def _named(linkage: Linkage, forces: frozenset[str]) -> tuple[str, ...]:
-    return tuple(name for name, one in linkage.named_reactions if one.force in forces)
+    return tuple(name for name, item in linkage.named_reactions if item.force in forces)
 
 
 def _turns(linkage: Linkage) -> bool:

@@ -179,15 +179,17 @@ class Curves:
     @classmethod
     def of(cls, curves: Sequence[PeriodicCurve]) -> Curves:
         """Raises a `ValueError` where their knots differ."""
-        one = curves[0]
-        if any(not np.array_equal(other.knots, one.knots) for other in curves):
+        curve = curves[0]
+        if any(not np.array_equal(other.knots, curve.knots) for other in curves):
             raise ValueError
         powers, waves = (
             np.concatenate([getattr(c, n) for c in curves]) for n in ("powers", "waves")
         )
-        begins = len(one.powers) * np.arange(len(curves))
+        begins = len(curve.powers) * np.arange(len(curves))
         rises = np.array([other.rise for other in curves])
-        return cls(one, PeriodicCurve(one.knots, powers, waves), begins[:, None], rises[:, None])
+        return cls(
+            curve, PeriodicCurve(curve.knots, powers, waves), begins[:, None], rises[:, None]
+        )
 
     def at(self, x: Any) -> tuple[Array, Array, Array]:
         """y and its two derivatives by x, each as `x`."""
@@ -198,12 +200,12 @@ class Curves:
 
 def joined(curves: Sequence[PeriodicCurve]) -> PeriodicCurve:
     """Curves one after the other."""
-    begins = np.cumsum([0.0, *(one.length for one in curves)])
-    knots = [one.knots[:-1] + begin for one, begin in zip(curves, begins, strict=False)]
+    begins = np.cumsum([0.0, *(curve.length for curve in curves)])
+    knots = [curve.knots[:-1] + begin for curve, begin in zip(curves, begins, strict=False)]
     return PeriodicCurve(
         np.concatenate([*knots, begins[-1:]]),
-        np.concatenate([one.powers for one in curves]),
-        np.concatenate([one.waves for one in curves]),
+        np.concatenate([curve.powers for curve in curves]),
+        np.concatenate([curve.waves for curve in curves]),
     )
 
 

@@ -205,8 +205,8 @@ def _slopes(widths: Array, places: Array, closed: bool) -> Array:
                 value, *rest = weights[3 * side : 3 * side + 3]
                 right[row] -= value * places[at]
                 matrix[row, 2 * (at % own) : 2 * (at % own) + 2] += rest
-    found = np.linalg.solve(matrix, right).reshape(own, 2)
-    return np.append(found, found[:1], axis=0) if closed else found
+    result = np.linalg.solve(matrix, right).reshape(own, 2)
+    return np.append(result, result[:1], axis=0) if closed else result
 
 
 def _derivative(order: int, end: int) -> Array:

@@ -145,9 +145,9 @@ class HalfAngle:
     def __call__(self, x: Any) -> tuple[Any, Any, Any]:
         x = x - self.zero
         turned = np.exp(1j * self.lobes * x)
-        told = half_angle(turned, self.mean, self.share, self.depth, self.lobes)  # type: ignore[no-untyped-call]
-        y = self.mean * x + (2 / self.lobes) * self.share * direction(told[0])
-        return y, told[2], told[3]
+        text = half_angle(turned, self.mean, self.share, self.depth, self.lobes)  # type: ignore[no-untyped-call]
+        y = self.mean * x + (2 / self.lobes) * self.share * direction(text[0])
+        return y, text[2], text[3]
 
 
 @dataclass(frozen=True)
@@ -271,7 +271,7 @@ def beside(values: Sequence[Any]) -> Any:
     ValueError : they differ in more than numbers.
     """
     first = values[0]
-    if any(type(one) is not type(first) for one in values):
+    if any(type(value) is not type(first) for value in values):
         raise ValueError(values)
     if isinstance(first, PeriodicCurve):
         return Curves.of(values)
@@ -282,7 +282,7 @@ def beside(values: Sequence[Any]) -> Any:
         )
     if isinstance(first, tuple):
         return tuple(map(beside, zip(*values, strict=True)))
-    if all(np.array_equal(one, first) for one in values):
+    if all(np.array_equal(value, first) for value in values):
         return first
     if isinstance(first, np.ndarray):
         return np.stack(values)

@@ -32,7 +32,7 @@ def crossings(linkage: Linkage) -> Iterator[Note]:
         return
     motion = move(machine, ANGLES)
     for belt in machine.belts:
-        pulleys = [machine.links[one] for one in (belt.driver, belt.driven) if one != FRAME]
+        pulleys = [machine.links[item] for item in (belt.driver, belt.driven) if item != FRAME]
         planes = {pulley.plane for pulley in pulleys}
         for pin, bodies in joints.pins.items():
             if belt.carrier not in bodies or pin in coupling_pins(joints, belt):
@@ -56,14 +56,17 @@ def crossings(linkage: Linkage) -> Iterator[Note]:
 
 def _across(motion: Motion, belt: Belt, pin: str, link: str) -> Array:
     """Whether a strand lies across the way from a link's pin to any other of its points (N,)."""
-    first, second = (motion.point(one).place for one in coupling_pins(motion.linkage.joints, belt))
+    first, second = (
+        motion.point(coupling_pin).place
+        for coupling_pin in coupling_pins(motion.linkage.joints, belt)
+    )
     strands = belt.strands(second - first)
-    root, found = motion.point(pin).place, np.zeros(motion.crank_angle.shape, bool)
+    root, values = motion.point(pin).place, np.zeros(motion.crank_angle.shape, bool)
     for tip in motion.machine.links[link].points:
         arm = motion.point(tip).place - root
         for side in (LEFT, RIGHT):
-            begin, end = (first + one - root for one in strands.ends(side))
+            begin, end = (first + end - root for end in strands.ends(side))
             way = end - begin
             apart = cross(arm, begin) * cross(arm, end) < 0
-            found |= apart & (cross(way, begin) * cross(way, begin - arm) < 0)
-    return found
+            values |= apart & (cross(way, begin) * cross(way, begin - arm) < 0)
+    return values

@@ -102,8 +102,8 @@ class Commanded:
         at = self._inverse(length)
         _, slope, bend = self._lengths(at)
         w = first / slope
-        found = at + self.shift, w, (second - bend * w * w) / slope
-        return tuple(part.reshape(theta.shape) for part in found)  # type: ignore[return-value]
+        parts = at + self.shift, w, (second - bend * w * w) / slope
+        return tuple(part.reshape(theta.shape) for part in parts)  # type: ignore[return-value]
 
     def moved(self, crank_angle: Any) -> dict[str, tuple[Array, Array, Array]]:
         """The same by the link's name."""
@@ -149,10 +149,10 @@ def commanded(machine: Machine) -> Commanded:
     MobilityError, MotionError : the linkage cannot be moved at all.
     """
     shift = _shift(machine)
-    found = _commanded(machine, shift)
+    result = _commanded(machine, shift)
     if not machine.couplings:
-        return found
-    return _commanded(machine, _meshing(machine, float(found.value(0.0)[0])))
+        return result
+    return _commanded(machine, _meshing(machine, float(result.value(0.0)[0])))
 
 
 def _meshing(machine: Machine, near: float) -> float:
@@ -197,7 +197,7 @@ def _shift(machine: Machine) -> float:
         return position.angles[drive.link]
     points = machine.links[drive.link].points
     known = {**machine.frame, **position.points}
-    ends = [(complex(*points[one]), complex(*known[one])) for one in points if one in known]
+    ends = [(complex(*points[point]), complex(*known[point])) for point in points if point in known]
     if len(ends) < 2:
         return 0.0
     return float(np.angle((ends[1][1] - ends[0][1]) / (ends[1][0] - ends[0][0])))
@@ -208,11 +208,11 @@ def _commanded(machine: Machine, shift: float) -> Commanded:
     assert law is not None
     bare = _turned(machine, shift)
     linkage = assemble(bare)
-    found = reach(linkage)
-    low, high = (-pi, pi) if found is None else (found.low + INSIDE, found.high - INSIDE)
-    far = high if found is not None else high + 2 * pi  # a turn may begin anywhere
+    result = reach(linkage)
+    low, high = (-pi, pi) if result is None else (result.low + INSIDE, result.high - INSIDE)
+    far = high if result is not None else high + 2 * pi  # a turn may begin anywhere
     followed = Followed.over(linkage, low, far, STEP, ends_of(bare, drive))
-    branches = _branches(lambda at: _lengths(followed, at, drive), low, high, found is None)
+    branches = _branches(lambda at: _lengths(followed, at, drive), low, high, result is None)
     return Commanded(followed, drive, law, shift, _chosen(drive, law, branches, shift))
 
 
@@ -243,10 +243,10 @@ def _branches(
     if whole and len(turns):
         return _branches(known, float(turns[0]), float(turns[0]) + 2 * pi, whole=False)
     ends = np.unique([low, *turns, high])
-    parts = [angles[(angles > one) & (angles < other)] for one, other in pairwise(ends)]
+    parts = [angles[(angles > end) & (angles < other)] for end, other in pairwise(ends)]
     ways = [
-        np.array([one, *part, other])
-        for (one, other), part in zip(pairwise(ends), parts, strict=True)
+        np.array([end, *part, other])
+        for (end, other), part in zip(pairwise(ends), parts, strict=True)
         if len(part)
     ]
     return [Branch(way, known(way)[0]) for way in ways]
@@ -267,26 +267,26 @@ def _dead_points(known: Callable[[Array], Levels], angles: Array) -> Array:
 def _chosen(drive: Drive, law: LengthLaw, branches: Sequence[Branch], shift: float) -> Branch:
     """The branch in which the stroke lies."""
     low, high = law.extremes
-    kept = [one for one in branches if one.holds(low, high)]
-    near = [one for one in kept if _has(one, 0.0)]
-    if drive.start is not None and len(kept) > 1:
-        kept = near or kept
-    if len(kept) == 1:
-        return kept[0]
-    if kept:
-        told = [_told(one.ends, shift) for one in kept]
+    matching_branches = [branch for branch in branches if branch.holds(low, high)]
+    near = [item for item in matching_branches if _has(item, 0.0)]
+    if drive.start is not None and len(matching_branches) > 1:
+        matching_branches = near or matching_branches
+    if len(matching_branches) == 1:
+        return matching_branches[0]
+    if matching_branches:
+        values = [_told(item.ends, shift) for item in matching_branches]
         raise ModelError(
             "drive.start",
             Note(
                 "the stroke can be had with {link!r} {told}; give its angle at crank angle 0, "
                 "roughly",
                 link=drive.link,
-                told=all_of(told),
+                told=all_of(values),
             ),
         )
     widest = max(branches, key=lambda one: one.high - one.low, default=None)
     if drive.start is not None:
-        widest = next((one for one in branches if _has(one, 0.0)), widest)
+        widest = next((branch for branch in branches if _has(branch, 0.0)), widest)
     assert widest is not None
     ends = {"low": low, "high": high, "least": widest.low, "most": widest.high}
     size = max(map(abs, ends.values()))  # of which rounding is left where a length is 0

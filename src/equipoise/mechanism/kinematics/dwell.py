@@ -67,8 +67,8 @@ class Path:
         cubic = 10 * way - 6 * v - 4 * w - 1.5 * a + 0.5 * b
         quartic = -15 * way + 8 * v + 7 * w + 1.5 * a - b
         quintic = 6 * way - 3 * (v + w) - 0.5 * (a - b)
-        found: Array = p + t * (v + t * (0.5 * a + t * (cubic + t * (quartic + t * quintic))))
-        return found
+        values: Array = p + t * (v + t * (0.5 * a + t * (cubic + t * (quartic + t * quintic))))
+        return values
 
 
 def rests(
@@ -107,14 +107,14 @@ def longest_dwell(path: Path, tolerance: float) -> Dwell:
     starts, lengths = _sampled(path.place, tolerance)
     if np.max(lengths) >= len(path.place) - 1:
         return Dwell(tolerance, path.period, 0.0)
-    found: list[tuple[float, float]] = []
+    pairs: list[tuple[float, float]] = []
     for k in np.argsort(-lengths, kind="stable"):
         low, high = path.step * starts[k], path.step * (starts[k] + lengths[k])
-        if len(found) == RIVALS or lengths[k] < np.max(lengths) - 2:
+        if len(pairs) == RIVALS or lengths[k] < np.max(lengths) - 2:
             break
-        if all(_apart(low, one, path.period) > 2 * path.step for one, _ in found):
-            found.append(_refined(path, low, high, tolerance))
-    ends = sorted((float(within_period(np.array(a), path.period)), b - a) for a, b in found)
+        if all(_apart(low, item, path.period) > 2 * path.step for item, _ in pairs):
+            pairs.append(_refined(path, low, high, tolerance))
+    ends = sorted((float(within_period(np.array(a), path.period)), b - a) for a, b in pairs)
     longest = max(angle for _, angle in ends)
     begin, angle = next((a, b) for a, b in ends if b >= longest - ALIKE)
     return Dwell(tolerance, angle, begin)
@@ -182,8 +182,8 @@ def _refined(path: Path, low: float, high: float, tolerance: float) -> tuple[flo
         last = np.maximum.accumulate(np.max(np.where(far, theta, -np.inf), axis=1))
         good = (right < first[:, None]) & (left[:, None] > last)
         lengths = np.where(good, right - left[:, None], 0.0)
-        one, other = np.unravel_index(np.argmax(lengths), lengths.shape)
-        if good[one, other]:
-            low, high = float(left[one]), float(right[other])
+        item, other = np.unravel_index(np.argmax(lengths), lengths.shape)
+        if good[item, other]:
+            low, high = float(left[item]), float(right[other])
         width *= 4 / (ZONE - 1)
     return low, high

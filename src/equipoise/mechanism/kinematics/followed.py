@@ -71,7 +71,7 @@ class Followed:
 def _steps_to(linkage: Linkage, links: Collection[str]) -> tuple[Step, ...]:
     """The steps after which all these links are known."""
     theirs = [not set(links).isdisjoint(group.links) for group in linkage.groups]
-    last = max((number for number, one in enumerate(theirs, 1) if one), default=0)
+    last = max((number for number, their in enumerate(theirs, 1) if their), default=0)
     return tuple(step for group in linkage.groups[:last] for step in group.motion)
 
 

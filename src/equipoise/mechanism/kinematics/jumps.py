@@ -52,8 +52,8 @@ def jumps_of(linkage: Linkage) -> Array:
 
 def jumps_of_rows(linkage: Linkage) -> Array:
     """Crank angles (J,) of the first row, rising, rad, at which forces in any row may jump."""
-    found, machine = jumps_of(linkage), linkage.machine
-    return of_rows(machine, found, linkage.cycle.turns) if len(found) else found
+    values, machine = jumps_of(linkage), linkage.machine
+    return of_rows(machine, values, linkage.cycle.turns) if len(values) else values
 
 
 def of_rows(machine: Machine, jumps: Array, turns: int) -> Array:
@@ -102,8 +102,8 @@ def declared_jumps(machine: Machine, turns: int) -> Iterator[Array]:
 def _within(every: Iterable[Array], turns: int) -> Array:
     """Crank angles of a cycle, each once, rising, rad."""
     angles = np.concatenate([np.empty(0), *every])
-    found = np.sort(np.mod(angles + SAME, 2 * pi * turns)) - SAME
-    return np.maximum(found[np.diff(found, prepend=-1.0) > SAME], 0.0)
+    value = np.sort(np.mod(angles + SAME, 2 * pi * turns)) - SAME
+    return np.maximum(value[np.diff(value, prepend=-1.0) > SAME], 0.0)
 
 
 def resolved(motion: Motion) -> Motion:
@@ -141,15 +141,15 @@ def _height(tip: str, surface: float, motion: Motion) -> Array:
 def _knots(linkage: Linkage, cam: Cam) -> Iterator[Array]:
     """Crank angles at which a cam has turned to a knot of its law."""
     for knot in cam.law.jumps(ACCELERATION):
-        found = _crossed(linkage, partial(_beyond, cam, knot, np.sin))
-        if len(found):  # half a turn away the sine is 0, too
-            yield found[_beyond(cam, knot, np.cos, move(linkage.machine, found)) > 0]
+        values = _crossed(linkage, partial(_beyond, cam, knot, np.sin))
+        if len(values):  # half a turn away the sine is 0, too
+            yield values[_beyond(cam, knot, np.cos, move(linkage.machine, values)) > 0]
 
 
 def _beyond(cam: Cam, knot: float, read: Callable[[Any], Any], motion: Motion) -> Array:
     """Sine or cosine (N,) of the angle by which a cam has turned beyond a knot."""
     ends = (cam.driver, cam.carrier)
-    driver, carrier = (0.0 if one == FRAME else motion.links[one].angle for one in ends)
+    driver, carrier = (0.0 if end == FRAME else motion.links[end].angle for end in ends)
     return np.asarray(read(driver - carrier - knot))
 
 
@@ -171,8 +171,8 @@ def _turned_back(linkage: Linkage, joints: Sequence[RubbingJoint]) -> Array:
     def signal(theta: Array) -> Array:
         return rates(theta[0])[joint, np.arange(k.size)][None]
 
-    found: Array = roots(signal, nodes[None, k], nodes[None, k + 1])[0]
-    return found
+    values: Array = roots(signal, nodes[None, k], nodes[None, k + 1])[0]
+    return values
 
 
 def _crossed(linkage: Linkage, read: Callable[[Motion], Array]) -> Array:

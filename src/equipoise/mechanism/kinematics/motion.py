@@ -138,8 +138,8 @@ class Motion(Displayed):
         and both derivatives by crank angle, each (N,).
         """
         if drive.slider:
-            one = next(one for one in self.machine.sliders if one.name == drive.slider)
-            slid = self.slider(one)
+            item = next(slider for slider in self.machine.sliders if slider.name == drive.slider)
+            slid = self.slider(item)
             return slid.travel, slid.travel_1, slid.travel_2
         a, b = (self.point(name) for name in drive.between or ())
         d, d1, d2 = b.place - a.place, b.place_1 - a.place_1, b.place_2 - a.place_2
@@ -150,7 +150,7 @@ class Motion(Displayed):
 
     def way(self, link: str) -> Array:
         """By crank angle (N,): what the drive of a link goes, m, or turns, rad."""
-        drive = next(one for one in self.machine.driven if one.link == link)
+        drive = next(item for item in self.machine.driven if item.link == link)
         return self.lengths(drive)[1] if drive.pushes else self.links[link].angle_1
 
     @cached_property
@@ -167,8 +167,8 @@ class Motion(Displayed):
     @cached_property
     def mass_centers(self) -> Mapping[str, PointMotion]:
         """Motion of each link's centre of mass, for links whose mass is known."""
-        found = self.machine.links.items()
-        centers = ((name, link.center_of_mass) for name, link in found if link.center_of_mass)
+        links = self.machine.links.items()
+        centers = ((name, link.center_of_mass) for name, link in links if link.center_of_mass)
         return NamedItems(
             "link with mass",
             ((name, self._moving(*self._attached(name, at))) for name, at in centers),
@@ -259,7 +259,7 @@ class Motion(Displayed):
         """
         block, pivot = (self.state[f"p({reaction.at})"] for reaction in group.reactions[:2])
         sliders = self.linkage.joints.sliders
-        slider = next(one for one in sliders if one.name == group.reactions[2].name)
+        slider = next(slider for slider in sliders if slider.name == group.reactions[2].name)
         along = self.state[f"u({slider.on})"] * np.exp(1j * slider.direction)
         way = block - pivot
         apart = np.abs(way) ** 2
@@ -307,8 +307,8 @@ class Motion(Displayed):
 
     def _kept(self, *values: Array) -> tuple[Array, ...]:
         """Values to be kept with the state, to which nobody writes where others reuse it."""
-        for one in values:
-            one.setflags(write=self.crank_angle.flags.writeable)
+        for value in values:
+            value.setflags(write=self.crank_angle.flags.writeable)
         return values
 
     def _moving(self, *values: Any) -> PointMotion:
@@ -342,11 +342,11 @@ class PlacedBodies:
         ------
         ModelError : it does not stay there.
         """
-        turn, other = (self.motion.state[u(one)[0]] for one in (body, on))
+        turn, other = (self.motion.state[u(item)[0]] for item in (body, on))
         away = turn * np.conjugate(other) * np.exp(-1j * middle)
         angle: Array = middle + np.arctan2(away.imag, away.real)
         links = self.motion.links
-        running = [0.0 if one == FRAME else links[one].angle for one in (body, on)]
+        running = [0.0 if item == FRAME else links[item].angle for item in (body, on)]
         turns = np.round((running[0] - running[1] - angle) / (2 * pi))
         if np.ptp(turns):
             raise ModelError(

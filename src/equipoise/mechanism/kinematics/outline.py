@@ -74,8 +74,8 @@ class Standing:
 
     def moved(self, crank_angle: Any) -> dict[str, tuple[Any, Any, Any]]:
         """Angle of each, and its two derivatives, of which nothing is known."""
-        one, none = np.ones(np.shape(crank_angle)), np.zeros(np.shape(crank_angle))
-        return {link: (angle * one, one, none) for link, angle in self.angles.items()}
+        values, none = np.ones(np.shape(crank_angle)), np.zeros(np.shape(crank_angle))
+        return {link: (angle * values, values, none) for link, angle in self.angles.items()}
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,11 +114,11 @@ class MachineDraft:
     @property
     def places(self) -> dict[str, complex]:
         """Every point in the frame, m; those of the frame first."""
-        found: dict[str, complex] = {}
+        values: dict[str, complex] = {}
         for body, points in self.bodies.items():
             for name, place in points.items():
-                found.setdefault(name, self.pose(body).out(place))
-        return found
+                values.setdefault(name, self.pose(body).out(place))
+        return values
 
     def holders(self, point: str) -> list[str]:
         """The bodies that have a point."""
@@ -126,17 +126,21 @@ class MachineDraft:
 
     @property
     def joints(self) -> Structure:
-        couplings = (one for key in coupling_kinds(Machine) for one in self.rest.get(key, ()))
-        riders = {one.name: one.rider() for one in self.elements if isinstance(one, JointKind)}
+        couplings = (item for key in coupling_kinds(Machine) for item in self.rest.get(key, ()))
+        riders = {
+            element.name: element.rider()
+            for element in self.elements
+            if isinstance(element, JointKind)
+        }
         return joined(self.bodies, self.sliders, tuple(couplings), riders)
 
     @property
     def elements(self) -> list[Element]:
         """What declares itself, as far as the bodies and points that it names are there."""
         there = self.bodies
-        ones = (one for table in element_kinds(Machine) for one in self.rest.get(table, ()))
-        return [one for one in ones if {*one.bodies} <= there.keys()
-                and all(point in there[body] for body, point in one.points)]  # fmt: skip
+        ones = (item for table in element_kinds(Machine) for item in self.rest.get(table, ()))
+        return [item for item in ones if {*item.bodies} <= there.keys()
+                and all(point in there[body] for body, point in item.points)]  # fmt: skip
 
     @property
     def driven(self) -> list[str]:
@@ -188,7 +192,7 @@ class MachineDraft:
         EquipoiseError : it does not make a linkage; the sentence says why.
         """
         machine = self.machine()
-        pushed = {one.link: self.pose(one.link).angle for one in machine.pushers}
+        pushed = {pusher.link: self.pose(pusher.link).angle for pusher in machine.pushers}
         turning = Standing(pushed) if pushed else None
         machine = replace(machine, assembly=sides_at_position(machine, turning))
         if machine.racks:
@@ -217,19 +221,19 @@ class MachineDraft:
                 angles[given.link] = float(given.turned(0.0)[0]), self.pose(given.link).angle
         kinds = coupling_kinds(Machine).items()
         lists = [table for table, kind in kinds if issubclass(kind, Turning)]
-        found: list[Turning] = [one for table in lists for one in self.rest.get(table, ())]
-        left = [*range(len(found))]
-        while ready := [k for k in left if _known(found[k], angles)]:
+        turnings: list[Turning] = [item for table in lists for item in self.rest.get(table, ())]
+        left = [*range(len(turnings))]
+        while ready := [k for k in left if _known(turnings[k], angles)]:
             k = ready[0]
             left.remove(k)
-            one, start = found[k], found[k].start
-            way = _way(one, angles[one.driver], angles[one.carrier])
-            drawn = self.pose(one.driven).angle - way
+            entry, start = turnings[k], turnings[k].start
+            way = _way(entry, angles[entry.driver], angles[entry.carrier])
+            drawn = self.pose(entry.driven).angle - way
             if abs(remainder(drawn - start, 2 * pi)) > MESHING:
                 start = clean(remainder(drawn, 2 * pi), "angle")
-                found[k] = replace(one, start=start)
-            angles[one.driven] = start, start + way
-        return {key: tuple(one for one in found if one.table == key) for key in lists}
+                turnings[k] = replace(entry, start=start)
+            angles[entry.driven] = start, start + way
+        return {key: tuple(item for item in turnings if item.table == key) for key in lists}
 
     def _engaged(self, machine: Machine) -> tuple[Rack, ...]:
         """Racks that start so that what they drive comes to where it is drawn."""
@@ -239,7 +243,7 @@ class MachineDraft:
     def _put(self, rack: Rack, motion: Motion) -> Rack:
         if rack.drives == "pinion":
             ends = (rack.rack, rack.carrier)
-            slider = next(one for one in self.sliders if (one.link, one.on) == ends)
+            slider = next(slider for slider in self.sliders if (slider.link, slider.on) == ends)
             off = self.travel(slider) - float(motion.sliders[slider.name].travel[0])
             near = abs(off) <= MESHING * rack.radius
             return rack if near else replace(rack, travel=clean(rack.travel + off, "length"))

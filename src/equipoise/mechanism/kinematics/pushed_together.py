@@ -73,14 +73,14 @@ class Together:
         q, rate, bend : (P, N), angles of the links and their derivatives by crank angle.
         """
         state = self.linkage.start(theta)
-        for one, *rates in zip(self.pushers, q, rate, bend, strict=True):
+        for item, *rates in zip(self.pushers, q, rate, bend, strict=True):
             turned = np.exp(1j * rates[0]), rates[1], rates[2]
-            state.update(zip(u(one.link), turned, strict=True))
-            state[f"phi({one.link})"] = rates[0]
+            state.update(zip(u(item.link), turned, strict=True))
+            state[f"phi({item.link})"] = rates[0]
         with np.errstate(all="ignore"):
             motion = Motion(self.linkage, theta, 1.0, 0.0, False, run(self.linkage.motion, state))
-            found = np.array([motion.lengths(one) for one in self.pushers])
-        return np.swapaxes(found, 0, 1)
+            values = np.array([motion.lengths(pusher) for pusher in self.pushers])
+        return np.swapaxes(values, 0, 1)
 
     def levers(self, theta: Array, q: Array) -> tuple[Array, Array, Array]:
         """Lengths (P, N), what the other drives add to their rates, and levers (N, P, P): the
@@ -90,14 +90,14 @@ class Together:
         rates = np.zeros((many, many + 1, count))
         rates[range(many), range(1, many + 1)] = 1.0
         again = np.tile(theta, many + 1), np.tile(q, many + 1)
-        found = self.lengths(*again, rates.reshape(many, -1), np.zeros((many, again[0].size)))
-        value, first, _ = found.reshape(3, many, many + 1, count)
+        lengths = self.lengths(*again, rates.reshape(many, -1), np.zeros((many, again[0].size)))
+        value, first, _ = lengths.reshape(3, many, many + 1, count)
         levers = np.moveaxis(first[:, 1:] - first[:, :1], -1, 0)
         return value[:, 0], first[:, 0], levers
 
     def commanded(self, theta: Array) -> Array:
         """What strokes command, with derivatives, (3, P, N)."""
-        laws = [one.stroke.value(theta) for one in self.pushers if one.stroke is not None]
+        laws = [pusher.stroke.value(theta) for pusher in self.pushers if pusher.stroke is not None]
         return np.swapaxes(np.array(laws), 0, 1)
 
     def near(self, theta: Array, q: Array) -> tuple[Array, Array]:
@@ -125,8 +125,8 @@ def _solved(levers: Array, right: Array) -> Array:
     size = np.max(np.abs(levers), axis=(1, 2))
     flat = ~(np.abs(np.linalg.det(levers)) > NO_LEVER * size ** len(right))
     levers = np.where(flat[:, None, None], np.eye(len(right)), levers)
-    found = np.linalg.solve(levers, right.T[..., None])[..., 0].T
-    return np.where(flat, np.nan, found)
+    result = np.linalg.solve(levers, right.T[..., None])[..., 0].T
+    return np.where(flat, np.nan, result)
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,8 +148,8 @@ class FollowedLinks:
         q, _ = self.of.near(at, self._between(at))
         rows = zip(q, *self.of.rates(at, q), strict=True)
         return {
-            one.link: tuple(part.reshape(theta.shape) for part in row)
-            for one, row in zip(self.of.pushers, rows, strict=True)
+            pusher.link: tuple(part.reshape(theta.shape) for part in row)
+            for pusher, row in zip(self.of.pushers, rows, strict=True)
         }
 
     def _between(self, at: Array) -> Array:
@@ -172,11 +172,11 @@ def commanded(machine: Machine) -> FollowedLinks:
     MobilityError : the linkage cannot be moved at all.
     """
     pushers = machine.pushers
-    start = {one.link: one.start or 0.0 for one in pushers}
+    start = {pusher.link: pusher.start or 0.0 for pusher in pushers}
     bare = replace(machine, loads=(), planting=None, balance=None, support=None, rows=())
     bare = with_fields(bare, turning=RestingLinks(start))
     linkage = assemble(bare)
-    moved = {end for one in machine.couplings for end in (one.driver, one.carrier)}
+    moved = {end for coupling in machine.couplings for end in (coupling.driver, coupling.carrier)}
     if linkage.needed_references or moved & start.keys():
         raise ModelError("drives", FOLLOWED)
     turns = np.lcm.reduce([drive.turns for drive in machine.driven])
@@ -190,52 +190,52 @@ def _followed(of: Together, start: Array, count: int) -> FollowedLinks:
     q, change = of.near(theta[:1], start)
     if not np.all(change < SETTLED * 1e3) or np.max(np.abs(q - start)) > FAR:
         raise _not_had(of, start)
-    found, rates, sense = [q], [], 0.0
+    items, rates, sense = [q], [], 0.0
     for k, at in enumerate(theta):
         here = np.array([at])
-        rate, bend = of.rates(here, found[-1])
-        lever = float(np.linalg.det(of.levers(here, found[-1])[2])[0])
+        rate, bend = of.rates(here, items[-1])
+        lever = float(np.linalg.det(of.levers(here, items[-1])[2])[0])
         sense = sense or float(np.sign(lever))
-        guess = found[-1] + step * rate + 0.5 * step**2 * bend
+        guess = items[-1] + step * rate + 0.5 * step**2 * bend
         rates.append(rate)
         if k == count:
             break
         new, change = of.near(theta[k + 1 : k + 2], guess)
         if not (lever * sense > 0 and change < SETTLED * 1e3 and np.max(np.abs(new - q)) < FAR):
             raise _lost(of, float(at))
-        found.append(new)
+        items.append(new)
         q = new
-    if np.max(np.abs(found[-1] - found[0])) > CLOSED:
+    if np.max(np.abs(items[-1] - items[0])) > CLOSED:
         raise _lost(of, of.period)
-    return FollowedLinks(of, theta, np.hstack(found), np.hstack(rates))
+    return FollowedLinks(of, theta, np.hstack(items), np.hstack(rates))
 
 
 def _not_had(of: Together, start: Array) -> ModelError:
     wanted = of.commanded(np.zeros(1))[0, :, 0]
     there = of.levers(np.zeros(1), start)[0][:, 0]
     each = zip(of.pushers, start[:, 0], wanted, there, strict=True)
-    told = [
+    notes = [
         Note(
             "with {link!r} at {angle} it is {there}, and the stroke begins at {wanted}",
-            link=one.link,
+            link=item.link,
             angle=angle(float(at)),
             there=_shown(length),
             wanted=_shown(asked),
         )
-        for one, at, asked, length in each
+        for item, at, asked, length in each
     ]
     return ModelError(
         "drives",
         Note(
             "no angles were found at which strokes can begin: {told}; give each link its angle "
             "there, roughly, by start",
-            told=all_of(told),
+            told=all_of(notes),
         ),
     )
 
 
 def _lost(of: Together, at: float) -> ModelError:
-    links: Sequence[str] = [repr(one.link) for one in of.pushers]
+    links: Sequence[str] = [repr(pusher.link) for pusher in of.pushers]
     return ModelError(
         "drives",
         Note(

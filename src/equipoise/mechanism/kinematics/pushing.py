@@ -12,14 +12,14 @@ from equipoise.mechanism.parts.machine import Machine, Slider
 
 def slider_of(machine: Machine, drive: Drive | FurtherDrive) -> Slider:
     """The sliding joint that is driven."""
-    return next(one for one in machine.sliders if one.name == drive.slider)
+    return next(slider for slider in machine.sliders if slider.name == drive.slider)
 
 
 def ends_of(machine: Machine, drive: Drive | FurtherDrive) -> tuple[str, str]:
     """The bodies that a drive pushes apart."""
     if drive.slider:
-        one = slider_of(machine, drive)
-        return one.on, one.link
+        slider = slider_of(machine, drive)
+        return slider.on, slider.link
     return drive.ends(machine.bodies)
 
 
@@ -27,10 +27,10 @@ def pushes(motion: Motion, drive: Drive | FurtherDrive) -> list[tuple[str, Array
     """Bodies that a force of 1 N of a drive acts on, with its place (N,) and direction (N,)."""
     machine = motion.machine
     if drive.slider:
-        one = slider_of(machine, drive)
-        at = motion.points[one.point].place
-        turn = motion.state[f"u({one.on})"] * np.exp(1j * one.direction)
-        return [(one.link, at, turn + 0 * at), (one.on, at, -turn + 0 * at)]
+        slider = slider_of(machine, drive)
+        at = motion.points[slider.point].place
+        turn = motion.state[f"u({slider.on})"] * np.exp(1j * slider.direction)
+        return [(slider.link, at, turn + 0 * at), (slider.on, at, -turn + 0 * at)]
     a, b = (motion.points[name].place for name in drive.between or ())
     way = (b - a) / np.abs(b - a)
     ends = drive.ends(machine.bodies)

@@ -96,21 +96,21 @@ def rubbing_joints(linkage: Linkage) -> tuple[RubbingJoint, ...]:
 
 def _rubbing(linkage: Linkage) -> list[RubbingJoint]:
     machine = linkage.machine
-    names = {one.force: name for name, one in linkage.named_reactions}
-    sliders = {one.name: one for one in machine.sliders}
-    couplings = {(one.table, one.name): one for one in machine.couplings}
-    size, found = size_of_links(machine), []
-    for _, reaction, one in given_properties(machine, linkage.joints, linkage.reactions):
-        if one.rubs:
+    names = {item.force: name for name, item in linkage.named_reactions}
+    sliders = {slider.name: slider for slider in machine.sliders}
+    couplings = {(coupling.table, coupling.name): coupling for coupling in machine.couplings}
+    size, result = size_of_links(machine), []
+    for _, reaction, entry in given_properties(machine, linkage.joints, linkage.reactions):
+        if entry.rubs:
             slider = sliders[reaction.name] if reaction.kind == "slider" else None
             still = STILL * (1.0 if slider is None else size)
             if reaction.kind in JOINTS:
-                found.append(RubbingJoint(names[reaction.force], reaction, one, slider, still))
+                result.append(RubbingJoint(names[reaction.force], reaction, entry, slider, still))
                 continue
             mesh = couplings[reaction.kind, reaction.name]
             radius = _pitch_radius(linkage, mesh)
-            found.append(RubbingJoint(mesh.name, reaction, one, None, still, mesh, radius))
-    return found
+            result.append(RubbingJoint(mesh.name, reaction, entry, None, still, mesh, radius))
+    return result
 
 
 def _pitch_radius(linkage: Linkage, mesh: Coupling) -> float:

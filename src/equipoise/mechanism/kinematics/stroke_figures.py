@@ -18,8 +18,8 @@ def figure(
     label: str, dimension: Dimension | None = None, own: bool = False, default: Any = MISSING
 ) -> Any:
     """A figure: its label for readers, and its dimension, or whether it has that of the stroke."""
-    told = {"label": label, "dimension": dimension, "own": own}
-    return field(metadata=told, default=default)
+    text = {"label": label, "dimension": dimension, "own": own}
+    return field(metadata=text, default=default)
 
 
 @dataclass(frozen=True)
@@ -78,12 +78,14 @@ class Stroke:
 
     def told(self) -> dict[str, Any]:
         """As plain data."""
-        return vars(self) | {"dead_positions": [dict(vars(one)) for one in self.dead_positions]}
+        return vars(self) | {
+            "dead_positions": [dict(vars(dead_position)) for dead_position in self.dead_positions]
+        }
 
 
 def declared_figures(of: type = Stroke) -> Iterator[Field[Any]]:
     """Those of a stroke, or of a dead position."""
-    return (one for one in fields(of) if "label" in one.metadata)
+    return (item for item in fields(of) if "label" in item.metadata)
 
 
 def dimension_of(machine: Machine, path: str) -> Dimension | None:
@@ -91,10 +93,14 @@ def dimension_of(machine: Machine, path: str) -> Dimension | None:
     name, _, last = path.rpartition(".")
     whole = name.removesuffix(".dead_positions")
     for of in (Stroke,) if whole == name else (DeadPosition,):
-        for one in declared_figures(of):
-            if one.name == last:
+        for declared_figure in declared_figures(of):
+            if declared_figure.name == last:
                 slides = any(slider.name == whole for slider in machine.sliders)
                 own = OF_KIND["slider" if slides else "rocker"]
-                found: Dimension | None = own if one.metadata["own"] else one.metadata["dimension"]
-                return found
+                dimension: Dimension | None = (
+                    own
+                    if declared_figure.metadata["own"]
+                    else declared_figure.metadata["dimension"]
+                )
+                return dimension
     return None

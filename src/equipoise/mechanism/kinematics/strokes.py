@@ -78,9 +78,9 @@ class _Outputs:
         """Places and their derivatives, (P, K)."""
         motion = _motion(self.linkage, theta.ravel())
         rows = range(len(self.ones))
-        read = [one.of(motion) for one in self.ones]
-        found: Array = np.array(read).reshape(len(rows), 3, *theta.shape)
-        place, first, second = (found[rows, k, rows] for k in range(3))
+        read = [output.of(motion) for output in self.ones]
+        values: Array = np.array(read).reshape(len(rows), 3, *theta.shape)
+        place, first, second = (values[rows, k, rows] for k in range(3))
         return place, first, second
 
     def speed(self, theta: Array) -> Array:
@@ -110,29 +110,30 @@ def strokes(linkage: Linkage) -> Mapping[str, Stroke]:
     ones = [_Output(slider.name, "slider") for slider in machine.sliders]
     ones += [_Output(link, "rocker") for link in rockers(linkage)]
     motion = _motion(linkage, theta)
-    samples = {one: np.array(one.of(motion)) for one in ones}
-    rates = {one: float(np.max(np.abs(found[1]))) for one, found in samples.items()}
+    samples = {item: np.array(item.of(motion)) for item in ones}
+    rates = {item: float(np.max(np.abs(sample[1]))) for item, sample in samples.items()}
     least = STILL * max(rates.values(), default=0.0)
     ways = {
-        one: np.ptp(found[0]) > EQUAL * np.max(np.abs(found[0])) for one, found in samples.items()
+        item: np.ptp(sample[0]) > EQUAL * np.max(np.abs(sample[0]))
+        for item, sample in samples.items()
     }
-    kept = tuple(one for one in ones if rates[one] > least and ways[one])
+    kept = tuple(item for item in ones if rates[item] > least and ways[item])
     if not kept:
         return NamedItems("slider or rocker", ())
     outputs = _Outputs(linkage, kept)
-    table = np.array([samples[one] for one in kept])
+    table = np.array([samples[item] for item in kept])
     fastest = largest(outputs.size, outputs.gain, theta, np.abs(table[:, 1]))
     dead = _dead_positions(outputs, theta, table)
-    for k, one in enumerate(kept):
+    for k, entry in enumerate(kept):
         if len(dead[k]) > 1:
-            own = _Outputs(linkage, (one,))
-            dead[k] = _rested(own, dead[k], theta, table[k, 1], STILL * rates[one])
-    found = {
-        one.name: _stroke(one, linkage, table[k], dead[k], (fastest[0][k], fastest[1][k]))
-        for k, one in enumerate(kept)
+            own = _Outputs(linkage, (entry,))
+            dead[k] = _rested(own, dead[k], theta, table[k, 1], STILL * rates[entry])
+    by_name = {
+        item.name: _stroke(item, linkage, table[k], dead[k], (fastest[0][k], fastest[1][k]))
+        for k, item in enumerate(kept)
         if len(dead[k]) > 1
     }
-    return NamedItems("slider or rocker", found.items())
+    return NamedItems("slider or rocker", by_name.items())
 
 
 def _dead_positions(
@@ -144,16 +145,16 @@ def _dead_positions(
     """
     step = theta[1] - theta[0]
     negative = table[:, 1] < 0
-    found = [np.flatnonzero(row) for row in negative != np.roll(negative, -1, axis=1)]
-    most = max(map(len, found))
+    values = [np.flatnonzero(row) for row in negative != np.roll(negative, -1, axis=1)]
+    most = max(map(len, values))
     if not most:
-        return [()] * len(found)
-    low = np.array([np.resize(theta[k], most) if len(k) else np.zeros(most) for k in found])
+        return [()] * len(values)
+    low = np.array([np.resize(theta[k], most) if len(k) else np.zeros(most) for k in values])
     at = roots(outputs.speed, low, low + step)
     place = outputs.at(at)[0]
     period = len(theta) * step
     return [
-        tuple(_turning(at[p, : len(k)] % period, place[p, : len(k)])) for p, k in enumerate(found)
+        tuple(_turning(at[p, : len(k)] % period, place[p, : len(k)])) for p, k in enumerate(values)
     ]
 
 
@@ -163,27 +164,27 @@ def _rested(
     """Dead positions of one output, each where a rest begins that it lies in."""
     resting = rests(theta, speed, lambda at: output.speed(at[None])[0], least)
     step = theta[1]
-    period, found = step * len(theta), []
-    for one in dead:
-        inside = (r for r in resting if (one.crank_angle - r[0] + step) % period < r[1] + 2 * step)
-        begin, rest = next(inside, (one.crank_angle, 0.0))
-        found.append(replace(one, crank_angle=begin, rest=rest))
-    return tuple(sorted(found, key=lambda position: position.crank_angle))
+    period, result = step * len(theta), []
+    for item in dead:
+        inside = (r for r in resting if (item.crank_angle - r[0] + step) % period < r[1] + 2 * step)
+        begin, rest = next(inside, (item.crank_angle, 0.0))
+        result.append(replace(item, crank_angle=begin, rest=rest))
+    return tuple(sorted(result, key=lambda position: position.crank_angle))
 
 
 def _turning(angles: Array, places: Array) -> list[DeadPosition]:
     """Dead positions by crank angle, without those between which it moves by rounding alone."""
     order = np.argsort(angles)
-    found = [DeadPosition(float(angles[k]), float(places[k])) for k in order]
+    dead_positions = [DeadPosition(float(angles[k]), float(places[k])) for k in order]
     least = EQUAL * float(np.ptp(places)) if len(places) else 0.0
     k = 0
-    while len(found) > 2 and k < len(found):
-        if abs(found[k].place - found[k - 1].place) <= least:
-            del found[k], found[k - 1 if k else -1]
+    while len(dead_positions) > 2 and k < len(dead_positions):
+        if abs(dead_positions[k].place - dead_positions[k - 1].place) <= least:
+            del dead_positions[k], dead_positions[k - 1 if k else -1]
             k = 0
         else:
             k += 1
-    return found
+    return dead_positions
 
 
 def _stroke(
@@ -205,8 +206,8 @@ def _stroke(
     fall = float(np.min(way * (angles[bottoms] - top.gone(way)) % period))
     held = longest_dwell(_along(samples[0], samples[1], samples[2], period), SHARE * stroke)
     advantage, at = None, None
-    told = one.kind == "rocker" or one.name in guided(linkage.machine)
-    if told and linkage.machine.has_crank:
+    holds = one.kind == "rocker" or one.name in guided(linkage.machine)
+    if holds and linkage.machine.has_crank:
         advantage, at = 1 / float(fastest[0]), float(fastest[1] % period)
     return Stroke(
         one.kind,

@@ -78,7 +78,7 @@ def _check(linkage: Linkage, state: State, theta: Array, error: Stuck, doing: st
         bad = ~(margin > CHANGE_POINT)
         if np.any(bad):
             angle = degrees(theta[int(np.argmax(bad))])
-            told = Note(doing, error=error.reason, angle=angle)
+            note = Note(doing, error=error.reason, angle=angle)
             if isinstance(error, RangeError):
-                raise RangeError(told, error.ranges) from None
-            raise ChangePointError(told, error.crank_angle) from None
+                raise RangeError(note, error.ranges) from None
+            raise ChangePointError(note, error.crank_angle) from None

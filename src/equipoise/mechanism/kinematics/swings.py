@@ -47,11 +47,11 @@ def swing(machine: Machine) -> Swing | None:
     if not machine.has_crank:
         return None
     linkage = assemble(machine)
-    found = reach(linkage)
-    if found is None:
+    result = reach(linkage)
+    if result is None:
         return None
-    if found.is_point:
+    if result.is_point:
         _ = linkage.cycle  # which says so
-    motion = swing_within(linkage, found).law
+    motion = swing_within(linkage, result).law
     drive = replace(machine.drive, motion=motion, motor=None, flywheel=0.0)
-    return Swing(replace(machine, drive=drive, planting=None), found)
+    return Swing(replace(machine, drive=drive, planting=None), result)

@@ -93,8 +93,8 @@ def crossings(signal: Signal, nodes: Array) -> Array:
     k = np.flatnonzero(negative[:-1] != negative[1:])
     if not k.size:
         return np.empty(0)
-    found: Array = roots(signal, nodes[None, k], nodes[None, k + 1])[0]
-    return found
+    values: Array = roots(signal, nodes[None, k], nodes[None, k + 1])[0]
+    return values
 
 
 def largest(signal: Signal, slope: Signal, theta: Array, samples: Array) -> tuple[Array, Array]:
@@ -278,7 +278,7 @@ class TipCurve:
         if self.planting.surface is not None:
             return np.full(self.count, self.planting.surface)
         depths = [planting_of(machine).depth for machine in self.machines]
-        lowest = np.min([one.lowest[0] for one in self.arms], axis=0)
+        lowest = np.min([arm.lowest[0] for arm in self.arms], axis=0)
         level: Array = lowest + np.array(depths)
         return level
 

@@ -200,7 +200,7 @@ def _of_drive(name: str, found: Any, link: str) -> Any:
 
 def _told(machine: Any, effort_in: str) -> list[str]:
     """Links of drives that turn or push."""
-    kinds = {one.link: one.effort_in for one in machine.driven}
+    kinds = {item.link: item.effort_in for item in machine.driven}
     return [link for link in machine.told_drives if kinds[link] == effort_in]
 
 
@@ -266,8 +266,8 @@ of_joint(
 
 def _having(part: str) -> dict[str, Any]:
     """Joints whose force has a part."""
-    return {"items": lambda found: [n for n, one in found.forces.joints.items()
-                                    if hasattr(one, part)]}  # fmt: skip
+    return {"items": lambda found: [n for n, joint in found.forces.joints.items()
+                                    if hasattr(joint, part)]}  # fmt: skip
 
 
 RAILS: dict[str, Any] = {
@@ -318,9 +318,9 @@ def _of_friction(name: str, found: Any, joint: str) -> Any:
 
 def _named_in_file(machine: Any, wanted: Callable[[Any], bool]) -> list[str]:
     """Joints of which the file says something that is wanted, as far as names tell."""
-    given = {one.joint.removeprefix("joints.") for one in machine.joints if wanted(one)}
+    given = {joint.joint.removeprefix("joints.") for joint in machine.joints if wanted(joint)}
     names = joint_names(machine) if given else ()
-    return [one for one in names if {one, one.partition("/")[0]} & given]
+    return [name for name in names if {name, name.partition("/")[0]} & given]
 
 
 def _rubbing(*kinds: str) -> dict[str, Any]:
@@ -329,12 +329,12 @@ def _rubbing(*kinds: str) -> dict[str, Any]:
     def members(machine: Any) -> list[str]:
         sliders = slider_names(machine) if machine.rubs else []
         mine = _named_in_file(machine, lambda one: one.rubs)
-        return [one for one in mine if ("slider" if one in sliders else "pin") in kinds]
+        return [item for item in mine if ("slider" if item in sliders else "pin") in kinds]
 
     def items(found: Any) -> list[str]:
         frictions = found.forces.frictions.items()
-        return [name for name, one in frictions
-                if not one.table and ("pin" if one.is_pin else "slider") in kinds]  # fmt: skip
+        return [name for name, item in frictions
+                if not item.table and ("pin" if item.is_pin else "slider") in kinds]  # fmt: skip
 
     return {"members": members, "items": items, "spoken": joint_named}
 
@@ -370,7 +370,7 @@ of_plain_bearing("pressure_speed", "pressure times speed",
 of_section = alike(
     "links.{}.",
     lambda name, found, link: getattr(found.forces.sections[link], name),
-    members=lambda machine: [name for name, one in machine.links.items() if one.section],
+    members=lambda machine: [name for name, link in machine.links.items() if link.section],
 )
 of_section("stress", "modulus", to_say("largest stress along {name}"))
 of_section("axial_force", "force", to_say("largest axial force along {name}"))
@@ -379,7 +379,7 @@ of_section("bending_moment", "torque", to_say("largest bending moment along {nam
 
 def _members_of(table: str) -> dict[str, Any]:
     return {
-        "members": lambda machine: [one.name for one in getattr(machine, table)],
+        "members": lambda machine: [item.name for item in getattr(machine, table)],
         "spoken": lambda name: name.replace(" to ", " → "),
     }
 
@@ -388,11 +388,13 @@ def of_mesh(table: str) -> None:
     """Declare what gears or belts of a list of the file lose in passing their force on."""
 
     def members(machine: Any) -> list[str]:
-        given = {one.joint for one in machine.joints if one.mesh_loss}
-        return [one.name for one in getattr(machine, table) if f"{table}.{one.name}" in given]
+        given = {joint.joint for joint in machine.joints if joint.mesh_loss}
+        return [item.name for item in getattr(machine, table) if f"{table}.{item.name}" in given]
 
     def items(found: Any) -> list[str]:
-        return [name for name, one in found.forces.frictions.items() if one.table == table]
+        return [
+            name for name, friction in found.forces.frictions.items() if friction.table == table
+        ]
 
     label = to_say("power lost in passing on the force {name}")
     own = {**_members_of(table), "members": members, "items": items}

@@ -178,11 +178,11 @@ class Declared:
 
     def note(self, item: str = "") -> Note:
         """What it is called, to be said in any language."""
-        found = Note(self.label, **({"name": self.spoken(item)} if self.is_family else {}))
+        result = Note(self.label, **({"name": self.spoken(item)} if self.is_family else {}))
         if self.part in ("x", "y"):
             both = to_say("{what}, {axis}") if self.is_family else to_say("{what} {axis}")
-            found = Note(both, what=found, axis=self.part)
-        return Note(to_say("all rows: {what}"), what=found) if self.needs == "rows" else found
+            result = Note(both, what=result, axis=self.part)
+        return Note(to_say("all rows: {what}"), what=result) if self.needs == "rows" else result
 
     def title(self, item: str = "") -> str:
         """The same as the heading of a table, in the language that is spoken."""
@@ -279,19 +279,19 @@ def output(
     of_size, of_parts = summed if isinstance(summed, tuple) else (summed, summed)
 
     def declare(read: Read) -> Read:
-        one = Declared(
+        item = Declared(
             name, dimension, label, read, needs=needs, linear=linear, reason=reason, **more
         )
         if parts is None:
-            declare_as(replace(one, summed=of_size))
+            declare_as(replace(item, summed=of_size))
             return read
         one_part = replace(
-            one, summed=of_parts, compared=one.compared if of_parts else (), yardstick=""
+            item, summed=of_parts, compared=item.compared if of_parts else (), yardstick=""
         )
         declare_as(replace(one_part, name=parts[0], part="x"))
         declare_as(replace(one_part, name=parts[1], part="y"))
         if sized:
-            declare_as(replace(one, part="size", array=False, summed=of_size, ordered=False))
+            declare_as(replace(item, part="size", array=False, summed=of_size, ordered=False))
         return read
 
     return declare
@@ -335,17 +335,17 @@ def matches(name: str) -> tuple[tuple[Declared, str], ...]:
 @lru_cache(8192)
 def _matches(name: str) -> tuple[tuple[Declared, str], ...]:
     """The same, kept until something else is declared: advice asks a hundred thousand times."""
-    found = [(one, item) for one in DECLARED.values() for item in [one.item_of(name)]]
+    values = [(entry, item) for entry in DECLARED.values() for item in [entry.item_of(name)]]
     # joints.B.moment is the moment in B, and no force in a joint B.moment
-    known = sorted(((one, item) for one, item in found if item is not None),
+    known = sorted(((entry, item) for entry, item in values if item is not None),
                    key=lambda pair: -len(pair[0].name))  # fmt: skip
     if f"rows.{name}" in DECLARED:
         known.append((DECLARED[f"rows.{name}"], ""))
     whole, _, axis = name.rpartition(".")
-    for one, item in _matches(whole) if whole and axis in ("x", "y") else ():
-        if one.is_vector:
+    for element, item in _matches(whole) if whole and axis in ("x", "y") else ():
+        if element.is_vector:
             part: Part = "x" if axis == "x" else "y"
-            known.append((replace(one, name=f"{one.name}.{axis}", part=part), item))
+            known.append((replace(element, name=f"{element.name}.{axis}", part=part), item))
     return tuple(known)
 
 

@@ -44,12 +44,12 @@ def instant_center(motion: Any, pair: str) -> Array:
     """
     import numpy as np  # here, so that a file is read without it
 
-    one, other = pairs(motion.machine)[pair]
+    item, other = pairs(motion.machine)[pair]
     bodies = motion.machine.bodies
-    if shared := [point for point in bodies[one] if point in bodies[other]]:
+    if shared := [point for point in bodies[item] if point in bodies[other]]:
         place: Array = motion.points[shared[0]].place
         return place
-    (v, w), (o, r) = _carried(motion, one), _carried(motion, other)
+    (v, w), (o, r) = _carried(motion, item), _carried(motion, other)
     apart = w - r
     least = PARALLEL * np.maximum(np.maximum(np.abs(w), np.abs(r)), 1.0)
     turning = np.abs(apart) > least

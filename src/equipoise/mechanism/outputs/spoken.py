@@ -53,5 +53,5 @@ def joint_named(name: str) -> str:
 
 def pair_named(name: str) -> str:
     """A pair of bodies, such as ``coupler/frame``, in words."""
-    one, _, other = name.rpartition("/")
-    return f"{one}/{body_named(other)}"
+    item, _, other = name.rpartition("/")
+    return f"{item}/{body_named(other)}"

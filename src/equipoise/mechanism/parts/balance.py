@@ -170,8 +170,10 @@ class Balance(Frozen):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        aims = tuple(one.of_all_rows for one in self.objectives)
-        limits = tuple(replace(one, objective=one.objective.of_all_rows) for one in self.limits)
+        aims = tuple(objective.of_all_rows for objective in self.objectives)
+        limits = tuple(
+            replace(limit, objective=limit.objective.of_all_rows) for limit in self.limits
+        )
         object.__setattr__(self, "objectives", aims)
         object.__setattr__(self, "limits", limits)
 
@@ -182,13 +184,13 @@ class Balance(Frozen):
 
     def combined(self, values: Sequence[float]) -> float:
         """Objectives, each over its value before, as one number."""
-        found = [factor * value for factor, value in zip(self.factors, values, strict=True)]
-        return hypot(*found) if self.combine == "squares" else sum(found)
+        items = [factor * value for factor, value in zip(self.factors, values, strict=True)]
+        return hypot(*items) if self.combine == "squares" else sum(items)
 
     @property
     def factors(self) -> tuple[float, ...]:
         """What each objective, over its value before, is multiplied by before they are combined."""
-        return tuple(cost_factor(one.weight, self.combine) for one in self.objectives)
+        return tuple(cost_factor(objective.weight, self.combine) for objective in self.objectives)
 
     @property
     def changes_nothing(self) -> bool:

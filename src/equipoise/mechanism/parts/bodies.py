@@ -129,7 +129,7 @@ class Hole(Frozen):
 
 def _of_shape(shape: str) -> dict[str, Any]:
     own = {*NEEDS[shape], *TAKES[shape]}
-    others = {one for shape in NEEDS for one in (*NEEDS[shape], *TAKES[shape])} - own
+    others = {need for shape in NEEDS for need in (*NEEDS[shape], *TAKES[shape])} - own
     return {
         "if": {"properties": {"shape": {"const": shape}}, **needs("shape")},
         "then": {**needs(*NEEDS[shape]), **lacks(*sorted(others))},
@@ -308,10 +308,10 @@ def polygon(corners: Sequence[complex]) -> tuple[float, complex, float]:
     """
     edges = [*edges_of(corners)]
     area = sum(cross for _, _, cross in edges) / 2
-    center = sum(cross * (one + other) for one, other, cross in edges) / (6 * area)
+    center = sum(cross * (item + other) for item, other, cross in edges) / (6 * area)
     second = sum(
-        cross * (abs(one) ** 2 + (one.conjugate() * other).real + abs(other) ** 2)
-        for one, other, cross in edges
+        cross * (abs(item) ** 2 + (item.conjugate() * other).real + abs(other) ** 2)
+        for item, other, cross in edges
     )
     own = abs(second / 12 - area * abs(center) ** 2)
     return abs(area), corners[0] + center, own
@@ -320,8 +320,8 @@ def polygon(corners: Sequence[complex]) -> tuple[float, complex, float]:
 def edges_of(corners: Sequence[complex]) -> Iterator[tuple[complex, complex, float]]:
     """Both ends of each edge of a polygon, from its first corner, and twice the area it adds."""
     arms = [corner - corners[0] for corner in corners]
-    for one, other in zip(arms, [*arms[1:], arms[0]], strict=True):
-        yield one, other, (one.conjugate() * other).imag
+    for arm, other in zip(arms, [*arms[1:], arms[0]], strict=True):
+        yield arm, other, (arm.conjugate() * other).imag
 
 
 def _section(body: Body) -> tuple[Any, Any]:

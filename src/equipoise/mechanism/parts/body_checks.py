@@ -53,8 +53,8 @@ def outlines(body: Body, points: Points) -> list[Outline]:
         first, last = (place_of(end, points) for end in body.between)
         way = (last - first) / abs(last - first)
         aside, beyond = 1j * half * way, body.overhang * way
-        one, other = first - beyond, last + beyond
-        sides = [one - aside, other - aside, other + aside, one + aside]
+        value, other = first - beyond, last + beyond
+        sides = [value - aside, other - aside, other + aside, value + aside]
         return [(sides, 0.0)] if half else []
     if body.radius is None:
         return []
@@ -189,10 +189,10 @@ def demands(body: Body, points: Points) -> Iterator[Any]:
         edges = [*edges_of(corners)]
         yield _has_area(edges)
         yield from (crosses == 0 for _, crosses in _crossings(edges))
-    for name, one in quantities_of(body).items():
+    for name, quantity in quantities_of(body).items():
         value = getattr(body, name)
         if value is not None:
-            yield one.allows(value)
+            yield quantity.allows(value)
     for _, right, _ in _rules(body, points):
         yield right
 
@@ -224,7 +224,7 @@ Edge = tuple[Any, Any, Any]
 
 def _has_area(edges: Sequence[Edge]) -> Any:
     area = abs(sum(cross for _, _, cross in edges))
-    return area > ROUNDING * sum(abs(one) ** 2 for one, _, _ in edges)
+    return area > ROUNDING * sum(abs(item) ** 2 for item, _, _ in edges)
 
 
 def _crossings(edges: Sequence[Edge]) -> Iterator[tuple[tuple[int, int], Any]]:
@@ -232,16 +232,16 @@ def _crossings(edges: Sequence[Edge]) -> Iterator[tuple[tuple[int, int], Any]]:
 
     Edges that only touch are let be: so a cut-out can be reached by a cut from the edge.
     """
-    for (i, one), (j, other) in combinations(enumerate(edges), 2):
+    for (i, edge), (j, other) in combinations(enumerate(edges), 2):
         if 1 < j - i < len(edges) - 1:
-            yield (i, j), _parted(one, other) & _parted(other, one)
+            yield (i, j), _parted(edge, other) & _parted(other, edge)
 
 
 def _parted(edge: Edge, other: Edge) -> Any:
     """Whether both ends of another edge lie on different sides of the line of an edge."""
     along = (edge[1] - edge[0]).conjugate()
-    one, two = ((along * (end - edge[0])).imag for end in other[:2])
-    return one * two < 0
+    item, two = ((along * (end - edge[0])).imag for end in other[:2])
+    return item * two < 0
 
 
 def _wrong_holes(body: Body, points: Points) -> Wrong:
@@ -251,15 +251,15 @@ def _wrong_holes(body: Body, points: Points) -> Wrong:
     outline = outlines(body, points)
     holes = [(place_of(hole.at, points), hole.radius) for hole in body.holes]
     for number, (center, radius) in enumerate(holes, 1):
-        if any(not fits(center, radius * (1 - ROUNDING), one) for one in outline):
+        if any(not fits(center, radius * (1 - ROUNDING), item) for item in outline):
             yield (
                 f"holes[{number}]",
                 Note(
                     "does not lie within the {shape}; move it, or make it smaller", shape=body.shape
                 ),
             )
-    for (i, one), (j, other) in combinations(enumerate(holes, 1), 2):
-        if abs(one[0] - other[0]) < (one[1] + other[1]) * (1 - ROUNDING):
+    for (i, entry), (j, other) in combinations(enumerate(holes, 1), 2):
+        if abs(entry[0] - other[0]) < (entry[1] + other[1]) * (1 - ROUNDING):
             yield f"holes[{j}]", Note("cuts into holes[{i}]; set them apart", i=i)
     area = gross(body, points)[0] * (1.0 if body.width is None else body.width)
     if sum(pi * radius**2 for _, radius in holes) >= area * (1 - ROUNDING):

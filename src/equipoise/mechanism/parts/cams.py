@@ -195,14 +195,14 @@ class Cam(Coupling):
         yield from unknown_body(f"{where}.carrier", self.carrier, bodies)
         yield from unknown_point(f"{where}.point", self.point, self.driven, bodies)
         if len({*self.bodies}) < 3:
-            told = Note(
+            note = Note(
                 "cam {driver!r}, follower {driven!r} and carrier {carrier!r} must be three "
                 "different bodies",
                 driver=self.driver,
                 driven=self.driven,
                 carrier=self.carrier,
             )
-            yield ModelError(where, told)
+            yield ModelError(where, note)
         if self.lift is not None and self.swing is not None:
             yield ModelError(where, Note("give either lift or swing, not both"))
             return

@@ -106,6 +106,8 @@ class CircularSlot(JointKind):
 
     def summary(self) -> str:
         """All its numbers, in a line of `check`."""
-        ends = ", from " + " to ".join(told(one, "angle") for one in self.arc) if self.arc else ""
+        ends = (
+            ", from " + " to ".join(told(value, "angle") for value in self.arc) if self.arc else ""
+        )
         held = f"{self.point} of {self.link} about {self.center} of {self.on}"
         return f"circular slot: {held}, radius {told(self.radius, 'length')}{ends}"

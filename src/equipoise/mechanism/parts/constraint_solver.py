@@ -40,8 +40,8 @@ class ConstraintEquations:
     """Constraints of a machine as equations of the coordinates of points."""
 
     def __init__(self, constraints: Sequence[Constraint], bodies: Bodies) -> None:
-        self.kinds = [MISSES[one.kind] for one in constraints]
-        self.lines = [one.lines(bodies) for one in constraints]
+        self.kinds = [MISSES[constraint.kind] for constraint in constraints]
+        self.lines = [constraint.lines(bodies) for constraint in constraints]
         points = dict.fromkeys(chain.from_iterable(chain.from_iterable(self.lines)))
         self.places = {(body, point): np.array(bodies[body][point]) for body, point in points}
 
@@ -129,10 +129,10 @@ def constrained(
     if start.missed <= SOLVED:
         return {}
     for staying in dict.fromkeys((changed, frozenset[Point]())):
-        ends = [_ends(one.kind, lines, staying, given)
-                for one, lines in zip(constraints, start.lines, strict=True)]  # fmt: skip
-        missed = [end for end, one in zip(ends, constraints, strict=True)
-                  if one.misses(bodies) > SOLVED]  # fmt: skip
+        ends = [_ends(constraint.kind, lines, staying, given)
+                for constraint, lines in zip(constraints, start.lines, strict=True)]  # fmt: skip
+        missed = [end for end, constraint in zip(ends, constraints, strict=True)
+                  if constraint.misses(bodies) > SOLVED]  # fmt: skip
         everything = start.places.keys() - staying
         for moving in ({*chain(*missed)}, {*chain(*ends)}, everything):
             problem = ConstraintEquations(constraints, bodies)

@@ -46,8 +46,8 @@ def _length(line: Ends) -> Any:
 
 
 def _equal(line: Ends, to: Ends) -> list[Any]:
-    one, other = _length(line), _length(to)
-    return [2 * (one - other) / (one + other)]
+    length, other = _length(line), _length(to)
+    return [2 * (length - other) / (length + other)]
 
 
 def _parallel(line: Ends, to: Ends) -> list[Any]:
@@ -169,8 +169,8 @@ def _said(line: tuple[str, str]) -> str:
 
 def bodies_of(line: tuple[str, str], bodies: Bodies) -> list[str]:
     """Bodies that have both points of a line, links before the frame."""
-    found = [body for body, points in bodies.items() if {*line} <= points.keys()]
-    return sorted(found, key=lambda body: body == FRAME)
+    names = [body for body, points in bodies.items() if {*line} <= points.keys()]
+    return sorted(names, key=lambda body: body == FRAME)
 
 
 def _shared(constraint: Constraint, bodies: Bodies) -> list[str]:

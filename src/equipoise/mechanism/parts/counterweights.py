@@ -203,11 +203,11 @@ def wrong_geared(where: str, geared: GearedWeight, machine: Mechanism) -> Iterat
     yield from _wrong_sizes(where, geared)
     yield from _wrong_axis(where, geared, pins[driver][0], machine)
     if (geared.gear_thickness is None) != (geared.gear_density is None):
-        told = Note(
+        note = Note(
             "give both {gear_thickness} and {gear_material} (or {gear_density}), or neither",
             **key_names("gear_thickness", "gear_material", "gear_density"),
         )
-        yield ModelError(where, told)
+        yield ModelError(where, note)
     for place, link in numbered(f"{where}.clear_of", geared.clear_of):
         if link not in machine.links:
             yield ModelError(place, unknown(link, machine.links, "link"))

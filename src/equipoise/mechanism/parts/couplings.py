@@ -198,14 +198,14 @@ class Coupling(PartKind):
         for named, name in zip((*keys, "carrier"), self.bodies, strict=True):
             yield from unknown_body(f"{where}.{named}", name, bodies)
         if len({*self.bodies}) < 3:
-            told = Note(
+            note = Note(
                 "driver {driver!r}, driven link {driven!r} and carrier {carrier!r} must be three "
                 "different bodies",
                 driver=self.driver,
                 driven=self.driven,
                 carrier=self.carrier,
             )
-            yield ModelError(where, told)
+            yield ModelError(where, note)
 
     @property
     def unevenness(self) -> float:
@@ -393,8 +393,12 @@ def is_pressure_angle(angle: Any) -> Any:
 
 def as_fraction(ratio: float) -> Fraction | None:
     """The ratio of whole numbers that a number is, or None if it is none."""
-    near = Fraction(ratio).limit_denominator(100_000)
-    return near if abs(float(near) - ratio) <= 1e-13 * abs(near) else None
+    limit_denominator = Fraction(ratio).limit_denominator(100_000)
+    return (
+        limit_denominator
+        if abs(float(limit_denominator) - ratio) <= 1e-13 * abs(limit_denominator)
+        else None
+    )
 
 
 def coupled(

@@ -76,7 +76,7 @@ class CurvedSlot(JointKind):
         "label",
     )
     conditions: ClassVar[Conditions] = {
-        "oneOf": [{"required": [one]} for one in ("points", "table")]
+        "oneOf": [{"required": [name]} for name in ("points", "table")]
     }
     still: ClassVar[tuple[str, ...]] = ("points", "table")
 

@@ -17,11 +17,11 @@ from equipoise.mechanism.parts.laws import MOST_TURNS
 
 def wrong_together(first: Drive, others: Sequence[FurtherDrive]) -> Iterator[ModelError]:
     """Everything that is wrong with drives beside each other."""
-    links = [first.link, *(one.link for one in others)]
+    links = [first.link, *(item.link for item in others)]
     for number, link in enumerate(links[1:], 1):
         if link in links[:number]:
-            told = Note("{link!r} has a drive already; leave one of them out", link=link)
-            yield ModelError(f"drives[{number}].link", told)
+            note = Note("{link!r} has a drive already; leave one of them out", link=link)
+            yield ModelError(f"drives[{number}].link", note)
 
 
 def wrong_further(
@@ -39,7 +39,7 @@ def wrong_further(
         if drive.ratio != 1 or drive.start:
             yield ModelError(where, Note("give either motion, or ratio and start"))
     elif as_fraction(drive.ratio) is None or drive.turns > MOST_TURNS:
-        near = Fraction(drive.ratio).limit_denominator(MOST_TURNS)
+        limit_denominator = Fraction(drive.ratio).limit_denominator(MOST_TURNS)
         yield ModelError(
             f"{where}.ratio",
             Note(
@@ -48,8 +48,8 @@ def wrong_further(
                 "{fraction}",
                 ratio=drive.ratio,
                 most=MOST_TURNS,
-                near=float(near),
-                fraction=str(near),
+                near=float(limit_denominator),
+                fraction=str(limit_denominator),
             ),
         )
 
@@ -81,11 +81,11 @@ def _wrong_push(
     if law is None:
         for name in ("between", "slider", "start") if where == "drive" else ("between", "slider"):
             if getattr(drive, name) not in (None, ""):
-                told = Note(
+                note = Note(
                     "is given, but no stroke; say how long it is in [{place}]",
                     place=f"{where.partition('[')[0]}.stroke",
                 )
-                yield ModelError(f"{where}.{name}", told)
+                yield ModelError(f"{where}.{name}", note)
         return
     if (drive.between is None) == (not drive.slider):
         yield ModelError(f"{where}.stroke", Note("give either between or slider with it"))
@@ -110,5 +110,5 @@ def _wrong_ends(
             return
     first, second = drive.ends(bodies)
     if first == second:
-        told = Note("both points are of {body!r}; give points of two bodies", body=first)
-        yield ModelError(f"{where}.between", told)
+        note = Note("both points are of {body!r}; give points of two bodies", body=first)
+        yield ModelError(f"{where}.between", note)

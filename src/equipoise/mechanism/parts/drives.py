@@ -244,15 +244,15 @@ class Driven:
 
     def moved(self, crank_angle: Any) -> dict[str, tuple[Any, Any, Any]]:
         """Angle of each driven link at crank angles (...), and its two derivatives by them."""
-        found = {drive.link: drive.turned(crank_angle) for drive in self.driven}
+        parts = {drive.link: drive.turned(crank_angle) for drive in self.driven}
         if self.turning is not None:
-            found |= self.turning.moved(crank_angle)
-        return found
+            parts |= self.turning.moved(crank_angle)
+        return parts
 
     @property
     def laws(self) -> dict[str, AngleLaw | LengthLaw]:
         """Motion laws of the drives, by the names of their links."""
-        each = ((one.link, one.motion or one.stroke) for one in self.driven)
+        each = ((item.link, item.motion or item.stroke) for item in self.driven)
         return {link: law for link, law in each if law is not None}
 
     @property
@@ -269,7 +269,7 @@ class Driven:
     def told_drives(self) -> list[str]:
         """Links of all drives, where there is more to tell than of one crank or stroke."""
         alone = self.has_crank or (self.drive.pushes and not self.drives)
-        return [] if alone else [one.link for one in self.driven]
+        return [] if alone else [item.link for item in self.driven]
 
     @property
     def has_crank(self) -> bool:

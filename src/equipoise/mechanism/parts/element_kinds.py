@@ -158,8 +158,8 @@ def part_kinds(of: type[Frozen]) -> Mapping[str, type[PartKind]]:
     order of the file.
     """
     kinds = listed_types(of).items()
-    found = {field: kind for field, kind in kinds if issubclass(kind, PartKind)}
-    return dict(sorted(found.items(), key=lambda item: issubclass(item[1], Element)))
+    by_name = {field: kind for field, kind in kinds if issubclass(kind, PartKind)}
+    return dict(sorted(by_name.items(), key=lambda item: issubclass(item[1], Element)))
 
 
 def declare_outputs(of: type[Frozen]) -> None:

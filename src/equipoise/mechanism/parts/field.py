@@ -132,8 +132,8 @@ class Planting(Frozen):
              "finger_from", "tray", "arms", "soil")  # fmt: skip
     conditions: ClassVar[Conditions] = {
         "allOf": [
-            {"oneOf": [{"required": [one]}, {"required": [other]}]}
-            for one, other in (("forward_speed", "hill_spacing"), ("depth", "surface"))
+            {"oneOf": [{"required": [item]}, {"required": [other]}]}
+            for item, other in (("forward_speed", "hill_spacing"), ("depth", "surface"))
         ]
     }
 

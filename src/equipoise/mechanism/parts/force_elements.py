@@ -99,8 +99,8 @@ class LoadTable(CsvTable):
         """Crank angles of the rows between which it changes suddenly, rad."""
         rows = [*zip(self.crank_angle, zip(*self.values, strict=True), strict=True)]
         largest = max((abs(value) for column in self.values for value in column), default=0.0)
-        for (begin, one), (end, other) in pairwise(rows):
-            change = max(abs(b - a) for a, b in zip(one, other, strict=True))
+        for (begin, item), (end, other) in pairwise(rows):
+            change = max(abs(b - a) for a, b in zip(item, other, strict=True))
             if end - begin <= STEP_WIDTH and change > STEP_SHARE * largest:
                 yield from (begin, end)
 
@@ -116,7 +116,7 @@ class Load(Frozen):
     called = to_say("{what} of load {number}")
     file_order = ("link", "point", "force", "torque", "table", "outside", "from", "to", "reaction")
     conditions: ClassVar[Conditions] = {
-        "oneOf": [{"required": [one]} for one in ("force", "torque", "table")],
+        "oneOf": [{"required": [name]} for name in ("force", "torque", "table")],
         "dependentRequired": {
             "from": ["to"], "to": ["from"], "force": ["point"], "outside": ["table"]
         },
@@ -164,16 +164,19 @@ class Load(Frozen):
         """Where it sets in, ends or changes suddenly: crank angle, rad, and the turns of the crank
         after which it does so again.
         """
-        found, table = [], self.table
+        result, table = [], self.table
         if self.start is not None and self.stop is not None:
             rest = (self.stop - self.start) % (2 * pi)
             if min(rest, 2 * pi - rest) > ROUNDING:
-                found += [(self.start, 1), (self.stop, 1)]
+                result += [(self.start, 1), (self.stop, 1)]
         if table is not None:
             if not table.covers and self.outside != "wrap":
-                found += [(table.crank_angle[0], table.turns), (table.crank_angle[-1], table.turns)]
-            found += [(angle, table.turns) for angle in table.steps]
-        return tuple(dict.fromkeys(found))
+                result += [
+                    (table.crank_angle[0], table.turns),
+                    (table.crank_angle[-1], table.turns),
+                ]
+            result += [(angle, table.turns) for angle in table.steps]
+        return tuple(dict.fromkeys(result))
 
 
 @declared
@@ -394,12 +397,12 @@ def wrong_motor(where: str, motor: Motor) -> Iterator[ModelError]:
     where_table = f"{where}.table"
     given = [any(getattr(motor, name) is not None for name in kind) for kind in MOTOR_KINDS]
     if sum(given) != 1 or line.count(None) == 1:
-        told = Note(
+        note = Note(
             "give either {no_load_speed} and {stall_torque}, or torque, or table, or dc, or "
             "induction, or servo",
             **key_names("no_load_speed", "stall_torque"),
         )
-        yield ModelError(where, told)
+        yield ModelError(where, note)
     elif motor.servo is not None and any(b <= a for a, b in pairwise(motor.servo.rows[0])):
         yield ModelError(
             f"{where}.servo.speed_gain",

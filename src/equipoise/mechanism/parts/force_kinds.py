@@ -27,7 +27,7 @@ class ForceElement(Element):
 
     def on_links(self, at: Placed) -> Iterator[Action]:
         """What it exerts on moving links."""
-        return (one for one in self.actions(at) if one[0] != FRAME)
+        return (action for action in self.actions(at) if action[0] != FRAME)
 
 
 @once

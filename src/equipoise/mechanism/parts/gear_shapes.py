@@ -40,7 +40,7 @@ LEAST_ROWS, MOST_ROWS, MOST_WAVES = 3, 720, 50
 def _of_kind(kind: str) -> dict[str, Any]:
     """JSON Schema of what goes with a kind."""
     own = KINDS[kind]
-    then = {**lacks(*(one for one in OWN if one not in own))}
+    then = {**lacks(*(item for item in OWN if item not in own))}
     if kind in TABLED:
         table, series = needs("angle", kind), {"anyOf": [needs("cosines"), needs("sines")]}
         then |= {"oneOf": [table, series]}
@@ -128,7 +128,7 @@ class GearShape(Frozen):
     def varies(self) -> bool:
         """Whether numbers of its curves, not only its phase, are columns (P, 1) of designs."""
         given = (self.eccentricity, *self.cosines, *self.sines)
-        return not all(one is None or isinstance(one, int | float) for one in given)
+        return not all(item is None or isinstance(item, int | float) for item in given)
 
     @property
     def waves(self) -> int:
@@ -161,10 +161,10 @@ def wrong_shape(shape: GearShape, gears: MeshingGears) -> list[Told]:
 
 def _wrong_keys(shape: GearShape) -> Iterator[Told]:
     own = KINDS[shape.kind]
-    given = [one for one in OWN if getattr(shape, one) not in (None, ())]
-    for one in given:
-        if one not in own:
-            yield one, Note("goes with another kind of shape; leave it out")
+    given = [item for item in OWN if getattr(shape, item) not in (None, ())]
+    for entry in given:
+        if entry not in own:
+            yield entry, Note("goes with another kind of shape; leave it out")
     if shape.kind not in TABLED:
         if shape.eccentricity is None:
             yield "eccentricity", Note("missing; give a number from 0 to less than 1")
@@ -172,8 +172,8 @@ def _wrong_keys(shape: GearShape) -> Iterator[Told]:
             yield "lobes", Note("a circle has one lobe; leave it out")
         return
     if bool(shape.angle) == bool(shape.cosines or shape.sines):
-        told = Note("give either a table (angle, {kind}) or cosines and sines", kind=shape.kind)
-        yield "", told
+        note = Note("give either a table (angle, {kind}) or cosines and sines", kind=shape.kind)
+        yield "", note
     elif bool(shape.angle) != bool(getattr(shape, shape.kind)):
         yield "", Note("give both angle and {kind}, or neither", kind=shape.kind)
 
@@ -189,33 +189,33 @@ def _wrong_table(shape: GearShape) -> Iterator[Told]:
     if not rows:
         return
     if not LEAST_ROWS <= rows <= MOST_ROWS:
-        told = Note(
+        note = Note(
             "got {rows} rows; give from {least} to {most}",
             rows=rows, least=LEAST_ROWS, most=MOST_ROWS,
         )  # fmt: skip
-        yield "angle", told
+        yield "angle", note
     elif values and rows != values:
         yield "angle", Note("got {rows} angles for {values} values", rows=rows, values=values)
     elif any(b <= a for a, b in pairwise(shape.angle)):
         yield "angle", Note("give angles that rise from row to row")
     elif shape.angle[-1] - shape.angle[0] >= shape.period * (1 - 1e-9):
-        told = Note(
+        note = Note(
             "the rows cover {span:.6g} deg; a lobe has {period:.6g} deg, and begins anew behind "
             "its last row: leave that out which is the first again",
             span=degrees(shape.angle[-1] - shape.angle[0]),
             period=degrees(shape.period),
         )
-        yield "angle", told
+        yield "angle", note
 
 
 def _wrong_lobes(shape: GearShape, gears: MeshingGears) -> Iterator[Told]:
     ratio, exact = gears.speed_ratio, gears.exact_ratio
     if exact is None or (shape.lobes / exact).denominator != 1:
-        told = Note(
+        note = Note(
             "the pitch curves do not close: with {lobes} of the driver and a mean ratio of "
             "{ratio:.10g} the driven gear would have {count:.10g} lobes, which have to be whole",
             lobes=shape.lobes,
             ratio=ratio,
             count=shape.lobes / abs(ratio),
         )
-        yield "lobes", told
+        yield "lobes", note

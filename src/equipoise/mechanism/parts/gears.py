@@ -246,8 +246,8 @@ def _wrong_shape(where: str, shape: GearShape, gear: Gear, bodies: Bodies) -> It
         from equipoise.mechanism.parts.pitch_curves import wrong_curve
 
         problems = [*wrong_curve(shape, gear, _distance(gear, bodies))]
-    for name, told in problems:
-        yield ModelError(f"{where}.{name}".rstrip("."), told)
+    for name, text in problems:
+        yield ModelError(f"{where}.{name}".rstrip("."), text)
 
 
 def closed(gear: Gear, bodies: Bodies) -> Gear:

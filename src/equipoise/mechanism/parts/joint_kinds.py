@@ -149,12 +149,12 @@ def with_riders(bodies: Bodies, riders: Mapping[str, Rider]) -> Bodies:
     """Bodies with the riders of joints behind the first of them, and with the points at which they
     hold these.
     """
-    found = {body: dict(points) for body, points in bodies.items()}
+    dicts = {body: dict(points) for body, points in bodies.items()}
     for rider in riders.values():
         for body, held in rider.held.items():
-            found[body] |= {new: bodies[body][old] for new, old in held.items()}
-    (first, points), *others = found.items()
-    return {first: points, **{name: one.points for name, one in riders.items()}, **dict(others)}
+            dicts[body] |= {new: bodies[body][old] for new, old in held.items()}
+    (first, points), *others = dicts.items()
+    return {first: points, **{name: rider.points for name, rider in riders.items()}, **dict(others)}
 
 
 def wrong_names(
@@ -165,8 +165,8 @@ def wrong_names(
     joints : with the place of each in the file.  others : names of sliding joints.
     """
     taken = {*bodies, *(point for points in bodies.values() for point in points), *others}
-    for where, one in joints:
-        if one.name in taken:
-            wrong = Note("{name!r} is the name of something else; give it another", name=one.name)
+    for where, item in joints:
+        if item.name in taken:
+            wrong = Note("{name!r} is the name of something else; give it another", name=item.name)
             yield ModelError(f"{where}.label", wrong)
-        taken |= {one.name, *one.rider().points}
+        taken |= {item.name, *item.rider().points}

@@ -151,8 +151,8 @@ def wrong_joint(where: str, one: JointProperties, families: Iterable[str]) -> It
     families : groups of outputs that are forces of joints and couplings.
     """
     if not one.joint.startswith((*(f"{family}." for family in families),)):
-        told = Note("got {joint!r}; give a joint as joints.B", joint=one.joint)
-        yield ModelError(f"{where}.joint", told)
+        note = Note("got {joint!r}; give a joint as joints.B", joint=one.joint)
+        yield ModelError(f"{where}.joint", note)
     if not one.says and one.friction is None:
         yield ModelError(where, Note("give radius, stiffness, bearing or friction of the joint"))
     if one.width is not None and one.radius is None:
@@ -164,21 +164,21 @@ def _wrong_friction(where: str, one: JointProperties) -> Iterator[ModelError]:
     """Report keys of friction that do not go together."""
     if (one.static_friction is None) != (one.stribeck_speed is None):
         missing = "static_friction" if one.static_friction is None else "stribeck_speed"
-        told = Note(
+        note = Note(
             "missing; {static_friction} and {stribeck_speed} go together",
             **key_names("static_friction", "stribeck_speed"),
         )
-        yield ModelError(f"{where}.{missing}", told)
+        yield ModelError(f"{where}.{missing}", note)
     for name in ("static_friction", "guide_length"):
         if one.friction is None and getattr(one, name) is not None:
             yield ModelError(f"{where}.{name}", Note("goes with friction; give that too"))
     if one.friction is not None and (one.static_friction or one.friction) < one.friction:
-        told = Note(
+        note = Note(
             "got {static}; give at least the friction of {friction}, from which it falls",
             static=f"{one.static_friction:g}",
             friction=f"{one.friction:g}",
         )
-        yield ModelError(f"{where}.static_friction", told)
+        yield ModelError(f"{where}.static_friction", note)
 
 
 def wrong_of_kind(
@@ -190,18 +190,18 @@ def wrong_of_kind(
         ratio.
     """
     if one.mesh_loss is not None and (varies or kind not in MESHES):
-        told = Note("{joint!r} is no belt or pair of gears of one ratio; leave it out",
+        note = Note("{joint!r} is no belt or pair of gears of one ratio; leave it out",
                     joint=one.joint)  # fmt: skip
-        yield ModelError(f"{where}.mesh_loss", told)
+        yield ModelError(f"{where}.mesh_loss", note)
     if in_slot and (one.bearing or one.width) is not None:
-        told = Note("a pin in a slot has no bearing whose load is computed; leave it out")
-        yield ModelError(f"{where}.{'bearing' if one.bearing else 'width'}", told)
+        note = Note("a pin in a slot has no bearing whose load is computed; leave it out")
+        yield ModelError(f"{where}.{'bearing' if one.bearing else 'width'}", note)
     if in_slot and one.rubs:
-        told = Note("friction of a pin in a slot is not computed; leave it out")
-        yield ModelError(where, told)
+        note = Note("friction of a pin in a slot is not computed; leave it out")
+        yield ModelError(where, note)
     if one.radius is not None and kind != "pin":
-        told = Note("{joint!r} is no pin and has no radius; leave it out", joint=one.joint)
-        yield ModelError(f"{where}.radius", told)
+        note = Note("{joint!r} is no pin and has no radius; leave it out", joint=one.joint)
+        yield ModelError(f"{where}.radius", note)
     for names, of in ((OF_PIN[1:], "pin"), (OF_SLIDER, "slider")):
         for name in names:
             if getattr(one, name) and kind != of:
@@ -210,7 +210,7 @@ def wrong_of_kind(
                     what = to_say("{joint!r} is no slider; this key is of sliders, leave it out")
                 yield ModelError(f"{where}.{name}", Note(what, joint=one.joint))
     if one.friction is not None and kind not in JOINTS:
-        told = Note("{joint!r} is no pin or slider; leave friction out", joint=one.joint)
-        yield ModelError(f"{where}.friction", told)
+        note = Note("{joint!r} is no pin or slider; leave friction out", joint=one.joint)
+        yield ModelError(f"{where}.friction", note)
     if one.friction is not None and kind == "pin" and one.radius is None:
         yield ModelError(f"{where}.radius", Note("missing; friction in a pin acts at its radius"))

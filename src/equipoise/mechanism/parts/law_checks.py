@@ -19,11 +19,11 @@ def wrong_law(where: str, law: Law, over: str = CRANK) -> Iterator[ModelError]:
     """Everything that is wrong with a motion law over `CRANK` or `CAM`."""
     given = [law.between is not None, bool(law.segments), bool(law.values), law.table is not None]
     if sum(given) != 1 or bool(law.crank_angles) != bool(law.values):
-        told = Note(
+        note = Note(
             "give exactly one of between, segments, table, and {crank_angles} with values",
             **key_names("crank_angles"),
         )
-        yield ModelError(where, told)
+        yield ModelError(where, note)
         return
     turned, wrong = Note(over), _wrong_segments if law.segments else _wrong_rows
     problem = next(wrong(where, law, turned), None)
@@ -42,7 +42,7 @@ def wrong_law(where: str, law: Law, over: str = CRANK) -> Iterator[ModelError]:
 
 
 def _wrong_segments(where: str, law: Law, turned: Note) -> Iterator[ModelError]:
-    total = sum(one.over for one in law.segments)
+    total = sum(segment.over for segment in law.segments)
     if abs(total - law.period) > CLOSED * law.period:
         yield ModelError(
             f"{where}.segments",
@@ -66,13 +66,13 @@ def _wrong_return(where: str, law: Law, first: float, last: float) -> Iterator[M
             name: Measured(value, law.dimension, KINDS[law.dimension].printed[0])
             for name, value in (("first", first), ("last", last))
         }
-        told = (
+        note = (
             Note("begins at {first} and ends at {last}; let it come back, or gain whole turns",
                  **values)
             if law.whole
             else Note("begins at {first} and ends at {last}; let it come back", **values)
         )  # fmt: skip
-        yield ModelError(where, told)
+        yield ModelError(where, note)
 
 
 def _wrong_rows(where: str, law: Law, turned: Note) -> Iterator[ModelError]:
@@ -83,10 +83,10 @@ def _wrong_rows(where: str, law: Law, turned: Note) -> Iterator[ModelError]:
         return
     (angles, values), count = law.rows, len(law.rows[1])
     listed = ("values", "crank_angles") if law.table is None else ("table",) * 2
-    told, at = (f"{where}.{one}" for one in listed)
+    text, at = (f"{where}.{item}" for item in listed)
     if len(angles) != count or not 3 <= count <= MOST_ROWS:
         yield ModelError(
-            told,
+            text,
             Note(
                 "got {values} values at {angles} angles; give 3 to {most} of each",
                 values=count,
@@ -108,4 +108,4 @@ def _wrong_rows(where: str, law: Law, turned: Note) -> Iterator[ModelError]:
             ),
         )
     elif law.is_closed:
-        yield from _wrong_return(told, law, values[0], values[-1])
+        yield from _wrong_return(text, law, values[0], values[-1])

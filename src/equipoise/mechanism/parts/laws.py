@@ -120,14 +120,14 @@ class Law(Frozen):
     whole: ClassVar[float]
     dimension: ClassVar[Literal["angle", "length"]]
     conditions: ClassVar[Conditions] = {
-        "oneOf": [{"required": [one]} for one in ("between", "segments", "values", "table")],
+        "oneOf": [{"required": [name]} for name in ("between", "segments", "values", "table")],
         "dependentRequired": {
             "crank_angles": ["values"],
             "values": ["crank_angles"],
             "start": ["segments"],
         },
         "dependentSchemas": {
-            "spline": {"anyOf": [{"required": [one]} for one in ("values", "table")]},
+            "spline": {"anyOf": [{"required": [name]} for name in ("values", "table")]},
         },
     }
 
@@ -179,7 +179,7 @@ class Law(Frozen):
             if self.is_closed:
                 knots, values = np.append(knots[:-2], self.period), values[:-1]
             return spline(knots, values, SPLINES[self.spline])
-        before = (self.start, *(one.to for one in self.segments))
+        before = (self.start, *(segment.to for segment in self.segments))
         parts = zip(pairwise(before), self.segments, strict=True)
         whole = joined([NORMAL[s.law]().stretched(s.over, b - a).lifted(a) for (a, b), s in parts])
         return PeriodicCurve(whole.knots * (self.period / whole.length), whole.powers, whole.waves)

@@ -142,8 +142,8 @@ class Link(Frozen):
 
     @classmethod
     def from_table(cls, given: dict[str, Any]) -> Link:
-        if given.get("bodies") and (told := MASS_FIELDS & given.keys()):
-            raise ModelError(min(told), TOLD_BY_BODIES)
+        if given.get("bodies") and (value := MASS_FIELDS & given.keys()):
+            raise ModelError(min(value), TOLD_BY_BODIES)
         if isinstance(given["points"], Mapping) and given.keys() & {"length", "sides"}:
             raise ModelError("points", TOLD_BY_LENGTHS)
         return cls(**given)
@@ -161,16 +161,16 @@ class Link(Frozen):
         """Lengths give new places, and places and bodies new masses; a place or a mass that is
         given itself takes the place of these.
         """
-        found = dict(changes)
+        values = dict(changes)
         if "points" in changes:
-            found = {"length": None, "sides": {}, **changes}
+            values = {"length": None, "sides": {}, **changes}
         elif changes.keys() & {"length", "sides"}:
-            found["points"] = tuple(self.points)
+            values["points"] = tuple(self.points)
         if changes.keys() & MASS_FIELDS:
-            found = {"bodies": (), **found}
+            values = {"bodies": (), **values}
         elif changes.get("bodies", self.bodies):
-            found |= dict.fromkeys(MASS_FIELDS)
-        return found
+            values |= dict.fromkeys(MASS_FIELDS)
+        return values
 
     def follow(self) -> None:
         """Set places and masses anew, of which columns may be some; nothing is checked."""
@@ -190,10 +190,10 @@ class Link(Frozen):
         """
         beside = plane is not None and plane != self.plane
         if self.bodies or beside:
-            more = Body(
+            body = Body(
                 "point", at=place, mass=mass, inertia=inertia, plane=plane if beside else None
             )
-            return self.altered(bodies=(*(self.bodies or self._as_body), more))
+            return self.altered(bodies=(*(self.bodies or self._as_body), body))
         assert self.center_of_mass is not None
         own = self.mass, complex(*self.center_of_mass), self.inertia
         whole, center, second = together([own, (mass, complex(*place), inertia)])
@@ -261,13 +261,13 @@ def placed(
     a, b, c = _sides_of(names, sides or {})
     x, square, closes = _apex(a, b, c)
     if closes is False:
-        told = ", ".join(f"{1e3 * side:.6g}" for side in (a, b, c))
+        text = ", ".join(f"{1e3 * side:.6g}" for side in (a, b, c))
         raise ModelError(
             "sides",
             Note(
                 "got {sides} mm, which do not close to a triangle; the longest must be shorter "
                 "than the other two together",
-                sides=told,
+                sides=text,
             ),
         )
     return {first: (0.0, 0.0), second: (a, 0.0), third[0]: (x, abs(square) ** 0.5)}
@@ -286,13 +286,13 @@ def _sides_of(names: Sequence[str], sides: Mapping[str, Any]) -> Iterator[Any]:
     """Sides from the first point to the second, on to the third, and back, named either way."""
     left = dict(sides)
     ends = [*zip(names, (*names[1:], names[0]), strict=True)]
-    for one, other in ends:
-        either = [name for name in (f"{one}-{other}", f"{other}-{one}") if name in left]
+    for entry, other in ends:
+        either = [name for name in (f"{entry}-{other}", f"{other}-{entry}") if name in left]
         if not either:
-            more = [f"{one}-{other}" for one, other in ends]
+            more = [f"{item}-{other}" for item, other in ends]
             lost = Note("missing; give that length")
             raise ModelError(
-                f"sides.{one}-{other}",
+                f"sides.{entry}-{other}",
                 next(
                     (
                         Note("{sentence}; {hint}", sentence=lost, hint=unknown(name, more, "side"))

@@ -248,7 +248,7 @@ class Machine(Driven, Displayed, Frozen):
 
     def spoken_rate(self, speed: float) -> str:
         """A speed of the crank, rad/s, or the cycles in a minute of what no crank drives."""
-        turns = 1 if self.crank_turns else lcm(*(one.turns for one in self.driven))
+        turns = 1 if self.crank_turns else lcm(*(item.turns for item in self.driven))
         rate = display("angular speed", [speed / turns], "rpm")
         text = rate.text(speed / turns)
         return rate.with_unit(text) if self.crank_turns else f"{text} cycles a minute"
@@ -261,7 +261,7 @@ class Machine(Driven, Displayed, Frozen):
     @property
     def couplings(self) -> tuple[Coupling, ...]:
         """Joints by which one body's angle tells another's, in the order of the file."""
-        return tuple(one for table in coupling_kinds(type(self)) for one in getattr(self, table))
+        return tuple(item for table in coupling_kinds(type(self)) for item in getattr(self, table))
 
     @property
     def parts(self) -> Iterator[tuple[str, int, PartKind]]:
@@ -280,19 +280,19 @@ class Machine(Driven, Displayed, Frozen):
 
     def _listed(self, tables: Iterable[str]) -> Iterator[tuple[str, int, Any]]:
         for table in tables:
-            for number, one in enumerate(getattr(self, table)):
-                yield table, number, one
+            for number, item in enumerate(getattr(self, table)):
+                yield table, number, item
 
     @property
     def pins_in_slots(self) -> Mapping[str, JointKind]:
         """Joints that declare themselves, by their names."""
         listed: Iterator[tuple[str, int, JointKind]] = self._listed(joint_kinds(type(self)))
-        return {one.name: one for *_, one in listed}
+        return {item.name: item for *_, item in listed}
 
     @property
     def riders(self) -> Mapping[str, Rider]:
         """Bodies without mass inside of joints, by the names of these."""
-        return {name: one.rider() for name, one in self.pins_in_slots.items()}
+        return {name: pins_in_slot.rider() for name, pins_in_slot in self.pins_in_slots.items()}
 
     @property
     def assembled_bodies(self) -> Bodies:
@@ -307,12 +307,12 @@ class Machine(Driven, Displayed, Frozen):
         """Whether flanks or strands bear by the sense of the force, so that forces inside the
         linkage are not linear in the masses.
         """
-        return any(one.switches for one in self.couplings)
+        return any(coupling.switches for coupling in self.couplings)
 
     @property
     def rubs(self) -> bool:
         """Whether joints resist their motion, by friction, damping or drag."""
-        return any(one.rubs for one in self.joints)
+        return any(joint.rubs for joint in self.joints)
 
     @property
     def has_planes(self) -> bool:
@@ -332,8 +332,8 @@ class Machine(Driven, Displayed, Frozen):
         if name not in self.links:
             raise ModelError(f"links.{name}", unknown(name, self.links, "link"))
         check_kept(f"links.{name}.points", self.links[name].points, changes.get("points"))
-        found = self._with_link(name, lambda link: link.altered(**changes))
-        return self._same_motion(found, set(changes) <= {*MASS_FIELDS, *BESIDE})
+        machine = self._with_link(name, lambda link: link.altered(**changes))
+        return self._same_motion(machine, set(changes) <= {*MASS_FIELDS, *BESIDE})
 
     def _with_link(self, name: str, change: Callable[[Link], Link]) -> Machine:
         try:
@@ -426,10 +426,10 @@ class Machine(Driven, Displayed, Frozen):
         still = first in STILL or first in force_kinds(type(self))
         same = massive or still or last == "speed"
         if first == "links":
-            found = self._with_link(str(steps[1]), lambda link: changed(link, steps[2:], put))
+            machine = self._with_link(str(steps[1]), lambda link: changed(link, steps[2:], put))
         else:
-            found = changed(self, steps, put)
-        return self._same_motion(found, same)
+            machine = changed(self, steps, put)
+        return self._same_motion(machine, same)
 
     def with_expressions(self, expressions: Mapping[str, str]) -> Machine:
         """Return the machine that remembers by which expressions numbers of it were given.
@@ -460,8 +460,8 @@ class Machine(Driven, Displayed, Frozen):
 
     def without_friction(self) -> Machine:
         """Return the machine whose joints move freely."""
-        free = (one.without_friction for one in self.joints)
-        return self._same_motion(replace(self, joints=tuple(one for one in free if one.says)))
+        free = (joint.without_friction for joint in self.joints)
+        return self._same_motion(replace(self, joints=tuple(item for item in free if item.says)))
 
     def with_balance(self, balance: Balance | None) -> Machine:
         """Return the machine with another plan of what may be changed, or with none."""

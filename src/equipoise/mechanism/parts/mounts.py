@@ -48,15 +48,15 @@ def _point_or_axis(**conditions: Any) -> dict[str, Any]:
     """JSON Schema of a table that has a point or an axis, with the keys that go with it."""
     branches = [
         {
-            "required": [one],
+            "required": [item],
             "properties": dict.fromkeys((*others, other), False),
             **(
-                {"anyOf": [{"required": [with_]} for with_ in conditions[one]]}
+                {"anyOf": [{"required": [with_]} for with_ in conditions[item]]}
                 if conditions
                 else {}
             ),
         }
-        for one, other, others in (("point", "axis", OF_AXIS), ("axis", "point", OF_POINT))
+        for item, other, others in (("point", "axis", OF_AXIS), ("axis", "point", OF_POINT))
     ]
     return {"oneOf": branches}
 
@@ -66,9 +66,9 @@ def _check_company(given: Mapping[str, Any]) -> None:
     if ("point" in given) == ("axis" in given):
         return  # told by the checks of the machine
     others, has = (OF_AXIS, Note("a point")) if "point" in given else (OF_POINT, Note("an axis"))
-    for one in others:
-        if one in given:
-            raise ModelError(one, Note("has no place beside {has}; leave it out", has=has))
+    for item in others:
+        if item in given:
+            raise ModelError(item, Note("has no place beside {has}; leave it out", has=has))
 
 
 @declared

@@ -44,11 +44,11 @@ JOINTS, GAUGES, ROWS = "joints.", "gauges.", "rows."
 """How outputs begin of joints, of the support's gauges, and of what all rows do together."""
 OF_ROWS = tuple(
     name.removeprefix(ROWS)
-    for name, one in DECLARED.items()
-    if one.needs == "rows" and name.removeprefix(ROWS) not in DECLARED
+    for name, item in DECLARED.items()
+    if item.needs == "rows" and name.removeprefix(ROWS) not in DECLARED
 )
 """About x and y, from linkages side by side."""
-WITHIN = tuple(dict.fromkeys(f"{one.group}." for one in DECLARED.values() if one.internal))
+WITHIN = tuple(dict.fromkeys(f"{item.group}." for item in DECLARED.values() if item.internal))
 """How forces begin that act inside of one linkage, whichever row it is."""
 OF_NUMBERS = ("ripple", "peak_to_peak", "area")
 """Measures of outputs that are one number at each crank angle."""
@@ -173,19 +173,19 @@ def output_of(name: str, machine: Mechanism) -> Declared:
     ------
     ModelError : there is no such output, or it is not linear in the masses; says what there is.
     """
-    found = [(one, item) for one, item in matches(name) if not name.startswith("rows.")]
-    for one, item in found:
-        if item in one.members(machine):
-            return _balanced(one, item, machine)
-    if not found:
+    values = [(entry, item) for entry, item in matches(name) if not name.startswith("rows.")]
+    for element, item in values:
+        if item in element.members(machine):
+            return _balanced(element, item, machine)
+    if not values:
         raise ModelError("", unknown(name, balanced_names(machine), "output"))
-    one, item = found[0]
-    names, kind = list(one.members(machine)), one.group.removesuffix("s")
+    element, item = values[0]
+    names, kind = list(element.members(machine)), element.group.removesuffix("s")
     if kind == "gauge" and not names:
         raise ModelError("", Note("there is no gauge; give a support with gauges"))
-    if not names and one.reason:
-        raise ModelError("", Note(one.reason, what=name))
-    if not one.is_family:
+    if not names and element.reason:
+        raise ModelError("", Note(element.reason, what=name))
+    if not element.is_family:
         raise ModelError("", unknown(name, balanced_names(machine), "output"))
     raise ModelError("", unknown(item, names, kind))
 
@@ -212,12 +212,12 @@ def _balanced(one: Declared, item: str, machine: Mechanism) -> Declared:
 def balanced_names(machine: Mechanism) -> list[str]:
     """Names of everything that balancing can take of a machine."""
     names = [
-        one.named(item).removeprefix("rows.")
-        for one in DECLARED.values()
-        if not one.reason
-        and (one.needs != "rows" or machine.rows)
-        and not (one.is_family and one.part in ("x", "y"))
-        for item in one.members(machine)
+        entry.named(item).removeprefix("rows.")
+        for entry in DECLARED.values()
+        if not entry.reason
+        and (entry.needs != "rows" or machine.rows)
+        and not (entry.is_family and entry.part in ("x", "y"))
+        for item in entry.members(machine)
     ]
     return list(dict.fromkeys(names))
 
@@ -271,7 +271,7 @@ def wrong_objective(where: str, objective: Objective, machine: Mechanism) -> Ite
         elif order in objective.orders[:k]:
             yield ModelError(place, Note("{order:g} is given twice", order=order))
     if objective.about is not None and not output.about:
-        names = [one.name for one in DECLARED.values() if one.about and not one.reason]
+        names = [item.name for item in DECLARED.values() if item.about and not item.reason]
         yield ModelError(
             f"{where}.about", Note("goes with {names}; leave it out", names=" and ".join(names))
         )

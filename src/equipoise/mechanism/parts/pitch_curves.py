@@ -128,7 +128,7 @@ def closed_table(shape: GearShape, mean: float, distance: float | None) -> GearS
         return shape
     factor = abs(law.factor) * (1.0 if shape.kind == "ratio" else distance or 0.0)
     values: dict[str, Any] = {
-        shape.kind: tuple(factor * one for one in shape.ratio or shape.radius)
+        shape.kind: tuple(factor * item for item in shape.ratio or shape.radius)
     }
     return replace(shape, **values) if factor else shape
 
@@ -137,40 +137,40 @@ def wrong_curve(shape: GearShape, gears: MeshingGears, distance: float | None) -
     """What is wrong with the pitch curves that follow; distance : of the axes, if known, m."""
     even = _even(shape)
     if shape.kind in TABLED and (lowest := _lowest(even)) <= 0:
-        told = Note(
+        note = Note(
             "goes down to {lowest:.4g}; a pitch curve needs it above 0 all the way round",
             lowest=lowest,
         )
-        yield shape.kind if shape.angle else "cosines", told
+        yield shape.kind if shape.angle else "cosines", note
         return
     ratio = gears.speed_ratio
     law = law_of(shape, ratio)
     yield from _misfits(shape, law, ratio, distance)
     low, high, steepest = _extent(even, ratio)
     if low <= 1 <= high:
-        told = Note(
+        note = Note(
             "the ratio would go from {low:.4g} to {high:.4g}; of a ring and the gear in it it "
             "stays on one side of 1: give a smaller eccentricity, or a flatter curve",
             low=low,
             high=high,
         )
-        yield "", told
+        yield "", note
         return
     most = degrees(np.arctan(steepest) + gears.pressure_angle)
     if not most < 90:
-        told = Note(
+        note = Note(
             "the teeth would push at {most:.4g} deg from where the gear turns to, and jam; give a "
             "smaller eccentricity, a flatter curve or a smaller pressure angle",
             most=most,
         )
-        yield "", told
+        yield "", note
     if ratio > 0 and (deepest := _overlap(even, ratio)) > CUT:
-        told = Note(
+        note = Note(
             "the gear would cut its ring where they do not mesh, by {deepest:.2g} of the distance "
             "of the axes; give a smaller eccentricity, a flatter curve or a larger ring",
             deepest=deepest,
         )
-        yield "", told
+        yield "", note
 
 
 def can_vary(shape: GearShape) -> bool:
@@ -195,8 +195,8 @@ def can_roll(shape: GearShape, gears: MeshingGears) -> Array:
         good &= (np.asarray(e) >= 0) & (np.asarray(e) < 1)
     far = (least > NEAR) & (from_one > NEAR) & (most < pi / 2 - NEAR) & (mean < 0)
     for k in np.flatnonzero(good & ~far):
-        one, pair = (_design(held, int(k)) for held in (shape, gears))
-        good[k] = not [*wrong_curve(one, pair, None)]
+        item, pair = (_design(held, int(k)) for held in (shape, gears))
+        good[k] = not [*wrong_curve(item, pair, None)]
     return good
 
 
@@ -205,8 +205,8 @@ def _design(held: Any, k: int) -> Any:
     of_one = {}
     for name, value in vars(held).items():
         several = value if isinstance(value, tuple) else (value,)
-        if any(isinstance(one, np.ndarray) for one in several):
-            numbers = tuple(float(one[k, 0]) if np.ndim(one) else one for one in several)
+        if any(isinstance(item, np.ndarray) for item in several):
+            numbers = tuple(float(item[k, 0]) if np.ndim(item) else item for item in several)
             of_one[name] = numbers if isinstance(value, tuple) else numbers[0]
     return with_fields(held, **of_one)
 
@@ -242,16 +242,16 @@ def _misfits(
         return
     factor = abs(law.factor)
     if shape.kind == "ratio" and abs(factor - 1) > MISFIT:
-        told = Note(
+        note = Note(
             "the pitch curves do not close: the mean of the table is {mean:.7g}, and that of the "
             "gears {ratio:.7g}; multiply the table by {factor:.7g}",
             mean=abs(ratio) / factor,
             ratio=abs(ratio),
             factor=factor,
         )
-        yield "ratio", told
+        yield "ratio", note
     if shape.kind == "radius" and distance and abs(factor * distance - 1) > MISFIT:
-        told = Note(
+        note = Note(
             "the pitch curves do not close: the driven gear's does at {closing:.7g} mm between "
             "the axes, and the carrier has {distance:.7g} mm; move a pin, or multiply the table "
             "by {factor:.7g}",
@@ -259,4 +259,4 @@ def _misfits(
             distance=1e3 * distance,
             factor=factor * distance,
         )
-        yield "radius", told
+        yield "radius", note

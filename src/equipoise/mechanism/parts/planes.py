@@ -35,10 +35,10 @@ def moments_across(link: Link, point: str | None = None) -> tuple[Any, Any]:
 
 def demands_across(machine: Mechanism) -> Iterator[Any]:
     """What has to be true of planes of pins and bearings: flags, or columns of them."""
-    held = [(one.link, one.plane) for one in machine.bearings.values()]
+    held = [(bearing.link, bearing.plane) for bearing in machine.bearings.values()]
     yield from (here != there for (on, here), (to, there) in combinations(held, 2) if on == to)
-    for _, told in _told_of_pins(machine):
-        yield from (here == there for (_, here), (_, there) in combinations(told, 2))
+    for _, text in _told_of_pins(machine):
+        yield from (here == there for (_, here), (_, there) in combinations(text, 2))
 
 
 def _told_of_pins(machine: Mechanism) -> Iterator[tuple[str, list[tuple[str, float]]]]:
@@ -53,8 +53,8 @@ def _told_of_pins(machine: Mechanism) -> Iterator[tuple[str, list[tuple[str, flo
 
 def wrong_planes(machine: Mechanism) -> Iterator[ModelError]:
     """Everything that is wrong with planes of pins and with bearings."""
-    for point, told in _told_of_pins(machine):
-        for (one, here), (other, there) in combinations(told, 2):
+    for point, text in _told_of_pins(machine):
+        for (item, here), (other, there) in combinations(text, 2):
             if here != there:
                 yield ModelError(
                     f"links.{other}.planes.{point}",
@@ -63,7 +63,7 @@ def wrong_planes(machine: Mechanism) -> Iterator[ModelError]:
                         "give it once",
                         there=1e3 * there,
                         here=1e3 * here,
-                        one=one,
+                        one=item,
                     ),
                 )
     for name, bearing in machine.bearings.items():
@@ -85,7 +85,7 @@ def _wrong_bearing(where: str, bearing: Bearing, machine: Mechanism) -> Iterator
             ),
         )
         return
-    planes = [one.plane for one in machine.bearings.values() if one.link == bearing.link]
+    planes = [item.plane for item in machine.bearings.values() if item.link == bearing.link]
     if len(planes) != 2 or planes[0] == planes[1]:
         yield ModelError(
             where,

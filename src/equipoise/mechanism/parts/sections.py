@@ -152,8 +152,8 @@ def wrong_section(
             Note("got a wall that is lost in rounding beside the section; give more"),
         )
     if section.tensile_strength is not None and section.fatigue_limit is None:
-        told = Note("goes with {fatigue_limit}; give that too", **key_names("fatigue_limit"))
-        yield ModelError(f"{where}.tensile_strength", told)
+        note = Note("goes with {fatigue_limit}; give that too", **key_names("fatigue_limit"))
+        yield ModelError(f"{where}.tensile_strength", note)
     if section.between is None and len(points) != 2:
         yield ModelError(
             f"{where}.between",

@@ -100,8 +100,8 @@ def read_units(text: str) -> dict[Dimension, str]:
     """
     given: dict[str, str] = {}
     for part in filter(None, map(str.strip, text.split(","))):
-        name, told, unit = (piece.strip() for piece in part.partition("="))
-        name, unit = ("_".join(name.split()), plain_unit(unit)) if told else _named(name)
+        name, statement, unit = (piece.strip() for piece in part.partition("="))
+        name, unit = ("_".join(name.split()), plain_unit(unit)) if statement else _named(name)
         if name not in _keys():
             raise UsageError(unknown(name, _keys(), "dimension of units"))
         if unit not in _units(name):

@@ -48,9 +48,9 @@ def problems_of(machine: Any) -> Iterator[ModelError]:
         for where, item in numbered(name, getattr(machine, name)):
             yield from wrong(where, item, bodies)
     placed: list[tuple[str, Any]] = [
-        one
+        pair
         for table in part_kinds(type(machine))
-        for one in numbered(table, getattr(machine, table))
+        for pair in numbered(table, getattr(machine, table))
     ]
     for where, item in placed:
         yield from item.problems(where, bodies)
@@ -58,8 +58,8 @@ def problems_of(machine: Any) -> Iterator[ModelError]:
         yield from item.problems(where, bodies)
     for where, item in numbered("joints", machine.joints):
         yield from wrong_joint(where, item, ("joints", *coupling_kinds(type(machine))))
-    sliders = [one.name for one in machine.sliders]
-    joints = [(where, one) for where, one in placed if isinstance(one, JointKind)]
+    sliders = [slider.name for slider in machine.sliders]
+    joints = [(where, item) for where, item in placed if isinstance(item, JointKind)]
     yield from wrong_names(joints, bodies, sliders)
     for where, item in numbered("drives", machine.drives):
         yield from wrong_further(where, item, bodies, sliders)
