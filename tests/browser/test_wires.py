@@ -11,18 +11,17 @@ import equipoise as eq
 from browser.live import LONGEST, Live
 
 NAME = "balance-crank"
+pytestmark = pytest.mark.parametrize("address", ["socket", "worker"], indirect=True)
 
 
-@pytest.fixture(params=["socket", "worker"])
-def wired(request: pytest.FixtureRequest, browser: Browser) -> Iterator[Live]:
+@pytest.fixture
+def wired(browser: Browser, address: str) -> Iterator[Live]:
     """The page with a machine, over a wire of each kind."""
-    fixture = {"socket": "address", "worker": "host"}[request.param]
-    address: str = request.getfixturevalue(fixture)
     context = browser.new_context(viewport={"width": 1280, "height": 900}, reduced_motion="reduce")
     context.set_default_timeout(LONGEST * 1000)
     page, wrong = context.new_page(), list[str]()
     page.on("pageerror", lambda error: wrong.append(str(error)))
-    page.goto(f"{address}#example={NAME}")
+    page.goto(f"{address.partition('#')[0]}#example={NAME}")
     expect(example(page)).to_have_value(NAME, timeout=LONGEST * 1000)
     live = Live(page)
     live.settled()
