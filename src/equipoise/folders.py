@@ -21,6 +21,16 @@ RELATIVE = {os.open, os.mkdir, os.unlink, os.rename, os.stat, os.rmdir} <= os.su
 _BINARY = getattr(os, "O_BINARY", 0)
 _WAY = getattr(os, "O_PATH", os.O_RDONLY)
 """How a folder on the way is opened: with O_PATH it need not be readable, only passable."""
+NOWHERE = "the current folder does not exist any more"
+
+
+def is_nowhere() -> bool:
+    """Whether the current folder was deleted."""
+    try:
+        os.getcwd()
+    except OSError:
+        return True
+    return False
 
 
 class LinkError(OSError):

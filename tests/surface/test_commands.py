@@ -622,6 +622,17 @@ def test_a_file_in_a_current_folder_that_was_deleted(
     assert "cannot be written (the current folder does not exist any more)" in said
 
 
+@pytest.mark.skipif(os.name != "posix", reason="a folder in use cannot be deleted elsewhere")
+def test_a_store_in_a_current_folder_that_was_deleted(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (folder := tmp_path / "gone").mkdir()
+    monkeypatch.chdir(folder)
+    folder.rmdir()
+    said = refused(process("sweep", "study-of-lengths", "-o", "new.zarr"))
+    assert "the store cannot be made (the current folder does not exist any more)" in said
+
+
 def test_other_mishaps_with_files_name_the_file(monkeypatch: pytest.MonkeyPatch) -> None:
     """Those of which no command says itself what they are; standard output has no name."""
     gone = Path("gone") / "x"

@@ -162,7 +162,7 @@ def check_repeated(words: Sequence[str]) -> None:
 
 def _mishap(error: OSError) -> Note:
     """What the system has refused, where nobody nearer to it says so."""
-    from equipoise.schema.files import is_nowhere
+    from equipoise.folders import is_nowhere
 
     if isinstance(error, FileNotFoundError) and is_nowhere():
         return Note(

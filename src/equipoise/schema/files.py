@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from equipoise.errors import UsageError, at_place
 from equipoise.fence import OutsideError, holding, may_be_replaced, open_file
+from equipoise.folders import NOWHERE, is_nowhere
 from equipoise.i18n import Note
 from equipoise.partial import made, replaced
 from equipoise.quantities import column_heading
@@ -168,19 +169,10 @@ def printable(path: Name) -> str:
 def reason(error: Exception) -> str:
     """Say briefly why the system refused."""
     if isinstance(error, FileNotFoundError) and is_nowhere():
-        return "the current folder does not exist any more"
+        return NOWHERE
     if isinstance(error, OSError) and error.strerror:
         return error.strerror.lower()
     return str(error).lower()
-
-
-def is_nowhere() -> bool:
-    """Whether the current folder was deleted."""
-    try:
-        os.getcwd()
-    except OSError:
-        return True
-    return False
 
 
 # -- results ---------------------------------------------------------------------------------------

@@ -31,7 +31,7 @@ import equipoise
 from equipoise.codegen.figures import COMPUTED
 from equipoise.errors import UsageError, at_place, needed
 from equipoise.fence import OutsideError, open_folder
-from equipoise.folders import Folder, LinkError
+from equipoise.folders import NOWHERE, Folder, LinkError, is_nowhere
 from equipoise.i18n import Note, worded
 from equipoise.partial import locked
 from equipoise.results.result import Result
@@ -442,6 +442,8 @@ LONGEST = 200
 
 def brief(error: Exception) -> str:
     """Say briefly what went wrong."""
+    if isinstance(error, FileNotFoundError) and is_nowhere():
+        return NOWHERE
     said = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
     line = said.splitlines()[0].rstrip(".") if said else type(error).__name__
     return line[:1].lower() + line[1:LONGEST]
