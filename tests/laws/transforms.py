@@ -407,7 +407,8 @@ def in_units(thing: Any, units: Units, machine: eq.Machine | None = None) -> Any
         factors["values"] = units.force if len(thing.values) == 2 else units.moment
     if isinstance(thing, Limit) and thing.at_most is not None:
         assert machine is not None
-        factors["at_most"] = units.of(SI[quantity_of(thing.objective, machine) or "energy"])
+        factor = units.of(SI[quantity_of(thing.objective, machine) or "energy"])
+        return replace(thing, **{key: grown(value, factor) for key, value in thing.asks})
     changes = {
         name: grown(value, factors[name])
         if name in factors

@@ -598,6 +598,11 @@ def _rubbing(chance: random.Random, document: Document) -> None:
         if "friction" in part and chance.random() < 0.4:
             part |= {"static_friction": 0.3 + part["friction"], "stribeck_speed": "5 mm/s"}
         document["joints"] = [*document.get("joints", ()), part]
+    meshes = [f"{kind}.{' to '.join(one['between'])}" for kind in ("gears", "belts")
+              for one in document.get(kind, ()) if "shape" not in one]  # fmt: skip
+    if meshes and len(held) % 3 == 0:  # no further chance is taken, so that other parts stay
+        loss: Document = {"joint": meshes[0], "mesh_loss": 0.02}
+        document["joints"] = [*document.get("joints", ()), loss]
 
 
 def _carried(chance: random.Random, document: Document) -> None:

@@ -115,9 +115,9 @@ REFUSED = {
         "study.toml": (
             "study.toml: vary[1]: links.coupler.points.C.x has a range or a list, which is no tol"
         ),
-        "tolerances.toml --designs 10": "--designs: got 10; to tell 3 tolerances apart",
+        "tolerances.toml --designs 10": "--designs: got 10; for 3 tolerances",
         "tolerances.toml --designs x": "--designs: got 'x'; give a whole number from",
-        "few.toml": "few.toml: sampling.designs: got 10; to tell 3 tolerances apart give ",
+        "few.toml": "few.toml: sampling.designs: got 10; for 3 tolerances give ",
         "yamashita-1": "yamashita-1.toml: this is a model file; give a study file",
         "none.toml": "none.toml: there is no such file",
     },

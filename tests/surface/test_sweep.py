@@ -270,7 +270,7 @@ REFUSED = {
         "lengths.zarr": "--out: missing; give the name of a file",
         "lengths.zarr -o x.txt": "--out: got 'x.txt'; give the name of a",
         "lengths.zarr -o no/x.csv": "--out: no/x.csv: there is no su",
-        "x -o x.csv": "x: there is no such store; make it by: eq",
+        "x -o x.csv": "x: there is no such file; give a path",
     },
 }
 

@@ -186,9 +186,13 @@ def all_of(parts: Sequence[Note | str], commas: bool = False) -> Note | str:
     return Note("{first} and {last}", first=_in_halves(template, first), last=last)
 
 
-def any_of(parts: Sequence[Note | str]) -> Note | str:
-    """Parts of a sentence with "or" between all of them."""
-    return _in_halves(to_say("{first} or {last}"), parts) if parts else ""
+def any_of(parts: Sequence[Note | str], commas: bool = False) -> Note | str:
+    """Parts of a sentence with "or" between the last two; commas, or "or" between the others."""
+    *first, last = parts or [""]
+    if not first:
+        return last
+    template = to_say("{first}, {last}") if commas else to_say("{first} or {last}")
+    return Note("{first} or {last}", first=_in_halves(template, first), last=last)
 
 
 def series(parts: Sequence[Note | str]) -> Note | str:

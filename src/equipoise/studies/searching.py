@@ -20,6 +20,7 @@ from equipoise.codegen.figures import COMPUTED, NO_ASSEMBLY, NO_FULL_TURN, NO_MA
 from equipoise.design.solvers import DesignProblem, solve
 from equipoise.design.spreads import Choices, Range
 from equipoise.errors import ModelError, UsageError
+from equipoise.i18n import Note
 from equipoise.keys.requirement_kinds import Make
 from equipoise.results.result import Result
 from equipoise.studies.evaluate import pooled
@@ -42,7 +43,6 @@ from equipoise.studies.study import Study
 
 if TYPE_CHECKING:
     from equipoise.handheld.model import Tool
-    from equipoise.i18n import Note
     from equipoise.mechanism.parts.machine import Machine
 
 Array = np.ndarray[Any, Any]

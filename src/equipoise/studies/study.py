@@ -389,7 +389,7 @@ def _wrong_output(where: str, output: Output, kind: str) -> Iterator[ModelError]
             if kind == "tool"
             else "got {of!r}, but the model is a linkage; give {right}",
             of=output.of,
-            right=any_of(names),
+            right=any_of(names, commas=True),
         )
         yield ModelError(f"{where}.of", note)
     for key, given, right in output.wrong_asks():

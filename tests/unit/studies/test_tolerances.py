@@ -153,7 +153,7 @@ def test_what_is_no_tolerance(spread: Range | Choices) -> None:
 
 
 def test_too_few() -> None:
-    sentence = "sampling.designs: got 300; to tell 3 tolerances apart give 352 or more"
+    sentence = "sampling.designs: got 300; for 3 tolerances give 352 or more"
     with pytest.raises(ModelError, match=f"^{re.escape(sentence)}$"):
         tolerance(given(300), compute=formulas)
     assert tolerance(given(352), compute=formulas).rows == 32
