@@ -1,6 +1,7 @@
 """How much memory may be used: a limit that can be raised, and a sentence where it is too little.
 
-``EQUIPOISE_MEMORY`` in the environment raises it, such as ``EQUIPOISE_MEMORY="8 GB"``.
+``EQUIPOISE_MEMORY`` in the environment raises it, such as ``EQUIPOISE_MEMORY="8 GB"``, and
+``EQUIPOISE_OUTPUTS`` how many outputs a study may have.
 """
 
 from __future__ import annotations
@@ -19,6 +20,10 @@ USUAL = 2 * 2**30
 """bytes: what a laptop can spare beside everything else."""
 THREAD = 16 * 2**20
 """bytes that a thread of a library takes for itself, one a processor."""
+OUTPUTS, USUAL_OUTPUTS = "EQUIPOISE_OUTPUTS", 1000
+"""Outputs of a study: each is an array of the store, which takes some 7 ms to begin."""
+DIGITS = 9
+"""Of a number of outputs."""
 UNITS = {"": 1, "k": 10**3, "m": 10**6, "g": 10**9, "t": 10**12}
 BINARY = {"": 1, "k": 2**10, "m": 2**20, "g": 2**30, "t": 2**40}
 
@@ -47,6 +52,25 @@ def memory_limit() -> int:
             )
         )
     return int(size)
+
+
+def most_outputs() -> int:
+    """Outputs that one study may have.
+
+    Raises
+    ------
+    UsageError : the variable of the environment is no whole number above 0.
+    """
+    text = os.environ.get(OUTPUTS, "").strip() or str(USUAL_OUTPUTS)
+    if not (text.isascii() and text.isdigit() and len(text) <= DIGITS and int(text)):
+        raise UsageError(
+            Note(
+                "{variable}: got {text!r}; give how many outputs a study may have, such as 5000",
+                variable=OUTPUTS,
+                text=text,
+            )
+        )
+    return int(text)
 
 
 def limit_process() -> None:

@@ -163,6 +163,24 @@ def test_an_option_that_is_repeated_ten_thousand_times() -> None:
     assert "--output: given 10000 times; give it 200 times at most" in told
 
 
+def test_a_study_of_more_outputs_than_usual(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The limit is told with what raises it, which it then does."""
+    text = example_text("study-of-lengths").partition("[[outputs]]")[0]
+    text += "".join(
+        f'[[outputs]]\nname = "o{k}"\nvalue = "shaking_force.peak"\n' for k in range(1001)
+    )
+    (folder / "many.toml").write_text(text, encoding="utf-8")
+    told = refused(equipoise("check", "many.toml"))
+    assert "outputs: got 1001; at most 1000 are computed" in told
+    (setting,) = re.findall(r"EQUIPOISE_OUTPUTS=\d+", told)
+    monkeypatch.setenv(*setting.split("="))
+    assert equipoise("check", "many.toml").status == 0
+    monkeypatch.setenv("EQUIPOISE_OUTPUTS", "many")
+    assert "EQUIPOISE_OUTPUTS: got 'many'; give how many" in refused(
+        equipoise("check", "many.toml")
+    )
+
+
 def test_a_spline_of_very_many_points(folder: Path) -> None:
     drawing = ezdxf.new()
     angles = np.linspace(0, 6, 20_000)

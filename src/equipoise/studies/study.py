@@ -14,6 +14,7 @@ from equipoise.design.spreads import KEYS, SPREADS, Choices, Range
 from equipoise.design.variables import Variable
 from equipoise.errors import ModelError, UsageError, at_place
 from equipoise.i18n import Note, any_of, worded
+from equipoise.limits import OUTPUTS, most_outputs
 from equipoise.mechanism.checks import unknown, wrong_text
 from equipoise.studies.design_space import COMMANDS, METHODS, Correlation, Model, Output, Sampling
 
@@ -23,7 +24,7 @@ CHUNK, SLOW_CHUNK = 65_536, 256
 """Designs that are computed and stored together: of analyses, and of whatever takes longer."""
 MOST_DESIGNS = 1_000_000_000
 """Some days of computing where a design takes a microsecond."""
-MOST_VARIED, MOST_OUTPUTS, MOST_CHUNK, MOST_SEED = 1000, 1000, 10_000_000, 2**32 - 1
+MOST_VARIED, MOST_CHUNK, MOST_SEED = 1000, 10_000_000, 2**32 - 1
 """Numbers that vary, outputs, designs of a chunk and seeds, each far beyond any use."""
 ANGLES, TOLERANCE = (8, 65_536), (1e-12, 0.1)
 """Fewest and most crank angles in a turn; least and largest tolerance of the figures."""
@@ -343,13 +344,15 @@ def _wrong_outputs(study: Study) -> Iterator[ModelError]:
     outputs = study.outputs
     if not outputs:
         yield ModelError("outputs", Note("there is none; give at least one [[outputs]]"))
-    if len(outputs) > MOST_OUTPUTS:
+    if len(outputs) > (most := most_outputs()):
         yield ModelError(
             "outputs",
             Note(
-                "got {count}; at most {most_outputs} are computed",
+                "got {count}; at most {most} are computed, unless {variable}={count} is set in the "
+                "environment",
                 count=len(outputs),
-                most_outputs=MOST_OUTPUTS,
+                most=most,
+                variable=OUTPUTS,
             ),
         )
     taken = {
