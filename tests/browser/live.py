@@ -22,7 +22,7 @@ TWO_FRAMES = "new Promise(done => requestAnimationFrame(() => requestAnimationFr
 LONGEST = 60
 """s that an answer may take on a processor that others keep busy."""
 OVER_A_SOCKET = pytest.mark.parametrize("address", ["socket"], indirect=True)
-"""Of a test that looks at the line between page and server, or breaks it."""
+"""Of a test of the line between page and server, or of what a worker loads from elsewhere."""
 NUMBER = re.compile(r"[-−]?\d+(?:\.\d+)?")
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from playwright.sync_api import expect
 
 import equipoise as eq
-from browser.live import Live
+from browser.live import OVER_A_SOCKET, Live
 from surface.running import example_text
 
 PICKED = {
@@ -64,7 +64,7 @@ def test_what_is_no_machine_is_refused_with_a_sentence(live: Live) -> None:
     assert live.machine() == eq.load("yamashita-1")
 
 
-def test_signals_and_report_are_given_as_files(live: Live) -> None:
+def test_signals_are_given_as_a_file(live: Live) -> None:
     name, text = live.download("Download CSV")
     assert name.endswith(".csv")
     rows = list(csv.reader(io.StringIO(text)))
@@ -72,6 +72,10 @@ def test_signals_and_report_are_given_as_files(live: Live) -> None:
     column = next(n for n, head in enumerate(rows[0]) if head.startswith("shaking_force.x"))
     read = np.array([float(row[column]) for row in rows[1:]])
     np.testing.assert_allclose(read, force.x, rtol=1e-9, atol=1e-9)
+
+
+@OVER_A_SOCKET
+def test_a_report_is_given_as_a_file(live: Live) -> None:
     name, text = live.download("Download report")
     assert name.endswith(".html")
     assert eq.load("yamashita-1").title in text

@@ -64,7 +64,8 @@ def bomb(letter: bytes) -> str:
 
 def link_of(address: str, model: str, name: str = "mine.toml", **more: str) -> str:
     """A link that holds a model; more : further parts, packed."""
-    return f"{address}#{urlencode({'name': name, 'model': packed(model.encode()), **more})}"
+    page, _, _ = address.partition("#")
+    return f"{page}#{urlencode({'name': name, 'model': packed(model.encode()), **more})}"
 
 
 def most_memory() -> int:
