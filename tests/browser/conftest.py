@@ -113,6 +113,15 @@ def new_page(
     assert not wrong
 
 
+@pytest.fixture(scope="module")
+def context(browser: Browser) -> Iterator[BrowserContext]:
+    """One reader of a module's tests, whose browser keeps what it has loaded."""
+    context = browser.new_context(viewport={"width": 1280, "height": 900}, reduced_motion="reduce")
+    context.set_default_timeout(LONGEST * 1000)
+    yield context
+    context.close()
+
+
 @pytest.fixture
 def free_page(browser: Browser, address: str) -> Iterator[Page]:
     """A page that may go to servers of its own test."""

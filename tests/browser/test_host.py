@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import Browser, BrowserContext, Page, expect
+from playwright.sync_api import BrowserContext, Page, expect
 
 from browser.live import LONGEST, Live
 from equipoise.errors import UsageError
@@ -16,15 +15,6 @@ from support.host import RUNTIME, WHEELS
 
 MOST = 12e6
 """Bytes of the first load, compressed."""
-
-
-@pytest.fixture(scope="module")
-def context(browser: Browser) -> Iterator[BrowserContext]:
-    """One reader, whose browser keeps what it has loaded."""
-    context = browser.new_context(viewport={"width": 1280, "height": 900}, reduced_motion="reduce")
-    context.set_default_timeout(LONGEST * 1000)
-    yield context
-    context.close()
 
 
 def opened(page: Page, address: str, name: str) -> Live:

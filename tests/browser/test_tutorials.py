@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import Browser, BrowserContext, Page, expect
+from playwright.sync_api import BrowserContext, Page, expect
 
 from browser.live import LONGEST, Live
 from equipoise.web.site import write_site
@@ -25,15 +25,6 @@ def beside(site: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[str
     write_site(folder, RUNTIME, WHEELS, docs=site)
     with hosting(folder) as address:
         yield address
-
-
-@pytest.fixture(scope="module")
-def context(browser: Browser) -> Iterator[BrowserContext]:
-    """A reader without a network beyond the site."""
-    context = browser.new_context(viewport={"width": 1280, "height": 900}, reduced_motion="reduce")
-    context.set_default_timeout(LONGEST * 1000)
-    yield context
-    context.close()
 
 
 def test_a_cell_is_changed_and_run_in_the_page(context: BrowserContext, beside: str) -> None:

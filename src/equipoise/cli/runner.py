@@ -250,8 +250,8 @@ class Command:
             del given[name]
         language = next((given[option] for option, _ in _marked(marks, Spoken)), "en")
         with naming(file) if file else nullcontext(), speaking(language), outputs.showing(owner):
-            function = self.function(*bound.args, **bound.kwargs)
-        answer = function if isinstance(function, CommandResult) else CommandResult.of(function)
+            returned = self.function(*bound.args, **bound.kwargs)
+        answer = returned if isinstance(returned, CommandResult) else CommandResult.of(returned)
         owner = owner if answer.owner is None else answer.owner
         return FinishedCommand(answer, outputs, length, owner, file, language)
 

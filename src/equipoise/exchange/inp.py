@@ -12,7 +12,7 @@ from math import degrees
 
 import numpy as np
 
-from equipoise.errors import UsageError
+from equipoise.errors import ModelError, UsageError
 from equipoise.exchange.formats import Job
 from equipoise.exchange.link_loads import analysis_of, link_of
 from equipoise.i18n import Note, to_say
@@ -36,8 +36,8 @@ def made(job: Job) -> str:
     section = job.machine.links[link].section
     assert section is not None
     if section.elastic_modulus is None:
-        key = f"links.{link}.section.elastic_modulus"
-        raise UsageError(Note("{key}: missing; finite elements need it", key=key))
+        where = f"links.{link}.section.elastic_modulus"
+        raise ModelError(where, Note("missing; finite elements need it"))
     if section.stress_concentration != 1:
         job.leave_out(f"the stress concentration of {section.stress_concentration:g} by notches")
     analysis = analysis_of(job)

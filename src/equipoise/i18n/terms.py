@@ -176,12 +176,12 @@ MEANINGS = {
         "Component of the force between teeth along the pitch circles, which transmits the torque."
     ),
     "tension of the left strand {name}": to_say(
-        "Tension of the strand of a belt on the left, seen from the d"
-        "riving towards the driven pulley."
+        "Tension of the strand of a belt on the left, seen from the driving "
+        "towards the driven pulley."
     ),
     "tension of the right strand {name}": to_say(
-        "Tension of the strand of a belt on the right, seen from the "
-        "driving towards the driven pulley."
+        "Tension of the strand of a belt on the right, seen from the driving "
+        "towards the driven pulley."
     ),
     "tilting moment in joint {name}": to_say(
         "Moment in a joint of links in different planes, which tilts its pin."
