@@ -14,7 +14,11 @@ from dataclasses import replace
 import numpy as np
 
 import equipoise as eq
+from peers import optional
 from timing import in_turn, report
+
+sp = optional("sympy", "sympy")
+pin = optional("pinocchio", "pinocchio")
 
 ANGLES = 360
 MACHINE = eq.load("yamashita-1")
@@ -76,8 +80,6 @@ def free_bodies() -> Callable[[], object]:
 
 def sympy_function() -> Callable[[], object]:
     """Closed form of the four-bar by SymPy, common subexpressions taken out."""
-    import sympy as sp
-
     theta, speed = sp.symbols("theta omega", real=True)
     points = {name: link.points for name, link in MACHINE.links.items()}
     b, c, d = points["crank"]["B"][0], points["coupler"]["C"][0], points["rocker"]["C"][0]
@@ -126,8 +128,6 @@ def full_forces() -> eq.mechanism.Forces:
 
 def pinocchio_loop() -> Callable[[], object]:
     """Inverse dynamics of crank and coupler as an open chain, one crank angle after the other."""
-    import pinocchio as pin
-
     model = pin.Model()
     parent, offset = 0, 0.0
     for name in ("crank", "coupler", "rocker"):
@@ -155,7 +155,9 @@ if __name__ == "__main__":
         "equipoise, all of every link and point too": everything,
         "equipoise, analysis with joint forces": with_joint_forces,
         "equipoise, a machine seen for the first time": first_sight,
-        "sympy lambdify(cse=True)": sympy_function(),
-        "pinocchio rnea, loop": pinocchio_loop(),
     }
+    if sp is not None:
+        tasks["sympy lambdify(cse=True)"] = sympy_function()
+    if pin is not None:
+        tasks["pinocchio rnea, loop"] = pinocchio_loop()
     report(in_turn(tasks, rounds=300), "9 x 9 solve, filled in", 1e-6, "us")

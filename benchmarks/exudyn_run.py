@@ -18,13 +18,15 @@ from pathlib import Path
 
 import equipoise as eq
 from equipoise.mechanism import Motor
+from peers import required
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 
-import exudyn
-from exudyn import itemInterface as item
+with required("exudyn"):
+    import exudyn
+    from exudyn import itemInterface as item
 
-from support.exudyn_model import CRANK, MACHINE, TORQUE, Build, settings
+    from support.exudyn_model import CRANK, MACHINE, TORQUE, Build, settings
 
 DURATION, WANTED, ROUNDS = 1.0, 1e-7, 5
 

@@ -33,19 +33,15 @@ import numpy as np
 
 import equipoise as eq
 from equipoise.mechanism.parts.balance import Balance, Objective
+from peers import required
 from timing import in_turn
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 
-try:
+with required("exudyn"):
     from exudyn.processing import GeneticOptimization
 
     from support.exudyn_model import MACHINE, Centers, shake
-except ModuleNotFoundError as missing:
-    if missing.name != "exudyn":
-        raise
-    print('Exudyn is not installed (pip install "exudyn>=1.13"): nothing to compare with')
-    raise SystemExit(0) from None
 
 PLANS = {
     "equipoise, steady vibration": MACHINE.balance,

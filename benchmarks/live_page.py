@@ -45,16 +45,19 @@ from pathlib import Path
 from statistics import median, quantiles
 from tempfile import TemporaryDirectory
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
-
-from playwright.sync_api import Browser, Page
-
-from browser.live import Live
 from equipoise import load
 from equipoise.web.edits import movable
 from equipoise.web.site import write_site
-from support.chromium import chromium, serving
-from support.host import RUNTIME, WHEELS, hosting
+from peers import required
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
+
+with required("playwright"):
+    from playwright.sync_api import Browser, Page
+
+    from browser.live import Live
+    from support.chromium import chromium, path_of_chromium, serving
+    from support.host import RUNTIME, WHEELS, hosting
 
 NAMES = "yamashita-1", "yamashita-rig", "class-three"
 INPUTS = 150
@@ -160,6 +163,9 @@ def timed_in_worker(browser: Browser, names: Sequence[str]) -> bool:
 
 
 def main(worker: bool, names: Sequence[str]) -> bool:
+    if path_of_chromium() is None:
+        print("Chromium is not installed, and nothing is measured without it")
+        return True
     with chromium() as browser:
         if worker:
             return timed_in_worker(browser, names or DYADS)

@@ -22,7 +22,6 @@ import numpy as np
 import c_loop
 import equipoise as eq
 import study_runs
-import sympy_four_bar
 from asked import Limit, Table, agree
 from equipoise.balancing import Objective
 from equipoise.codegen import backends
@@ -36,15 +35,12 @@ from equipoise.mechanism.parts.laws import LengthLaw, LengthSegment
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.schema.template import Template
 from equipoise.studies.objective_map import MachineVariants, SingleValues, landscape
+from peers import optional
 from study_runs import ANGLES, MACHINE, SIGNALS, VARIED, designs
 from timing import in_turn
 
-try:
-    import pinocchio_four_bar
-except ModuleNotFoundError as missing:
-    if missing.name != "pinocchio":
-        raise
-    pinocchio_four_bar = None
+sympy_four_bar = optional("sympy_four_bar", "sympy")
+pinocchio_four_bar = optional("pinocchio_four_bar", "pinocchio")
 
 WANTED = [Figure(signal, "rms") for signal in SIGNALS]
 LIKE_FOUR_BAR = (
@@ -130,14 +126,15 @@ def beside_peers(table: Table) -> None:
     right, _ = batch(values)
     tasks = {"equipoise": (lambda: batch(values), len(values))}
     few = values[:256]
-    form = sympy_four_bar.Form(MACHINE, tuple(VARIED), ANGLES)
-    for name, at_once in {
-        "SymPy, arrays that stay in cache": 8192 // ANGLES,
-        "SymPy, all designs at once": len(few),
-        "SymPy, one design at a time": 1,
-    }.items():
-        agree(name, form(few, at_once), right[: len(few)], CLOSE)
-        tasks[name] = (lambda n=at_once: form(few, n), len(few))
+    if sympy_four_bar is not None:
+        form = sympy_four_bar.Form(MACHINE, tuple(VARIED), ANGLES)
+        for name, at_once in {
+            "SymPy, arrays that stay in cache": 8192 // ANGLES,
+            "SymPy, all designs at once": len(few),
+            "SymPy, one design at a time": 1,
+        }.items():
+            agree(name, form(few, at_once), right[: len(few)], CLOSE)
+            tasks[name] = (lambda n=at_once: form(few, n), len(few))
     if pinocchio_four_bar is not None:
         tree = pinocchio_four_bar.FourBar(
             MACHINE, {"coupler": 0, "rocker": 1, "crank": 2}, {"rocker": 3}, ANGLES
@@ -157,8 +154,9 @@ def beside_peers(table: Table) -> None:
     for name in list(tasks)[1:]:
         limit = next((one for start, one in limits.items() if name.startswith(start)), None)
         table.ratio(f"{name} / equipoise", times[name], times["equipoise"], limit)
-    if pinocchio_four_bar is None:
-        table.remark("Pinocchio / equipoise", "pinocchio is not installed")
+    for peer, loaded in (("SymPy", sympy_four_bar), ("Pinocchio", pinocchio_four_bar)):
+        if loaded is None:
+            table.remark(f"{peer} / equipoise", f"{peer} is not installed")
 
 
 def other_machines(table: Table) -> None:

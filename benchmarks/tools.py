@@ -37,6 +37,7 @@ from equipoise.handheld.modes import vibrate_tool
 from equipoise.handheld.response import respond_tool
 from equipoise.handheld.studies import changed
 from equipoise.handheld.sweep import transmit
+from peers import optional
 from timing import in_turn, report
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
@@ -54,12 +55,7 @@ from support.six_stations import (
     mesh,
 )
 
-try:
-    from support import ross_shaft
-except ModuleNotFoundError as missing:
-    if missing.name != "ross":
-        raise
-    ross_shaft = None
+ross_shaft = optional("support.ross_shaft", "ross")
 
 SPEEDS = np.linspace(1000.0, 9000.0, 500) * pi / 30
 ROUGH, AGREE = {"euler-bernoulli": 1e-4, "timoshenko": 3e-3}, 2e-5
@@ -211,7 +207,6 @@ def compare(beam: Elements) -> None:
         share = difference(f"{ELEMENTS} elements, {name}, euler-bernoulli", found, first)
         demand(name, share, ROUGH[first])
     if ross_shaft is None:
-        print('ROSS is not installed (pip install "ross-rotordynamics>=2.0,<3" "plotly<7")')
         return
     for theory, power in POWERS.items():
         found = []
