@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import BrowserContext, Page, expect
+from playwright.sync_api import BrowserContext, Page, Response, expect
 
 from browser.live import LONGEST, Live
 from equipoise.errors import UsageError
@@ -14,7 +14,7 @@ from equipoise.web.site import Site, write_site
 from support.host import RUNTIME, WHEELS
 
 MOST = 12e6
-"""Bytes of the first load, compressed."""
+"""Bytes of the first load, from a host that compresses nothing."""
 
 
 def opened(page: Page, address: str, name: str) -> Live:
@@ -26,8 +26,23 @@ def opened(page: Page, address: str, name: str) -> Live:
     return live
 
 
-def test_the_first_load_is_small(hosted: Site) -> None:
+def test_the_first_load_is_small(context: BrowserContext, hosted: Site, host: str) -> None:
+    """What is announced is what is sent until a machine can be dragged."""
+    page, sent = context.new_page(), dict[str, int]()
+    context.on("response", lambda got: sent.update({got.url: size_of(got)}))
+    live = opened(page, host, "yamashita-1")
+    joint = live.joint("B")
+    before = live.place(joint)
+    live.drag(joint, (14, -9))
+    assert live.place(joint) != before
+    page.close()
+    loaded = sum(size for url, size in sent.items() if "service.js" not in url)
+    assert 0.99 * hosted.first < loaded < 1.01 * hosted.first
     assert hosted.first <= MOST
+
+
+def size_of(got: Response) -> int:
+    return int(got.headers.get("content-length", 0))
 
 
 def test_a_machine_is_changed_and_balanced_without_a_server(

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import gzip
 import hashlib
 import json
+import zipfile
 from collections.abc import Callable
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +20,17 @@ from surface.running import Result, equipoise, refused, succeeded
 SECRET = b"what nobody else may see"
 WORDS = ("site", "-o", "out", "--runtime", "runtime", "--wheels", "wheels", "--docs", "docs")
 PACKAGES = (*FIRST, *LATER)
+
+
+def wheel() -> bytes:
+    out = BytesIO()
+    with zipfile.ZipFile(out, "w") as files:
+        for name in ("numpy/__init__.py", "numpy/__init__.pyi", "numpy/tests/test_core.py"):
+            files.writestr(name, b"")
+    return out.getvalue()
+
+
+WHEEL = wheel()
 
 
 def entry(name: str, data: bytes) -> dict[str, Any]:
@@ -32,10 +46,12 @@ def given(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for name in site_module.PAGE:
         (static / name).write_bytes(b"")
     for name in RUNTIME_FILES:
-        (folder / "runtime" / name).write_bytes(name.encode())
+        content = WHEEL if name.endswith(".zip") else name.encode()
+        (folder / "runtime" / name).write_bytes(content)
     (folder / "runtime" / "package.json").write_text(json.dumps({"version": RUNTIME}))
-    (folder / "wheels" / "numpy.whl").write_bytes(b"wheel")
-    lock({name: entry(f"{name}.whl", b"wheel") for name in PACKAGES})
+    for name in ("numpy", "scipy"):
+        (folder / "wheels" / f"{name}.whl").write_bytes(WHEEL)
+    lock({name: entry(f"{name}.whl", WHEEL) for name in PACKAGES})
     (folder / "docs" / "index.html").write_text("<p>docs")
     (folder / "docs" / "part" / "page.html").write_text("<p>page")
     (folder / "secret").write_bytes(SECRET)
@@ -59,8 +75,22 @@ def wrote_nothing(result: Result) -> str:
 def test_a_site_is_written_from_them() -> None:
     succeeded(equipoise(*WORDS))
     assert Path("out/docs/part/page.html").read_text() == "<p>page"
-    assert Path("out/wheels/numpy.whl").read_bytes() == b"wheel"
+    with zipfile.ZipFile(
+        BytesIO(gzip.decompress(Path("out/wheels/numpy.whl.gzip").read_bytes()))
+    ) as numpy:
+        assert numpy.namelist() == ["numpy/__init__.py"]  # without what is for developers
+    assert Path("out/wheels/scipy.whl").read_bytes() == WHEEL
     assert Path("out/runtime", RUNTIME_FILES[0]).read_bytes() == RUNTIME_FILES[0].encode()
+    about = json.loads(Path("out/site.json").read_text())
+    assert "runtime/pyodide.asm.wasm" in about["packed"]
+    for path in about["packed"]:  # and by no name under which a host would send something else
+        assert gzip.decompress(Path("out", f"{path}.gzip").read_bytes())
+        assert not Path("out", path).exists()
+    entry = about["lock"]["packages"]["numpy"]
+    assert (
+        entry["sha256"]
+        == hashlib.sha256(Path("out", f"{entry['file_name']}.gzip").read_bytes()).hexdigest()
+    )
     succeeded(equipoise(*WORDS))  # in the place of the first
 
 
@@ -102,7 +132,7 @@ def test_no_link_is_published(folder: Path, place: str, target: str) -> None:
 def test_a_lock_file_that_names_something_else_is_refused(
     change: Callable[[dict[str, Any]], object],
 ) -> None:
-    packages: dict[str, Any] = {name: entry(f"{name}.whl", b"wheel") for name in PACKAGES}
+    packages: dict[str, Any] = {name: entry(f"{name}.whl", WHEEL) for name in PACKAGES}
     packages["numpy"]["sha256"] = hashlib.sha256(SECRET).hexdigest()
     change(packages)
     lock(packages)

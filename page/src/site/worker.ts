@@ -11,6 +11,8 @@ interface Site {
   runtime: string;
   /** Wheels of this package and of pure Python. */
   own: string[];
+  /** Files that lie there compressed, by their paths without the ending. */
+  packed: string[];
   /** Packages of the runtime that are needed from the beginning. */
   first: string[];
   /** Names, hashes and files of packages: of those that are part of the site by their path in it. */
@@ -92,8 +94,23 @@ const others = (): Promise<void> =>
     channel.port2.postMessage(0);
   });
 
+/** What is fetched from now on is unpacked where it lies there compressed, as many hosts compress nothing. */
+function unpacking(packed: string[]): void {
+  const fetchAsItIs = self.fetch.bind(self);
+  const compressed = new Set(packed.map((path) => new URL(path, base).href));
+  self.fetch = async (asked, options) => {
+    const address = new URL(asked instanceof Request ? asked.url : asked, base).href;
+    if (!compressed.has(address)) return fetchAsItIs(asked, options);
+    const reply = await fetchAsItIs(`${address}.gzip`, options);
+    if (!reply.ok || !reply.body) return reply;
+    const type = address.endsWith(".wasm") ? "application/wasm" : "application/octet-stream";
+    return new Response(reply.body.pipeThrough(new DecompressionStream("gzip")), { headers: { "Content-Type": type } });
+  };
+}
+
 async function start(kind: "worker.Foreground" | "worker.Background" | "cells.CellRunner"): Promise<[Pyodide, unknown]> {
   const site = (await (await fetch(new URL("site.json", base))).json()) as Site;
+  unpacking(site.packed);
   const runtime = new URL(site.runtime, base);
   const { loadPyodide } = (await import(new URL("pyodide.mjs", runtime).href)) as {
     loadPyodide(options: object): Promise<Pyodide>;

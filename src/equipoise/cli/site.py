@@ -50,7 +50,7 @@ def site(
         raise UsageError(
             at_place(folder, Note("the site cannot be written ({reason})", reason=reason(error)))
         ) from error
-    lines = [f"first load: {written.first / 1e6:.1f} MB, compressed"]
+    lines = [f"first load: {written.first / 1e6:.1f} MB"]
     if written.missing:
         lines += [f"loaded from elsewhere when needed: {', '.join(written.missing)}"]
     return CommandResult(lines=lambda: lines, save=lambda: [wrote(f"{folder}/index.html")])

@@ -19,7 +19,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from equipoise.errors import ModelError, UsageError, at_place
-from equipoise.handheld.model import Impedance
 from equipoise.i18n import Note, any_of
 from equipoise.keys.csv_tables import CsvTable
 from equipoise.mechanism.parts.machine import LoadTable
@@ -281,6 +280,8 @@ def parse_table(sort: str, text: str, file: str = "") -> CsvTable:
     if "magnitude" in columns:
         pairs = zip(columns["magnitude"], columns["phase"], strict=True)
         resistance, reactance = zip(*(from_polar(*pair) for pair in pairs), strict=True)
+        from equipoise.handheld.model import Impedance
+
         return Impedance(columns["frequency"], resistance, reactance, file)
     csv_table: CsvTable = TABLES[sort](*(columns[name] for name in TABLES[sort].forms[0]), file)
     return csv_table

@@ -12,11 +12,10 @@ from collections import defaultdict
 from collections.abc import Collection, Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from equipoise.design.lifts import Lift, lift_named, with_lifts
 from equipoise.errors import ModelError
-from equipoise.handheld.model import Tool
 from equipoise.i18n import Note
 from equipoise.keys import Key
 from equipoise.keys.paths import KeyPath, with_values
@@ -38,6 +37,9 @@ from equipoise.schema.numbers import FileNumber
 from equipoise.schema.opening import Kind, Opened, in_file, kind_of, model_content, opened
 from equipoise.schema.tables import TABLES
 from equipoise.schema.words import words_of
+
+if TYPE_CHECKING:
+    from equipoise.handheld.model import Tool
 
 APART = 1e-3
 """By how much of itself a number is changed to see which constraints it breaks: far more than
@@ -359,6 +361,8 @@ def _text_of(value: Any) -> str:
 
 def _without_names(tool: Machine | Tool, names: set[str]) -> Tool:
     """The tool without the names of files that do not exist."""
+    from equipoise.handheld.model import Tool
+
     assert isinstance(tool, Tool)
     excitations = (
         replace(excitation, file="") if excitation.file in names else excitation

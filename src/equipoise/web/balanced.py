@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field, replace
 from math import dist, isclose, sqrt
@@ -399,11 +399,8 @@ def adopted(
     yield from session.told(message.seq)
 
 
-def _balance(session: BalanceSession, message: Message) -> Iterator[Reply]:
+def answered(session: BalanceSession, message: Message) -> Iterator[Reply]:
+    """Balance a session's machine at once, and show what came of it."""
     base = session.current()
     yield begun(session, message)
     yield from adopted(session, base, computed(session, base, message), message)
-
-
-ASKED: dict[str, Callable[[BalanceSession, Message], Iterator[Reply]]] = {"balance": _balance}
-"""Answers to messages, by their kind."""

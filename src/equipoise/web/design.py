@@ -10,7 +10,6 @@ from math import cos, pi, sin
 from types import MappingProxyType
 from typing import Any
 
-from equipoise.balancing.room import reach_of
 from equipoise.errors import UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism.parts.links import MASS_FIELDS
@@ -147,6 +146,8 @@ def place_of_pin(machine: Machine, link: str) -> complex:
 
 def _opposite(machine: Machine, link: str) -> Counterweight:
     """No mass yet, as far from the pin as the link reaches, opposite to its centre of mass."""
+    from equipoise.balancing.room import reach_of
+
     body, pin = machine.links[link], place_of_pin(machine, link)
     away = pin - complex(*(body.center_of_mass or (pin.real, pin.imag)))
     return Counterweight(0.0, reach_of(machine, link), phase(away) if away else pi)

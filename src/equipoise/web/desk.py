@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, ExitStack
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from equipoise.errors import EquipoiseError, UsageError
 from equipoise.i18n import Note, speaking
@@ -15,17 +16,18 @@ from equipoise.mechanism.parts.shown_units import units_of
 from equipoise.quantities import showing_by_default
 from equipoise.schema.files import printable
 from equipoise.schema.opening import kind_of_text, opened
-from equipoise.schema.template import Template
 from equipoise.web.design import Design
 from equipoise.web.disk import on_disk
 from equipoise.web.edits import solved
 from equipoise.web.messages import Message
-from equipoise.web.openings import opened_file
+from equipoise.web.openings import opened_file, wants_tool
 from equipoise.web.replies import Reply, refused
 from equipoise.web.seen import NO_STORE
 from equipoise.web.session import Session
-from equipoise.web.stores import StoreDesk, is_store, stores_in
-from equipoise.web.tools import ToolDesk, tool_asked, tool_of_file
+
+if TYPE_CHECKING:
+    from equipoise.web.stores import StoreDesk
+    from equipoise.web.tools import ToolDesk
 
 ALWAYS = ("speak", "gallery")
 """What has nothing to do with what is open."""
@@ -94,7 +96,7 @@ class Desk:
     def _turn_to(self, message: Message) -> None:
         """Open what a message wants to be open."""
         if message.kind == "open":
-            self.tool, self.studied = tool_asked(message, self.session.disk), False
+            self.tool, self.studied = self._tool_asked(message), False
         if message.kind not in ("study", "design"):
             return
         self.store = self._store_of(message.optional("store"))
@@ -107,17 +109,32 @@ class Desk:
             self.session.open(Design(name, model))
             self.tool = None
         else:
+            from equipoise.schema.template import Template
+            from equipoise.web.tools import ToolDesk
+
             self.tool = ToolDesk.of(name, Template.of(model))
         self.session.disk, self.studied = None, False
 
+    def _tool_asked(self, message: Message) -> ToolDesk | None:
+        """The tool that is to be opened, if any."""
+        if not wants_tool(message):
+            return None
+        from equipoise.web.tools import tool_asked
+
+        return tool_asked(message, self.session.disk)
+
     def _stores(self, message: Message) -> Reply:
         """Stores that the page may open."""
+        from equipoise.web.stores import stores_in
+
         names = [] if self.folder is None else stores_in(self.folder)
         folder = None if self.folder is None else printable(self.folder.name)
         return Reply({"type": "stores", "seq": message.seq, "folder": folder, "names": names})
 
     def _store_of(self, name: str | None) -> StoreDesk:
         """The store that is open, or another one of the folder, by nothing but its name there."""
+        from equipoise.web.stores import StoreDesk, stores_in
+
         if self.store is not None and name in (None, self.store.name):
             return self.store
         if name is None or self.folder is None:
@@ -170,6 +187,9 @@ def begun(file: str | None) -> Callable[[], Desk]:
     ------
     EquipoiseError : what is in the file cannot be computed.
     """
+    from equipoise.web.stores import StoreDesk, is_store
+    from equipoise.web.tools import tool_of_file
+
     there = file is not None and os.path.exists(file)
     folder = Path(os.path.abspath(file)).parent if there and file else Path.cwd()
     if file is None:

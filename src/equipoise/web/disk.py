@@ -7,10 +7,9 @@ import re
 from dataclasses import dataclass, field, replace
 from hashlib import sha256
 from threading import Lock
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from equipoise.errors import EquipoiseError, UsageError
-from equipoise.handheld.model import Tool
 from equipoise.i18n import Note, to_say
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.schema.documents import dumps, load
@@ -19,7 +18,9 @@ from equipoise.schema.models import Beside, parts_of
 from equipoise.web.design import Design
 from equipoise.web.edits import solved
 from equipoise.web.replies import Reply
-from equipoise.web.tool_state import ToolFigures
+
+if TYPE_CHECKING:
+    from equipoise.handheld.model import Tool
 
 NOT_OF_FILE = to_say("{name} was not opened from a file; download the model instead")
 COMMENT = re.compile(r"^\s*#|\s#\s", re.MULTILINE)
@@ -76,6 +77,8 @@ class Disk:
             if isinstance(model, Machine):
                 solved(Design(self.name, model))
             else:
+                from equipoise.web.tool_state import ToolFigures
+
                 _ = ToolFigures(model).whole
         except EquipoiseError:
             return replace(self)

@@ -13,6 +13,7 @@ from equipoise.schema.files import printable
 from equipoise.schema.models import Held, load_linkage, loads_linkage, machine_of
 from equipoise.schema.opening import content_of, examples, in_file, kind_of_text, opened
 from equipoise.web.design import Design
+from equipoise.web.messages import Message
 
 NO_FILES: Mapping[str, str] = MappingProxyType({})
 NO_TABLES: Mapping[tuple[str, str], Any] = MappingProxyType({})
@@ -63,3 +64,10 @@ def opened_text(
     with in_file(shown):
         content = content_of(text.removeprefix("\ufeff"), "linkage")
         return Design(shown, machine_of(content, Held(tables, files)))
+
+
+def wants_tool(message: Message) -> bool:
+    """Whether a message of the kind `open` wants a tool, rather than a machine."""
+    if "example" in message.values:
+        return message.text("example") in tool_titles()
+    return not message.flag("new", False) and kind_of_text(message.text("text")) == "tool"

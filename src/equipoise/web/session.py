@@ -20,7 +20,7 @@ from equipoise.quantities import display_rules, showing_by_default
 from equipoise.results.own_words import words_of
 from equipoise.schema.files import LARGEST
 from equipoise.schema.template import named_parts
-from equipoise.web import balanced, entering, kept
+from equipoise.web import entering, kept
 from equipoise.web.block import Values
 from equipoise.web.design import Design
 from equipoise.web.disk import Disk
@@ -81,7 +81,7 @@ class Session:
         """Answer a message; what takes long comes last, and may be left unasked."""
         good = self.history, self.found, self.preview
         try:
-            for asked in (kept.ASKED, entering.ASKED, balanced.ASKED, ASKED):
+            for asked in (kept.ASKED, entering.ASKED, ASKED):
                 if message.kind in asked:
                     yield from asked[message.kind](self, message)
                     return
@@ -89,7 +89,7 @@ class Session:
         except EquipoiseError as error:
             yield refused(message.seq, error, self.language)
         except Exception:  # a mistake of the program; what cannot be told must not stay
-            if message.kind not in balanced.ASKED:  # beside which other steps are made
+            if message.kind != "balance":  # beside which other steps are made
                 self.history, self.found, self.preview = good
             raise
 
@@ -100,6 +100,11 @@ class Session:
         self.response_told = None, None  # a page that begins has nothing
         if self.found is not None:
             yield from self.told(message.seq)
+
+    def _balance(self, message: Message) -> Iterator[Reply]:
+        from equipoise.web import balanced
+
+        yield from balanced.answered(self, message)
 
     def _speak(self, message: Message) -> Iterator[Reply]:
         self.language = language_of(message.names("languages", MOST_LANGUAGES))

@@ -6,13 +6,10 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import Field, dataclass
 from functools import partial, wraps
 from math import isfinite
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 from weakref import WeakKeyDictionary
 
 from equipoise.errors import EquipoiseError
-from equipoise.figures import render
-from equipoise.figures.side import side
-from equipoise.figures.swing import ModeSwing, swinging
 from equipoise.i18n import said, say, to_say
 from equipoise.mechanism.dynamics.forces import massless
 from equipoise.mechanism.kinematics.stroke_figures import declared_figures, dimension_of
@@ -20,21 +17,18 @@ from equipoise.mechanism.outputs.declared import DECLARED
 from equipoise.mechanism.outputs.spoken import joint_named
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.support import FREEDOMS, PLANAR
-from equipoise.planting.blocks import cell
-from equipoise.planting.names import FIGURES, figure_named, of_all_arms
-from equipoise.planting.summary import PlantingFigures, plant
 from equipoise.quantities import Dimension, display
 from equipoise.results.analysis import Analysis
 from equipoise.results.named_figures import figures_by_name
 from equipoise.symbols.scene import Scene
-from equipoise.vibration.forced import respond
-from equipoise.vibration.resonance import around
-from equipoise.vibration.response import Response
-from equipoise.vibration.sampling import COARSE
-from equipoise.vibration.sweep import Sweep, sweep_speed
 from equipoise.web.block import FloatBlock
 from equipoise.web.edits import Computed
 from equipoise.web.figures import chart, gauge_choice, text_of, was_of
+
+if TYPE_CHECKING:
+    from equipoise.planting.summary import PlantingFigures
+    from equipoise.vibration.response import Response
+    from equipoise.vibration.sweep import Sweep
 
 Values = dict[str, Any]
 R = TypeVar("R")
@@ -63,12 +57,18 @@ def kept_with_design(make: Callable[..., R]) -> Callable[..., R]:
 @kept_with_design
 def responded(shown: Computed) -> Response:
     """The response of a design at its own speed, with the errors of `respond`."""
+    from equipoise.vibration.forced import respond
+
     return respond(shown.analysis.machine)
 
 
 @kept_with_design
 def _curves(shown: Computed, speed: float, progress: Callable[[int, int], None]) -> Sweep:
     """The response of a design over speeds around one, rad/s."""
+    from equipoise.vibration.resonance import around
+    from equipoise.vibration.sampling import COARSE
+    from equipoise.vibration.sweep import sweep_speed
+
     ends = around(shown.analysis.machine.drive, speed)
     return sweep_speed(shown.analysis.machine, *ends, speeds=COARSE, progress=progress)
 
@@ -129,6 +129,8 @@ def _told(shown: Computed, found: Response, block: FloatBlock) -> Values:
         block.add(array, gauge.displacement.samples(count))
         label = say("response of {gauge}", gauge=_spoken(name))
         choices.append(gauge_choice(name, label, gauge.rotation, array))
+    from equipoise.figures.swing import swinging
+
     charts = [chart("response", choices, chooser=say("Response of"))]
     notes = list(map(said, found.notes))
     swing = _swing(swinging(shown.scene, found), block)
@@ -153,6 +155,8 @@ def _modes(scene: Scene, found: Response) -> Iterator[Values]:
 
     shape : real and imaginary parts of its displacements along x and y (m) and of its rotation.
     """
+    from equipoise.figures.swing import ModeSwing
+
     support = found.machine.support
     assert support is not None
     for number, mode in enumerate(found.modes, 1):
@@ -181,6 +185,9 @@ def more(
     outdated : tells when the design is no longer shown, so that the rest is not wanted.
     """
     if found.analysis.machine.has_planes and not outdated():
+        from equipoise.figures import render
+        from equipoise.figures.side import side
+
         yield {"type": "side", "svg": render(side(found.analysis)).decode()}, b""
     # Where there are none any more, such as losses of friction, the page hides those that it has.
     if not outdated():
@@ -331,6 +338,8 @@ def _plants(found: Computed) -> bool:
 @kept_with_design
 def planted(shown: Computed) -> PlantingFigures:
     """What a design plants, with the errors of `plant`."""
+    from equipoise.planting.summary import plant
+
     return plant(shown.analysis.machine)
 
 
@@ -338,6 +347,9 @@ def _planted(found: Computed) -> _Figures:
     """Figures of the tip's path; none of a machine that has no planting finger."""
     if not _plants(found):
         return {}
+    from equipoise.planting.blocks import cell
+    from equipoise.planting.names import FIGURES, figure_named, of_all_arms
+
     figures = planted(found).figures
     return {
         name: _Told(figure_named(name), float(figures[name]), text.dimension, text.unit)

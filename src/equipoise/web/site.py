@@ -5,10 +5,14 @@ worker.js service.js site.json           Python in a worker; what is kept for us
 runtime/                                 Python in WebAssembly (Pyodide)
 wheels/                                  this package, and those that it needs
 docs/                                    the documentation, where it is given
+
+Many hosts compress nothing, so most of what is loaded first lies there as `NAME.gzip`, and the
+worker unpacks it.
 """
 
 from __future__ import annotations
 
+import gzip
 import hashlib
 import json
 import os
@@ -17,7 +21,7 @@ import shutil
 import stat
 import tempfile
 import zipfile
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from importlib.metadata import Distribution, distribution
 from io import BytesIO
@@ -34,16 +38,26 @@ from equipoise.web.documents import document
 RUNTIME = "314.0.3"
 """Version of the npm package `pyodide` that the page was tried with."""
 RUNTIME_FILES = ("pyodide.mjs", "pyodide.asm.mjs", "pyodide.asm.wasm", "python_stdlib.zip")
+SCRIPT = ".mjs"
+"""Ending of what browsers load by themselves, so that it cannot lie there compressed."""
+PACKED = ".gzip"
+"""Ending of compressed files, which no host takes for a way of sending the file itself."""
 LOCK = "pyodide-lock.json"
 FIRST = ("numpy",)
 """Packages of the runtime without which no machine can be opened."""
 LATER = ("scipy", "clarabel", "matplotlib", "jinja2")
 """Those that are loaded when something needs them: balances and modes, pictures, reports."""
+UNUSED = re.compile(
+    r"\.(pyi|h|a|pc|ini|in|pxd|pyx)$|/tests/|/f2py/|/_pyinstaller/|/include/|/_examples/"
+)
+"""Files of wheels that are for who compiles against a package, checks its types or tests it."""
 COMMAND = "equipoise_command.py"
 """The module of the package that stands beside it."""
 PURE = ("lazy-loader", "tomli-w")
 """Packages of pure Python that are imported from the beginning, besides this one."""
 PAGE = ("equipoise.js", "equipoise.css", "worker.js", "service.js", "THIRD-PARTY.txt")
+ALWAYS = (*PAGE[:3], "site.json")
+"""Those that every reader loads at once, besides what lies there compressed."""
 GIVEN = ("words.json", "interactive.js", "interactive.css")
 """Files of the page that Python hands out: in its language, and as an interactive page."""
 EPOCH = (1980, 1, 1, 0, 0, 0)
@@ -64,7 +78,7 @@ BODY = """<p id="equipoise-status" role="status">Loading {size:.0f} MB, kept for
 class Site:
     """What has been written.
 
-    folder : where it stands.  first : bytes of the first load, compressed as web hosts do.
+    folder : where it stands.  first : bytes of the first load from a host that compresses nothing.
     missing : packages that come from where the runtime's packages are published when they are
         needed, since no wheel of them was given.
     """
@@ -97,8 +111,7 @@ def write_site(
     """
     target, source = Path(os.path.abspath(folder)), Path(runtime)
     lock, about_runtime = _lock_of(source)
-    packages, local = _packages(lock, None if wheels is None else Path(wheels))
-    own = {name: _wheel(distribution(name)) for name in ("equipoise", *PURE)}
+    content = _SiteContent.of(lock, about_runtime, None if wheels is None else Path(wheels))
     static = Path(__file__).parent / "static"
     if not all((static / name).is_file() for name in PAGE):
         raise UsageError(MAKE)
@@ -114,21 +127,12 @@ def write_site(
         (fresh / "wheels").mkdir()
         for name in PAGE:
             shutil.copyfile(static / name, fresh / name)
-        for name, data in about_runtime.items():
-            (fresh / "runtime" / name).write_bytes(data)
-        for name, data in (*own.values(), *local.items()):
-            (fresh / "wheels" / name).write_bytes(data)
+        content.write(fresh)
         if docs is not None:
             _copy(Folder.at(docs), fresh / "docs")
             _link_page(fresh / "docs")
-        about = {
-            "runtime": "runtime/",
-            "own": [f"wheels/{name}" for name, _ in own.values()],
-            "first": FIRST,
-            "lock": {**lock, "packages": packages},
-        }
-        (fresh / "site.json").write_text(json.dumps(about), encoding="utf-8")
-        first = _first_load(fresh, about)
+        (fresh / "site.json").write_text(json.dumps(content.about), encoding="utf-8")
+        first = content.first + sum((fresh / name).stat().st_size for name in ALWAYS)
         body = BODY.format(size=first / 1e6, build=_build_of(fresh))
         head = HEAD if docs is None else f'{HEAD}<link rel="help" href="docs/index.html">'
         html = document(head, body, policy=POLICY)
@@ -137,8 +141,62 @@ def write_site(
         fresh.rename(target)
     finally:
         shutil.rmtree(fresh, ignore_errors=True)
-    missing = [name for name, package in packages.items() if "/" not in package["file_name"]]
-    return Site(target, first, tuple(sorted(missing)))
+    return Site(target, first, content.missing)
+
+
+@dataclass(frozen=True)
+class _SiteContent:
+    """The runtime and the packages of a site.
+
+    plain, packed : files as they are, and compressed ones without their ending, by path.
+    about : what the worker reads of them.
+    """
+
+    plain: dict[str, bytes]
+    packed: dict[str, bytes]
+    about: dict[str, Any]
+
+    @classmethod
+    def of(
+        cls, lock: dict[str, Any], runtime: dict[str, bytes], wheels: Path | None
+    ) -> _SiteContent:
+        """With the runtime's files by name, and a folder of wheels."""
+        packages, plain = _packages(lock, wheels)
+        packed = _lean(packages, plain)
+        own = dict(_wheel(distribution(name)) for name in ("equipoise", *PURE))
+        packed |= {f"wheels/{name}": _packed(data) for name, data in own.items()}
+        for name, data in runtime.items():
+            if name.endswith(SCRIPT):
+                plain[f"runtime/{name}"] = data
+            else:
+                packed[f"runtime/{name}"] = _packed(_solid(name, data))
+        about = {
+            "runtime": "runtime/",
+            "own": [f"wheels/{name}" for name in own],
+            "packed": sorted(packed),
+            "first": FIRST,
+            "lock": {**lock, "packages": packages},
+        }
+        return cls(plain, packed, about)
+
+    def write(self, folder: Path) -> None:
+        """Write the files, whose folders are there."""
+        for path, data in self.plain.items():
+            (folder / path).write_bytes(data)
+        for path, data in self.packed.items():
+            (folder / f"{path}{PACKED}").write_bytes(data)
+
+    @property
+    def first(self) -> int:
+        """Bytes that are loaded before the first machine moves."""
+        scripts = (data for path, data in self.plain.items() if path.endswith(SCRIPT))
+        return sum(map(len, self.packed.values())) + sum(map(len, scripts))
+
+    @property
+    def missing(self) -> tuple[str, ...]:
+        """Packages that the page may need, of which there is no wheel."""
+        packages = self.about["lock"]["packages"]
+        return tuple(sorted(name for name in packages if "/" not in packages[name]["file_name"]))
 
 
 NEEDS_PAGE = re.compile(r'(<\w+ [^>]*class="(?:open-page|run-cell|runs-here)") hidden')
@@ -235,7 +293,7 @@ def _is_entry(entry: dict[str, Any]) -> bool:
 def _packages(
     lock: Mapping[str, Any], wheels: Path | None
 ) -> tuple[dict[str, Any], dict[str, bytes]]:
-    """Entries of the lock file that the page may need, and the wheels that are given for them."""
+    """Entries of the lock file that the page may need, and the wheels that are given, by path."""
     entries: dict[str, Any] = {}
     wanted = [*FIRST, *LATER]
     while wanted:
@@ -255,25 +313,64 @@ def _packages(
             raise UsageError(
                 Note("{file} is damaged: its hash is not that of the lock file", file=wheels / file)
             )
-        local[file] = data
         entry["file_name"] = f"wheels/{file}"
+        local[entry["file_name"]] = data
     return entries, local
 
 
+def _lean(packages: Mapping[str, dict[str, Any]], given: dict[str, bytes]) -> dict[str, bytes]:
+    """Compress the wheels of those that are needed first, without what only developers use.
+
+    They are taken out of the wheels that are given, and their hashes become those of what lies in
+    the site, by which the browser checks what it loads.
+    """
+    packed = {}
+    for name in FIRST:
+        entry = packages[name]
+        data = given.pop(entry["file_name"], None)
+        if data is not None:
+            wheel = _stored(
+                (file, read) for file, read in _in_archive(data) if not UNUSED.search(file)
+            )
+            packed[entry["file_name"]] = wheel = _packed(wheel)
+            entry["sha256"] = hashlib.sha256(wheel).hexdigest()
+    return packed
+
+
+def _in_archive(data: bytes) -> Iterator[tuple[str, bytes]]:
+    with zipfile.ZipFile(BytesIO(data)) as wheel:
+        for name in wheel.namelist():
+            yield name, wheel.read(name)
+
+
+def _stored(files: Iterable[tuple[str, bytes]]) -> bytes:
+    """A wheel of files as they are, since all of them together are compressed better."""
+    out = BytesIO()
+    with zipfile.ZipFile(out, "w", zipfile.ZIP_STORED) as wheel:
+        for name, data in files:
+            wheel.writestr(zipfile.ZipInfo(name, EPOCH), data)
+    return out.getvalue()
+
+
+def _solid(name: str, data: bytes) -> bytes:
+    """A file of the runtime; of an archive, its files as they are."""
+    return _stored(_in_archive(data)) if name.endswith(".zip") else data
+
+
+def _packed(data: bytes) -> bytes:
+    return gzip.compress(data, 9, mtime=0)
+
+
 def _wheel(dist: Distribution) -> tuple[str, bytes]:
-    """An installed package of pure Python as a wheel: its name and bytes."""
+    """An installed package of pure Python as a wheel: its file's name and bytes."""
     name = dist.metadata["Name"].replace("-", "_").lower()
     stem = f"{name}-{dist.version}"
     info = f"{stem}.dist-info"
-    out = BytesIO()
-    with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as wheel:
-        for path, data in _files_of(name, dist):
-            wheel.writestr(zipfile.ZipInfo(path, EPOCH), data, zipfile.ZIP_DEFLATED, 9)
-        metadata = f"Metadata-Version: 2.1\nName: {name}\nVersion: {dist.version}\n"
-        about = "Wheel-Version: 1.0\nRoot-Is-Purelib: true\nTag: py3-none-any\n"
-        for file, text in (("METADATA", metadata), ("WHEEL", about), ("RECORD", "")):
-            wheel.writestr(zipfile.ZipInfo(f"{info}/{file}", EPOCH), text)
-    return f"{stem}-py3-none-any.whl", out.getvalue()
+    metadata = f"Metadata-Version: 2.1\nName: {name}\nVersion: {dist.version}\n"
+    about = "Wheel-Version: 1.0\nRoot-Is-Purelib: true\nTag: py3-none-any\n"
+    own = (("METADATA", metadata), ("WHEEL", about), ("RECORD", ""))
+    described = ((f"{info}/{file}", text.encode()) for file, text in own)
+    return f"{stem}-py3-none-any.whl", _stored([*_files_of(name, dist), *described])
 
 
 def _files_of(name: str, dist: Distribution) -> Iterable[tuple[str, bytes]]:
@@ -289,20 +386,6 @@ def _files_of(name: str, dist: Distribution) -> Iterable[tuple[str, bytes]]:
         given = place.rpartition("/static/")[2] in GIVEN
         if path.is_file() and ".dist-info/" not in place and (given or not left_out):
             yield place, path.read_bytes()
-
-
-def _first_load(folder: Path, about: Mapping[str, Any]) -> int:
-    """Bytes that a reader loads before the first machine moves, compressed as web hosts do."""
-    import gzip
-
-    first = {about["lock"]["packages"][name]["file_name"] for name in about["first"]}
-    names = [*PAGE[:3], "site.json", *(f"runtime/{name}" for name in RUNTIME_FILES)]
-    names += [*about["own"], *(name for name in first if "/" in name)]
-    sizes = 0
-    for name in names:
-        data = (folder / name).read_bytes()
-        sizes += min(len(data), len(gzip.compress(data, 6, mtime=0)))
-    return sizes
 
 
 def _build_of(folder: Path) -> str:

@@ -17,11 +17,10 @@ from equipoise.quantities.units import KINDS
 from equipoise.schema.files import printable
 from equipoise.schema.models import taken_along
 from equipoise.schema.numbers import FileNumber, format_share, parse_share
-from equipoise.schema.opening import kind_of_text, opened
+from equipoise.schema.opening import opened
 from equipoise.schema.template import Template, named_parts
 from equipoise.web.disk import NOT_OF_FILE, Disk
 from equipoise.web.messages import Message, Setting
-from equipoise.web.openings import tool_titles
 from equipoise.web.replies import Reply
 from equipoise.web.tool_state import ToolFigures, tool_state
 
@@ -273,19 +272,14 @@ def _written(number: FileNumber, value: float, unit: str) -> Values:
     return {"text": text, "shown": read, "unit": shown.unit, "factor": shown.factor}
 
 
-def tool_asked(message: Message, disk: Disk | None) -> ToolDesk | None:
-    """The tool that a message of the kind `open` wants; None where it wants something else.
+def tool_asked(message: Message, disk: Disk | None) -> ToolDesk:
+    """The tool that a message of the kind `open` wants, where it `wants_tool`.
 
     disk : the file that the page began with.
     """
     if "example" in message.values:
-        name = message.text("example")
-        return tool_of_file(name) if name in tool_titles() else None
-    if message.flag("new", False):
-        return None
+        return tool_of_file(message.text("example"))
     text = message.text("text")
-    if kind_of_text(text) != "tool":
-        return None
     own = disk if message.flag("file", False) else None
     known = None if own is None else named_parts(own.model)[1]
     name = printable(message.text("name", "tool.toml"))

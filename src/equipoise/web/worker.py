@@ -19,8 +19,6 @@ from typing import Any
 
 from equipoise.errors import EquipoiseError, UsageError
 from equipoise.i18n import Note, to_say
-from equipoise.web import balanced
-from equipoise.web.balanced import Balancing
 from equipoise.web.design import Design
 from equipoise.web.desk import Desk
 from equipoise.web.edits import Computed, solved
@@ -133,7 +131,9 @@ class Foreground:
         """Take the end of a task: of a balance, the design that came of it."""
         task, result = self._running.popleft()
         balancing = pickle.loads(data) if memoryview(data) else None
-        if isinstance(balancing, Balancing):
+        if balancing is not None:
+            from equipoise.web import balanced
+
             assert task.message is not None and result is not None
             message = task.message
             self._replies = balanced.adopted(self.desk.session, result, balancing, message)
@@ -179,6 +179,8 @@ class Foreground:
         elif message.kind in SLOW and self._is_for_background(message):
             session = self.desk.session
             if message.kind == "balance":
+                from equipoise.web import balanced
+
                 self._replies = iter([balanced.begun(session, message)])
             current = session.current() if message.kind in OF_MACHINE else None
             self._begin(message, current, None, sweep=False)
@@ -289,6 +291,8 @@ class Background:
                     for content, data in more(outcome, against, task.sweep, lambda: False):
                         yield "reply", packed(Reply({"seq": None, **content}, data))
             elif task.message.kind == "balance":
+                from equipoise.web import balanced
+
                 assert outcome is not None
                 result = pickle.dumps(balanced.computed(session, outcome, task.message))
             else:

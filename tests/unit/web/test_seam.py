@@ -108,6 +108,24 @@ def test_opening_changing_and_balancing_need_no_server() -> None:
     assert set(done.stdout.split()) <= PUBLISHED
 
 
+FIRST = """
+import json, sys
+from equipoise.web.worker import Foreground
+page = Foreground()
+page.take(json.dumps({"type": "open", "seq": 1, "example": "yamashita-1"}))
+assert page.step() is not None
+print(*{name.split(".")[1] for name in sys.modules if name.startswith("equipoise.")})
+"""
+LATER = {"handheld", "studies", "codegen", "planting", "exposure", "vibration", "present"}
+"""Rooms that a machine without a support moves without."""
+
+
+def test_a_first_machine_moves_before_other_rooms_are_imported() -> None:
+    """Importing them takes a second in a browser, where everything is compiled at each start."""
+    done = subprocess.run([sys.executable, "-c", FIRST], capture_output=True, text=True, check=True)
+    assert not LATER & set(done.stdout.split())
+
+
 def test_a_session_knows_no_transport() -> None:
     assert isinstance(begun(None)().session, Session)
     names = {"starlette", "uvicorn", "websockets", "anywidget"}
