@@ -48,12 +48,15 @@ class Design:
     name : of the file or example.  own : the machine without the counterweights.
     counterweights : by link; those of mass 0 do nothing, and keep their place.
     shafts : links that balancing has added, which balancing again replaces.
+    expressions : by which numbers were given that are none of the file's, by path: lengths and
+        directions of oblique lines, and counterweights.
     """
 
     name: str
     own: Machine
     counterweights: Mapping[str, Counterweight] = field(default_factory=dict)
     shafts: frozenset[str] = frozenset()
+    expressions: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def units(self) -> ShownUnits | None:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import lru_cache, partial
-from math import pi
+from math import pi, remainder
 from typing import Any
 
 from equipoise.errors import ModelError, UsageError
@@ -45,6 +46,8 @@ FREE = 0.5
 """How far from where it was a coordinate's slider reaches, over the size of the machine."""
 DIGITS, SHOWN, HANDY = 7, 5, 8
 """Digits of a number in use and of others, and signs of one that is told in no other unit."""
+SAME_AS_TYPED = 1e-9
+"""Over a length or a mass, or in rad: the most that rounding parts it from what gives it."""
 CENTER: Vector = (0.0, 0.0)
 
 
@@ -56,7 +59,7 @@ class Field:
     dimension : None of a number without a unit, such as a coefficient of friction.
     measure : the length or direction that it is, if it is one.
     place : of the number in the file, where an expression may stand for it.
-    expression : that which does.
+    expression : that which does, or by which the page was given it.
     """
 
     path: str
@@ -101,9 +104,11 @@ class Field:
 
     def _remembering(self, typed: str, of: Any) -> Any:
         """What has the number now, with the expression by which it was given from parameters."""
-        if self.place is None or not isinstance(of, Design) or not names_in(typed):
+        if not isinstance(of, Design) or not names_in(typed) or self.group == PARAMETERS:
             return of
         typed = typed if typed.startswith(SIGN) else f"{SIGN}{typed}"
+        if self.place is None:
+            return replace(of, expressions={**of.expressions, self.path: typed})
         expressions = {**of.own.expressions, str(self.place): typed}
         return of.with_machine(of.own.with_expressions(expressions))
 
@@ -228,16 +233,27 @@ def fields_of(design: Design) -> dict[str, Field]:
     )
     values = [field for part in parts for field in part(design.own)]
     fields = {field.path: field for field in (*values, *_weights(design))}
-    if not design.own.expressions:
+    if not design.own.expressions and not design.expressions:
         return fields
-    given = WorkedOut(design.own.expressions, amounts_of(design.own.parameters))
-    return {path: _with_expression(field, given) for path, field in fields.items()}
+    names = amounts_of(design.own.parameters)
+    given = WorkedOut(design.own.expressions, names)
+    on_page = WorkedOut(design.expressions, names)
+    return {path: _with_expression(field, given, on_page) for path, field in fields.items()}
 
 
-def _with_expression(field: Field, given: WorkedOut) -> Field:
-    if field.place is None:
+def _with_expression(field: Field, given: WorkedOut, on_page: WorkedOut) -> Field:
+    """The number with what gives it: in the file, or for as long as it is so on the page."""
+    if field.place is not None:
+        return replace(field, expression=given.of(field.value, field.dimension, field.place))
+    typed = on_page.expressions.get(field.path)
+    if typed is None:
         return field
-    return replace(field, expression=given.of(field.value, field.dimension, field.place))
+    with suppress(UsageError):  # a name may be gone
+        apart = on_page.read(typed, field.dimension) - field.value
+        apart = remainder(apart, 2 * pi) if field.dimension == "angle" else apart
+        if abs(apart) <= SAME_AS_TYPED * (1.0 if field.dimension == "angle" else abs(field.value)):
+            return replace(field, expression=typed)
+    return field
 
 
 def _parameters(machine: Machine) -> Iterator[Field]:
@@ -257,7 +273,11 @@ def _with_parameter(
     document = Document.of_machine(design.own)
     text = value if dimension is None else format_exact(value, dimension)
     changed = replace(document, content=path.write(document.content, text))
-    return design.with_machine(changed.machine())
+    after = design.with_machine(changed.machine())
+    for field in fields_of(design).values() if design.expressions else ():
+        if field.place is None and field.expression is not None:
+            after = fields_of(after)[field.path].typed(after, field.expression)
+    return after
 
 
 def _field(

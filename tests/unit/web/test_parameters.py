@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from cmath import phase
+from math import radians
 from pathlib import Path
 
 import pytest
@@ -63,9 +65,49 @@ def test_a_length_between_points_follows_where_the_file_has_it_as_one_number() -
     longer = fields_of(given)["parameters.crank"].typed(given, "40 mm")
     assert longer.own.links["crank"].points["B"] == (eq.loads(points.replace(
         '["30 mm"', '["=40 mm/3 + 15 mm"')).links["crank"].points["B"])  # fmt: skip
-    once = fields_of(own)["links.crank.lengths.A-P"].typed(own, "crank/3")
-    assert not once.own.expressions.keys() - own.own.expressions.keys()
-    assert abs(complex(*once.own.links["crank"].points["P"])) == pytest.approx(0.01)
+
+
+OBLIQUE = FOUR_BAR.replace(
+    'points = ["A", "B"]\nlength = "=crank"',
+    'points.A = ["0 mm", "0 mm"]\npoints.B = ["30 mm", "0 mm"]\npoints.P = ["9 mm", "4 mm"]',
+)
+
+
+@pytest.mark.parametrize(
+    ("path", "typed", "before", "after"),
+    [
+        ("links.crank.lengths.A-P", "crank/3", 0.01, 0.02),
+        ("links.crank.directions.A-P", "=crank/(30 mm) * 20 deg", radians(20), radians(40)),
+        ("counterweights.crank.mass", "2*weight", 0.4, 0.4),
+        ("counterweights.crank.radius", "=crank", 0.03, 0.06),
+    ],
+)
+def test_what_is_no_number_of_the_file_follows_on_the_page(
+    path: str, typed: str, before: float, after: float
+) -> None:
+    """Lengths and directions of oblique lines, and counterweights, until set otherwise."""
+    own = Design("points", eq.loads(OBLIQUE))
+    given = fields_of(own)[path].typed(own, typed)
+    field = fields_of(given)[path]
+    assert field.value == pytest.approx(before)
+    assert field.expression == "=" + typed.removeprefix("=")
+    longer = fields_of(given)["parameters.crank"].typed(given, "60 mm")
+    field = fields_of(longer)[path]
+    assert field.value == pytest.approx(after)
+    assert field.expression == "=" + typed.removeprefix("=")
+    plain = field.typed(longer, field.value / 2)
+    assert fields_of(plain)[path].expression is None
+    again = fields_of(plain)["parameters.crank"].typed(plain, "30 mm")
+    assert fields_of(again)[path].value == pytest.approx(after / 2)
+
+
+def test_two_of_a_line_follow_together() -> None:
+    own = Design("points", eq.loads(OBLIQUE))
+    for path, typed in (("lengths.A-P", "crank/3"), ("directions.A-P", "crank/(30 mm) * 20 deg")):
+        own = fields_of(own)[f"links.crank.{path}"].typed(own, typed)
+    longer = fields_of(own)["parameters.crank"].typed(own, "60 mm")
+    place = complex(*longer.own.links["crank"].points["P"])
+    assert (abs(place), phase(place)) == pytest.approx((0.02, radians(40)))
 
 
 def test_a_number_that_is_typed_plainly_stops_following() -> None:
