@@ -11,6 +11,7 @@ from equipoise.handheld.design_plan import OUTPUTS
 from equipoise.handheld.hand_blocks import varied_named
 from equipoise.handheld.shaft import Section
 from equipoise.mechanism.assembly.cycle import turns_given
+from equipoise.mechanism.assembly.joints import moving_links
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.dynamics.assessment import remarks
 from equipoise.mechanism.dynamics.forces import massless
@@ -52,7 +53,7 @@ def machine_blocks(machine: Machine) -> Iterator[Block]:
     if not machine.has_crank:
         text = driven(machine, drive.speed)
     free = "one free motion" if not machine.drives else f"{len(machine.driven)} free motions"
-    yield Text(f"{len(machine.links)} moving links, {free}; driven: {text}")
+    yield Text(f"{moving_links(len(machine.links))}, {free}; driven: {text}")
     yield from map(Text, _build_up(linkage))
     crank = machine.crank_turns
     turns = "one turn" if cycle.turns == 1 else f"{cycle.turns} turns"

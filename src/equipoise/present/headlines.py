@@ -13,7 +13,8 @@ import numpy as np
 from equipoise.balancing.objectives import unit_of
 from equipoise.balancing.outcome import good_already
 from equipoise.balancing.told import capital, figure_named, figure_unit
-from equipoise.i18n import say, to_say
+from equipoise.i18n import said, say, to_say
+from equipoise.mechanism.assembly.joints import moving_links
 from equipoise.mechanism.outputs.spoken import joint_named, named
 from equipoise.present.shaking import NOTHING, Shaking, acting, largest_joint, largest_of
 from equipoise.present.support_headlines import first_gauge
@@ -36,9 +37,9 @@ def counted(analysis: Analysis) -> str:
     """How many links move, and their mass."""
     links = analysis.machine.links
     if any(link.mass is None for link in links.values()):
-        return say("{count} moving links", count=len(links))
+        return said(moving_links(len(links)))
     mass = told(analysis.machine.mass, "mass", "kg", digits=3)
-    return say("{count} moving links of {mass} together", count=len(links), mass=mass)
+    return say("{links} of {mass} together", links=moving_links(len(links)), mass=mass)
 
 
 def heaviest(analysis: Analysis) -> str:

@@ -10,6 +10,7 @@ from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
 from equipoise.i18n import say, to_say
+from equipoise.mechanism.assembly.joints import moving_links
 from equipoise.mechanism.dynamics.forces import massless
 from equipoise.mechanism.parts.objectives import GAUGES
 from equipoise.quantities import told
@@ -96,13 +97,13 @@ def what_it_is(analysis: Analysis) -> str:
     """How many links move, their mass where it is known, and how they are driven."""
     machine = analysis.machine
     values = {
-        "count": len(machine.links),
+        "links": moving_links(len(machine.links)),
         "driven": driven(machine, analysis.motion.speed),
         "mass": "" if massless(machine) else told(machine.mass, "mass", "kg", digits=3),
     }
-    without = to_say("{count} moving links; {driven}")
-    with_mass = to_say("{count} moving links of {mass} together; {driven}")
-    several = to_say("{rows} rows, in each {count} moving links of {mass} together; {driven}")
+    without = to_say("{links}; {driven}")
+    with_mass = to_say("{links} of {mass} together; {driven}")
+    several = to_say("{rows} rows, in each {links} of {mass} together; {driven}")
     if massless(machine):
         return say(without, **values)
     if len(machine.rows) > 1:

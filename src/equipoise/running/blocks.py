@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from equipoise.i18n import Note, said, say, to_say
+from equipoise.i18n import said, say, to_say
 from equipoise.quantities import PER_RPM, number, told
 from equipoise.results.blocks import Block, Column, Facts, Table, Text, Value, broken_if
 from equipoise.running.run import BRAKE, DRIVE
-from equipoise.vibration.coupled import STALLS
+from equipoise.vibration.coupled import stall_note
 
 if TYPE_CHECKING:
     from equipoise.running.flywheel import Flywheel
@@ -59,7 +59,7 @@ def verdict(run: Run) -> str:
     if lacking is not None:
         needed, given = lacking
         at = degrees(end.crank_angle) % 360
-        return said(Note(STALLS, angle=at, needed=needed, given=given)) + "."
+        return said(stall_note(at, needed, given)) + "."
     values = {"time": number(end.time), "turns": number(abs(run.turned))}
     if end.kind == "standstill":
         angle = number(degrees(end.crank_angle) % 360)

@@ -214,9 +214,15 @@ MOST_EVALUATIONS, TO_SETTLE = 600_000, 60_000
 RELATIVE, ABSOLUTE = 1e-9, 1e-12
 """Tolerances over the states, and over the size of the machine."""
 STALLS = to_say(
-    "the motor stalls at crank angle {angle:.1f} deg: the crank needs {needed:.4g} N m to go "
-    "on, and has {given:.4g} N m; give a stronger motor, a higher ratio or a larger flywheel"
+    "the motor stalls at crank angle {angle:.1f} deg: the crank needs {needed} N m to go "
+    "on, and has {given} N m; give a stronger motor, a higher ratio or a larger flywheel"
 )
+STALLS_AT_LIMIT = to_say(
+    "the motor stalls at crank angle {angle:.1f} deg: the crank has {given} N m, which just hold "
+    "it there; give a stronger motor, a higher ratio or a larger flywheel"
+)
+STALL_DIGITS = range(4, 8)
+"""Of both torques, the fewest in which they differ; beyond that the motor is at its limit."""
 SETTLING_TURNS = 40
 """Turns after which a motion in time is taken to have settled, as far as it ever does."""
 STANDSTILL = 1e-6
@@ -317,12 +323,16 @@ def _stalled(system: Coupled, table: Sums, states: Array, angle: float) -> Note:
         float(system.sense * torque)
         for torque in (system.needed_torque(table, states), system.drive_torque(table, states))
     )
-    return Note(
-        STALLS,
-        angle=float(np.degrees(angle) % 360),
-        needed=needed,
-        given=given,
-    )
+    return stall_note(float(np.degrees(angle) % 360), needed, given)
+
+
+def stall_note(angle: float, needed: float, given: float) -> Note:
+    """Say that a motor stalls at a crank angle, deg, and the torques on the crank there, N m."""
+    for digits in STALL_DIGITS:
+        texts = f"{needed:.{digits}g}", f"{given:.{digits}g}"
+        if needed > given and texts[0] != texts[1]:
+            return Note(STALLS, angle=angle, needed=texts[0], given=texts[1])
+    return Note(STALLS_AT_LIMIT, angle=angle, given=f"{given:.{STALL_DIGITS[0]}g}")
 
 
 def settled(system: Coupled, s: Array) -> Array:

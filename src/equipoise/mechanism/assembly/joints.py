@@ -256,7 +256,7 @@ def _count(joints: Structure) -> Note | str:
     coupled = Counter(coupling.counted for coupling in joints.couplings)
     inner = sum(len(rider.slides) for rider in joints.riders.values())
     parts = [
-        _number(len(joints.bodies) - 1 - len(joints.riders), MOVING_LINKS),
+        moving_links(len(joints.bodies) - 1 - len(joints.riders)),
         _number(sum(len(bodies) - 1 for bodies in joints.pins.values()
                     if joints.riders.keys().isdisjoint(bodies)), PINS),
         _number(len(joints.sliders) - inner, SLIDING_JOINTS),
@@ -326,6 +326,11 @@ MOVING_LINKS = (to_say("{count} moving link"), to_say("{count} moving links"))
 PINS = (to_say("{count} pin"), to_say("{count} pins"))
 SLIDING_JOINTS = (to_say("{count} sliding joint"), to_say("{count} sliding joints"))
 SLOTS = (to_say("{count} pin in a slot"), to_say("{count} pins in slots"))
+
+
+def moving_links(count: int) -> Note:
+    """How many links move, in words."""
+    return _number(count, MOVING_LINKS)
 
 
 def _number(count: int, words: tuple[str, str]) -> Note:
