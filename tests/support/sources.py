@@ -98,6 +98,12 @@ EXUDYN = Source(
     """The bundled `exudyn-slider-crank` on its mounts, built anew from its numbers and
     integrated in time, with the error of the steps taken out. Made with version 1.13.""",
 )
+ADAMS = Source(
+    "MSC Adams",
+    """An inverse dynamics run of a four-bar, of which the repository
+    MBDS/multibody-state-estimation (<https://github.com/MBDS/multibody-state-estimation>, BSD
+    licence) keeps the result and the links; the crank swings by 1.2 (1 - cos 2t).""",
+)
 ROSS = Source(
     "ROSS",
     """The shaft of a brush cutter with six stations as a rotor of 12, 24 and 48 elements,
