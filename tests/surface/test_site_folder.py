@@ -20,12 +20,13 @@ from surface.running import Result, equipoise, refused, succeeded
 SECRET = b"what nobody else may see"
 WORDS = ("site", "-o", "out", "--runtime", "runtime", "--wheels", "wheels", "--docs", "docs")
 PACKAGES = (*FIRST, *LATER)
+FOR_DEVELOPERS = ("numpy/__init__.pyi", "numpy/tests/test_core.py", "numpy/_core/include/numpy.h")
 
 
 def wheel() -> bytes:
     out = BytesIO()
     with zipfile.ZipFile(out, "w") as files:
-        for name in ("numpy/__init__.py", "numpy/__init__.pyi", "numpy/tests/test_core.py"):
+        for name in ("numpy/__init__.py", "numpy/f2py/__init__.py", *FOR_DEVELOPERS):
             files.writestr(name, b"")
     return out.getvalue()
 
@@ -78,7 +79,7 @@ def test_a_site_is_written_from_them() -> None:
     with zipfile.ZipFile(
         BytesIO(gzip.decompress(Path("out/wheels/numpy.whl.gzip").read_bytes()))
     ) as numpy:
-        assert numpy.namelist() == ["numpy/__init__.py"]  # without what is for developers
+        assert numpy.namelist() == ["numpy/__init__.py", "numpy/f2py/__init__.py"]
     assert Path("out/wheels/scipy.whl").read_bytes() == WHEEL
     assert Path("out/runtime", RUNTIME_FILES[0]).read_bytes() == RUNTIME_FILES[0].encode()
     about = json.loads(Path("out/site.json").read_text())

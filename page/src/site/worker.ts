@@ -140,8 +140,13 @@ async function start(kind: "worker.Foreground" | "worker.Background" | "cells.Ce
   return [python, python.runPython(code)];
 }
 
+/** What has been loaded: if a module is still missing then, asking for it again leads nowhere. */
+const asked = new Set<string>();
+
 /** Load the package that has a module; tells whether it could be. */
 async function load(python: Pyodide, module: string): Promise<boolean> {
+  if (asked.has(module)) return false;
+  asked.add(module);
   const packages = Object.entries(python.lockfile.packages);
   const name = packages.find(([name, { imports }]) => name === module || imports.includes(module))?.[0];
   if (!name) return false;

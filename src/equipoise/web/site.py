@@ -47,10 +47,9 @@ FIRST = ("numpy",)
 """Packages of the runtime without which no machine can be opened."""
 LATER = ("scipy", "clarabel", "matplotlib", "jinja2")
 """Those that are loaded when something needs them: balances and modes, pictures, reports."""
-UNUSED = re.compile(
-    r"\.(pyi|h|a|pc|ini|in|pxd|pyx)$|/tests/|/f2py/|/_pyinstaller/|/include/|/_examples/"
-)
-"""Files of wheels that are for who compiles against a package, checks its types or tests it."""
+UNUSED = re.compile(r"\.(pyi|h|a|pc|ini|in|pxd|pyx)$|/tests/|/_pyinstaller/|/include/|/_examples/")
+"""Files of wheels that are for who compiles against a package, checks its types or tests it.  All
+modules stay: SciPy asks NumPy for each of its names."""
 COMMAND = "equipoise_command.py"
 """The module of the package that stands beside it."""
 PURE = ("lazy-loader", "tomli-w")
