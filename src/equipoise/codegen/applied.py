@@ -62,6 +62,12 @@ class TracedBodies:
         on_frame = body == FRAME
         return self.trace.state[f"p({point})"] if on_frame else self.trace.point(body, point)[0]
 
+    def velocity(self, body: str, point: str) -> Any:
+        """Velocity of a point in the frame, m/s."""
+        if body == FRAME:
+            return 0j
+        return self.trace.point(body, point)[1] * self.trace.rate("speed")
+
     def angle(self, body: str, on: str, middle: Any) -> Any:
         """Angle of a body from the x axis of another, within half a turn of `middle`."""
         turn, other = (self.trace.state[u(item)[0]] for item in (body, on))

@@ -123,6 +123,18 @@ MEANINGS = {
     "largest stress along {name}": to_say(
         "Largest normal stress along a link, of bending and axial force."
     ),
+    "loss of damper {name}": to_say("Power that a damper turns into heat."),
+    "loss of torsion damper {name}": to_say("Power that a torsion damper turns into heat."),
+    "pull of damper {name}": to_say(
+        "Force with which a damper pulls its two ends together; below 0 it holds them apart."
+    ),
+    "speed of damper {name}": to_say("Speed with which the ends of a damper move apart."),
+    "speed of torsion damper {name}": to_say(
+        "Angular speed of a link relative to the body that a torsion damper ties it to."
+    ),
+    "torque of torsion damper {name}": to_say(
+        "Torque with which a torsion damper holds a link back."
+    ),
     "length of spring {name}": to_say("Distance between the ends of a spring."),
     "mechanical advantage of {name}": to_say(
         "Torque or force on a link that a unit of crank torque balances, without losses."

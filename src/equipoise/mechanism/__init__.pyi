@@ -15,6 +15,8 @@ from .parts.bodies import Body as Body
 from .parts.bodies import Hole as Hole
 from .parts.circular_slots import CircularSlot as CircularSlot
 from .parts.curved_slots import CurvedSlot as CurvedSlot
+from .parts.dampers import Damper as Damper
+from .parts.dampers import DamperTable as DamperTable
 from .parts.duty_states import DutyState as DutyState
 from .parts.field import Planting as Planting
 from .parts.field import PlantingArm as PlantingArm
@@ -42,5 +44,7 @@ from .parts.support import Gauge as Gauge
 from .parts.support import Mount as Mount
 from .parts.support import Row as Row
 from .parts.support import Support as Support
+from .parts.torsion_dampers import TorsionDamper as TorsionDamper
+from .parts.torsion_dampers import TorsionDamperTable as TorsionDamperTable
 from .parts.torsion_springs import TorsionSpring as TorsionSpring
 from .parts.torsion_springs import TorsionTable as TorsionTable

@@ -17,9 +17,10 @@ from equipoise.mechanism.dynamics.acting import against_soil, given_loads, sprin
 from equipoise.mechanism.dynamics.reactions import demands_of
 from equipoise.mechanism.dynamics.reduced import generalized_force, weight_torque
 from equipoise.mechanism.formulas.kernels import dot
-from equipoise.mechanism.kinematics.motion import Motion
+from equipoise.mechanism.kinematics.motion import Motion, PlacedBodies
 from equipoise.mechanism.kinematics.tip import surface_of
 from equipoise.mechanism.parts.field import Planting
+from equipoise.mechanism.parts.force_kinds import RatedElement, rated_elements
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.signals import Array
 
@@ -100,15 +101,55 @@ def _of_loads(motion: Motion) -> Array:
 
 
 def _of_springs(motion: Motion) -> Array:
-    return generalized_force(motion, spring_demands(motion))
+    return generalized_force(motion, spring_demands(motion, rated=False))
+
+
+@dataclass(frozen=True)
+class OfDampers(Source):
+    """Force elements whose forces depend on velocities, such as dampers."""
+
+    elements: tuple[tuple[str, int, RatedElement], ...]
+    key: str = "dampers"
+    label: str = to_say("dampers")
+
+    def columns(self, motions: Motions) -> list[Array]:
+        """Of each row and element its ways, m or rad, each followed by its derivative by the crank
+        angle, which is its speed at a crank speed of 1 rad/s.
+        """
+        return [
+            np.asarray(value + np.zeros(len(motion.crank_angle)))
+            for motion in motions
+            for table, number, element in self.elements
+            for way in element.ways(PlacedBodies(motion.at(1.0, 0.0), f"{table}[{number + 1}]"))
+            for value in way
+        ]
+
+    def groups(self, count: int) -> list[int]:
+        """A way and its derivative are measured together: either may vanish."""
+        return [number // 2 for number in range(count)]
+
+    def torque(self, columns: Array, speed: Array) -> Array:
+        ways = iter(columns.reshape(-1, 2, *columns.shape[1:]))
+        each = [element for *_, element in self.elements]
+        total = np.zeros(np.shape(speed))
+        for element in each * (len(columns) // (2 * sum(one.freedoms for one in each))):
+            own = [next(ways) for _ in range(element.freedoms)]
+            efforts = element.efforts([(way, slope * speed) for way, slope in own])
+            parts = zip(efforts, own, strict=True)
+            total = total + sum(effort * slope for effort, (_, slope) in parts)
+        return np.asarray(total)
 
 
 def sources_of(machine: Machine) -> Iterator[Source]:
     """Everything but the drive that turns the crank or brakes it."""
     if any(machine.gravity):
         yield ByAngle("weight", to_say("weight"), weight_torque, conserves=True)
-    if [*machine.force_elements] or any(coupling.preload for coupling in machine.couplings):
+    stiff = [element for *_, element in machine.force_elements if not element.rated]
+    if stiff or any(coupling.preload for coupling in machine.couplings):
         yield ByAngle("springs", to_say("springs"), _of_springs, conserves=True)
+    rated = rated_elements(machine)
+    if rated:
+        yield OfDampers(rated)
     if machine.loads:
         yield ByAngle("loads", to_say("loads"), _of_loads)
     planting = machine.planting

@@ -50,6 +50,8 @@ Taken = Mapping[str, str] | None
 COLUMNS: dict[str, tuple[Dimension, str]] = {
     # name: what it is, unit that a header is shown with
     "crank_angle": ("angle", "deg"),
+    "extension_rate": ("speed", "m/s"),
+    "force": ("force", "N"),
     "force_x": ("force", "N"),
     "force_y": ("force", "N"),
     "torque": ("torque", "N m"),

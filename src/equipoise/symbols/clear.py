@@ -52,7 +52,7 @@ def _off_links(scene: Scene, at: Array) -> Iterator[Array]:
 
 
 def _springs(scene: Scene) -> list[tuple[str, str]]:
-    return [*scene.springs, *scene.planned]
+    return [*scene.stretched]
 
 
 def _uncrossed(scene: Scene, at: Array) -> Iterator[Array]:

@@ -103,6 +103,8 @@ LOOKS = {
     "block": Look("paper", "lines", 1.2),
     "spring": Look(None, "lines", 1.4),
     "spiral": Look(None, "lines", 1.4),
+    "damper": Look(None, "lines", 1.4),
+    "vane": Look(None, "lines", 1.4),
     "constraint": Look(None, "main", 1.4),
     "missed-constraint": Look(None, "stress", 1.8, (2.4, 1.8)),
     "room": Look(None, "main", 1.2, (3.0, 2.4)),
@@ -135,6 +137,8 @@ LOOKS = {
 LAYERS = {
     "strand": {"springs": "strand"},
     "spiral": {"springs": "spiral"},
+    "damper": {"springs": "damper"},
+    "vane": {"springs": "vane"},
     "constraint": {"springs": "constraint"},
     "missed-constraint": {"springs": "missed-constraint"},
     "groove": {"wheels": "groove", "springs": "cam-edge"},

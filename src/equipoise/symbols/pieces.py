@@ -186,6 +186,11 @@ def _drawn(scene: Scene, layer: str) -> Iterator[Piece]:
     for mark in scene.marks:
         if not (role := LAYERS.get(mark.shape.role, {"wheels": mark.shape.role}).get(layer)):
             continue
+        if mark.to:
+            usual = scene.usual_length(mark.point, mark.to)
+            shape = replace(mark.shape, role=role, places=mark.shape.places * usual)
+            yield Piece(layer, (shape,), Hold(mark.point, to=mark.to), table=mark.table)
+            continue
         start, hold = complex(scene.places[mark.point][0]), None
         if mark.body != FRAME:
             start = scene.local(bodies[mark.body], scene.places[mark.point])
@@ -268,7 +273,7 @@ def _body(scene: Scene, body: LinkOutline) -> Iterator[Shape]:
 def _springs(scene: Scene) -> Iterator[Piece]:
     for role, every in (("spring", scene.springs), ("planned", scene.planned)):
         for item, other in every:
-            usual = float(abs(scene.places[other] - scene.places[item]).mean()) or 1.0
+            usual = scene.usual_length(item, other)
             shape = zigzag(0, usual, coils(usual, scene.unit), role)
             yield Piece("springs", (shape,), Hold(item, to=other))
 
@@ -288,7 +293,7 @@ def _pin(scene: Scene, point: str, place: complex) -> Shape:
 def _marks(scene: Scene, body: LinkOutline, traced: Collection[str]) -> Iterator[Shape]:
     """Pins, traced points and centre of mass of a link."""
     others = scene.bodies[: scene.bodies.index(body)]
-    hung = {point for ends in (*scene.springs, *scene.planned) for point in ends}
+    hung = {point for ends in scene.stretched for point in ends}
     hung |= {point for drive in scene.drives for point in drive.between or ()}
     drawn = {*scene.frame, *(point for other in others for point in other.points)}
     for point in body.points:

@@ -179,16 +179,26 @@ class Scene:
         return self.drives[0]
 
     @property
+    def stretched(self) -> tuple[tuple[str, str], ...]:
+        """Ends of springs and of what else is stretched between two points."""
+        marks = {(mark.point, mark.to): None for mark in self.marks if mark.to}
+        return (*self.springs, *self.planned, *marks)
+
+    def usual_length(self, point: str, to: str) -> float:
+        """Mean distance of two points, m, at which what is stretched between them is drawn."""
+        return float(abs(self.places[to] - self.places[point]).mean()) or 1.0
+
+    @property
     def standing(self) -> tuple[str, ...]:
         """Points of the frame at which something is held."""
-        held = {to for _, to in (*self.springs, *self.planned)} | self.pins
+        held = {point for ends in self.stretched for point in ends} | self.pins
         held |= {point for drive in self.drives for point in drive.between or ()}
         return tuple(name for name in self.frame if name in held)
 
     def ground(self, point: str) -> complex:
         """Way to what holds a point of the frame: down, or up where all that it holds hangs."""
         others = [(name, body.outline) for body in self.bodies for name in body.outline]
-        others += [(to, (item, to)) for item, to in (*self.springs, *self.planned)]
+        others += [(to, (item, to)) for item, to in self.stretched]
         ways = [
             self.places[other] - self.places[point]
             for name, outline in others
@@ -286,6 +296,8 @@ class Scene:
 
         outermost : whether those farthest out are enough, as many as a picture tells apart.
         """
+        if mark.to:
+            return np.array([self.places[mark.point], self.places[mark.to]])
         reach = mark.shape.radius * np.array([1 + 1j, -1 + 1j, -1 - 1j, 1 - 1j])
         corners = mark.shape.places + (reach if mark.shape.radius else 0.0)
         if outermost:

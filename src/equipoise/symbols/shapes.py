@@ -60,6 +60,7 @@ class Shape:
 class BodyMark:
     """A shape that moves with a body, maybe the frame: from a point of that, in the body's axes.
 
+    to : another point, to which the shape is stretched instead, along over 1 from the first.
     part : list and name of what it tells, if a page can have that deleted by it.
     table : key of the list that has the numbers which shape it.
     legend : role of what a legend shows of it, and what it calls that.
@@ -71,6 +72,7 @@ class BodyMark:
     part: tuple[str, str] | None = None
     table: str = ""
     legend: tuple[str, str] | None = None
+    to: str = ""
 
 
 def runs(shapes: Iterable[Shape]) -> Iterator[list[Shape]]:

@@ -88,6 +88,8 @@ def _without(scene: Scene, hidden: set[str]) -> Scene:
         springs=tuple(ends for ends in scene.springs if not {*ends} & gone),
         planned=tuple(ends for ends in scene.planned if not {*ends} & gone),
         marks=tuple(
-            mark for mark in scene.marks if mark.body not in hidden and mark.point not in gone
+            mark
+            for mark in scene.marks
+            if mark.body not in hidden and not {mark.point, mark.to} & {*gone}
         ),
     )

@@ -22,11 +22,12 @@ from math import copysign, pi
 
 import numpy as np
 
-from equipoise.errors import ResponseError
+from equipoise.errors import ModelError, ResponseError
 from equipoise.i18n import Note, to_say
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.assembly.steps import size_of_bodies
 from equipoise.mechanism.kinematics.jumps import jumps_of_rows
+from equipoise.mechanism.parts.force_kinds import rated_elements
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.signals import Array, within_period
 from equipoise.vibration.body import IN_PLANE, PITCH, MountContact, Rest, SupportBody, contacts_of
@@ -71,6 +72,13 @@ class Coupled:
         cls, body: SupportBody, rest: Rest, speed: float, torque: Torque | None = None
     ) -> Coupled:
         """On the support of the model."""
+        for table, number, element in rated_elements(body.machine):
+            if torque is not None and not element.linear:
+                wrong = Note(
+                    "a motor on a support is computed with linear dampers only; give a damping "
+                    "coefficient, or let the crank turn at constant speed"
+                )
+                raise ModelError(f"{table}[{number + 1}]", wrong)
         matrix = body.mass
         first, reference = complex(matrix[1, 5], -matrix[0, 5]), complex(*body.reference[:2])
         sums = float(matrix[0, 0]), first, float(matrix[5, 5])
@@ -163,6 +171,10 @@ class Coupled:
         _, right = self._equations(table, states)
         return np.asarray(self.drive_torque(table, states) - right[3])
 
+    def load_torque(self, table: Sums, speed: Array) -> Array:
+        """Torque (...) of loads and force elements on the crank, N m, at its speed (...)."""
+        return np.asarray(table.load_torque - table.damping * (speed - self.speed))
+
     def _equations(self, table: Sums, states: Array) -> tuple[Array, Array]:
         """Matrix (4, 4, ...) and right-hand side (4, ...) for surge, heave, pitch and crank."""
         place, rate = self.place_and_rate(states)
@@ -193,7 +205,7 @@ class Coupled:
         for contact in self.contacts:
             parts = contact.at.wrench(contact.force(place, rate), place)
             forces = [force + part for force, part in zip(forces, parts, strict=True)]
-        crank = first_1[0] * gx + first_1[1] * gy + table.load_torque
+        crank = first_1[0] * gx + first_1[1] * gy + self.load_torque(table, speed)
         crank = crank + (table.inertia_1 * turning**2 - table.drive_1 * speed**2) / 2
         if self.torque is not None:
             d = 2 * len(self.free)

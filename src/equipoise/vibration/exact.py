@@ -342,7 +342,8 @@ class ExactSolution:
         # power of the drive, of loads from outside and of springs, W
         force = table.load_force * np.exp(1j * place[PITCH])
         carried = force.real * rate[0] + force.imag * rate[1] + table.load_moment * rate[PITCH]
-        fed = system.drive_torque(table, states) * speed + (carried + table.load_torque * speed)
+        turning = system.load_torque(table, speed)
+        fed = system.drive_torque(table, states) * speed + (carried + turning * speed)
         lost = np.zeros_like(speed)
         for contact in system.contacts:
             lost -= contact.force(place, rate) * contact.at.velocity(place, rate)

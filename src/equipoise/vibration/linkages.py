@@ -26,6 +26,7 @@ import numpy as np
 from equipoise.errors import MassError
 from equipoise.mechanism.assembly.steps import p, u
 from equipoise.mechanism.dynamics.acting import (
+    acting_elements,
     inner_demands,
     load_demands,
     outer_loads,
@@ -50,7 +51,8 @@ class Sums:
     mass : kg.  first, first_1, first_2 : complex, kg m.
     inertia, inertia_1, spin, spin_1, drive, drive_1 : kg m2.
     load_force (complex, N), load_moment (N m, about the reference point) and load_torque (N m, on
-    the crank) : what loads from outside do; the torque is that of the springs, too.
+    the crank) : what loads from outside do; the torque is that of force elements, too.
+    damping : of the crank by dampers, N m s: the torque falls by that with its speed.
     """
 
     mass: float
@@ -66,6 +68,7 @@ class Sums:
     load_force: Array
     load_moment: Array
     load_torque: Array
+    damping: Array
 
     def __add__(self, other: Sums) -> Sums:
         return Sums(*(getattr(self, f.name) + getattr(other, f.name) for f in fields(Sums)))
@@ -114,7 +117,7 @@ def sums(machine: Machine, theta: Array, reference: complex, speed: float) -> Su
 def _of_row(motion: Motion, shift: complex) -> Sums:
     zero = np.zeros(len(motion.crank_angle))
     reduced, loads = reduced_inertia(motion), _loads(motion, shift)
-    total = Sums(0.0, *(zero + 0j,) * 3, *(zero,) * 4, *reduced, *loads)
+    total = Sums(0.0, *(zero + 0j,) * 3, *(zero,) * 4, *reduced, *loads, _damping(motion))
     for mass, own, place, first, second, w, a in _bodies(motion, shift):
         total += Sums(
             mass,
@@ -125,7 +128,7 @@ def _of_row(motion: Motion, shift: complex) -> Sums:
             2 * mass * dot(place, first),
             mass * cross(place, first) + own * w,
             mass * cross(place, second) + own * a,
-            *(zero,) * 5,
+            *(zero,) * 6,
         )
     return total
 
@@ -153,6 +156,15 @@ def _loads(motion: Motion, shift: complex) -> tuple[Array, Array, Array]:
     every = (loads, inner_demands(motion), spring_demands(motion))
     turning = sum(generalized_force(motion, demands) for demands in every)
     return total, about, np.asarray(turning)
+
+
+def _damping(motion: Motion) -> Array:
+    """By how much the torque of dampers on the crank falls with its speed (N,), N m s."""
+    still, turning = (
+        generalized_force(at, demands_of(at, acting_elements(at, rated=True)))
+        for at in (motion.at(0.0, 0.0), motion.at(1.0, 0.0))
+    )
+    return np.asarray(still - turning)
 
 
 def spread(motion: Motion) -> Array:
@@ -218,7 +230,8 @@ def joint_forces(machine: Machine, ride: BaseMotion, phase: float, offset: compl
     """
     motion = move(machine, ride.crank_angle + phase, acceleration=0.0)
     demands = {link: _demand(motion, link, ride, offset - ride.reference) for link in machine.links}
-    for acting in (load_demands(motion), spring_demands(motion)):
+    turning: Any = replace(motion, speed=ride.crank_speed)  # of each instant, for dampers
+    for acting in (load_demands(motion), spring_demands(turning)):
         for link, (force, moment) in acting.items():
             demands[link] = (demands[link][0] + force, demands[link][1] + moment)
     return reactions(replace(motion, whole_cycle=False), demands)

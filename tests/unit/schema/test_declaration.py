@@ -38,6 +38,7 @@ from equipoise.mechanism.parts import (
 from equipoise.mechanism.parts.belts import Belt
 from equipoise.mechanism.parts.circular_slots import CircularSlot
 from equipoise.mechanism.parts.curved_slots import CurvedSlot
+from equipoise.mechanism.parts.dampers import Damper
 from equipoise.mechanism.parts.dc_motors import DcMotor
 from equipoise.mechanism.parts.duty_states import DutyState
 from equipoise.mechanism.parts.induction_motors import InductionMotor
@@ -48,6 +49,7 @@ from equipoise.mechanism.parts.run_plans import RunPlan
 from equipoise.mechanism.parts.sections import LinkSection
 from equipoise.mechanism.parts.servo_motors import ServoMotor
 from equipoise.mechanism.parts.springs import Spring
+from equipoise.mechanism.parts.torsion_dampers import TorsionDamper
 from equipoise.mechanism.parts.torsion_springs import TorsionSpring
 from equipoise.schema import finding, models, schemas
 from equipoise.schema.documents import dumps, loads
@@ -75,7 +77,7 @@ DOCUMENTED: dict[str, type[Frozen]] = {
         joint_properties.JointProperties, RollingBearing,
         gear_shapes.GearShape, Belt, Rack, cams.Cam,
         CircularSlot, CurvedSlot,
-        force_elements.Load, Spring, TorsionSpring, Position, field.Planting,
+        force_elements.Load, Spring, TorsionSpring, Damper, TorsionDamper, Position, field.Planting,
         field.PlantingArm,
         field.Soil, support.Support,
         mounts.Mount, support.Row, DutyState, RunPlan, balance.Balance, weights.CenterMove,

@@ -19,7 +19,7 @@ from equipoise.mechanism.kinematics.motion import Motion, PlacedBodies
 from equipoise.mechanism.kinematics.tip import surface_of, tip_link
 from equipoise.mechanism.parts.field import Soil
 from equipoise.mechanism.parts.machine import FRAME
-from equipoise.mechanism.parts.springs import Spring
+from equipoise.mechanism.parts.springs import MEETING as SPRING_MEETING
 
 MEETING = 1e-12
 """Of the coordinates of its ends: where they are closer, rounding decides where a spring points."""
@@ -30,28 +30,35 @@ def load_demands(motion: Motion) -> dict[str, Demand]:
     return demands_of(motion, acting_loads(motion))
 
 
-def spring_demands(motion: Motion) -> dict[str, Demand]:
+def spring_demands(motion: Motion, rated: bool | None = None) -> dict[str, Demand]:
     """What holds force elements and preloads of couplings, for every link that has one.
+
+    rated : as of `acting_elements`; preloads are among the others.
 
     Raises
     ------
     ModelError : the ends of a spring with a free length meet, or a link turns beyond where the
         torque of a torsion spring is known.
     """
-    preloads = (end for _, ends in acting_preloads(motion) for end in ends)
-    return demands_of(motion, chain(acting_elements(motion), preloads))
+    preloads = () if rated else (end for _, ends in acting_preloads(motion) for end in ends)
+    return demands_of(motion, chain(acting_elements(motion, rated), preloads))
 
 
-def acting_elements(motion: Motion) -> Iterator[Acting]:
+def acting_elements(motion: Motion, rated: bool | None = None) -> Iterator[Acting]:
     """Link, point, force and torque of each force element at each of its ends on a link.
+
+    rated : whether only of those whose forces depend on velocities, or only of the others.
 
     Raises
     ------
     ModelError : as of `spring_demands`.
     """
     for table, number, element in motion.machine.force_elements:
-        if isinstance(element, Spring) and element.free_length:
-            spring_direction(motion, element.link, element.point, element.to)
+        if rated is not None and element.rated != rated:
+            continue
+        if sentence := element.meeting:
+            (link, point), (_, to) = element.points
+            check_apart(motion, table, (link, point, to), sentence)
         yield from element.on_links(PlacedBodies(motion, f"{table}[{number + 1}]"))
 
 
@@ -155,22 +162,18 @@ def spring_direction(motion: Motion, link: str, point: str, to: str) -> Any:
     ------
     ModelError : they meet.
     """
+    check_apart(motion, "springs", (link, point, to), SPRING_MEETING)
     along = spring_vector(motion, point, to)
-    length = abs(along)
+    return along / abs(along)
+
+
+def check_apart(motion: Motion, where: str, ends: tuple[str, str, str], sentence: str) -> None:
+    """Raise a `ModelError` where a point of a link meets another; ends : link, point and that."""
+    link, point, to = ends
+    length = abs(spring_vector(motion, point, to))
     coordinates = abs(motion.point(point).place) + abs(motion.point(to).place)
     meeting = length <= MEETING * coordinates
     if meeting.any():
         angle = degrees(motion.crank_angle[meeting.argmax()])
-        raise ModelError(
-            "springs",
-            Note(
-                "{point!r} of {link!r} meets {to!r} at crank angle {angle:.6g} deg, where a spring "
-                "with a free length points nowhere; give another point, or a {free_length} of 0",
-                point=point,
-                link=link,
-                to=to,
-                angle=angle,
-                **key_names("free_length"),
-            ),
-        )
-    return along / length
+        named = {"point": point, "link": link, "to": to, "angle": angle}
+        raise ModelError(where, Note(sentence, **named, **key_names("free_length")))

@@ -335,6 +335,10 @@ class PlacedBodies:
         """A point in the frame, complex, m."""
         return self.motion.point(point).place
 
+    def velocity(self, body: str, point: str) -> Array:
+        """Velocity of a point in the frame, complex, m/s."""
+        return self.motion.point(point).velocity
+
     def angle(self, body: str, on: str, middle: float) -> Array:
         """Angle of a body from the x axis of another, rad, within half a turn of `middle`.
 

@@ -29,6 +29,9 @@ class Placed(Protocol):
     def point(self, body: str, point: str) -> Any:
         """A point of a body in the frame, complex, m."""
 
+    def velocity(self, body: str, point: str) -> Any:
+        """Velocity of a point of a body in the frame, complex, m/s."""
+
     def angle(self, body: str, on: str, middle: Any) -> Any:
         """Angle of a body from the x axis of another, rad, within half a turn of `middle`."""
 

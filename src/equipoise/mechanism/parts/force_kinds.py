@@ -1,4 +1,4 @@
-"""Kinds of force elements: what acts between two bodies by where these are, and by nothing else.
+"""Kinds of force elements: what acts between two bodies by where these are and how they move.
 
 Beside what every element declares, a kind says what it exerts.
 """
@@ -6,8 +6,8 @@ Beside what every element declares, a kind says what it exerts.
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Iterator, Mapping
-from typing import Any
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, ClassVar
 
 from equipoise.keys import Frozen
 from equipoise.keys.declaring import once
@@ -19,15 +19,52 @@ Action = tuple[str, str | None, Any, Any]
 
 
 class ForceElement(Element):
-    """What exerts forces on two bodies, and stores what work they do on it."""
+    """What exerts forces on two bodies, and stores or loses what work they do on it.
+
+    rated : whether its forces depend on velocities.
+    """
+
+    rated: ClassVar[bool] = False
 
     @abstractmethod
     def actions(self, at: Placed) -> Iterator[Action]:
         """What it exerts on each of its bodies, the frame too."""
 
+    @property
+    def meeting(self) -> str:
+        """Sentence for where its two points meet, of what has no direction there: with point, link,
+        to and angle, deg; empty of what does not need one.
+        """
+        return ""
+
     def on_links(self, at: Placed) -> Iterator[Action]:
         """What it exerts on moving links."""
         return (action for action in self.actions(at) if action[0] != FRAME)
+
+
+class RatedElement(ForceElement):
+    """A force element whose forces depend on ways between its bodies and on the speeds of these.
+
+    freedoms : how many ways it has.
+    """
+
+    rated = True
+    freedoms: ClassVar[int] = 1
+
+    @property
+    @abstractmethod
+    def linear(self) -> bool:
+        """Whether its forces are proportional to the speeds."""
+
+    @abstractmethod
+    def ways(self, at: Placed) -> tuple[tuple[Any, Any], ...]:
+        """Ways between its bodies, m or rad, each with its speed, m/s or rad/s."""
+
+    @abstractmethod
+    def efforts(self, ways: Sequence[tuple[Any, Any]]) -> tuple[Any, ...]:
+        """Force (N) or torque (N m) along each way: times the speed it is the power that the
+        bodies get.
+        """
 
 
 @once
@@ -35,3 +72,10 @@ def force_kinds(of: type[Frozen]) -> Mapping[str, type[ForceElement]]:
     """Kinds of force elements that a class of machines has, by field, in the order of the file."""
     kinds = element_kinds(of).items()
     return {field: kind for field, kind in kinds if issubclass(kind, ForceElement)}
+
+
+def rated_elements(machine: Any) -> tuple[tuple[str, int, RatedElement], ...]:
+    """Force elements of a machine whose forces depend on velocities, each with its list and its
+    place from 0.
+    """
+    return tuple(item for item in machine.force_elements if isinstance(item[2], RatedElement))

@@ -47,6 +47,7 @@ from equipoise.mechanism.parts.circular_slots import CircularSlot
 from equipoise.mechanism.parts.constraints import Constraint, changed_points
 from equipoise.mechanism.parts.couplings import Coupling, coupling_kinds
 from equipoise.mechanism.parts.curved_slots import CurvedSlot
+from equipoise.mechanism.parts.dampers import Damper
 from equipoise.mechanism.parts.drives import (
     Drive,
     Driven,
@@ -82,6 +83,7 @@ from equipoise.mechanism.parts.shown_units import ShownUnits
 from equipoise.mechanism.parts.sliders import Bearing, Slider
 from equipoise.mechanism.parts.springs import Spring
 from equipoise.mechanism.parts.support import Row, Support
+from equipoise.mechanism.parts.torsion_dampers import TorsionDamper
 from equipoise.mechanism.parts.torsion_springs import TorsionSpring
 from equipoise.mechanism.parts.whole import problems_of
 from equipoise.quantities import display
@@ -125,7 +127,8 @@ class Machine(Driven, Displayed, Frozen):
     file_order = ("schema", "title", "description", "units", "parameters", "gravity", "drive",
                   "drives", "frame", "links", "constraints", "bearings", "assembly", "sliders",
                   "circular_slots", "curved_slots", "gears", "belts", "racks", "cams", "loads",
-                  "springs", "torsion_springs", "joints", "position", "planting", "support", "rows",
+                  "springs", "torsion_springs", "dampers", "torsion_dampers",
+                  "joints", "position", "planting", "support", "rows",
                   "duty", "run", "balance")  # fmt: skip
 
     title: str = key(Wording(), "shown in reports", example="Slider-crank")
@@ -190,6 +193,13 @@ class Machine(Driven, Displayed, Frozen):
     racks: tuple[Rack, ...] = key(Tables(KeyTable(Rack)), "racks with their pinions", default=())
     torsion_springs: tuple[TorsionSpring, ...] = key(
         Tables(KeyTable(TorsionSpring)), "springs that turn links against each other", default=()
+    )
+
+    dampers: tuple[Damper, ...] = key(
+        Tables(KeyTable(Damper)), "dampers between links, or links and frame", default=()
+    )
+    torsion_dampers: tuple[TorsionDamper, ...] = key(
+        Tables(KeyTable(TorsionDamper)), "dampers of links that turn against each other", default=()
     )
 
     circular_slots: tuple[CircularSlot, ...] = key(

@@ -14,6 +14,11 @@ from equipoise.mechanism.parts.element_kinds import Placed
 from equipoise.mechanism.parts.force_kinds import Action, ForceElement
 from equipoise.quantities import Dimension, told
 
+MEETING = to_say(
+    "{point!r} of {link!r} meets {to!r} at crank angle {angle:.6g} deg, where a spring with a free "
+    "length points nowhere; give another point, or a {free_length} of 0"
+)
+
 
 @declared
 class Spring(ForceElement):
@@ -71,6 +76,11 @@ class Spring(ForceElement):
     def label(self) -> Note:
         """Its two points, by which it is told from others."""
         return Note("{point} to {other}", point=self.point, other=self.to)
+
+    @property
+    def meeting(self) -> str:
+        """What is wrong where its ends meet, of a spring with a free length."""
+        return MEETING if self.free_length else ""
 
     def ends(self, at: Placed) -> tuple[Any, Any]:
         """Places of both ends in the frame, complex, m."""

@@ -25,10 +25,8 @@ from equipoise.keys.csv_tables import CsvTable
 from equipoise.mechanism.checks import FRAME, Bodies, unknown_body, unknown_link
 from equipoise.mechanism.parts.element_kinds import Placed
 from equipoise.mechanism.parts.force_kinds import Action, ForceElement
+from equipoise.mechanism.parts.ramps import Ramps, ramp_integral, ramp_value, ramps_of, wrong_rows
 from equipoise.quantities import Dimension, told
-
-MOST_ROWS = 200
-"""Of a table, each of which is a term of the torque in compiled loops."""
 
 
 @declared
@@ -153,30 +151,21 @@ class TorsionSpring(ForceElement):
         return {"angle": angle, "torque": self._torque(angle), "energy": self._energy(angle)}
 
     @property
-    def pieces(self) -> tuple[Any, Any, Any, tuple[tuple[Any, Any], ...]]:
+    def pieces(self) -> Ramps:
         """An angle (rad), torque (N m) and slope (N m/rad) there; then angles at which the slope
         changes, and by how much.
         """
         if self.stiffness is not None:
             return self.angle, self.preload, -self.stiffness, ()
-        angles, torques = self.rows
-        rows = pairwise(zip(angles, torques, strict=True))
-        slopes = [(t1 - t0) / (a1 - a0) for (a0, t0), (a1, t1) in rows]
-        changes = (after - before for before, after in pairwise(slopes))
-        return angles[0], torques[0], slopes[0], (*zip(angles[1:-1], changes, strict=True),)
+        return ramps_of(*self.rows)
 
     def _torque(self, angle: Any) -> Any:
-        """Torque on the link, N m: a sum of ramps, which needs no branch."""
-        start, torque, slope, changes = self.pieces
-        ramps = (change * _beyond(angle, at) for at, change in changes)
-        return torque + slope * (angle - start) + sum(ramps)
+        """Torque on the link, N m."""
+        return ramp_value(self.pieces, angle)
 
     def _energy(self, angle: Any) -> Any:
         """What it stores more than at `angle`, or at the first row, J."""
-        start, torque, slope, changes = self.pieces
-        turned = angle - start
-        ramps = (0.5 * change * _beyond(angle, at) ** 2 for at, change in changes)
-        return -(turned * (torque + 0.5 * slope * turned) + sum(ramps))
+        return -ramp_integral(self.pieces, angle)
 
     def problems(self, where: str, bodies: Bodies) -> Iterator[ModelError]:
         """Everything that is wrong with it in a machine of these bodies."""
@@ -199,18 +188,13 @@ class TorsionSpring(ForceElement):
             if getattr(self, key_name):
                 wrong = Note("goes with a stiffness; the rows say it already, leave it out")
                 yield ModelError(f"{where}.{key_name}", wrong)
-        if len(angles) != len(torques):
-            wrong = Note(
-                "got {angles} angles and {torques} torques; give as many of both",
-                angles=len(angles),
-                torques=len(torques),
-            )
-            yield ModelError(at, wrong)
-        elif not 2 <= len(angles) <= MOST_ROWS:
-            wrong = Note("got {rows} rows; give 2 to {most}", rows=len(angles), most=MOST_ROWS)
-            yield ModelError(at, wrong)
-        elif any(after <= before for before, after in pairwise(angles)):
-            yield ModelError(at, Note("the angles must rise from row to row"))
+        uneven = Note(
+            "got {angles} angles and {torques} torques; give as many of both",
+            angles=len(angles),
+            torques=len(torques),
+        )
+        falling = Note("the angles must rise from row to row")
+        yield from wrong_rows(at, angles, torques, uneven, falling)
 
     def demands(self) -> Iterator[Any]:
         """What has to be true of its stiffness and angles, or of columns of them."""
@@ -244,8 +228,3 @@ class TorsionSpring(ForceElement):
             return f"{held}, {len(self.rows[0])} rows from {ends}"
         rate = told(self.stiffness, "torsional stiffness", "N m/rad")
         return f"{held}, {rate}, {told(self.preload, 'torque')} at {told(self.angle, 'angle')}"
-
-
-def _beyond(angle: Any, start: Any) -> Any:
-    """How far an angle is beyond another, or 0."""
-    return 0.5 * (angle - start + abs(angle - start))

@@ -1,0 +1,193 @@
+"""Dampers between two points, linear or by a table, as frozen values with their checks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any, ClassVar
+
+from equipoise.errors import ModelError
+from equipoise.i18n import Note, to_say
+from equipoise.keys import ROW, Conditions, File, Listing, Quantity, TextKind, declared, inside, key
+from equipoise.keys.csv_tables import CsvTable
+from equipoise.mechanism.checks import FRAME, Bodies
+from equipoise.mechanism.formulas import kernels
+from equipoise.mechanism.parts.damping import Damping, one_law
+from equipoise.mechanism.parts.element_kinds import Placed
+from equipoise.mechanism.parts.force_kinds import Action
+from equipoise.mechanism.parts.springs import wrong_ends
+from equipoise.quantities import Dimension, told
+
+
+@declared
+class DamperTable(CsvTable):
+    """Pull of a damper against the speed with which it lengthens: linear between rows, and beyond
+    them as between the last two.
+
+    extension_rate : m/s, rising.  force : N, as long as `extension_rate`.
+    file : name of the CSV file that it came from.
+    """
+
+    sort = "damper"
+    forms = (("extension_rate", "force"),)
+
+    extension_rate: tuple[float, ...] = inside(ROW)
+    force: tuple[float, ...] = inside(ROW)
+    file: str = inside(TextKind(), default="", compare=False)
+
+
+@declared
+class Damper(Damping):
+    """A damper without mass between `point` of `link` and the point `to` of `on`: it resists the
+    speed with which their distance changes.
+    """
+
+    called = to_say("{what} of damper {number}")
+    file_order = ("link", "point", "to", "on", "damping", "speeds", "forces", "table")
+    conditions: ClassVar[Conditions] = one_law("forces")
+
+    efforts_key = "forces"
+    special = to_say("damper")
+    legend = ("damper", to_say("damper"))
+    sign = "equipoise.symbols.dampers:damper_sign"
+    title = to_say("Dampers, each with its crank angle; above 0 they pull and lengthen")
+    group = to_say("dampers")
+    outputs: ClassVar[Mapping[str, tuple[Dimension, str]]] = {
+        "pull": ("force", to_say("pull of damper {name}")),
+        "speed": ("speed", to_say("speed of damper {name}")),
+        "loss": ("power", to_say("loss of damper {name}")),
+    }
+    headings: ClassVar[Mapping[str, tuple[str, str]]] = {
+        "speed": (to_say("lowest speed"), to_say("highest")),
+        "pull": (to_say("smallest pull"), to_say("largest")),
+    }
+
+    link: str = key(TextKind(of="link"), "the link that it holds back", example="rocker")
+    point: str = key(
+        TextKind(of="point", on="link"),
+        "its point on the link, not one that is pinned to the frame",
+        example="C",
+    )
+    to: str = key(
+        TextKind(of="point", on="on"),
+        "its point on the frame, or on `on`",
+        example="S",
+        word=to_say("other point"),
+    )
+    damping: float | None = key(
+        "damping", "force over speed", default=None, example="40 N s/m", at_least=0
+    )
+    on: str = key(
+        TextKind(of="body"), "the body of its other point", default=FRAME, word=to_say("other body")
+    )
+    speeds: tuple[float, ...] = key(
+        Listing(Quantity("speed"), right=Note('a list such as ["-1 m/s", "0 m/s", "1 m/s"]')),
+        "with which it lengthens, rising, instead of a damping coefficient",
+        default=(),
+        example=["-1 m/s", "0 m/s", "1 m/s"],
+    )
+    forces: tuple[float, ...] = key(
+        Listing(Quantity("force"), right=Note('a list such as ["-40 N", "0 N", "90 N"]')),
+        "pull at these speeds, 0 at 0 and never falling; linear between them, and beyond them as "
+        "between the last two",
+        default=(),
+        example=["-40 N", "0 N", "90 N"],
+    )
+    table: DamperTable | None = key(
+        File("damper"),
+        "CSV file beside this one, instead of these lists: `extension_rate [m/s],force [N]`",
+        default=None,
+        example="damper.csv",
+    )
+
+    @property
+    def bodies(self) -> tuple[str, str]:
+        """The link and the body of its other point."""
+        return self.link, self.on
+
+    @property
+    def points(self) -> tuple[tuple[str, str], ...]:
+        """Both bodies, each with the point at which it is held."""
+        return (self.link, self.point), (self.on, self.to)
+
+    @property
+    def label(self) -> Note:
+        """Its two points, by which it is told from others."""
+        return Note("{point} to {other}", point=self.point, other=self.to)
+
+    @property
+    def route(self) -> tuple[str, str]:
+        """Its two points."""
+        return self.point, self.to
+
+    @property
+    def rows(self) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
+        """Speeds, m/s, and forces, N, of a table; empty of a linear damper."""
+        if self.table is not None:
+            return self.table.extension_rate, self.table.force
+        return self.speeds, self.forces
+
+    @property
+    def meeting(self) -> str:
+        """What is wrong where its ends meet."""
+        return to_say(
+            "{point!r} of {link!r} meets {to!r} at crank angle {angle:.6g} deg, where a damper has "
+            "no direction; give another point"
+        )
+
+    def _line(self, at: Placed) -> tuple[Any, Any, Any]:
+        """Length, m, the unit vector from the link's point to the other, and the speed with which
+        the length grows, m/s.
+        """
+        apart = at.point(self.on, self.to) - at.point(self.link, self.point)
+        apart_rate = at.velocity(self.on, self.to) - at.velocity(self.link, self.point)
+        length = kernels.length(apart)
+        way = apart * (1 / (length + 1e-300))
+        return length, way, kernels.dot(way, apart_rate)
+
+    def ways(self, at: Placed) -> tuple[tuple[Any, Any], ...]:
+        """Its length, m, with the speed with which that grows, m/s."""
+        length, _, speed = self._line(at)
+        return ((length, speed),)
+
+    def actions(self, at: Placed) -> Iterator[Action]:
+        """Force on each end, N, complex; it has no torque."""
+        _, way, speed = self._line(at)
+        force = way * self.resistance(speed)
+        yield self.link, self.point, force, 0.0
+        yield self.on, self.to, -force, 0.0
+
+    def values(self, at: Placed) -> Mapping[str, Any]:
+        """Its pull, N, the speed with which it lengthens, m/s, and the power that it takes, W."""
+        _, _, speed = self._line(at)
+        pull = self.resistance(speed)
+        return {"pull": pull, "speed": speed, "loss": pull * speed}
+
+    def problems(self, where: str, bodies: Bodies) -> Iterator[ModelError]:
+        """Everything that is wrong with it in a machine of these bodies."""
+        yield from wrong_ends(where, self, bodies)
+        given_twice = Note("give exactly one of damping, speeds with forces, and table")
+        speeds, forces = self.rows
+        uneven = Note(
+            "got {speeds} speeds and {forces} forces; give as many of both",
+            speeds=len(speeds),
+            forces=len(forces),
+        )
+        yield from self.wrong_law(where, given_twice, uneven)
+
+    def sentence(self) -> Note:
+        """Its damping and its ends, for a report."""
+        ends = {"point": self.point, "link": self.link, "to": self.to}
+        if self.damping is None:
+            return Note("Damper: by a table, from {point} of {link} to {to}", **ends)
+        return Note(
+            "Damper: {damping} from {point} of {link} to {to}",
+            damping=told(self.damping, "damping", "N s/m"),
+            **ends,
+        )
+
+    def summary(self) -> str:
+        """All its numbers, in a line of `check`."""
+        ends = f"damper: from {self.point} of {self.link} to {self.to}"
+        if self.damping is None:
+            return f"{ends}, {len(self.rows[0])} rows"
+        return f"{ends}, {told(self.damping, 'damping', 'N s/m')}"

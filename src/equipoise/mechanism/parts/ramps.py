@@ -1,0 +1,56 @@
+"""Straight lines between rows of a table, and beyond them as between the last two: no branches."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+from typing import Any
+
+from equipoise.errors import ModelError
+from equipoise.i18n import Note
+from equipoise.mechanism.formulas.kernels import positive
+
+MOST_ROWS = 200
+"""Of a table, each of which is a term of the law in compiled loops."""
+
+Ramps = tuple[Any, Any, Any, tuple[tuple[Any, Any], ...]]
+"""A place, the value and slope there; then places at which the slope changes, and by how much."""
+
+
+def ramps_of(places: Sequence[Any], values: Sequence[Any]) -> Ramps:
+    """The line through rows of a table, two or more."""
+    rows = pairwise(zip(places, values, strict=True))
+    slopes = [(v1 - v0) / (p1 - p0) for (p0, v0), (p1, v1) in rows]
+    changes = (after - before for before, after in pairwise(slopes))
+    return places[0], values[0], slopes[0], (*zip(places[1:-1], changes, strict=True),)
+
+
+def ramp_value(ramps: Ramps, place: Any) -> Any:
+    """Value of the line at a place."""
+    start, value, slope, changes = ramps
+    turned = (change * positive(place - at) for at, change in changes)
+    return value + slope * (place - start) + sum(turned)
+
+
+def ramp_integral(ramps: Ramps, place: Any) -> Any:
+    """Integral of the line from the first of its places to another."""
+    start, value, slope, changes = ramps
+    way = place - start
+    turned = (0.5 * change * positive(place - at) ** 2 for at, change in changes)
+    return way * (value + 0.5 * slope * way) + sum(turned)
+
+
+def wrong_rows(
+    where: str, places: Sequence[Any], values: Sequence[Any], uneven: Note, falling: Note
+) -> Iterator[ModelError]:
+    """What is wrong with the rows of a table.
+
+    uneven, falling : sentences for lists of different lengths and for places that do not rise.
+    """
+    if len(places) != len(values):
+        yield ModelError(where, uneven)
+    elif not 2 <= len(places) <= MOST_ROWS:
+        wrong = Note("got {rows} rows; give 2 to {most}", rows=len(places), most=MOST_ROWS)
+        yield ModelError(where, wrong)
+    elif any(after <= before for before, after in pairwise(places)):
+        yield ModelError(where, falling)

@@ -1,0 +1,167 @@
+"""Torsion dampers between two bodies, linear or by a table, as frozen values with their checks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any, ClassVar
+
+from equipoise.errors import ModelError
+from equipoise.i18n import Note, to_say
+from equipoise.keys import ROW, Conditions, File, Listing, Quantity, TextKind, declared, inside, key
+from equipoise.keys.csv_tables import CsvTable
+from equipoise.mechanism.checks import FRAME, Bodies, unknown_body, unknown_link
+from equipoise.mechanism.parts.damping import Damping, one_law
+from equipoise.mechanism.parts.element_kinds import Placed
+from equipoise.mechanism.parts.force_kinds import Action
+from equipoise.quantities import Dimension, told
+
+
+@declared
+class TorsionDamperTable(CsvTable):
+    """Torque of a torsion damper against its speed: linear between rows, and beyond them as between
+    the last two.
+
+    speed : rad/s, rising.  torque : N m, as long as `speed`.
+    file : name of the CSV file that it came from.
+    """
+
+    sort = "torsion damper"
+    forms = (("speed", "torque"),)
+
+    speed: tuple[float, ...] = inside(ROW)
+    torque: tuple[float, ...] = inside(ROW)
+    file: str = inside(TextKind(), default="", compare=False)
+
+
+@declared
+class TorsionDamper(Damping):
+    """A damper without mass that resists the angular speed of `link` relative to `on`."""
+
+    called = to_say("{what} of torsion damper {number}")
+    file_order = ("link", "on", "damping", "speeds", "torques", "table")
+    conditions: ClassVar[Conditions] = one_law("torques")
+
+    efforts_key = "torques"
+    special = to_say("torsion damper")
+    legend = ("vane", to_say("torsion damper"))
+    sign = "equipoise.symbols.dampers:torsion_damper_sign"
+    title = to_say("Torsion dampers, each with its crank angle; torques on the link")
+    group = to_say("torsion dampers")
+    outputs: ClassVar[Mapping[str, tuple[Dimension, str]]] = {
+        "torque": ("torque", to_say("torque of torsion damper {name}")),
+        "speed": ("angular speed", to_say("speed of torsion damper {name}")),
+        "loss": ("power", to_say("loss of torsion damper {name}")),
+    }
+    headings: ClassVar[Mapping[str, tuple[str, str]]] = {
+        "speed": (to_say("lowest speed"), to_say("highest")),
+        "torque": (to_say("smallest torque"), to_say("largest")),
+    }
+
+    link: str = key(TextKind(of="link"), "the link that it holds back", example="rocker")
+    on: str = key(
+        TextKind(of="body"),
+        "the body on which its other end is held",
+        default=FRAME,
+        word=to_say("other body"),
+    )
+    damping: float | None = key(
+        "torsional damping", "torque over speed", default=None, example="0.5 N m s/rad", at_least=0
+    )
+    speeds: tuple[float, ...] = key(
+        Listing(
+            Quantity("angular speed"),
+            right=Note('a list such as ["-5 rad/s", "0 rad/s", "5 rad/s"]'),
+        ),
+        "of the link relative to `on`, rising, instead of a damping coefficient",
+        default=(),
+        example=["-5 rad/s", "0 rad/s", "5 rad/s"],
+    )
+    torques: tuple[float, ...] = key(
+        Listing(Quantity("torque"), right=Note('a list such as ["-2 N m", "0 N m", "2 N m"]')),
+        "with which it resists these speeds, 0 at 0 and never falling; linear between them, and "
+        "beyond them as between the last two",
+        default=(),
+        example=["-2 N m", "0 N m", "2 N m"],
+    )
+    table: TorsionDamperTable | None = key(
+        File("torsion damper"),
+        "CSV file beside this one, instead of these lists: `speed [rad/s],torque [N m]`",
+        default=None,
+        example="damper.csv",
+    )
+
+    @property
+    def bodies(self) -> tuple[str, str]:
+        """The link and the body on which it is held."""
+        return self.link, self.on
+
+    @property
+    def label(self) -> Note:
+        """Its bodies, by which it is told from others."""
+        return Note("{link} on {on}", link=self.link, on=self.on)
+
+    @property
+    def route(self) -> tuple[str, str]:
+        """From the body on which it is held to the link."""
+        return self.on, self.link
+
+    @property
+    def rows(self) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
+        """Speeds, rad/s, and torques, N m, of a table; empty of a linear damper."""
+        if self.table is not None:
+            return self.table.speed, self.table.torque
+        return self.speeds, self.torques
+
+    def _speed(self, at: Placed) -> Any:
+        """Angular speed of the link relative to the other body, rad/s."""
+        return at.rate(self.link) - at.rate(self.on)
+
+    def ways(self, at: Placed) -> tuple[tuple[Any, Any], ...]:
+        """Its speed, rad/s; the angle itself does not matter to it."""
+        return ((0.0, self._speed(at)),)
+
+    def actions(self, at: Placed) -> Iterator[Action]:
+        """Torque on the link, N m, and its opposite on the other body."""
+        torque = -self.resistance(self._speed(at))
+        yield self.link, None, 0j, torque
+        yield self.on, None, 0j, -torque
+
+    def values(self, at: Placed) -> Mapping[str, Any]:
+        """Torque on the link, N m, its relative speed, rad/s, and the power that it takes, W."""
+        speed = self._speed(at)
+        resistance = self.resistance(speed)
+        return {"torque": -resistance, "speed": speed, "loss": resistance * speed}
+
+    def problems(self, where: str, bodies: Bodies) -> Iterator[ModelError]:
+        """Everything that is wrong with it in a machine of these bodies."""
+        yield from unknown_link(f"{where}.link", self.link, bodies)
+        yield from unknown_body(f"{where}.on", self.on, bodies)
+        if self.link == self.on:
+            wrong = Note("{link!r} cannot be turned against itself", link=self.link)
+            yield ModelError(f"{where}.on", wrong)
+        given_twice = Note("give exactly one of damping, speeds with torques, and table")
+        speeds, torques = self.rows
+        uneven = Note(
+            "got {speeds} speeds and {torques} torques; give as many of both",
+            speeds=len(speeds),
+            torques=len(torques),
+        )
+        yield from self.wrong_law(where, given_twice, uneven)
+
+    def sentence(self) -> Note:
+        """Its damping and its bodies, for a report."""
+        if self.damping is None:
+            return Note("Torsion damper: by a table, {link} on {on}", link=self.link, on=self.on)
+        return Note(
+            "Torsion damper: {damping}, {link} on {on}",
+            damping=told(self.damping, "torsional damping", "N m s/rad"),
+            link=self.link,
+            on=self.on,
+        )
+
+    def summary(self) -> str:
+        """All its numbers, in a line of `check`."""
+        held = f"torsion damper: {self.link} on {self.on}"
+        if self.damping is None:
+            return f"{held}, {len(self.rows[0])} rows"
+        return f"{held}, {told(self.damping, 'torsional damping', 'N m s/rad')}"
