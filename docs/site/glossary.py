@@ -15,7 +15,7 @@ PLACE = "B"
 """Stands for the name of a joint or link in a term."""
 HEAD = """# Glossary
 
-Terms of reports, pictures, the live page and the commands in English, Japanese and Korean. B stands
+Terms of reports, pictures, the live page and the commands in {languages}. B stands
 for the name of a joint, point or link.
 """
 Row = tuple[str, str, str]
@@ -36,7 +36,17 @@ def glossary() -> str:
     ]
     terms = [(term, meaning, "") for term, meaning in TERMS.items()]
     tables_ = (("Terms", terms), ("Outputs", outputs), ("Keys of files", keys))
-    return "\n".join([HEAD, *(line for title, rows in tables_ for line in _table(title, rows))])
+    return "\n".join(
+        [
+            HEAD.format(languages=_languages()),
+            *(line for title, rows in tables_ for line in _table(title, rows)),
+        ]
+    )
+
+
+def _languages() -> str:
+    *first, last = LANGUAGES.values()
+    return f"{', '.join(first)} and {last}"
 
 
 def _table(title: str, rows: Iterable[Row]) -> Iterator[str]:

@@ -1,5 +1,6 @@
 /** Beside the drawing: the underlay that is traced over, and the ruler. */
 
+import { asTyped } from "./decimals";
 import type { Aim } from "./aim";
 import { h, s, set, write } from "./dom";
 import { degrees, length, lengths, metres, plain } from "./format";
@@ -186,12 +187,12 @@ export class Aids {
 }
 
 function numberOf(text: string): number {
-  return Number(text.trim().replace(/−/g, "-").replace(/ *(deg|°)$/, ""));
+  return Number(asTyped(text).replace(/ *(deg|°)$/, ""));
 }
 
 /** A typed length, m; null where it is none. */
 function metresOf(text: string): number | null {
-  const found = /^([\d.eE+-]+) *([a-z]*)$/.exec(text.trim());
+  const found = /^([\d.eE+-]+) *([a-z]*)$/.exec(asTyped(text));
   const given = Number(found?.[1]) * metres(found?.[2] || lengths().unit);
   return given > 0 && Number.isFinite(given) ? given : null;
 }

@@ -1,5 +1,6 @@
 /** Numbers as people read them, and round numbers for scales. */
 
+import { decimals } from "./decimals";
 import type { NumberRules, Unit } from "./protocol";
 
 const MINUS = "\u2212";
@@ -55,7 +56,7 @@ export function steady(value: number, largest: number, digits = 3): string {
 
 export function signed(text: string): string {
   const plain = text.replace(/^-(0(\.0*)?)$/, "$1");
-  return plain.replace(/-/g, MINUS);
+  return decimals(plain.replace(/-/g, MINUS));
 }
 
 /** A round number as it is: for marks of scales. */

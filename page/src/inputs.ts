@@ -1,5 +1,6 @@
 /** How the values of a model file are asked for, each kind in its way. */
 
+import { asTyped, decimals } from "./decimals";
 import { fresh, h, icon, set } from "./dom";
 import type { Asking, Pair, Plain, Values } from "./protocol";
 import { say } from "./words";
@@ -49,9 +50,8 @@ export function input(asking: Asking, name: string, around: Around, hint = ""): 
 
 type Maker = (asking: Asking, name: string, around: Around, hint: string) => Input;
 
-/** A minus as it is written, and no space around. */
 function typed(element: HTMLInputElement): string {
-  return element.value.trim().replace(/−/g, "-");
+  return asTyped(element.value);
 }
 
 function box(name: string, hint: string): HTMLInputElement {
@@ -75,7 +75,7 @@ const quantity: Maker = ({ unit }, name, _, hint) => {
   return {
     element,
     value: () => withUnit(typed(element), unit) || undefined,
-    set: (value) => (element.value = value === undefined ? "" : String(value)),
+    set: (value) => (element.value = value === undefined ? "" : decimals(String(value))),
   };
 };
 
@@ -85,7 +85,7 @@ const number: Maker = (_, name, __, hint) => {
     const text = typed(element);
     return text === "" ? undefined : Number.isFinite(Number(text)) ? Number(text) : text;
   };
-  return { element, value, set: (given) => (element.value = String(given ?? "")) };
+  return { element, value, set: (given) => (element.value = decimals(String(given ?? ""))) };
 };
 
 const text: Maker = ({ options = [], of }, name, around, hint) => {
@@ -204,7 +204,7 @@ const place: Maker = (asking, name, around) => {
     const one = typeof value === "string";
     if (names) names.value = one ? value : "";
     const texts = one || value === undefined ? [] : componentsOf(value);
-    boxes.forEach((element, i) => (element.value = texts[i] ?? ""));
+    boxes.forEach((element, i) => (element.value = decimals(texts[i] ?? "")));
   };
   const picked = (found: Picked) => put(named && found.point ? found.point : [...found.place]);
   const button = pickButton(name, () => around.pick(body(), !!named, picked));
@@ -241,7 +241,7 @@ const direction: Maker = ({ unit }, name, _, hint) => {
       if (given.includes(",")) return given.split(",").map(Number);
       return withUnit(given, unit) || undefined;
     },
-    set: (value) => (element.value = Array.isArray(value) ? value.join(", ") : String(value ?? "")),
+    set: (value) => (element.value = Array.isArray(value) ? value.join(", ") : decimals(String(value ?? ""))),
   };
 };
 

@@ -109,7 +109,14 @@ export interface Spoken {
   explained: Record<string, string>;
   /** How particles go by the word before them, in Korean. */
   particles?: Particles | null;
+  /** The sign before the decimals of a number that is shown. */
+  decimal: string;
+  /** English text of the page -> its forms by a count. */
+  forms: Record<string, Forms>;
 }
+
+/** Category of a count, such as `one` -> the text; `by` is the placeholder of the count. */
+export type Forms = Record<string, string>;
 
 /** What is said of a machine instead of what is said of others: by English text, and by chart. */
 export interface Wording {

@@ -1,5 +1,6 @@
 /** Figures of what shakes, and what balancing made of them. */
 
+import { decimals } from "./decimals";
 import { h, icon, set, show, write } from "./dom";
 import { unbroken } from "./format";
 import { Pins } from "./pins";
@@ -32,8 +33,8 @@ export class Readings {
     for (const figure of state.figures) {
       const cell = this.cells.get(figure.name);
       if (!cell) continue;
-      write(cell.value, figure.text);
-      if (cell.before) write(cell.before, figure.was ?? "");
+      write(cell.value, decimals(figure.text));
+      if (cell.before) write(cell.before, decimals(figure.was ?? ""));
     }
     this.lines = lines;
     this.pin();

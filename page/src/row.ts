@@ -1,5 +1,6 @@
 /** One number of the machine: typed, stepped by keys, or moved by its slider. */
 
+import { asTyped, decimals } from "./decimals";
 import type { Conversation } from "./conversation";
 import { cureOf, withCure } from "./cure";
 import { fresh, h, put, set, show, write } from "./dom";
@@ -77,8 +78,8 @@ export class Row {
     this.field = field;
     if (this.exact !== field.text || follows) {
       this.exact = field.text;
-      this.input.title = field.text;
-      if (!this.typing) this.input.value = this.focused ? field.text : field.shown;
+      this.input.title = decimals(field.text);
+      if (!this.typing) this.input.value = decimals(this.focused ? field.text : field.shown);
       if (!this.typing) this.complain(null);
     }
     if (this.slider && !this.gesture) this.place(this.slider);
@@ -93,7 +94,7 @@ export class Row {
   }
 
   private focus(): void {
-    if (!this.typing) this.input.value = this.exact;
+    if (!this.typing) this.input.value = decimals(this.exact);
     this.input.select();
   }
 
@@ -112,12 +113,12 @@ export class Row {
     this.typing = false;
     delete this.input.dataset.typed;
     this.complain(null);
-    this.input.value = this.focused ? this.exact : this.field.shown;
+    this.input.value = decimals(this.focused ? this.exact : this.field.shown);
   }
 
   private commit(): void {
     this.gesture?.end();
-    const text = this.input.value.trim().replace(/−/g, "-");
+    const text = asTyped(this.input.value);
     if (text === this.asked) return;
     if (!this.typing || text === this.exact || text === "") return this.revert();
     this.asked = text;
@@ -191,7 +192,7 @@ export class Row {
     put(slider, step);
     if (slider.style.getPropertyValue("--part") !== shown)
       slider.style.setProperty("--part", shown);
-    set(slider, { "aria-valuetext": this.field.shown });
+    set(slider, { "aria-valuetext": decimals(this.field.shown) });
   }
 
   private complain(message: string | null, told: Refused | null = null): void {

@@ -1,7 +1,8 @@
 /** The page's texts in the reader's language: English in the code, the rest told by the server. */
 
+import { decimals, point } from "./decimals";
 import { particles } from "./particles";
-import type { Spoken, Told, Wire, Wording } from "./protocol";
+import type { Forms, Spoken, Told, Wire, Wording } from "./protocol";
 
 /** Where a reader's choice of a language is kept. */
 const KEPT = "equipoise language";
@@ -11,6 +12,8 @@ let told: Omit<Spoken, "type"> = {
   languages: { en: "English" },
   words: {},
   explained: {},
+  decimal: ".",
+  forms: {},
 };
 /** What is said of the machine that is open instead, by the text for which it is said. */
 let own: Wording = { words: {}, explained: {} };
@@ -18,8 +21,22 @@ let joined = (text: string): string => text;
 
 /** A text in the language that is spoken, its `{placeholders}` filled in. */
 export function say(text: string, values: Record<string, string | number> = {}): string {
-  const said = own.words[text] ?? told.words[text] ?? text;
-  return joined(said.replace(/\{(\w+)\}/g, (whole, name: string) => String(values[name] ?? whole)));
+  const said = own.words[text] ?? formOf(told.forms[text], values) ?? told.words[text] ?? text;
+  return joined(said.replace(/\{(\w+)\}/g, (whole, name: string) => filled(values[name] ?? whole)));
+}
+
+/** The form of a text that has some by a count. */
+function formOf(forms: Forms | undefined, values: Record<string, string | number>): string | undefined {
+  if (!forms) return undefined;
+  const count = Number(values[forms.by ?? ""]);
+  const category = Number.isNaN(count) ? "other" : new Intl.PluralRules(told.language).select(count);
+  return forms[category] ?? forms.other;
+}
+
+/** A value as a sentence has it: a number with the decimal sign of the language, a name as it is. */
+function filled(value: string | number): string {
+  const text = String(value);
+  return /^[-+−±(]*\d/.test(text) ? decimals(text) : text;
 }
 
 /** Mark a text that is said later, by `say` of a name. */
@@ -68,8 +85,9 @@ export function wished(): string[] {
 }
 
 /** Speak a language whose texts are at hand, without a server. */
-export function speak(language: string, words: Record<string, string>): void {
-  told = { ...told, language, words };
+export function speak(language: string, words: Record<string, string>, decimal: string): void {
+  told = { ...told, language, words, decimal };
+  point(decimal);
 }
 
 /** Agree with the server on a language, by a wire that nobody else hears yet. */
@@ -81,6 +99,7 @@ export function agree(wire: Wire, wishes: string[]): Promise<void> {
       wire.off("msg:custom", hear);
       if (content.type === "spoken") {
         told = content;
+        point(content.decimal);
         joined = content.particles ? particles(content.particles) : (text) => text;
       }
       done();

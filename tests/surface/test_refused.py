@@ -379,7 +379,7 @@ REFUSED = {
     "report": {
         "scotch-yoke -o report.docx": "--out: got 'report.docx'; give a name that",
         "scotch-yoke -o no/report.html": "no/report.html: there is no such folder",
-        "scotch-yoke --language fr": '"en", "ja", "ko"',
+        "scotch-yoke --language fr": '"en", "de", "ja", "ko"',
         "study-of-lengths": "this is a study",
         "nosuch": "nosuch: there is no such file",
     },

@@ -87,6 +87,8 @@ export interface MachineRow {
 export interface MachineData {
   language: string;
   words: Record<string, string>;
+  /** The sign before the decimals of a number that is shown. */
+  decimal: string;
   title: string;
   description: string;
   rules: NumberRules;

@@ -1,5 +1,6 @@
 /** What a drag or a typed number does to the numbers of a machine. */
 
+import { asTyped } from "../decimals";
 import type { Pair } from "../protocol";
 import { keyPath } from "../paths";
 import { say } from "../words";
@@ -153,7 +154,7 @@ function pointOf(solution: Solution, path: string, fixed: Pair): Pair {
 
 /** A value in SI units from what was typed; a sentence where it is none. */
 export function typed(text: string, field: Pick<Field, "units" | "unit" | "factor" | "label">): number | string {
-  const match = /^([-+−]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?)\s*(.*)$/i.exec(text.trim());
+  const match = /^([-+−]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?)\s*(.*)$/i.exec(asTyped(text));
   const unit = match?.[2]?.trim() ?? "";
   const factor = unit === "" || unit === field.unit ? 1 / field.factor : field.units[unit];
   if (!match || factor === undefined) {

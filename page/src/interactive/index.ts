@@ -311,7 +311,7 @@ if (typeof document !== "undefined") {
   const { states } = globalThis as unknown as { states?: States };
   if (root && text && states) {
     const data = JSON.parse(text) as MachineData;
-    speak(data.language, data.words);
+    speak(data.language, data.words, data.decimal);
     follow(data.rules);
     measure(data.length);
     new Page(root, new Machine(data, states));

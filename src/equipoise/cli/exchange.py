@@ -69,7 +69,7 @@ def export(
     angles
         Of loads along a link: number of crank angles a turn, or the angles: "0 deg, 45 deg".
     language
-        Of drawings and pages: English, Japanese or Korean.
+        Of drawings and pages.
     """
     from equipoise.exchange.export import check_kind, check_link_loads, format_of
     from equipoise.exchange.export import export as write

@@ -274,7 +274,7 @@ def report(
     out
         Name of the report, which ends in .html or .pdf; NAME-report.html beside you if not given.
     language
-        English, Japanese or Korean.
+        Of the report.
     pdf
         Write a PDF beside the page too.
     """

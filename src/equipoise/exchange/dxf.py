@@ -18,7 +18,9 @@ import numpy as np
 from equipoise.errors import UsageError, needed
 from equipoise.exchange.formats import Job
 from equipoise.exchange.parts import Part, parts
-from equipoise.i18n import spoken
+from equipoise.i18n import decimal_sign, spoken
+from equipoise.i18n.decimals import POINT
+from equipoise.i18n.languages import KNOWN
 from equipoise.mechanism.assembly.cam_fits import fits_of
 from equipoise.mechanism.kinematics.motion import Motion, move
 from equipoise.mechanism.parts.machine import FRAME
@@ -142,18 +144,22 @@ def _parts(space: Any, found: list[Part], scene: Scene) -> None:
         corner -= 1j * gap
 
 
-FONTS = {"ja": "msgothic.ttc", "ko": "malgun.ttf"}
-"""Of texts in a language: as Windows has them, for which other systems take their own."""
-
-
 def _style(drawing: Any) -> str:
-    """The style of texts in the language that is spoken."""
-    font = FONTS.get(spoken())
-    if font is None:
+    """The style of texts in the language that is spoken; other systems than Windows take fonts of
+    their own for it.
+    """
+    font = KNOWN[spoken()].drawing_font
+    if not font:
         return "Standard"
     if font not in drawing.styles:
         drawing.styles.new(font, dxfattribs={"font": font})
     return font
+
+
+def _decimal_sign() -> dict[str, int]:
+    """The decimal sign of dimensions, where it is not the point that drawings have."""
+    sign = decimal_sign()
+    return {} if sign == POINT else {"dimdsep": ord(sign)}
 
 
 def _measures(space: Any, part: Part, shift: complex, gap: float) -> None:
@@ -162,7 +168,13 @@ def _measures(space: Any, part: Part, shift: complex, gap: float) -> None:
     """
     low, high = (MM * place + shift for place in part.box)
     looks = {
-        "override": {"dimtxt": gap / 8, "dimasz": gap / 10, "dimdec": 2, "dimzin": 8},
+        "override": {
+            "dimtxt": gap / 8,
+            "dimasz": gap / 10,
+            "dimdec": 2,
+            "dimzin": 8,
+            **_decimal_sign(),
+        },
         "dxfattribs": _layer("dimensions", part.name),
     }
     if part.arcs:

@@ -44,7 +44,7 @@ def export(
     link : whose loads are written, in a format of them; the only link with a section if None.
     angles : instead of ``crank_angle``, crank angles of these loads: a number of them in each turn,
         or the angles, rad.
-    language : ``en``, ``ja`` or ``ko``, of drawings and pages.
+    language : code of one of `equipoise.i18n.LANGUAGES`, such as ``ja``, of drawings and pages.
 
     Returns
     -------

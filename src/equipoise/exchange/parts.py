@@ -16,7 +16,7 @@ import numpy as np
 
 from equipoise.errors import UsageError
 from equipoise.exchange.formats import Job
-from equipoise.i18n import Note, say, to_say
+from equipoise.i18n import Note, coordinates, decimals, say, to_say
 from equipoise.mechanism.parts.bodies import Body, Points, place_of
 from equipoise.mechanism.parts.body_checks import outlines
 from equipoise.quantities import told
@@ -140,7 +140,7 @@ class Part:
         elif self.is_round:
             (circle_of, *_) = (curve for curve in _curves(self.edges[0]) if curve.whole)
             x, y = circle_of.center.real, circle_of.center.imag
-            place = f"({in_mm(1e3 * x)}, {in_mm(1e3 * y)})"
+            place = f"({coordinates([in_mm(1e3 * x), in_mm(1e3 * y)])})"
             yield say("its centre at {place} mm in the axes of the link", place=place)
 
     @property
@@ -206,8 +206,8 @@ def _refusal(job: Job) -> Note:
 
 
 def in_mm(length: float) -> str:
-    """A length in mm with two decimals at most, and none where it is whole."""
-    return f"{length:.2f}".rstrip("0").rstrip(".")
+    """A length in mm with two decimals at most, and none where it is whole, as drawings have it."""
+    return decimals(f"{length:.2f}".rstrip("0").rstrip("."))
 
 
 def area_of(edges: tuple[Edge, ...]) -> float:

@@ -11,6 +11,7 @@ from typing import Literal
 import numpy as np
 
 from equipoise.figures.stage import RULER, Stage, width_of
+from equipoise.i18n import decimals
 from equipoise.symbols.shapes import FOOT
 
 
@@ -66,7 +67,7 @@ def _fits(label: Label, others: list[Label], stage: Stage) -> bool:
 def _strip(stage: Stage) -> Iterator[list[Label]]:
     """A length by which one can measure, and what is told, one above the other from the right."""
     right, length = ruler_ends(stage)[1], _ruler_length(stage)
-    words = f"{1000 * length:g} mm" if length < 10 else f"{length:g} m"
+    words = decimals(f"{1000 * length:g} mm" if length < 10 else f"{length:g} m")
     yield [Label(words, right + 8 * stage.unit - 2j, "start")]
     corner = complex(stage.width - 12 * stage.unit, right.imag - 2)
     for row, (words, color) in enumerate(stage.lines):

@@ -14,7 +14,7 @@ from equipoise.exposure.daily import ACTION, LIMIT, partial_exposure, verdict_of
 from equipoise.exposure.weighting import EDGES, factor
 from equipoise.figures.shared import by_name, ends
 from equipoise.figures.style import free_name, short
-from equipoise.i18n import say
+from equipoise.i18n import decimals, say
 from equipoise.quantities import Display
 from equipoise.results.charts import Array, Axis, Band, Chart, Curve, Line, Mark, Panel, shown
 
@@ -69,7 +69,9 @@ def spectrum(weighted: Weighted, title: str) -> Chart:
         curves.append(_stairs(before, low, "unweighted", label))
     label = say("weighted, total value a_hv = {value} m/s²", value=shown(weighted.a_hv))
     curves.append(_stairs(after, low, "weighted", label))
-    ticks = tuple((float(10 ** (0.1 * round(10 * np.log10(item)))), f"{item:g}") for item in TOLD)
+    ticks = tuple(
+        (float(10 ** (0.1 * round(10 * np.log10(item)))), decimals(f"{item:g}")) for item in TOLD
+    )
     first, last = float(EDGES[0]), float(EDGES[-1])
     x = Axis(say("frequency"), Display("Hz", 1.0), "log", first, last, ticks=ticks)
     y = Axis(say("RMS"), RATE, "log", low, 1.6 * top)
@@ -96,7 +98,7 @@ def exposure(tools: Sequence[tuple[str, float]], day: Exposure | None) -> Chart:
     curves = [Curve(reach, _a8(a_hv, reach), "", "thin") for _, a_hv in lines]
     marks = []
     for value, name in ((ACTION, say("action value")), (LIMIT, say("limit value"))):
-        text = f"{name} {value:g} m/s²"
+        text = f"{name} {decimals(f'{value:g}')} m/s²"
         marks.append(Mark(float(reach[0]), value, text, "lines", 60.0, sign=False, near=3.0))
     if day is None:
         for name, a_hv in lines[:MOST_NAMES]:

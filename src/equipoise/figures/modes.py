@@ -13,7 +13,7 @@ import numpy as np
 from equipoise.figures.curves import UNIT
 from equipoise.figures.linkage import support_keys
 from equipoise.figures.style import short
-from equipoise.i18n import say, to_say
+from equipoise.i18n import decimals, say, to_say
 from equipoise.mechanism.kinematics.motion import move
 from equipoise.mechanism.parts.support import AXES, Gauge, Mount, unit_vector
 from equipoise.quantities import typeset
@@ -201,7 +201,7 @@ def parts_of(free: FreeVibration, mode: Mode) -> list[str]:
     for name, part in zip(free.coordinates, mode.shape.tolist(), strict=True):
         unit, size = "rad" if name in AXES else "m", abs(part)
         phase = round(float(np.degrees(np.angle(part))))
-        text = f"{size if phase == 0 else -size:.3g} {unit}"
+        text = decimals(f"{size if phase == 0 else -size:.3g} {unit}")
         if phase % 180:
             text = say("{value} at {angle}", value=f"{size:.3g} {unit}", angle=f"{phase}°")
         words.append(typeset(f"{say(name)} {text if size >= NOTHING else 0}"))

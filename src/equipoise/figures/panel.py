@@ -32,6 +32,7 @@ from equipoise.figures.style import (
     look_of,
 )
 from equipoise.figures.view import View, corners_of
+from equipoise.i18n import decimals
 from equipoise.results.charts import Mark, Panel
 
 Number = tuple[str, float, float, str]
@@ -240,15 +241,15 @@ def _bar_numbers(view: View) -> None:
     ]
     if scale is view.x:
         for size, at, _ in seen:
-            text = f"{size:.1f} {scale.axis.unit_name}"
+            text = decimals(f"{size:.1f} {scale.axis.unit_name}")
             view.write(float(scale.of(size)) + 4, float(view.y.at(at)), text, color=INK)
         return
-    decimals = max(0, 2 - floor(log10(largest)))
-    if decimals > MOST_DECIMALS:
+    most = max(0, 2 - floor(log10(largest)))
+    if most > MOST_DECIMALS:
         return
-    for fewer in range(decimals, -1, -1):
+    for fewer in range(most, -1, -1):
         texts = [
-            (f"{size:.{fewer}f}", float(view.x.at(at)), float(scale.of(size)), color)
+            (decimals(f"{size:.{fewer}f}"), float(view.x.at(at)), float(scale.of(size)), color)
             for size, at, color in seen
             if round(size, fewer)
         ]

@@ -11,7 +11,7 @@ import numpy as np
 
 from equipoise import signals
 from equipoise.figures.style import KINDS, short
-from equipoise.i18n import say
+from equipoise.i18n import decimals, say
 from equipoise.quantities import Dimension
 from equipoise.results.charts import DEGREES, RPM, Array, Axis, Chart, Curve, Mark, Panel, shown
 
@@ -101,7 +101,7 @@ def told_speed(speed: float) -> str:
 
 def degrees_told(angle: float) -> str:
     """An angle in rad as degrees."""
-    return f"{np.degrees(angle):.1f}°".replace("-", "\N{MINUS SIGN}")
+    return decimals(f"{np.degrees(angle):.1f}°").replace("-", "\N{MINUS SIGN}")
 
 
 def continued(names: Sequence[Any], every: Sequence[Any]) -> str:

@@ -18,7 +18,7 @@ from equipoise.handheld.frequencies import scale_of
 from equipoise.handheld.hand_blocks import figure_named
 from equipoise.handheld.response import respond_tool
 from equipoise.handheld.studies import number_of
-from equipoise.i18n import say, to_say
+from equipoise.i18n import decimals, say, to_say
 from equipoise.quantities import Dimension, Display, display
 from equipoise.results.charts import RPM, Array, Axis, Chart, Curve, Line, Mark, Panel, shown
 
@@ -65,7 +65,9 @@ def determinant_charts(chart: DeterminantChart, modes: ToolModes) -> dict[str, C
         known = modes.planes[plane].parameter
         zeros = zeros_of(chart.parameter, chart.value[plane], known)
         top = 1.1 * float(np.max(np.abs(chart.value[plane]))) or 1.0
-        marks = tuple(Mark(at, 0.0, f"{at:.3f}", "zeros", 60.0, optional=True) for at in zeros)
+        marks = tuple(
+            Mark(at, 0.0, decimals(f"{at:.3f}"), "zeros", 60.0, optional=True) for at in zeros
+        )
         panels.append(
             Panel(
                 Axis("λ", low=0.0, high=float(chart.parameter[-1])),
@@ -172,7 +174,8 @@ def _parameter_axis(top: float) -> Axis:
     """The same in lambda, by steps of which there are nine at most."""
     step = next(step for step in STEPS if top <= 9 * step)
     return Axis(
-        "λ", ticks=tuple((item, f"{item:g}") for item in np.arange(0.0, top, step).tolist())
+        "λ",
+        ticks=tuple((item, decimals(f"{item:g}")) for item in np.arange(0.0, top, step).tolist()),
     )
 
 

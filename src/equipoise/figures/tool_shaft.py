@@ -13,7 +13,7 @@ from equipoise.figures.shared import by_name, continued, groups
 from equipoise.figures.style import short
 from equipoise.handheld.exposed import grips
 from equipoise.handheld.response import respond_tool
-from equipoise.i18n import say, to_say
+from equipoise.i18n import decimals, say, to_say
 from equipoise.results.charts import (
     RPM,
     Array,
@@ -146,7 +146,11 @@ def _shape(modes: ToolModes, found: PlaneModes, number: int) -> Panel:
     hertz = float(found.cycles_per_second[number])
     if hertz:
         minute = turns_told(float(found.frequency[number]))
-        lines = [f"{shown(hertz)} Hz", f"{minute} 1/min", f"λ = {found.parameter[number]:.3f}"]
+        lines = [
+            f"{shown(hertz)} Hz",
+            f"{minute} 1/min",
+            decimals(f"λ = {found.parameter[number]:.3f}"),
+        ]
     else:
         lines = [say("free:"), *wrap(found.rigid[number], LETTERS)]
     return Panel(

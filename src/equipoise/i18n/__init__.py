@@ -1,22 +1,23 @@
 """Texts of pictures and reports in the reader's language; the English text is the key.
 
-The catalogues beside this file hold a line for each text: ``"shaking force" = "起振力"``.
+The catalogues beside this file hold a line for each text: ``"shaking force" = "起振力"``.  A
+language is its catalogue, whose head says what is special to it (`i18n/languages.py`).
 """
 
 from __future__ import annotations
 
-import tomllib
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
-from functools import cache
-from importlib import resources
 from types import MappingProxyType
 from typing import Any, Self
 
+from equipoise.i18n.counting import form_of, texts
+from equipoise.i18n.decimals import filled, with_sign
+from equipoise.i18n.languages import KNOWN
 from equipoise.i18n.particles import with_particles
 
-LANGUAGES = {"en": "English", "ja": "日本語", "ko": "한국어"}
+LANGUAGES = {code: language.name for code, language in KNOWN.items()}
 """Code of a language -> its own name."""
 
 _spoken = ContextVar("spoken", default="en")
@@ -31,11 +32,28 @@ def say(text: str, /, **values: Any) -> str:
     """
     language = _spoken.get()
     text = _wording.get().get(text, text)
-    said = catalogue(language).get(text, text)
+    said = form_of(text, values, language) or catalogue(language).get(text, text)
     if values:
-        said = said.format(**values)
-        said = with_particles(said) if language == "ko" else said
+        said = with_particles(filled(said, values, KNOWN[language].decimal), language)
     return said
+
+
+def decimal_sign() -> str:
+    """The sign before the decimals of a number, in the language that is spoken."""
+    return KNOWN[_spoken.get()].decimal
+
+
+def decimals(text: str) -> str:
+    """A text of numbers that is shown as it is, with the decimal sign of the language spoken.
+
+    text : of numbers as files have them, such as ``33.5 mm``; names and versions in it stay.
+    """
+    return with_sign(text, decimal_sign())
+
+
+def coordinates(numbers: Iterable[str]) -> str:
+    """Numbers that belong together, such as x and y; semicolons between those with a comma."""
+    return ("; " if decimal_sign() == "," else ", ").join(map(decimals, numbers))
 
 
 def to_say(text: str) -> str:
@@ -260,10 +278,6 @@ def spoken() -> str:
     return _spoken.get()
 
 
-@cache
 def catalogue(language: str) -> Mapping[str, str]:
-    """English text -> text in a language; empty for English itself."""
-    if language == "en":
-        return {}
-    file = resources.files(__name__) / f"{language}.toml"
-    return tomllib.loads(file.read_text(encoding="utf-8"))
+    """English text -> text in a language; of English itself what has forms by a count."""
+    return texts(language)

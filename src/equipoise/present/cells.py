@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from itertools import compress
 from math import isfinite, isnan
 
-from equipoise.i18n import Note, listed, say, spoken
+from equipoise.i18n import Note, decimals, listed, say, spoken
 from equipoise.quantities import Dimension, Display, change, display, fixed, typeset
 from equipoise.quantities.numbers import ROUNDING
 from equipoise.results.blocks import (
@@ -198,6 +198,10 @@ def _head(column: Column, cells: tuple[Cell, ...], shown: Mapping[Kind, Display]
     return Head(column.label, shown[column.dimension, column.unit].unit, at)
 
 
+_IS_NUMBER = re.compile(r"[(+\-\N{MINUS SIGN}\N{PLUS-MINUS SIGN}]*[0-9]")
+"""What a cell of words begins with that is a number, or a range of such, and no name."""
+
+
 # -- cells -----------------------------------------------------------------------------------------
 
 
@@ -209,10 +213,11 @@ def _text(
     faint: Mapping[Kind, float],
 ) -> CellText:
     if cell is None or isinstance(cell, str):
-        return CellText(cell or "")
+        return CellText(decimals(cell) if cell and _IS_NUMBER.match(cell) else cell or "")
     if isinstance(cell, RelativeChange):
         share = change(cell.before, cell.after)
-        return CellText(say("same") if share == UNCHANGED else share, "", True, cell.emphasis)
+        text = say("same") if share == UNCHANGED else decimals(share)
+        return CellText(text, "", True, cell.emphasis)
     if isinstance(cell, Many):
         values = [_text(value, column, shown, sizes, faint) for value in cell.values]
         labels = [say("and {count} more", count=cell.more)] if cell.more else []
@@ -235,7 +240,7 @@ def _text(
     if cell.at is not None:
         place = Value(cell.at, after=1 if column.at[0] == "angle" else None)
         at = _number(place, shown[column.at], column.at[0])
-    limit = "" if cell.limit is None else f"{cell.limit * shown[kind].factor:.4g}"
+    limit = "" if cell.limit is None else decimals(f"{cell.limit * shown[kind].factor:.4g}")
     return CellText(text, at, number=True, emphasis=cell.emphasis, limit=limit)
 
 
@@ -257,8 +262,8 @@ def _number(
         return "0"
     if cell.after is None:
         scale = abs(cell.scale) if dimension is None else max(abs(cell.scale), size)
-        return unit.text(cell.value, scale, cell.digits)
-    return fixed(unit, cell.value, cell.after)
+        return decimals(unit.text(cell.value, scale, cell.digits))
+    return decimals(fixed(unit, cell.value, cell.after))
 
 
 # -- print -----------------------------------------------------------------------------------------

@@ -14,7 +14,7 @@ from equipoise.errors import UsageError, at_place
 from equipoise.handheld import blocks as of_tools
 from equipoise.handheld.hand_blocks import design_blocks, exposure_of_tool
 from equipoise.handheld.model import Tool
-from equipoise.i18n import LANGUAGES, Note, said, say, speaking, to_say
+from equipoise.i18n import LANGUAGES, Note, coordinates, said, say, speaking, to_say
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.planting.blocks import planting_blocks
 from equipoise.present.drawing import drawings
@@ -297,7 +297,7 @@ def _settings_of_linkage(found: Findings) -> Iterator[str]:
     yield angles_told(found.analysis)
     if motion.acceleration:
         yield say("Crank acceleration {value} rad/s²", value=number(motion.acceleration))
-    gravity = ", ".join(number(part) for part in found.machine.gravity)
+    gravity = coordinates(number(part) for part in found.machine.gravity)
     yield say("Gravity ({value}) m/s²", value=gravity)
     if found.response is not None:
         yield model_told(found.response.model)
@@ -339,7 +339,7 @@ def report(
     ----------
     model : the machine or tool, the path of its file, or the name of a bundled example.
     outs : files to write, pages as ``.html`` or PDF as ``.pdf`` by the ends of their names.
-    language : ``en``, ``ja`` or ``ko``.
+    language : code of one of `equipoise.i18n.LANGUAGES`, such as ``ja``.
     speed : of the crank, or of the tool's engine, rad/s, or a text such as ``"300 rpm"``; the
         model's where not given.
     command : that makes the report again, told at its end.
@@ -365,7 +365,7 @@ def report_page(found: Findings | ToolFindings, language: str = "en", command: s
     Parameters
     ----------
     found : from `find`.
-    language : ``en``, ``ja`` or ``ko``.
+    language : code of one of `equipoise.i18n.LANGUAGES`, such as ``ja``.
     command : that makes it again, told at its end.
 
     Raises

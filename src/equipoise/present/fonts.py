@@ -6,21 +6,14 @@ from functools import cache
 from typing import TYPE_CHECKING
 
 from equipoise.errors import EquipoiseError, UsageError
-from equipoise.i18n import LANGUAGES, Note
+from equipoise.i18n import Note
+from equipoise.i18n.languages import KNOWN
 
 if TYPE_CHECKING:
     import typst
 
 LATIN = "DejaVu Sans"
 """The font of Western letters, which comes with Matplotlib: pages end alike on every computer."""
-EASTERN = {
-    "ja": ("Noto Sans CJK JP", "Noto Sans JP", "Hiragino Sans", "Yu Gothic", "Source Han Sans"),
-    "ko": ("Noto Sans CJK KR", "Noto Sans KR", "Apple SD Gothic Neo", "Malgun Gothic"),
-}
-MORE_EASTERN = {
-    "ja": ("Meiryo", "MS Gothic", "IPAexGothic", "IPAGothic", "TakaoGothic", "VL Gothic"),
-    "ko": ("NanumGothic", "Nanum Gothic", "UnDotum", "Baekmuk Dotum", "Source Han Sans K"),
-}
 NO_TYPST = Note('a PDF needs Typst; install it by: pip install "equipoise[report]"')
 LAST_WESTERN = "\u2e7f"
 """Signs after it are letters of East Asia, which not every computer has."""
@@ -46,7 +39,7 @@ def installed() -> typst.Fonts:
 def families(language: str) -> list[str]:
     """Fonts that are there for a language, the best first."""
     there = set(installed().families())
-    wanted = {code: (*EASTERN[code], *MORE_EASTERN[code]) for code in EASTERN}
+    wanted = {code: item.fonts for code, item in KNOWN.items() if item.fonts}
     eastern = {code: [name for name in names if name in there] for code, names in wanted.items()}
     if language in eastern and not eastern[language]:
         raise UsageError(
@@ -54,8 +47,8 @@ def families(language: str) -> list[str]:
                 "this computer has no font with {languages} letters, so that a PDF would "
                 "show boxes; install one, such as {eastern} (fonts-noto-cjk), or write "
                 "the report as .html",
-                languages=LANGUAGES[language],
-                eastern=EASTERN[language][0],
+                languages=KNOWN[language].name,
+                eastern=wanted[language][0],
             )
         )
     order = sorted(eastern, key=lambda code: code != language)

@@ -20,7 +20,7 @@ from markupsafe import Markup
 
 import equipoise
 from equipoise.errors import EquipoiseError
-from equipoise.i18n import Note, say, speaking, spoken
+from equipoise.i18n import Note, decimals, say, speaking, spoken
 from equipoise.present.cells import CellText, Grid, Head, grid, noted, printed, sign_of
 from equipoise.present.colors import colored, colors
 from equipoise.present.fonts import boxes, check_pdf, families, installed
@@ -261,6 +261,7 @@ FILTERS: dict[str, Callable[..., Any]] = {
     "grid": printed_grid,
     "noted": noted,
     "paired": paired,
+    "decimals": decimals,
     "printed": printed,
     "runs": _runs,
     "word": Looks(coloured=False).word,

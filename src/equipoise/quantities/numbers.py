@@ -12,6 +12,7 @@ from math import floor, isfinite, log10, pi
 from types import MappingProxyType
 from typing import Any
 
+from equipoise.i18n import decimals
 from equipoise.quantities.units import FACTORS, KINDS, SI, Dimension
 
 PER_RPM = pi / 30
@@ -89,7 +90,10 @@ def time_told(seconds: float) -> str:
 
 
 def typeset(text: str) -> str:
-    """A number or unit as print has it: a true minus, ``10⁻⁴`` for ``e-04``, ``m²`` for ``m^2``."""
+    """A number or unit as print has it: a true minus, ``10⁻⁴`` for ``e-04``, ``m²`` for ``m^2``,
+    and the decimal sign of the language that is spoken.
+    """
+    text = decimals(text)
     digits, power, exponent = text.partition("e")
     if power and exponent.lstrip("+-").isdigit() and digits[-1:].isdigit():
         text = f"{digits}×10{str(int(exponent)).translate(_RAISED)}"

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from equipoise.i18n import say, to_say
+from equipoise.i18n import coordinates, say, to_say
 from equipoise.mechanism.outputs.spoken import body_named
 from equipoise.mechanism.parts.bodies import inertia_of, material_of, together
 from equipoise.quantities import Dimension, Display, angle, display, told
@@ -82,7 +82,7 @@ def span(values: Array, scale: float = 0.0) -> Span:
 def place(xy: tuple[float, ...], unit: Display) -> str:
     """A place without its unit."""
     scale = max(map(abs, xy))
-    return ", ".join(unit.text(part, scale) for part in xy)
+    return coordinates(unit.text(part, scale) for part in xy)
 
 
 def place_told(xy: tuple[float, ...]) -> str:

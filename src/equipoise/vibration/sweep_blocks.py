@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from equipoise.i18n import say, to_say
+from equipoise.i18n import coordinates, say, to_say
 from equipoise.quantities import PER_RPM, Dimension, display, number
 from equipoise.results.blocks import Block, Cell, Column, Many, Notes, Span, Table, Text, Value
 from equipoise.signals import Array
@@ -121,7 +121,7 @@ def free_blocks(free: FreeVibration) -> Iterator[Block]:
 def _reference_told(free: FreeVibration) -> str:
     """About which point matrices and shapes are."""
     shown = display("length", [*free.reference], "mm")
-    place = ", ".join(shown.text(part, NEAR) for part in free.reference)
+    place = coordinates(shown.text(part, NEAR) for part in free.reference)
     support = free.linear.body.support
     template = (
         to_say("Displacements, masses and stiffnesses are those of the support's pivot, ({place}).")

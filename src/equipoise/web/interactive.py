@@ -20,7 +20,7 @@ from equipoise.codegen.emit import moves_shared, pose_signals, signals_in_loops
 from equipoise.codegen.javascript import Script, javascript
 from equipoise.errors import UsageError
 from equipoise.exchange.formats import Job
-from equipoise.i18n import Note, catalogue, said, say, spoken
+from equipoise.i18n import Note, catalogue, decimal_sign, said, say, spoken
 from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.assembly.family import can_vary
 from equipoise.mechanism.assembly.full_turn import CHANGE_POINT
@@ -70,10 +70,11 @@ def made(job: Job) -> str:
     own = wording_of(words_of(machine))["words"]
     words = dict(_said_by(program, spoken()))
     words |= {text: word for text, word in own.items() if _says(program, text)}
+    speech = {"language": spoken(), "words": words, "decimal": decimal_sign()}
     body = (
         '<main id="equipoise-interactive"></main>',
         f"<noscript>{escape(say('This page needs JavaScript.'))}</noscript>",
-        data("equipoise-machine", {**page.content, "language": spoken(), "words": words}),
+        data("equipoise-machine", {**page.content, **speech}),
         script(page.script.text, 'id="equipoise-states"'),
         script(program, 'type="module" id="equipoise-page"'),
     )

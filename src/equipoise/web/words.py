@@ -9,6 +9,8 @@ from importlib.resources import files
 from typing import Any
 
 from equipoise.i18n import LANGUAGES, catalogue, say, speaking
+from equipoise.i18n.counting import counted
+from equipoise.i18n.languages import KNOWN
 from equipoise.i18n.particles import rules
 from equipoise.web.explained import explained
 
@@ -52,4 +54,13 @@ def spoken_in(language: str) -> dict[str, Any]:
         charts = explained()
     words = words_of(language)
     text = {"language": language, "languages": LANGUAGES, "words": words, "explained": charts}
-    return text | {"particles": rules() if language == "ko" else None}
+    return text | speech_of(language)
+
+
+def speech_of(language: str) -> dict[str, Any]:
+    """What a page has to know of a language beside its texts: its decimal sign, its particles, and
+    the forms of those texts that have some by a count.
+    """
+    forms = counted(language)
+    own = {text: forms[text] for text in said_by_page() if text in forms}
+    return {"decimal": KNOWN[language].decimal, "particles": rules(language), "forms": own}

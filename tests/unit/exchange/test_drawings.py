@@ -15,11 +15,11 @@ from matplotlib.figure import Figure
 
 import equipoise as eq
 from equipoise.errors import UsageError
-from equipoise.exchange.dxf import FONTS
 from equipoise.exchange.formats import Job
 from equipoise.exchange.parts import Part, along, in_mm, parts
 from equipoise.exchange.reading.formats import import_machine
 from equipoise.figures import workshop_sheet
+from equipoise.i18n.languages import KNOWN
 from equipoise.present.findings import Findings
 from equipoise.quantities import told
 from support.found import found as found_of
@@ -195,7 +195,7 @@ def test_texts_of_drawings_are_in_the_language_asked_for(
         texts = on_layer(drawing, "dimensions crank_ counterweight 1")
         assert words in {one.dxf.text for one in texts if one.dxftype() == "TEXT"}
         (font,) = {one.dxf.style for one in texts if one.dxftype() == "TEXT"}
-        assert drawing.styles.get(font).dxf.font == FONTS[language]
+        assert drawing.styles.get(font).dxf.font == KNOWN[language].drawing_font
         group = svg(found, tmp_path / "x.svg", language=language).find("{*}g/{*}title")
         assert group is not None and group.text is not None and not group.text.isascii()
         for signs, wanted in (("", words), ("厚", "thickness 25 mm")):
@@ -204,7 +204,7 @@ def test_texts_of_drawings_are_in_the_language_asked_for(
             notes = eq.export(found, tmp_path / "x.pdf", language=language)  # type: ignore[arg-type]
             assert wanted in shown and bool(notes) == bool(signs)
             assert all("for which this computer has no font" in one for one in notes)
-    with pytest.raises(UsageError, match="give one of en, ja, ko"):
+    with pytest.raises(UsageError, match="give one of en, de, ja, ko"):
         eq.export(found, tmp_path / "x.pdf", language="fr")  # type: ignore[arg-type]
 
 

@@ -7,7 +7,7 @@ import re
 import pytest
 
 from equipoise.i18n import Note, catalogue, say, speaking
-from equipoise.i18n.particles import FORMS, with_particles
+from equipoise.i18n.particles import rules, with_particles
 from equipoise.web.words import spoken_in
 
 SPOKEN = {
@@ -29,18 +29,20 @@ SPOKEN = {
 
 @pytest.mark.parametrize("word", SPOKEN)
 def test_the_form_goes_by_the_sound_before_it(word: str) -> None:
-    told = with_particles(f"{word}을(를) {word}(으)로 {word}와(과)")
+    told = with_particles(f"{word}을(를) {word}(으)로 {word}와(과)", "ko")
     assert told == SPOKEN[word]
 
 
 def test_both_forms_stay_where_nobody_knows_the_sound() -> None:
-    assert with_particles("Δ을(를), 釣이(가)") == "Δ을(를), 釣이(가)"
+    assert with_particles("Δ을(를), 釣이(가)", "ko") == "Δ을(를), 釣이(가)"
     with speaking("en"):
         assert say("{one}은(는)", one="A") == "A은(는)"
 
 
 def test_and_or_and_being_take_their_form_too() -> None:
-    both = with_particles("A(이)나 M(이)나, 30°(이)며 199 g(이)며, 71.5 mm(이)고, 12 N(이)어야")
+    both = with_particles(
+        "A(이)나 M(이)나, 30°(이)며 199 g(이)며, 71.5 mm(이)고, 12 N(이)어야", "ko"
+    )
     assert both == "A나 M이나, 30°며 199 g이며, 71.5 mm고, 12 N이어야"
 
 
@@ -61,4 +63,4 @@ def test_catalogues_give_both_forms_after_what_is_filled_in() -> None:
 
 def test_the_page_gets_the_rules_where_korean_is_spoken() -> None:
     assert spoken_in("en")["particles"] is None
-    assert spoken_in("ko")["particles"]["forms"] == FORMS
+    assert spoken_in("ko")["particles"] == rules("ko")

@@ -11,7 +11,7 @@ import pytest
 import equipoise as eq
 from equipoise.cli.outputs import write_model
 from equipoise.errors import ModelError
-from equipoise.i18n import LANGUAGES, Note, Worded, in_each, said, speaking
+from equipoise.i18n import Note, Worded, in_each, said, speaking
 from equipoise.keys import Wording
 from equipoise.present.composition import build
 from equipoise.present.findings import find
@@ -21,6 +21,7 @@ from equipoise.schema.opening import Opened, bundled, toml_content
 from equipoise.schema.studies import restore, study_in
 from equipoise.web.messages import message_of
 from equipoise.web.session import Session
+from support.languages import DOCUMENTED
 from unit.schema.samples import FOUR_BAR
 
 NAMED = 'title.ja = "四節リンク"\ntitle.en = "Four-bar"'
@@ -30,7 +31,7 @@ BY_LANGUAGE = FOUR_BAR.replace('title = "Four-bar"', f'{NAMED}\ndescription.ko =
 def test_a_text_is_said_in_the_language_that_is_spoken_or_in_the_first_there_is():
     machine = loads(BY_LANGUAGE)
     heard = []
-    for code in LANGUAGES:
+    for code in DOCUMENTED:
         with speaking(code):
             heard.append((said(machine.title), said(machine.description)))
     assert heard == [("Four-bar", "설명"), ("四節リンク", "설명"), ("Four-bar", "설명")]
@@ -85,8 +86,8 @@ def test_bundled_files_have_each_text_in_each_language(name):
         if key not in content and name.startswith("study-"):
             continue
         texts = Wording().check(content[key]).texts
-        assert {*texts} == {*LANGUAGES}
-        assert len({*texts.values()}) == len(LANGUAGES)
+        assert {*texts} == {*DOCUMENTED}
+        assert len({*texts.values()}) == len(DOCUMENTED)
 
 
 @pytest.mark.parametrize(("name", "language"), [("drag-link", "ja"), ("nagamine-irie", "ko")])

@@ -15,7 +15,7 @@ import equipoise as eq
 from equipoise.errors import UsageError
 from equipoise.figures.paint import font_folder
 from equipoise.figures.style import SMALL
-from equipoise.i18n import LANGUAGES
+from equipoise.i18n.languages import KNOWN
 from equipoise.present import fonts
 from equipoise.present import pages as composed
 from equipoise.present.checks import machine_blocks
@@ -32,6 +32,7 @@ from equipoise.results.blocks import SvgPicture, Table, Text, Value
 from equipoise.results.machine_blocks import angles_told
 from support.chosen import EXHAUSTIVE
 from support.found import found as found_of
+from support.languages import COMPLETE
 
 
 @cache
@@ -252,7 +253,7 @@ def test_pages_end_alike_whatever_fonts_a_computer_has(
     assert fonts.families("en") == ["DejaVu Sans"]
 
 
-@pytest.mark.parametrize("language", fonts.EASTERN)
+@pytest.mark.parametrize("language", [code for code in KNOWN if KNOWN[code].fonts])
 def test_eastern_letters_are_of_a_font_that_has_them(language: str) -> None:
     try:
         wanted = fonts.families(language)[1]
@@ -262,10 +263,10 @@ def test_eastern_letters_are_of_a_font_that_has_them(language: str) -> None:
     assert any(wanted.replace(" ", "").lower() in name.decode().lower() for name in names)
 
 
-@pytest.mark.parametrize("language", LANGUAGES)
+@pytest.mark.parametrize("language", COMPLETE)
 def test_names_of_the_file_are_told_from_words(language: str) -> None:
     seen = drawn_of(document("yamashita-rig", language))["gauge-gauge"].seen
-    assert {"en": "“gauge”", "ja": "「gauge」", "ko": "‘gauge’"}[language] in seen
+    assert {"en": "“gauge”", "de": "„gauge“", "ja": "「gauge」", "ko": "‘gauge’"}[language] in seen
 
 
 def test_what_the_hands_get_is_called_by_words() -> None:

@@ -166,5 +166,5 @@ def test_letters_that_no_font_has_are_told_of_a_pdf(document, monkeypatch, tmp_p
 def test_other_names_and_languages_are_refused(tmp_path):
     with pytest.raises(UsageError, match=r"ends in \.html or \.pdf"):
         eq.report("scotch-yoke", tmp_path / "report.docx")
-    with pytest.raises(UsageError, match="give one of en, ja, ko"):
+    with pytest.raises(UsageError, match="give one of en, de, ja, ko"):
         eq.report("scotch-yoke", tmp_path / "report.html", language="fr")

@@ -56,7 +56,7 @@ OF_LINKAGES: Refusals = {
     "title of no language": (TITLE, "title = {}", "title",
                              'got a table; give text in quotes, or by language: title.en = "..."'),
     "unknown language": (TITLE, 'title.jpn = "x"', "title.jpn",
-                         "no language is called 'jpn'; there are 'en', 'ja', 'ko'"),
+                         "no language is called 'jpn'; there are 'en', 'de', 'ja', 'ko'"),
     "misspelt language": (TITLE, 'title.jaa = "x"', "title.jaa",
                           "no language is called 'jaa'; did you mean 'ja'?"),
     "empty in a language": (TITLE, 'title = { en = "x", ja = "" }', "title.ja",

@@ -19,7 +19,8 @@ from unit.web.pages import ask, opened, refusal, state
     [
         (["ja-JP", "en"], "ja"),
         (["fr", "KO"], "ko"),
-        (["fr", "de-AT"], "en"),
+        (["fr", "de-AT"], "de"),
+        (["fr", "nl"], "en"),
         ([], "en"),
         (["en-GB", "ja"], "en"),
     ],

@@ -1,0 +1,70 @@
+"""The languages there are: one catalogue file each, of which the head says what is special to it.
+
+A catalogue is a TOML file beside this one, called by the code of its language.  Its table
+``[language]`` comes first, then ``[particles]`` where words change by the word before them, and
+``[texts]`` last.  Only the lines of the first table are read to know which languages there are.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cache
+from importlib import resources
+from typing import Any
+
+ENDING = ".toml"
+
+
+@dataclass(frozen=True)
+class Language:
+    """What the head of a catalogue says.
+
+    Attributes
+    ----------
+    name : of the language, in the language.
+    decimal : the sign before the decimals of a number that is shown; files have a point.
+    plural : category of a count -> the condition for it, as in CLDR, such as ``n = 1``; every other
+        count is ``other``.
+    fonts : families with its letters, the best first; none where every font has them.
+    drawing_font : of texts in a DXF drawing, as Windows has it; the usual one if empty.
+    """
+
+    name: str
+    decimal: str = "."
+    plural: Mapping[str, str] = field(default_factory=dict)
+    fonts: tuple[str, ...] = ()
+    drawing_font: str = ""
+
+
+def _catalogues() -> Iterator[tuple[str, Any]]:
+    """Code and file of each catalogue; English, in which texts are written, first."""
+    files = {file.name: file for file in resources.files(__package__).iterdir()}
+    codes = {name.removesuffix(ENDING) for name in files if name.endswith(ENDING)}
+    for code in sorted(codes, key=lambda code: (code != "en", code)):
+        yield code, files[code + ENDING]
+
+
+def _head(file: Any) -> Language:
+    lines: list[str] = []
+    with file.open(encoding="utf-8") as text:
+        for line in text:
+            if line.startswith("[") and lines:
+                break
+            if line.startswith("[") or lines:
+                lines.append(line)
+    head = tomllib.loads("".join(lines))["language"]
+    return Language(**head | {"fonts": tuple(head.get("fonts", ()))})
+
+
+KNOWN: Mapping[str, Language] = {code: _head(file) for code, file in _catalogues()}
+"""Every language by its code, English first."""
+
+
+@cache
+def content(code: str) -> Mapping[str, Any]:
+    """The whole catalogue of a language: its tables ``language``, ``particles`` and ``texts``."""
+    file = resources.files(__package__) / f"{code}{ENDING}"
+    tables: Mapping[str, Any] = tomllib.loads(file.read_text(encoding="utf-8"))
+    return tables
