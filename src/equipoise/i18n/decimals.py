@@ -23,7 +23,7 @@ _PARTS = re.compile(f"(?P<quoted>{QUOTED})|{NUMBER}")
 _FIELD = re.compile(r"\{(?:[^{}]|\{[^{}]*\})*\}")
 
 
-class Spoken(str):
+class SaidText(str):
     """A text that has been said, whose numbers are as they are to be."""
 
     __slots__ = ()
@@ -31,13 +31,13 @@ class Spoken(str):
 
 def with_sign(text: str, sign: str) -> str:
     """A text whose numbers have another decimal sign than a point; those in quotes keep theirs."""
-    if sign == POINT or POINT not in text or isinstance(text, Spoken):
+    if sign == POINT or POINT not in text or isinstance(text, SaidText):
         return text
 
     def changed(part: re.Match[str]) -> str:
         return part[0] if part["quoted"] else f"{part[2]}{sign}{part[3]}"
 
-    return Spoken(_PARTS.sub(changed, text))
+    return SaidText(_PARTS.sub(changed, text))
 
 
 class _Filler(Formatter):
@@ -54,11 +54,11 @@ class _Filler(Formatter):
         return (
             super().convert_field(value, conversion)
             if conversion is None
-            else Spoken(super().convert_field(value, conversion))
+            else SaidText(super().convert_field(value, conversion))
         )
 
     def format_field(self, value: Any, format_spec: str) -> Any:
-        if isinstance(value, Spoken):
+        if isinstance(value, SaidText):
             return format(str(value), format_spec)
         return str(with_sign(format(value, format_spec), self.sign))
 
@@ -84,4 +84,4 @@ def filled(template: str, values: Mapping[str, Any], sign: str) -> str:
         part.format(**values) if quoted else fill.vformat(part, (), values)
         for quoted, part in _split(template)
     )
-    return Spoken("".join(texts))
+    return SaidText("".join(texts))

@@ -18,7 +18,7 @@ ENDING = ".toml"
 
 
 @dataclass(frozen=True)
-class Language:
+class LanguageHead:
     """What the head of a catalogue says.
 
     Attributes
@@ -46,7 +46,7 @@ def _catalogues() -> Iterator[tuple[str, Any]]:
         yield code, files[code + ENDING]
 
 
-def _head(file: Any) -> Language:
+def _head(file: Any) -> LanguageHead:
     lines: list[str] = []
     with file.open(encoding="utf-8") as text:
         for line in text:
@@ -55,10 +55,10 @@ def _head(file: Any) -> Language:
             if line.startswith("[") or lines:
                 lines.append(line)
     head = tomllib.loads("".join(lines))["language"]
-    return Language(**head | {"fonts": tuple(head.get("fonts", ()))})
+    return LanguageHead(**head | {"fonts": tuple(head.get("fonts", ()))})
 
 
-KNOWN: Mapping[str, Language] = {code: _head(file) for code, file in _catalogues()}
+KNOWN: Mapping[str, LanguageHead] = {code: _head(file) for code, file in _catalogues()}
 """Every language by its code, English first."""
 
 
