@@ -200,7 +200,7 @@ CLAIMS = {
         f"{outcomes.PATIENCE} generations have added less than 1e-4",
     ],
     "theory.md": [
-        f"collocation with {collocation.STAGES} nodes an interval, {steady.INTERVALS} intervals",
+        f"{collocation.STAGES} nodes per interval, beginning with {steady.INTERVALS} intervals",
         f"most {steady.ROUNDS} times",
         f"{coupled.KNOTS} crank angles a turn",
     ],

@@ -3,7 +3,7 @@
 The stroke is commanded, a length over the crank angle.  One link that turns about a point of the
 frame tells the pose of the whole machine, so that everything else is computed as if that link were
 driven: its angle is the one at which the length is as commanded, found by Newton's method on the
-length, of which the linkage tells both derivatives.  See `docs/theory.md`, "Drives that push".
+length, of which the linkage gives both derivatives.  See `docs/theory.md`, "Drives that push".
 """
 
 from __future__ import annotations
