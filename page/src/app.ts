@@ -356,7 +356,7 @@ export class App {
     const begun = await this.keeping.begin(hello);
     if (this.full && !this.played) this.tour.propose();
     if (!begun && !hello.machine) {
-      this.gallery.show();
+      if (this.keeping.offer.hidden) this.gallery.show(); // else it would cover what is offered
       const names = hello.examples.map(({ name }) => name);
       const example = names.find((name) => name === FIRST) ?? names[0];
       if (example) void this.open({ type: "open", example }, example);

@@ -123,8 +123,8 @@ def context(browser: Browser) -> Iterator[BrowserContext]:
 
 
 @pytest.fixture
-def free_page(browser: Browser, address: str) -> Iterator[Page]:
-    """A page that may go to servers of its own test."""
+def free_page(browser: Browser, server: tuple[str, int]) -> Iterator[Page]:
+    """A page that may go to servers of its own test, whichever wire others go by."""
     context = browser.new_context(viewport={"width": 1280, "height": 900}, reduced_motion="reduce")
     context.set_default_timeout(LONGEST * 1000)
     yield context.new_page()
