@@ -18,11 +18,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from importlib import import_module
 from typing import Any, ClassVar, Self
 from unicodedata import normalize
 
+from equipoise.dataclass import dataclass
 from equipoise.i18n import Note, in_english, said, speaking, spoken
 
 

@@ -12,9 +12,10 @@ import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError, at_place
 from equipoise.folders import Folder, LinkError
 from equipoise.i18n import Note

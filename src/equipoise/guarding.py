@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Iterator
-from functools import cache, wraps
+from functools import cache, partial, wraps
 from importlib import import_module
 from inspect import Parameter, Signature, isclass, isfunction, signature
 from typing import Any
 
 from lazy_loader import attach_stub
 
+from equipoise.dataclass import Constructor
 from equipoise.errors import CallError, unknown
 
 Names = tuple[Callable[[str], Any], Callable[[], list[str]], list[str]]
@@ -188,7 +189,16 @@ def keyworded(cls: Any) -> Any:
     """
     for name in [var for var in vars(cls) if var.startswith("with_")]:
         setattr(cls, name, _guarded(getattr(cls, name)))
-    make = cls.__init__
+    make = vars(cls).get("__init__")
+    if isinstance(make, Constructor):
+        make.wrap = partial(_answering, cls)
+    else:
+        cls.__init__ = _answering(cls, cls.__init__)
+    return cls
+
+
+def _answering(cls: Any, make: Any) -> Any:
+    """A constructor that says which keyword is none of its own."""
 
     @wraps(make)
     def __init__(self: Any, *args: Any, **kwargs: Any) -> None:
@@ -198,5 +208,4 @@ def keyworded(cls: Any) -> Any:
             bound(cls.__name__, signature(make), (self, *args), kwargs)
             raise
 
-    cls.__init__ = __init__
-    return cls
+    return __init__

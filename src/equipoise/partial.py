@@ -15,10 +15,11 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from contextvars import ContextVar
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import BinaryIO
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError, at_place
 from equipoise.fence import check_link, check_written, hold_folder, holding, place_of
 from equipoise.folders import Folder

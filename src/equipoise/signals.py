@@ -6,13 +6,13 @@ b_n = -Im Y_n multiplies sin n theta; Y_0 is the mean.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cache, cached_property
 from math import pi, sqrt
 from typing import Any
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.displays import Brief
 from equipoise.errors import UsageError
 from equipoise.i18n import Note

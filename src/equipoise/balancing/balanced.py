@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, replace
 from functools import cached_property
 from itertools import chain
 from math import isclose, sqrt
@@ -22,6 +22,7 @@ from equipoise.balancing.phasing import Phasing
 from equipoise.balancing.problem import ADDED
 from equipoise.balancing.solution import Solution
 from equipoise.balancing.workshop import Change, covers
+from equipoise.dataclass import dataclass
 from equipoise.i18n import Note, all_of
 from equipoise.mechanism.checks import bodies_at
 from equipoise.mechanism.dynamics.forces import forces

@@ -6,7 +6,6 @@ each has a module of its own, with what it computes and what it says.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
@@ -42,6 +41,7 @@ from equipoise.balancing.poor_transmission import (
 from equipoise.balancing.resonant_mounts import ResonantMounts
 from equipoise.balancing.spaced_arms import SpacedArms, arms_sentences, spaced_arms_for
 from equipoise.balancing.workshop import weight_named
+from equipoise.dataclass import dataclass
 from equipoise.i18n import say
 from equipoise.mechanism.dynamics import acting
 from equipoise.mechanism.parts.machine import Machine

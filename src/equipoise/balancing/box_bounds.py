@@ -14,7 +14,7 @@ that of the middle, which what is allowed bounds, and a rest that is the less th
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cached_property
 
 import numpy as np
@@ -24,6 +24,7 @@ from equipoise.balancing.jump_readings import Forms, JumpReadings, linear_forms
 from equipoise.balancing.jumping_rows import JumpingDesigns, JumpingRows, smoothed
 from equipoise.balancing.least_of_forms import FormSum, least_of_forms
 from equipoise.balancing.multi_row import AREA_SAMPLES, Cost, PhaseObjective, by_orders
+from equipoise.dataclass import dataclass
 from equipoise.mechanism.parts.balance import Measure
 from equipoise.signals import AT_ONCE, Array, Periodic
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import heapq
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from itertools import count
 from math import inf, isfinite
@@ -24,6 +24,7 @@ from equipoise.balancing.program import (
     ProgramSolution,
     StalledError,
 )
+from equipoise.dataclass import dataclass
 from equipoise.i18n import Note
 from equipoise.signals import Array
 

@@ -6,13 +6,13 @@ that it carries, hangs on its carrier; mass of the arm itself, laid about its ow
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import ClassVar
 
 from equipoise.balancing.policy import (
     WORTH_NAMING,
 )
 from equipoise.balancing.workshop import weight_named
+from equipoise.dataclass import dataclass
 from equipoise.errors import EquipoiseError
 from equipoise.i18n import say
 from equipoise.mechanism.assembly.steps import size_of_links

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from equipoise.balancing.multi_row import PhasedRows, PhaseObjective
 from equipoise.balancing.objectives import measured
+from equipoise.dataclass import dataclass
 from equipoise.errors import EquipoiseError, ModelError, ResponseError
 from equipoise.mechanism.outputs.declared import GROUPS, declared
 from equipoise.mechanism.parts.balance import Balance, Measure, Objective

@@ -10,11 +10,11 @@ Domahidi, Chu, Boyd, ECOS, ECC 2013), in dense NumPy: for programs of some hundr
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any, Literal, Protocol
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.i18n import Note, to_say
 from equipoise.limits import check_room
 from equipoise.signals import Array

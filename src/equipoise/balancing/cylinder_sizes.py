@@ -7,7 +7,6 @@ takes less force over more stroke, and is named only where the cylinder of it ca
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from itertools import product
 from math import pi
 from typing import ClassVar
@@ -23,6 +22,7 @@ from equipoise.balancing.policy import (
     THICK_ROD,
     THIN_ROD,
 )
+from equipoise.dataclass import dataclass
 from equipoise.i18n import say, to_say
 from equipoise.quantities import display, number, percent, told
 from equipoise.results.analysis import Analysis

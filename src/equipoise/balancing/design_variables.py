@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from math import hypot, inf
 
 import numpy as np
@@ -18,6 +18,7 @@ import numpy as np
 from equipoise.balancing.branch_and_bound import Square
 from equipoise.balancing.program import Affine, Program, stacked
 from equipoise.balancing.workshop import Change
+from equipoise.dataclass import dataclass
 from equipoise.i18n import Note
 from equipoise.mechanism.assembly.steps import size_of_bodies
 from equipoise.mechanism.dynamics.parameters import (

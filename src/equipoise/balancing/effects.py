@@ -7,13 +7,14 @@ start (N,) + numbers @ columns (K, N), real, or complex where it is a vector in 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
 
 from equipoise.balancing.design_variables import DesignVariables, FreeSpring, LinkParameters
+from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.dynamics.across import Across, exerted_in

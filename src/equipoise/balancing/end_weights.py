@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 
 from equipoise.balancing.first_order import FirstOrder
 from equipoise.balancing.policy import WORTH_NAMING
+from equipoise.dataclass import dataclass
 from equipoise.i18n import say
 from equipoise.quantities import percent, told
 from equipoise.results.analysis import Analysis

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from cmath import phase, rect
 from collections.abc import Iterator
-from dataclasses import dataclass
 from functools import cached_property
 from math import degrees, pi, radians
 from typing import ClassVar
@@ -23,6 +22,7 @@ from equipoise.balancing.policy import (
     WORTH_SHAFTS,
 )
 from equipoise.balancing.workshop import direction_named, weight_named
+from equipoise.dataclass import dataclass
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.parts.machine import Machine

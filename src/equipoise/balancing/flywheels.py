@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 from itertools import groupby
 from math import ceil, floor, log10, pi
 from typing import ClassVar
@@ -21,6 +20,7 @@ from equipoise.balancing.policy import (
     THICKEST_DISC,
     THINNEST_DISC,
 )
+from equipoise.dataclass import dataclass
 from equipoise.errors import EquipoiseError
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.assembly.steps import size_of_links

@@ -11,7 +11,7 @@ at once, as far down as they go.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import product
 from math import inf, prod
 
@@ -22,6 +22,7 @@ from equipoise.balancing.problem import Problem
 from equipoise.balancing.solution import Solution, solve_problem
 from equipoise.balancing.weights import AddedWeight
 from equipoise.balancing.workshop import Change
+from equipoise.dataclass import dataclass
 from equipoise.design.solvers import DesignProblem, DesignSolution, solve
 from equipoise.design.spreads import Choices, Range
 from equipoise.errors import UsageError

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from cmath import phase, rect
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from itertools import combinations, product, starmap
 from math import pi
@@ -15,6 +15,7 @@ import numpy as np
 from equipoise.balancing.design_variables import with_parameters
 from equipoise.balancing.weights import AddedWeight
 from equipoise.balancing.workshop import Change
+from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism.dynamics.parameters import parameter_values

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from equipoise.balancing.policy import (
     TRIFLE,
 )
 from equipoise.balancing.problem import Problem
+from equipoise.dataclass import dataclass
 from equipoise.mechanism.outputs.declared import declared
 from equipoise.mechanism.parts.balance import Limit, Objective
 from equipoise.mechanism.parts.machine import Machine

@@ -11,13 +11,13 @@ of its cubic, so that the bound is one of the curves themselves and meets them i
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from equipoise.balancing.jumping_rows import JumpingRows
+from equipoise.dataclass import dataclass
 from equipoise.mechanism.parts.balance import Measure
 from equipoise.signals import Array
 

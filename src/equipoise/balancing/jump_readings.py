@@ -12,7 +12,6 @@ are along the direction that it has in the middle of the box.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -30,6 +29,7 @@ from equipoise.balancing.jump_bounds import (
     CubicPieces,
 )
 from equipoise.balancing.jumping_rows import JumpingDesigns
+from equipoise.dataclass import dataclass
 from equipoise.mechanism.parts.balance import Measure
 from equipoise.signals import Array
 

@@ -8,12 +8,13 @@ between these, or on one side of one of them, at theta = jump - phi_k; both are 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import ceil, pi
 from typing import Any
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.signals import STEPS_BETWEEN_BENDS, Array, JumpSampling
 
 SPACING = pi / 720

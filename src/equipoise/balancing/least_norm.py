@@ -8,12 +8,12 @@ nothing.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from equipoise.balancing.linear_conditions import conditions, parameter_scales
+from equipoise.dataclass import dataclass
 from equipoise.decompositions import lstsq, svd
 from equipoise.errors import UsageError
 from equipoise.i18n import Note, say

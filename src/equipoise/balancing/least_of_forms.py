@@ -8,12 +8,12 @@ on how closely the program was solved.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from equipoise.balancing.jump_bounds import TINY
 from equipoise.balancing.jump_readings import Forms
+from equipoise.dataclass import dataclass
 from equipoise.signals import Array
 
 PENALTY = 1e4

@@ -9,12 +9,12 @@ conditions of Berkof and Lowen, which are (80) and (83) of Yamashita, Ichikawa a
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from typing import Any, ClassVar, Literal
 
 import numpy as np
 
 from equipoise.balancing.readings import UNITS, ParameterSum, machine_size, reading
+from equipoise.dataclass import dataclass
 from equipoise.decompositions import lstsq, pinv
 from equipoise.errors import UsageError
 from equipoise.i18n import Note, say, to_say

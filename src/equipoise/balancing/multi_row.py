@@ -11,7 +11,7 @@ phi_k); peaks are looked for on the signal itself, as the largest of all its top
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property, partial
 from math import pi
 from typing import Any, Literal
@@ -21,6 +21,7 @@ import numpy as np
 from equipoise.balancing.jumping_rows import JumpingRows, smoothed
 from equipoise.balancing.levers import lever, signals_of_row
 from equipoise.balancing.objectives import read_rows
+from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism.dynamics.forces import forces

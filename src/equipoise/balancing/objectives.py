@@ -8,7 +8,7 @@ derivative by each number there.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property, lru_cache
 from math import pi
 
@@ -18,6 +18,7 @@ from equipoise.balancing.design_variables import with_parameters
 from equipoise.balancing.effects import Effects, Signal
 from equipoise.balancing.levers import OWN, arm_of, moment_of_row
 from equipoise.balancing.program import Affine, ConeRows, Program
+from equipoise.dataclass import dataclass
 from equipoise.errors import ModelError
 from equipoise.i18n import Note
 from equipoise.mechanism.checks import unknown

@@ -6,7 +6,7 @@ Each point is the least value of the second with the first as a limit, and as go
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any, ClassVar
 
 import numpy as np
@@ -17,6 +17,7 @@ from equipoise.balancing.objectives import unit_of
 from equipoise.balancing.optimisation import balance
 from equipoise.balancing.problem import Problem
 from equipoise.balancing.told import gap_told, scope_of
+from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
 from equipoise.i18n import Note, say
 from equipoise.mechanism.parts.balance import Balance, Limit, Objective

@@ -13,13 +13,14 @@ rest twists.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import gcd, lcm, pi
 from typing import Any
 
 import numpy as np
 
 from equipoise.balancing.multi_row import PhasedRows, PhaseObjective
+from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
 from equipoise.i18n import Note, say
 from equipoise.mechanism.checks import unknown

@@ -10,7 +10,6 @@ bound of those left is told.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 
@@ -20,6 +19,7 @@ from equipoise.balancing.box_bounds import HALVINGS, Bounder, Boxes, Numbers
 from equipoise.balancing.jump_bounds import TINY
 from equipoise.balancing.multi_row import Cost
 from equipoise.balancing.phase_grid import alike
+from equipoise.dataclass import dataclass
 from equipoise.signals import Array
 
 CLOSE = 1e-4

@@ -12,7 +12,6 @@ from samples of the signal.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations, permutations
 from math import comb, factorial, prod
@@ -20,6 +19,7 @@ from math import comb, factorial, prod
 import numpy as np
 
 from equipoise.balancing.multi_row import Cost, PhaseObjective, RowSignals, by_orders
+from equipoise.dataclass import dataclass
 from equipoise.signals import Array, synthesis
 
 MOST = 5_000_000

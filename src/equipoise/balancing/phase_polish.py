@@ -10,7 +10,6 @@ phases, since the signal is level there.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
@@ -27,6 +26,7 @@ from equipoise.balancing.multi_row import (
     squared,
     tops,
 )
+from equipoise.dataclass import dataclass
 from equipoise.signals import Array, Periodic
 
 Step = Callable[[], None]

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from math import ceil, degrees, pi
 
@@ -35,6 +35,7 @@ from equipoise.balancing.phase_grid import (
     first_least,
 )
 from equipoise.balancing.phase_polish import Step, most_steps, polished
+from equipoise.dataclass import dataclass
 from equipoise.errors import ModelError, UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism.parts.balance import Limit, Objective, Phases

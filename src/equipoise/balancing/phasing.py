@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -12,6 +11,7 @@ from equipoise.balancing.multi_row import Combine, PhaseObjective
 from equipoise.balancing.objectives import unit_of
 from equipoise.balancing.phase_bound import PhaseProof, prove
 from equipoise.balancing.phase_search import PhaseSearch, Progress, with_phases
+from equipoise.dataclass import dataclass
 from equipoise.design.solvers import DesignProblem, DesignSolution, solve
 from equipoise.design.spreads import Range
 from equipoise.errors import UsageError

@@ -10,7 +10,6 @@ the conditions has a positive least value for all masses (Farkas): the proof.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -23,6 +22,7 @@ from equipoise.balancing.linear_conditions import (
 )
 from equipoise.balancing.program import Affine, NoSolutionError, Program
 from equipoise.balancing.readings import ParameterSum, machine_size, reading
+from equipoise.dataclass import dataclass
 from equipoise.decompositions import pinv
 from equipoise.mechanism.dynamics.parameters import QUANTITIES
 from equipoise.mechanism.parts.machine import Machine

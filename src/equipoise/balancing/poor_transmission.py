@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import combinations
 from math import pi
 from typing import ClassVar
@@ -13,6 +13,7 @@ from equipoise.balancing.policy import (
     LENGTH_CHANGES,
     POOR_TRANSMISSION,
 )
+from equipoise.dataclass import dataclass
 from equipoise.errors import EquipoiseError
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.checks import bodies_at

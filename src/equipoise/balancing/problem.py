@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
@@ -19,6 +19,7 @@ from equipoise.balancing.effects import Effects, Signal
 from equipoise.balancing.objectives import Near, bound_measure, measured, signals_of, supports_more
 from equipoise.balancing.program import Affine, Program
 from equipoise.balancing.weights import AddedWeight
+from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism.outputs.declared import declared

@@ -9,13 +9,14 @@ tell the price of every constant: the value falls by z for a unit more of it.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cached_property
 from typing import Any, ClassVar, Literal
 
 import numpy as np
 
 from equipoise.balancing.cone_solver import usual_solver
+from equipoise.dataclass import dataclass
 from equipoise.errors import EquipoiseError
 from equipoise.i18n import Note
 from equipoise.signals import Array

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.dynamics.parameters import QUANTITIES, parameter_names
 from equipoise.mechanism.parts.machine import Machine, size_of

@@ -8,7 +8,7 @@ degrees, plate that is in stock.  Headline figures may not grow, and kilograms h
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from itertools import product
 from math import ceil, floor, log10, pi
@@ -32,6 +32,7 @@ from equipoise.balancing.problem import Problem
 from equipoise.balancing.room import Room, outline_of
 from equipoise.balancing.weights import AddedWeight
 from equipoise.balancing.workshop import Change
+from equipoise.dataclass import dataclass
 from equipoise.mechanism.parts.balance import (
     MATERIALS,
     AddedMass,

@@ -7,7 +7,7 @@ alone, and no counterweight helps as much as another stiffness does, or another 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import sqrt
 from typing import ClassVar
 
@@ -22,6 +22,7 @@ from equipoise.balancing.policy import (
     SHARE_OF_ENERGY,
     STIFFNESS_FACTORS,
 )
+from equipoise.dataclass import dataclass
 from equipoise.errors import ModelError, ResponseError
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.parts.machine import Machine

@@ -13,7 +13,7 @@ How far the room reaches, if nothing is in the way, is assumed from the lengths 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cached_property
 from itertools import combinations, pairwise
 
@@ -31,6 +31,7 @@ from equipoise.balancing.policy import (
     THICKNESS_OF_LINK,
     THICKNESS_OF_REACH,
 )
+from equipoise.dataclass import dataclass
 from equipoise.mechanism.assembly.steps import size_of_bodies, size_of_links
 from equipoise.mechanism.checks import bodies_at
 from equipoise.mechanism.kinematics.motion import Motion, move

@@ -8,7 +8,7 @@ how much better anything could be, and begins anew where it sees something bette
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from math import inf, pi
 
@@ -29,6 +29,7 @@ from equipoise.balancing.phasing import Phasing, phasing_of
 from equipoise.balancing.problem import WITHOUT_EFFECT, Problem
 from equipoise.balancing.program import NoSolutionError, Program
 from equipoise.balancing.solution import Solution, solve_problem
+from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism.kinematics.jumps import bends_of, jumps_of

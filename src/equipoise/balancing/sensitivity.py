@@ -8,13 +8,13 @@ there stays as it is whatever the parameter.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from itertools import product
 from typing import Any
 
 import numpy as np
 
 from equipoise.balancing.readings import machine_size
+from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
 from equipoise.i18n import Note, say, to_say
 from equipoise.mechanism.dynamics.parameters import ACROSS, QUANTITIES, regressor

@@ -8,7 +8,7 @@ limits, the fewest that clash are told, and how far one of them can be met.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import inf, isfinite
 
 import numpy as np
@@ -20,6 +20,7 @@ from equipoise.balancing.problem import ADDED, WITHOUT_EFFECT, Problem
 from equipoise.balancing.program import Affine, NoSolutionError, Program, StalledError
 from equipoise.balancing.weights import AddedWeight
 from equipoise.balancing.workshop import Change
+from equipoise.dataclass import dataclass
 from equipoise.decompositions import lstsq
 from equipoise.errors import UsageError
 from equipoise.i18n import Note, all_of

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from cmath import exp, phase, rect
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from math import acos, ceil, degrees, pi, sin, sqrt
 from typing import Any
 
+from equipoise.dataclass import dataclass
 from equipoise.i18n import say
 from equipoise.mechanism.parts.balance import MATERIALS, Weight, material_of
 from equipoise.quantities import display, fixed, number, told

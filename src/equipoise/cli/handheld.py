@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from itertools import chain
 from typing import TYPE_CHECKING, Annotated, Any
@@ -34,6 +34,7 @@ from equipoise.cli.outputs import (
 )
 from equipoise.cli.progress import counted
 from equipoise.cli.runner import CommandResult, command
+from equipoise.dataclass import dataclass
 from equipoise.errors import ModelError, UsageError, at_place
 from equipoise.i18n import Note
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import re
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
@@ -24,6 +24,7 @@ from equipoise.cli.options import (
 )
 from equipoise.cli.outputs import Drawn
 from equipoise.cli.runner import CommandResult, command
+from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError, at_place
 from equipoise.i18n import Note
 

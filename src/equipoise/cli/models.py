@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pkgutil import resolve_name
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -10,6 +10,7 @@ from cyclopts import Parameter
 
 from equipoise.cli.options import file_named
 from equipoise.cli.outputs import sources_of
+from equipoise.dataclass import dataclass
 from equipoise.errors import ModelError, UsageError
 
 if TYPE_CHECKING:

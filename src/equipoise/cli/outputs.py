@@ -6,7 +6,7 @@ import os
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import Parameter
@@ -19,6 +19,7 @@ from equipoise.cli.options import (
     check_belonging,
     count,
 )
+from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError, at_place
 from equipoise.fence import hold_place, may_be_replaced
 from equipoise.i18n import Note, in_each, said, say, to_say

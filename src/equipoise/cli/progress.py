@@ -10,10 +10,11 @@ import os
 import sys
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass, field
+from dataclasses import field
 from time import monotonic
 from typing import TYPE_CHECKING, Any, Self
 
+from equipoise.dataclass import dataclass
 from equipoise.interrupts import check
 from equipoise.quantities.numbers import rate_told, time_told
 

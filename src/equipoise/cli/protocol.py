@@ -10,13 +10,14 @@ import sys
 from base64 import b64encode
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager, suppress
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 from equipoise import __version__
 from equipoise.cli.options import wants
 from equipoise.cli.worker import ToolCall, ToolReply
+from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError, at_place, needed
 from equipoise.folders import Folder
 from equipoise.i18n import Note

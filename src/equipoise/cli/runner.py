@@ -17,7 +17,6 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import AbstractContextManager, contextmanager, nullcontext
-from dataclasses import dataclass
 from functools import cached_property, partial
 from inspect import Parameter, Signature, signature
 from json import loads
@@ -50,6 +49,7 @@ from equipoise.cli.outputs import (
     write_pictures,
     write_text,
 )
+from equipoise.dataclass import dataclass
 from equipoise.i18n import say, speaking
 from equipoise.interrupts import check
 from equipoise.partial import afterwards

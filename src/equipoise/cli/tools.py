@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from functools import cached_property
 from importlib.resources import files
 from inspect import cleandoc
@@ -19,6 +18,7 @@ from cyclopts import App
 from equipoise.cli import answered_by, app, check_repeated
 from equipoise.cli.models import LoadedFile
 from equipoise.cli.runner import declared_of
+from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError, at_place, unknown
 from equipoise.fence import Fence, fenced
 from equipoise.i18n import Note

@@ -11,10 +11,12 @@ import json
 import os
 import sys
 import threading
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from pathlib import Path
 from queue import Queue
 from typing import Any
+
+from equipoise.dataclass import dataclass
 
 
 @dataclass(frozen=True)

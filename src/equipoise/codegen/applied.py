@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
@@ -12,6 +11,7 @@ import numpy as np
 from equipoise.codegen.terms import VectorTerm, angle_of, rotation
 from equipoise.codegen.trace import FAR, Array, Trace
 from equipoise.codegen.tracks import TracedCurve
+from equipoise.dataclass import dataclass
 from equipoise.keys import Frozen, with_fields
 from equipoise.mechanism.assembly.joints import coupling_pins
 from equipoise.mechanism.assembly.linkage import Linkage

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
 from itertools import pairwise
 from math import pi, prod
 from typing import Any
@@ -34,6 +33,7 @@ from equipoise.codegen.figures import (
 from equipoise.codegen.march import STEPS, March
 from equipoise.codegen.source import TermSource
 from equipoise.codegen.trace import FAR, Trace
+from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
 from equipoise.i18n import Note
 from equipoise.keys.paths import KeyPath

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any
 
 from equipoise.codegen.terms import LEAVES, Term, reached
+from equipoise.dataclass import dataclass
 
 DEEPEST = 12
 """Operations within each other in a line, so that no parser finds a line too deep."""

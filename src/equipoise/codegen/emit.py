@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
 from functools import cached_property, partial
 from typing import Any
 
@@ -21,6 +20,7 @@ from equipoise.codegen.source import TermSource, source_of
 from equipoise.codegen.steps import trace_demands, trace_joints, trace_motion
 from equipoise.codegen.terms import angle_of
 from equipoise.codegen.trace import Trace
+from equipoise.dataclass import dataclass
 from equipoise.errors import MassError, UsageError
 from equipoise.i18n import Note
 from equipoise.keys.paths import KeyPath

@@ -7,7 +7,6 @@ which goes over all crank angles; what one hands to another lies in arrays.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -27,6 +26,7 @@ from equipoise.codegen.terms import (
     substituted,
 )
 from equipoise.codegen.trace import Array
+from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism.assembly.family import linkage_of, with_columns

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import pi, radians
 
 import numpy as np
@@ -11,6 +10,7 @@ from equipoise.codegen.figures import NO_FULL_TURN, NOT_COMPUTED
 from equipoise.codegen.loops import MARCH
 from equipoise.codegen.source import TermSource
 from equipoise.codegen.trace import Array
+from equipoise.dataclass import dataclass
 from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.assembly.newton import JUMP, SETTLED
 

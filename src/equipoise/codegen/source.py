@@ -12,7 +12,6 @@ handle several at once: `codegen.loops`.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cache, cached_property
 from itertools import accumulate, chain, pairwise
 from typing import Any
@@ -25,6 +24,7 @@ from equipoise.codegen.loops import WATCHED
 from equipoise.codegen.polynomials import without_calls
 from equipoise.codegen.terms import ANGLE, BOTH, DESIGN, Term, reached
 from equipoise.codegen.trace import AngleFunction, Array, Recurrence, Slot, Trace
+from equipoise.dataclass import dataclass
 from equipoise.signals import ROUNDING
 
 PLACE = {"highest": "{x} - {g} >", "lowest": "{g} - {x} >"}

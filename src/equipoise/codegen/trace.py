@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Collection, Iterator, Sequence
-from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
 import numpy as np
 
 from equipoise.codegen.terms import ANGLE, BOTH, DESIGN, Graph, Term, VectorTerm, angle_of, rotation
+from equipoise.dataclass import dataclass
 from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.assembly.steps import KernelCall, RunningAngle, Step, p, planar, u

@@ -28,7 +28,6 @@ from concurrent.futures import (
     wait,
 )
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
 from functools import lru_cache
 from multiprocessing import get_context
 from multiprocessing.connection import Connection
@@ -37,6 +36,7 @@ from types import ModuleType
 from typing import Any, Generic, Self, TypeVar
 
 from equipoise.codegen.backends import processors
+from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
 from equipoise.i18n import Note
 

@@ -5,12 +5,12 @@ The kinds of these are declared in `keys.requirement_kinds`.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import pi, radians
 from typing import Any
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError, at_place
 from equipoise.i18n import Note
 from equipoise.keys.requirement_kinds import Asks, RequiredFigure, asks_of

@@ -11,12 +11,13 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import prod
 from typing import Any, Protocol
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.design.spreads import Choices, Range
 from equipoise.i18n import Note, to_say
 from equipoise.sequences import sobol

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from math import isfinite
 from numbers import Real
 from typing import Any, ClassVar
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
 from equipoise.i18n import Note
 

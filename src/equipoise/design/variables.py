@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+from equipoise.dataclass import dataclass
 from equipoise.design.spreads import Spread
 
 

@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 
+from equipoise.dataclass import dataclass
 from equipoise.exchange.formats import Job
 from equipoise.exchange.tree import constant_loads, mass_of, weighed
 from equipoise.mechanism.assembly.joints import structure

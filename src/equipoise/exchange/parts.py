@@ -8,12 +8,12 @@ from __future__ import annotations
 
 from cmath import phase, rect
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 from math import atan, degrees, pi, sin, tan
 from typing import Any
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
 from equipoise.exchange.formats import Job
 from equipoise.i18n import Note, coordinates, decimals, say, to_say

@@ -7,12 +7,12 @@ all in the tree, since most programs close loops at pins only.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Literal
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import MassError, UsageError
 from equipoise.exchange.formats import Job
 from equipoise.i18n import Note

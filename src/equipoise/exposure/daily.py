@@ -16,12 +16,12 @@ the time being.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from math import inf, isfinite, sqrt
 from typing import Any, ClassVar, Literal, get_args
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError, at_place
 from equipoise.exposure.weighting import not_negative
 from equipoise.i18n import Note

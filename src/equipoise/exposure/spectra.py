@@ -13,12 +13,13 @@ A periodic record is whole periods of a steady vibration and closes by itself; i
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import pi
 from typing import Any
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError, at_place
 from equipoise.exposure.daily import SINGLE_AXIS, total_value
 from equipoise.exposure.weighting import (

@@ -15,12 +15,12 @@ Source of middles and edges: IEC 61260-1, system of base ten; of the range: ISO 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import pi, sqrt
 from typing import Any, Literal
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError, at_place
 from equipoise.i18n import Note
 from equipoise.quantities.units import HUGE, TINY

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from math import lcm
 from typing import TYPE_CHECKING
@@ -12,6 +12,7 @@ import numpy as np
 
 from equipoise.balancing.effects import Effects, Signal
 from equipoise.balancing.objectives import Near, measured, signals_of, unit_of
+from equipoise.dataclass import dataclass
 from equipoise.figures.analysis import rounding
 from equipoise.figures.forces import Read, last_order, order_panel
 from equipoise.figures.pairs import Pair, changed, compare, keys, paired

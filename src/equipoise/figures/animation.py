@@ -8,7 +8,6 @@ their computer for less motion, and while the pointer is on it.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator
-from dataclasses import dataclass
 from hashlib import sha256
 from html import escape
 from itertools import groupby
@@ -16,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
 from equipoise.figures.captions import Label, captions, ruler_ends
 from equipoise.figures.stage import (

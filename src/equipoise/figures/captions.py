@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from itertools import product
 from math import floor, log10
 from typing import Literal
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.figures.stage import RULER, Stage, width_of
 from equipoise.i18n import decimals
 from equipoise.symbols.shapes import FOOT

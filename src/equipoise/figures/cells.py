@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import floor, log10
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.figures.sheet import width_of
 from equipoise.figures.style import NORMAL
 from equipoise.figures.view import DECADES, ends_of

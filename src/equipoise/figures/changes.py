@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from cmath import rect
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.figures.linkage import drawn, joint_names, plane_axes, told_angle
 from equipoise.figures.style import short
 from equipoise.i18n import say, to_say

@@ -6,13 +6,13 @@ Numbers and figures are drawn in the units that are given by name, as `schema.st
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.figures.studies import Units, unit_of
 from equipoise.i18n import say
 from equipoise.results.charts import Array, Axis

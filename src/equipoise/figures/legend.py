@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.figures.curves import draw_shapes, sample_of, signs_at
 from equipoise.figures.sheet import MIDDLE, CanvasStroke, Sheet, Words, set_in, width_of
 from equipoise.figures.style import INK, NORMAL, look_of

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator
-from dataclasses import dataclass
 from functools import cached_property
 from math import pi
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.figures.curves import UNIT
 from equipoise.figures.linkage import support_keys
 from equipoise.figures.style import short

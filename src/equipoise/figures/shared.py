@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from math import pi
 from typing import Any, TypeVar
 
 import numpy as np
 
 from equipoise import signals
+from equipoise.dataclass import dataclass
 from equipoise.figures.style import KINDS, short
 from equipoise.i18n import decimals, say
 from equipoise.quantities import Dimension

@@ -7,12 +7,13 @@ without drawing them, and put where they cover neither each other nor what is dr
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from textwrap import wrap
 from typing import Any, Literal
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.figures.style import FAINT, SMALL
 
 Array = np.ndarray[Any, Any]

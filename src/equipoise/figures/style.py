@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
+from equipoise.dataclass import dataclass
 from equipoise.i18n import without_middle
 from equipoise.symbols.looks import LIGHT
 

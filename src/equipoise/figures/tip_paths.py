@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from functools import cached_property
 from math import floor, pi
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.figures.style import short
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.kinematics.motion import move

@@ -29,12 +29,12 @@ from __future__ import annotations
 
 from collections import namedtuple
 from collections.abc import Sequence
-from dataclasses import dataclass
 from math import factorial, pi, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.handheld.duals import value_of
 from equipoise.signals import Array
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.design.solvers import DesignProblem, DesignSolution, solve
 from equipoise.design.spreads import Range
 from equipoise.errors import ModelError, ResponseError

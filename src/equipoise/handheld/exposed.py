@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from math import pi
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import ModelError
 from equipoise.exposure.daily import Exposure, Task, daily_exposure, equivalent
 from equipoise.exposure.weighting import squared_factor

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 from math import ceil, pi
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import ModelError, UsageError
 from equipoise.handheld.chain import (
     Chain,

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import MassError, ModelError, ResponseError, UsageError
 from equipoise.handheld.chain import NodePair, carry, solve
 from equipoise.handheld.layout import HarmonicField, Layout, ShaftDeflection, check_coverage

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
 from equipoise.handheld.design_plan import KEYS
 from equipoise.handheld.frequencies import characteristic, natural_frequencies, scale_of

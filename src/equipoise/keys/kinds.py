@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 from importlib import import_module
 from numbers import Integral, Real
 from types import MappingProxyType
 from typing import Any, Literal
 
+from equipoise.dataclass import dataclass
 from equipoise.i18n import LANGUAGES, Note, Worded
 from equipoise.keys.base import Kind, TableRecord
 from equipoise.quantities import Dimension, in_si

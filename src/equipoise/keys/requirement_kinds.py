@@ -9,10 +9,11 @@ from __future__ import annotations
 
 from abc import ABC
 from collections.abc import Iterator, Mapping
-from dataclasses import KW_ONLY, dataclass
+from dataclasses import KW_ONLY
 from math import inf, isfinite
 from typing import Any, ClassVar, Literal
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError, unknown
 from equipoise.i18n import Note, any_of
 from equipoise.keys.base import Kind

@@ -11,12 +11,12 @@ overcomes the friction (that at rest is taken to be that in motion).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import atan2, isfinite, pi, sqrt
 from typing import Any, Literal
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError, at_place
 from equipoise.i18n import Note
 from equipoise.signals import Array

@@ -7,12 +7,12 @@ polynomial through the samples around it, so that its place does not depend on s
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from itertools import pairwise
 from math import inf
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.decompositions import lstsq
 from equipoise.errors import UsageError
 from equipoise.i18n import Note

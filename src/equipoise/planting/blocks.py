@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import product
 from math import pi
 from typing import TYPE_CHECKING
 
+from equipoise.dataclass import dataclass
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.outputs.spoken import joint_named
 from equipoise.planting.arms import SHARED

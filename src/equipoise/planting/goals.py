@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, fields
+from dataclasses import fields
 from functools import cached_property, partial
 from typing import Self
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.design.evaluator import PooledEvaluator
 from equipoise.design.requirements import Requirement
 from equipoise.design.solvers import DesignProblem

@@ -6,13 +6,13 @@ positive whichever way it turns.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import partial
 from itertools import chain, takewhile
 from typing import Any, ClassVar
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.kinematics.tip import TipCurve, crossings, integral, lowest_within
 from equipoise.planting.stroke import wrapped

@@ -9,11 +9,11 @@ design usually lies where two peaks tie, at a kink that stops methods which trus
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.design.requirements import Requirement
 from equipoise.design.solvers import DesignSolution, solve
 from equipoise.errors import EquipoiseError, UsageError

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import ModelError
 from equipoise.i18n import Note
 from equipoise.mechanism.assembly.family import column

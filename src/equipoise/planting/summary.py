@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, replace
 from functools import cached_property
 from math import isfinite, pi
 from typing import Any, ClassVar
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import ModelError, UsageError, at_place
 from equipoise.i18n import Note
 from equipoise.mechanism.checks import NamedItems

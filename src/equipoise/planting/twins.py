@@ -7,11 +7,12 @@ the shape of gears changes these angles have to follow, or the arms would no lon
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import degrees
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.i18n import Note
 from equipoise.mechanism.assembly.family import Family
 from equipoise.mechanism.assembly.linkage import assemble

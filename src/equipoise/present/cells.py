@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import compress
 from math import isfinite, isnan
 
+from equipoise.dataclass import dataclass
 from equipoise.i18n import Note, decimals, listed, say, spoken
 from equipoise.quantities import Dimension, Display, change, display, fixed, typeset
 from equipoise.quantities.numbers import ROUNDING

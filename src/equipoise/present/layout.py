@@ -7,10 +7,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from unicodedata import combining, east_asian_width
 
+from equipoise.dataclass import dataclass
 from equipoise.i18n import say, to_say
 from equipoise.present.cells import CellText, Grid, Head, bound
 from equipoise.results.blocks import Emphasis

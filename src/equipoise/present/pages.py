@@ -8,7 +8,7 @@ import re
 from base64 import b64encode
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cache
 from html import escape
 from importlib import resources
@@ -19,6 +19,7 @@ import jinja2
 from markupsafe import Markup
 
 import equipoise
+from equipoise.dataclass import dataclass
 from equipoise.errors import EquipoiseError
 from equipoise.i18n import Note, decimals, say, speaking, spoken
 from equipoise.present.cells import CellText, Grid, Head, grid, noted, printed, sign_of

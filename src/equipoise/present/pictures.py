@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Sequence
-from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
+from equipoise.dataclass import dataclass
 from equipoise.i18n import to_say
 from equipoise.present import headlines as seen
 from equipoise.present import support_headlines as gauged

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import cached_property
 from math import cos, hypot, pi, sin
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.i18n import say
 from equipoise.quantities import angle
 from equipoise.signals import Array, Figures, harmonics

@@ -10,13 +10,14 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from decimal import Decimal, InvalidOperation, localcontext
 from functools import cache
 from math import isfinite
 from types import MappingProxyType
 from unicodedata import normalize
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError, meant
 from equipoise.i18n import Note
 from equipoise.quantities.reading import (

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
-from dataclasses import dataclass
 from decimal import Decimal
 from functools import cache, cached_property
 from math import floor, isfinite, log10, pi
 from types import MappingProxyType
 from typing import Any
 
+from equipoise.dataclass import dataclass
 from equipoise.i18n import decimals
 from equipoise.quantities.units import FACTORS, KINDS, SI, Dimension
 

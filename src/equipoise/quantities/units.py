@@ -8,9 +8,9 @@ and a command should start at once.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Literal
 
+from equipoise.dataclass import dataclass
 from equipoise.i18n import to_say
 
 Dimension = Literal[

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import MassError, UsageError
 from equipoise.i18n import Note, to_say
 from equipoise.limits import check_memory

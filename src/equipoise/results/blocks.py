@@ -7,11 +7,12 @@ who renders them chooses digits and signs by `equipoise.quantities`.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import takewhile
 from math import isclose
 from typing import Any, ClassVar, Literal
 
+from equipoise.dataclass import dataclass
 from equipoise.i18n import Note, say
 from equipoise.quantities import Dimension
 from equipoise.results.charts import Chart

@@ -7,12 +7,13 @@ chart gives each role its look.  Values are in SI units; an axis tells in which 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import pi
 from typing import Any, Literal
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.i18n import say
 from equipoise.quantities import Dimension, Display, display, typeset
 from equipoise.symbols.shapes import Shape

@@ -10,12 +10,13 @@ A class that holds outputs has them as ``declared``, by key in the order of its 
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from operator import attrgetter
 from typing import Any, Literal
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.i18n import say
 from equipoise.quantities import SI, Dimension
 from equipoise.results.blocks import Cell, Column, Table, Value

@@ -30,13 +30,13 @@ ISO 20816-3 ends zone B for machines of 15 to 300 kW on flexible supports.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
 from functools import cached_property
 from math import hypot, pi, radians
 from typing import Any, Protocol
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.i18n import Note, say, to_say
 from equipoise.mechanism.assembly.steps import size_of_links
 from equipoise.mechanism.dynamics import acting

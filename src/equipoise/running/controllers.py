@@ -5,11 +5,11 @@ Speeds and angles are the motor's, and positive in the sense in which it drives.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import copysign, sqrt
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.mechanism.parts.servo_motors import ServoMotor
 from equipoise.signals import Array
 

@@ -8,13 +8,13 @@ the shaft, and T the torque of the drive.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 from math import pi
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import MassError, UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism.assembly.linkage import assemble

@@ -11,13 +11,14 @@ torque the faster it turns: then the run itself is followed into its steady stat
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cache, cached_property
 from math import ceil, inf, nan, pi
 from typing import Any
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import ResponseError, UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism.parts.machine import Machine

@@ -15,13 +15,14 @@ itself.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from itertools import pairwise
 from math import copysign, inf, nan, pi
 from typing import Any
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import ResponseError
 from equipoise.i18n import Note
 from equipoise.running.drivers import LIMIT_REACHED, Driver

@@ -12,12 +12,13 @@ put into the first equation, and what remains is the law of friction with other 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import LockError, UsageError
 from equipoise.i18n import Note, to_say
 from equipoise.mechanism.assembly.linkage import assemble

@@ -7,11 +7,12 @@ is follows by a few cycles.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from math import inf, pi
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.running.drivers import Driver
 from equipoise.running.equation import CrankEquation
 from equipoise.running.integration import Gained, Integration, Limits

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from numbers import Real
 from typing import Any
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, all_of
 from equipoise.keys import PLANES, Key, KeyTable, Listing, Named, OneOr, Tables, Whole, all_keys

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import EquipoiseError, ModelError, UsageError, at_place
 from equipoise.i18n import Note
 from equipoise.keys import Frozen

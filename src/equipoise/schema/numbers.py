@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from decimal import Decimal, localcontext
 from functools import cached_property
 from math import atan2, cos, hypot, isfinite, pi, sin
 from types import MappingProxyType
 from typing import Any
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import ModelError, UsageError
 from equipoise.i18n import Note
 from equipoise.keys import PLANES, Frozen, declared, key

@@ -9,12 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from contextlib import suppress
-from dataclasses import dataclass
 from functools import partial
 from math import isfinite
 from typing import Any
 
 from equipoise import keys
+from equipoise.dataclass import dataclass
 from equipoise.errors import ModelError, UsageError, meant
 from equipoise.i18n import LANGUAGES, Note, Worded
 from equipoise.keys.paths import KeyPath, quoted

@@ -12,12 +12,12 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
 from itertools import islice
 from typing import Any, Literal
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import ModelError, UsageError, unknown
 from equipoise.exposure.daily import Task
 from equipoise.exposure.spectra import UNEVEN_STEPS, uneven

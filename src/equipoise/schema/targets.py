@@ -7,9 +7,9 @@ from __future__ import annotations
 
 import os
 from collections.abc import Collection, Iterator, Mapping
-from dataclasses import dataclass
 from typing import Any, ClassVar, get_args
 
+from equipoise.dataclass import dataclass
 from equipoise.design.lifts import dimension_of_lift
 from equipoise.design.requirements import Requirement
 from equipoise.errors import ModelError, UsageError

@@ -7,10 +7,10 @@ is (`Frozen.called`).
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass
 from string import Formatter
 from typing import Any
 
+from equipoise.dataclass import dataclass
 from equipoise.i18n import Note, to_say
 from equipoise.keys import (
     Key,

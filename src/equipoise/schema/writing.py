@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any
 
 from equipoise import keys
+from equipoise.dataclass import dataclass
 from equipoise.errors import ModelError, UsageError
 from equipoise.i18n import Worded
 from equipoise.keys.paths import KeyPath

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import isnan
 from shlex import quote
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.design.solvers import UNPROVED
 from equipoise.design.spreads import Choices, Normal, Range
 from equipoise.i18n import Note, say, to_say

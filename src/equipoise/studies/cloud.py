@@ -6,12 +6,12 @@ A store of millions is gone through twice, block by block; what is kept is as la
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from equipoise.codegen.figures import COMPUTED
+from equipoise.dataclass import dataclass
 from equipoise.studies.outcomes import Block, kept
 from equipoise.studies.sampling import random_numbers
 from equipoise.studies.store import UNKNOWN

@@ -9,11 +9,11 @@ import warnings
 from collections.abc import Callable, Iterator
 from concurrent.futures import CancelledError, Future, ThreadPoolExecutor
 from contextlib import ExitStack, contextmanager, suppress
-from dataclasses import dataclass
 from socket import gethostname
 from time import monotonic, sleep
 from typing import Any
 
+from equipoise.dataclass import dataclass
 from equipoise.design.processes import DEAD, ChunkTask, Pool, StoppedError
 from equipoise.errors import UsageError, needed
 from equipoise.i18n import Note

@@ -10,12 +10,12 @@ from __future__ import annotations
 import gc
 import re
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import EquipoiseError, ModelError, UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism.assembly.linkage import assemble

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal, Protocol, get_args
 
+from equipoise.dataclass import dataclass
 from equipoise.design.requirements import Requirement
 from equipoise.keys.requirement_kinds import Asks, RequiredFigure, asks_of
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from math import nan
 from typing import Any, Self
@@ -27,6 +27,7 @@ from equipoise.balancing.objectives import (
 )
 from equipoise.balancing.problem import Problem
 from equipoise.balancing.room import pin_of
+from equipoise.dataclass import dataclass
 from equipoise.design.evaluator import PooledEvaluator
 from equipoise.design.processes import ChunkTask, Pool
 from equipoise.errors import EquipoiseError, MassError, ModelError, UsageError, at_place

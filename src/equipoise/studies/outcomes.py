@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from time import monotonic, perf_counter
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
 from equipoise.codegen.figures import COMPUTED, REASONS
+from equipoise.dataclass import dataclass
 from equipoise.errors import needed
 from equipoise.i18n import Note
 

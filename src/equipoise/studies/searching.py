@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from contextlib import ExitStack
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import inf, isnan
 from time import perf_counter
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from equipoise.codegen.figures import COMPUTED, NO_ASSEMBLY, NO_FULL_TURN, NO_MACHINE
+from equipoise.dataclass import dataclass
 from equipoise.design.solvers import DesignProblem, solve
 from equipoise.design.spreads import Choices, Range
 from equipoise.errors import ModelError, UsageError

@@ -11,13 +11,13 @@ import json
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, BinaryIO, ClassVar
 
 import numpy as np
 
 from equipoise.codegen.figures import COMPUTED, REASONS
+from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError, at_place, needed
 from equipoise.i18n import Note
 from equipoise.keys.requirement_kinds import Make

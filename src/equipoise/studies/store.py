@@ -18,7 +18,6 @@ import stat
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
-from dataclasses import dataclass
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from json import dumps, loads
@@ -29,6 +28,7 @@ import numpy as np
 
 import equipoise
 from equipoise.codegen.figures import COMPUTED
+from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError, at_place, needed
 from equipoise.fence import OutsideError, open_folder
 from equipoise.folders import NOWHERE, Folder, LinkError, is_nowhere

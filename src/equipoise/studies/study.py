@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, field, fields, replace
+from dataclasses import asdict, field, fields, replace
 from math import prod
 from typing import Any
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.design.spreads import KEYS, SPREADS, Choices, Range
 from equipoise.design.variables import Variable
 from equipoise.errors import ModelError, UsageError, at_place

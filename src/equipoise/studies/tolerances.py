@@ -9,13 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from time import monotonic
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from equipoise.codegen.figures import COMPUTED
+from equipoise.dataclass import dataclass
 from equipoise.errors import ModelError, UsageError
 from equipoise.i18n import Note
 from equipoise.results.result import Result

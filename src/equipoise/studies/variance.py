@@ -10,12 +10,13 @@ left without it; that is computed, not inferred.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from math import isnan
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.design.spreads import Normal, Uniform
 from equipoise.sequences import sobol
 from equipoise.studies.outcomes import kept

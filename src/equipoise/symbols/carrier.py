@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.mechanism.formulas.kernels import dot
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.support import Gauge, Mount, Support, unit_vector

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from types import MappingProxyType
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.i18n import to_say
 from equipoise.mechanism.checks import Bodies
 from equipoise.mechanism.parts.constraints import HOLDS, Constraint

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.parts.machine import Drive, FurtherDrive
 

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cache
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from equipoise.dataclass import dataclass
 from equipoise.mechanism.assembly.joints import Structure
 from equipoise.mechanism.checks import Bodies
 from equipoise.mechanism.parts.element_kinds import PartKind

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.mechanism.parts.machine import FRAME
 from equipoise.mechanism.parts.support import Mount, unit_vector
 from equipoise.symbols.carrier import foot, gauge, ground, strut, turning

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.mechanism.kinematics.motion import move
 from equipoise.symbols.shapes import Array
 

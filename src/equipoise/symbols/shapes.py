@@ -8,12 +8,12 @@ are to scale, and pins have one size.  Both are complex, x to the right and y up
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from itertools import groupby
 from typing import Any
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.mechanism.formulas.kernels import cross
 
 Array = np.ndarray[Any, Any]

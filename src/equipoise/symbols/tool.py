@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.symbols.carrier import MOUNT, SPRING, foot, ground, turning
 from equipoise.symbols.scene import WIDE
 from equipoise.symbols.shapes import Array, Shape, circle, line, sign

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.symbols.carrier import MOUNT
 from equipoise.symbols.scene import Scene
 from equipoise.symbols.shapes import Array, Shape

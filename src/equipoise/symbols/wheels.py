@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import partial
 from itertools import repeat
 from math import dist
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.i18n import say
 from equipoise.mechanism.assembly.joints import Structure, coupling_pins
 from equipoise.mechanism.checks import Bodies

@@ -10,12 +10,12 @@ with it, by no small angle; there places and rates are arrays (3, ...) along sur
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.decompositions import lstsq
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, all_of

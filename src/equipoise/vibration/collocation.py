@@ -9,12 +9,13 @@ disturbances die out.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import Protocol
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.decompositions import lstsq
 from equipoise.signals import Array
 

@@ -16,12 +16,13 @@ nodes once and never in between.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, fields
+from dataclasses import fields
 from functools import cached_property
 from math import copysign, pi
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import ModelError, ResponseError
 from equipoise.i18n import Note, to_say
 from equipoise.mechanism.assembly.linkage import assemble

@@ -7,12 +7,13 @@ speed is constant.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property, partial
 from math import pi
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import ResponseError
 from equipoise.i18n import Note, to_say
 from equipoise.mechanism.dynamics.reactions import Pass

@@ -11,13 +11,14 @@ the linkage's mass rides at the drive's pivot, in the first it is spread as in t
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property, reduce
 from operator import add
 from typing import Literal
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.decompositions import cond, lstsq
 from equipoise.errors import ModelError, ResponseError
 from equipoise.i18n import Note, all_of, to_say

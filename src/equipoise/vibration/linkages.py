@@ -16,13 +16,14 @@ Kinetic energy, momentum and moment of momentum on any moving support follow fro
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, fields, replace
+from dataclasses import fields, replace
 from functools import reduce
 from operator import add
 from typing import Any
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import MassError
 from equipoise.mechanism.assembly.steps import p, u
 from equipoise.mechanism.dynamics.acting import (

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 from math import copysign, pi, sqrt
 from typing import ClassVar
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.i18n import Note, to_say
 from equipoise.mechanism.parts.machine import Drive
 from equipoise.quantities import PER_RPM, brief, number

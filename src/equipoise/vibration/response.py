@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cached_property
 from math import pi
 from typing import Any, ClassVar, Literal
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.displays import Brief
 from equipoise.i18n import Note, to_say
 from equipoise.mechanism.parts.machine import Machine

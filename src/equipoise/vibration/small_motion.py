@@ -9,13 +9,14 @@ crank angle, so that it is no linear equation with constant coefficients.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property, reduce
 from math import copysign, pi
 from operator import add
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.i18n import Note, to_say
 from equipoise.mechanism.assembly.steps import size_of_bodies
 from equipoise.mechanism.dynamics.forces import forces

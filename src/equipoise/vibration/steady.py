@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
 from math import ceil, copysign, pi
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import ResponseError
 from equipoise.i18n import Note
 from equipoise.mechanism.assembly.linkage import assemble

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from functools import cached_property, partial
 from typing import ClassVar
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import MassError, ModelError, ResponseError, UsageError
 from equipoise.i18n import Note, to_say
 from equipoise.mechanism.dynamics.forces import massless

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import cached_property
 from math import pi
 from typing import ClassVar
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import MassError, ResponseError, UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism.dynamics.forces import massless

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from contextlib import AbstractContextManager
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from math import dist, isclose, sqrt
 from re import sub
 from threading import Lock
@@ -26,6 +26,7 @@ from equipoise.balancing.told import (
     worse_told,
 )
 from equipoise.balancing.workshop import SPREAD, sentences
+from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
 from equipoise.i18n import Note, said, say
 from equipoise.mechanism.outputs.declared import declared

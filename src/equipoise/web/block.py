@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any
 
 import numpy as np
+
+from equipoise.dataclass import dataclass
 
 Array = np.ndarray[Any, Any]
 Values = dict[str, Any]

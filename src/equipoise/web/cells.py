@@ -11,9 +11,10 @@ import io
 import json
 import os
 from contextlib import redirect_stdout
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from typing import Any, Literal
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import EquipoiseError
 from equipoise.schema.topics import known_topic
 

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from cmath import phase
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cached_property
 from math import cos, pi, sin
 from types import MappingProxyType
 from typing import Any
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism.parts.links import MASS_FIELDS

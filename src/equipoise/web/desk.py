@@ -5,10 +5,11 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, ExitStack
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import EquipoiseError, UsageError
 from equipoise.i18n import Note, speaking
 from equipoise.mechanism.parts.machine import Machine

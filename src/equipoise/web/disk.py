@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import os
 import re
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from hashlib import sha256
 from threading import Lock
 from typing import TYPE_CHECKING, Any
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import EquipoiseError, UsageError
 from equipoise.i18n import Note, to_say
 from equipoise.mechanism.parts.machine import Machine

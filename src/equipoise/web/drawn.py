@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import EquipoiseError, MobilityError, UsageError
 from equipoise.i18n import Note, listed, say
 from equipoise.keys.paths import KeyPath

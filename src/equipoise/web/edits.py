@@ -8,11 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import EquipoiseError, MobilityError, ModelError, MotionError, UsageError
 from equipoise.i18n import Note, to_say
 from equipoise.mechanism.assembly.linkage import assemble

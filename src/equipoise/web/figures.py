@@ -7,13 +7,13 @@ those by order have a number for each of the message's orders.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from math import isfinite
 from typing import Any
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.outputs.declared import DECLARED, Declared

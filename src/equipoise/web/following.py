@@ -10,11 +10,12 @@ frame, and rather those near to what was moved.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import combinations, count, product
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.decompositions import lstsq
 from equipoise.i18n import Note, all_of
 from equipoise.mechanism.assembly.steps import Array, planar

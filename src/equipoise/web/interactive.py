@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 from base64 import b64encode
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property, lru_cache
 from html import escape
 from typing import Any
@@ -18,6 +18,7 @@ import numpy as np
 
 from equipoise.codegen.emit import moves_shared, pose_signals, signals_in_loops
 from equipoise.codegen.javascript import Script, javascript
+from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
 from equipoise.exchange.formats import Job
 from equipoise.i18n import Note, catalogue, decimal_sign, said, say, spoken

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from cmath import phase, rect
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from itertools import combinations
 from math import hypot
 from typing import Any, Literal
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
 from equipoise.i18n import Note, all_of, listed, say
 from equipoise.keys.paths import KeyPath

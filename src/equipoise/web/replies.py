@@ -5,9 +5,9 @@ from __future__ import annotations
 import json
 import struct
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import EquipoiseError, ModelError, UsageError
 from equipoise.i18n import Note, key_words
 from equipoise.limits import out_of_memory

@@ -7,10 +7,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
-from dataclasses import dataclass, field
+from dataclasses import field
 from threading import Lock
 
 from equipoise import __version__
+from equipoise.dataclass import dataclass
 from equipoise.errors import EquipoiseError, ModelError, UsageError, at_place
 from equipoise.i18n import Note, said, speaking, wording
 from equipoise.mechanism.kinematics.outline import USUAL_SIZE

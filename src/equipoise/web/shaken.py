@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import Field, dataclass
+from dataclasses import Field
 from functools import partial, wraps
 from math import isfinite
 from typing import TYPE_CHECKING, Any, TypeVar
 from weakref import WeakKeyDictionary
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import EquipoiseError
 from equipoise.i18n import said, say, to_say
 from equipoise.mechanism.dynamics.forces import massless

@@ -22,13 +22,13 @@ import stat
 import tempfile
 import zipfile
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from importlib.metadata import Distribution, distribution
 from io import BytesIO
 from pathlib import Path
 from typing import Any
 
 from equipoise import __version__
+from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
 from equipoise.folders import Folder, LinkError
 from equipoise.i18n import Note

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import field, fields, replace
 from typing import Any
 
+from equipoise.dataclass import dataclass
 from equipoise.mechanism.kinematics.outline import STILL, LinkPlacement, MachineDraft
 from equipoise.mechanism.parts.element_kinds import part_kinds
 from equipoise.mechanism.parts.machine import FRAME, Link, Machine, Vector

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from functools import cached_property
 from math import pi
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import EquipoiseError
 from equipoise.figures.tool_side import MOST_MODES, SWING
 from equipoise.handheld.exposed import ToolExposure, expose_tool

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from string import ascii_uppercase
 from types import MappingProxyType
 from typing import Any
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import EquipoiseError, UsageError
 from equipoise.i18n import Note, say
 from equipoise.mechanism.checks import unknown

@@ -13,10 +13,10 @@ import pickle
 import time
 from collections import deque
 from collections.abc import Iterator
-from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import EquipoiseError, UsageError
 from equipoise.i18n import Note, to_say
 from equipoise.web.design import Design

@@ -5,11 +5,12 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 from xml.etree.ElementTree import Element
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import ModelError, UsageError, at_place
 from equipoise.exchange.reading import dxf, linkage2, mjcf, pmks, svg, urdf
 from equipoise.exchange.reading.found import Imported, Read, finished

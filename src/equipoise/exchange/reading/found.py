@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import pi, remainder
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import EquipoiseError, ModelError, UsageError, at_place, unknown
 from equipoise.i18n import Note, series
 from equipoise.mechanism.assembly.linkage import assemble

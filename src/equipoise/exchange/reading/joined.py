@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from itertools import count
 
+from equipoise.dataclass import dataclass
 from equipoise.mechanism.kinematics.outline import STILL, LinkPlacement, MachineDraft, pose_between
 from equipoise.mechanism.parts.machine import FRAME, Link, Slider
 from equipoise.quantities import clean, clean_place

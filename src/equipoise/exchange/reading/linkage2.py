@@ -7,10 +7,10 @@ from __future__ import annotations
 
 from cmath import phase
 from collections.abc import Mapping
-from dataclasses import dataclass
 from math import pi
 from xml.etree.ElementTree import Element
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import ModelError
 from equipoise.exchange.reading.found import Read
 from equipoise.exchange.reading.joined import SlotLine, free, outline_of

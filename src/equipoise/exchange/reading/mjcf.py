@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import radians
 from typing import Any
 from xml.etree.ElementTree import Element
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import ModelError, at_place
 from equipoise.exchange.reading import geoms
 from equipoise.exchange.reading.found import Read

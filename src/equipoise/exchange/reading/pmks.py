@@ -8,11 +8,11 @@ with decimals are thousandths.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from math import pi
 from string import ascii_lowercase, ascii_uppercase, digits
 from urllib.parse import unquote
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import ModelError
 from equipoise.exchange.reading.found import Read
 from equipoise.exchange.reading.joined import SlotLine, free, outline_of

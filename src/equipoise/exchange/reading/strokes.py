@@ -5,10 +5,11 @@ from __future__ import annotations
 from cmath import phase
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from itertools import chain, combinations, pairwise
 from string import ascii_uppercase
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import ModelError, at_place, unknown
 from equipoise.exchange.reading.found import Read
 from equipoise.exchange.reading.joined import SlotLine, free, outline_of

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import Any, Literal
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.i18n import Note
 from equipoise.mechanism.assembly.joints import Structure
 from equipoise.mechanism.assembly.steps import (

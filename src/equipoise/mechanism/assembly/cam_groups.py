@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.mechanism.assembly.builder import Builder, Group, guide_reaction
 from equipoise.mechanism.assembly.cam_fits import CamFit, check_shape, fitted
 from equipoise.mechanism.assembly.joints import Structure

@@ -10,13 +10,14 @@ face.  `docs/theory.md` derives the formulas.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from math import pi
 from typing import Any, Protocol
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.mechanism.formulas import cam_kernels as kernels
 from equipoise.mechanism.formulas.kernels import cross, dot
 from equipoise.signals import ROUNDING, highest_at

@@ -8,13 +8,13 @@ smallest value of each dyad's margin, which must stay above zero.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
 from functools import cached_property
 from math import lcm, pi
 from typing import Any
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import ChangePointError, MotionError
 from equipoise.i18n import Note, all_of
 from equipoise.mechanism.assembly.builder import Group

@@ -6,11 +6,12 @@ Driver and driven body turn about a pin of the carrier each, or one of them slid
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import ModelError
 from equipoise.mechanism.assembly.builder import Builder, Group, Guide, guide_reaction
 from equipoise.mechanism.assembly.joints import Structure, coupling_pins, place_in_file

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 from math import degrees, pi
 from typing import Any
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import ChangePointError, RangeError
 from equipoise.i18n import Note, all_of
 from equipoise.mechanism.assembly.builder import Group

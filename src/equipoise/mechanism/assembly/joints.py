@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from itertools import islice
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import MobilityError, ModelError
 from equipoise.i18n import Note, all_of, to_say
 from equipoise.mechanism.assembly.steps import Reaction

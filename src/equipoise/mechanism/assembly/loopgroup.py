@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import islice
 from math import ceil, degrees, pi
 from typing import Any
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, key_names
 from equipoise.mechanism.assembly.builder import Builder, Group

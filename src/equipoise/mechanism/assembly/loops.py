@@ -11,9 +11,9 @@ All of it is arithmetic on poses, so that it runs on arrays, and can be written 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any, ClassVar, Protocol
 
+from equipoise.dataclass import dataclass
 from equipoise.mechanism.assembly.steps import Step
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.formulas.curve_kernels import on_track

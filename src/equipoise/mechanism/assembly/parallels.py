@@ -8,12 +8,12 @@ decide: its pins are where the others bring them.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from itertools import chain
 from typing import Any
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import ModelError
 from equipoise.i18n import Note
 from equipoise.mechanism.assembly.builder import Builder, Group, Outer

@@ -7,13 +7,13 @@ dyad is stretched out or folded, or the loop equations of a group have no soluti
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 from math import degrees, pi
 from typing import Any, Protocol
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import ChangePointError, MotionError, RangeError
 from equipoise.i18n import Note, all_of
 from equipoise.mechanism.assembly.builder import Group

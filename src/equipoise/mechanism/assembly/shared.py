@@ -17,12 +17,13 @@ least where they bear nothing: they are idle there.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import degrees
 from typing import Any
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.decompositions import singular_values, svd
 from equipoise.errors import MobilityError, ModelError
 from equipoise.i18n import Note, all_of, to_say

@@ -11,13 +11,14 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import product
 from math import ceil, degrees, pi
 from typing import Any
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import EquipoiseError, ModelError, Paste
 from equipoise.i18n import Note, series, to_say
 from equipoise.mechanism.assembly.builder import Builder, Group

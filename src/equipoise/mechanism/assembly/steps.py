@@ -17,12 +17,12 @@ Names of values in a state
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
 from functools import reduce
 from typing import Any, Protocol
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.mechanism.formulas.curves import direction
 from equipoise.mechanism.parts.machine import FRAME, Machine, Vector, size_of
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from math import acos, degrees, floor, log10, radians, sin
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import ChangePointError, MotionError, Paste, RangeError, at_place
 from equipoise.i18n import Note, to_say
 from equipoise.mechanism.assembly.newton import BranchError

@@ -7,12 +7,13 @@ are.  Everything here is linear in the demands, as the forces in the plane are.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.mechanism.assembly.steps import p, u
 from equipoise.mechanism.checks import NamedItems
 from equipoise.mechanism.dynamics.acting import acting_elements, acting_preloads

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from math import acos, asin, degrees, isclose, pi, sqrt
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import ChangePointError, MotionError, RangeError
 from equipoise.i18n import Note
 from equipoise.mechanism.assembly.linkage import Linkage, assemble

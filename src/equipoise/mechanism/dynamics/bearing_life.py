@@ -17,12 +17,13 @@ Engineering Design, chapter 11):
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import copysign, exp, log, pi
 from typing import Any
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.i18n import to_say
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.assembly.steps import Array, Reaction

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import lru_cache
 from math import isfinite
 from typing import Any
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.i18n import to_say
 from equipoise.mechanism.assembly.cam_fits import fits_of, sharpest
 from equipoise.mechanism.assembly.steps import Array

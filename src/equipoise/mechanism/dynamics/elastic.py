@@ -8,11 +8,11 @@ frequency, of a beam that both ends hold as pins do, lies well above what excite
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from math import pi
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.mechanism.assembly.steps import Array, planar
 from equipoise.mechanism.dynamics.section_loads import Cut, SectionLoads
 from equipoise.mechanism.parts.links import Link

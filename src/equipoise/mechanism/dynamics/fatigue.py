@@ -8,12 +8,12 @@ that all cycles use up add to 1 where it breaks (Palmgren and Miner).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from itertools import pairwise
 from math import inf
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
 from equipoise.i18n import Note
 from equipoise.signals import Array

@@ -9,12 +9,13 @@ stack of them.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.displays import Displayed
 from equipoise.errors import MassError
 from equipoise.i18n import Note, key_names

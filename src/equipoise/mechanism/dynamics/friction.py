@@ -20,12 +20,12 @@ this method is singular: there a machine locks itself, and beyond no drive torqu
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from math import degrees
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.decompositions import svd
 from equipoise.errors import LockError
 from equipoise.i18n import Note, all_of

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from math import inf, pi
 from typing import Any
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.i18n import to_say
 from equipoise.mechanism.dynamics.elastic import elastic_link, other_places
 from equipoise.mechanism.dynamics.fatigue import (

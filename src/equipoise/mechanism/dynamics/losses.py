@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from math import pi
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.mechanism.dynamics.forces import Forces
 from equipoise.mechanism.dynamics.reduced import generalized_force
 

@@ -14,11 +14,12 @@ without the spring, plus k times the first row and f times the second.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.decompositions import lstsq
 from equipoise.displays import Brief
 from equipoise.errors import MassError, UsageError

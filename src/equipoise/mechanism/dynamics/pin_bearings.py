@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.mechanism.assembly.named_joints import given_properties
 from equipoise.mechanism.assembly.steps import Array, Reaction
 from equipoise.mechanism.dynamics.reactions import JointForce

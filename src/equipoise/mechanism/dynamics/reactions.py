@@ -8,12 +8,13 @@ and springs make demands of their own.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.displays import Brief
 from equipoise.mechanism.assembly.joints import Structure
 from equipoise.mechanism.assembly.steps import Array, Reaction, State, demand_names, run

@@ -10,13 +10,13 @@ acts on the part before a cut, with weight and inertia, is held by what the part
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import chain
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.mechanism.assembly.steps import Array, p, planar
 from equipoise.mechanism.dynamics import acting
 from equipoise.mechanism.dynamics.friction import direction

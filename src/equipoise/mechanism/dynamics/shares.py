@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import field, fields
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.displays import Brief
 from equipoise.errors import UsageError
 from equipoise.mechanism.assembly.steps import Array

@@ -13,12 +13,12 @@ is none to hand on, and nothing is open.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.decompositions import pinv
 from equipoise.i18n import Note, all_of
 from equipoise.mechanism.checks import FRAME

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import compress
 from math import degrees
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import RangeError, UsageError
 from equipoise.i18n import Note, all_of, to_say
 from equipoise.mechanism.assembly.linkage import Linkage

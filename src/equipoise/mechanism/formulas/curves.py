@@ -7,7 +7,6 @@ in their formulas are one table, evaluated alike.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 from math import cos, factorial, pi, sin
@@ -15,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.mechanism.formulas.curve_kernels import piece_value
 
 Array = np.ndarray[Any, Any]

@@ -12,13 +12,13 @@ keeps its order there; through fewer than six points goes the one polynomial.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from math import factorial, tau
 from typing import Any
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.mechanism.formulas.curve_kernels import plane_piece
 
 Array = np.ndarray[Any, Any]

@@ -16,13 +16,14 @@ Formulas: ``docs/theory.md``.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, fields, is_dataclass, replace
+from dataclasses import fields, is_dataclass, replace
 from itertools import zip_longest
 from math import pi
 from typing import Any
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.mechanism.formulas.curves import (
     MOST_POWERS,
     Array,

@@ -7,11 +7,12 @@ column.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import pi
 from typing import Any, Literal
 
 import numpy as np
+
+from equipoise.dataclass import dataclass
 
 Side = Literal[1, -1]
 LEFT: Side = 1

@@ -9,13 +9,14 @@ length, of which the linkage gives both derivatives.  See `docs/theory.md`, "Dri
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import pairwise
 from math import ceil, pi
 from typing import Any
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, all_of
 from equipoise.keys import with_fields

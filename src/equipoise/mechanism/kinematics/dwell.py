@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from math import pi
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.mechanism.assembly.steps import Array
 from equipoise.signals import within_period
 

@@ -7,10 +7,10 @@ poses of loop groups, is kept along the way.
 from __future__ import annotations
 
 from collections.abc import Collection
-from dataclasses import dataclass
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.assembly.steps import Array, State, Step, needed_references, run
 

@@ -5,7 +5,7 @@ coefficients), and what they are in time.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property, lru_cache
 from math import degrees, pi
 from numbers import Real
@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from equipoise import signals
+from equipoise.dataclass import dataclass
 from equipoise.displays import Displayed
 from equipoise.errors import ChangePointError, ModelError, RangeError, UsageError
 from equipoise.i18n import Note

@@ -8,12 +8,13 @@ from __future__ import annotations
 
 from cmath import exp, phase
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from math import cos, hypot, pi, remainder, sin
 from typing import Any
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.mechanism.assembly.joints import Structure, joined
 from equipoise.mechanism.assembly.linkage import assemble, sides_at_position
 from equipoise.mechanism.kinematics.motion import Motion, move

@@ -9,12 +9,13 @@ tells each at any rates of these links.  See `docs/theory.md`, "Drives that push
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import degrees, pi
 from typing import Any
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, all_of
 from equipoise.keys import with_fields

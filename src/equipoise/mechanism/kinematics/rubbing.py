@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.assembly.named_joints import given_properties
 from equipoise.mechanism.assembly.steps import Array, Reaction, planar, size_of_links

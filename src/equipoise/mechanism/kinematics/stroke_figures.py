@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import MISSING, Field, dataclass, field, fields
+from dataclasses import MISSING, Field, field, fields
 from typing import Any, Literal
 
+from equipoise.dataclass import dataclass
 from equipoise.i18n import to_say
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.quantities import Dimension

@@ -7,11 +7,12 @@ rocker is a link that is pinned to the frame and swings.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import isfinite, pi
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import ChangePointError, RangeError, UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism.assembly.cycle import FEWER_POINTS, MANY_TURNS, POINTS_PER_TURN

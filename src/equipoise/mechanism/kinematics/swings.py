@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
+from equipoise.dataclass import dataclass
 from equipoise.i18n import Note
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.assembly.reach import Reach, reach

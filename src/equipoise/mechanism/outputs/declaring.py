@@ -12,11 +12,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property, lru_cache
 from itertools import dropwhile
 from typing import TYPE_CHECKING, Any, Literal
 
+from equipoise.dataclass import dataclass
 from equipoise.i18n import Note, say, speaking, spoken, to_say
 from equipoise.quantities import SI, Dimension
 

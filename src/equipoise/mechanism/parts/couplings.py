@@ -10,11 +10,11 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Callable, Iterator, Mapping, Set
-from dataclasses import dataclass
 from fractions import Fraction
 from math import pi, radians
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, Protocol, Self
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, to_say
 from equipoise.keys import Frozen, Key, Keys, Listing, TextKind, declared, inside, key

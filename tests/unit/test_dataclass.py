@@ -1,0 +1,124 @@
+"""Frozen classes do what those of the standard library do."""
+
+from __future__ import annotations
+
+import copy
+import dataclasses
+import pickle
+from collections.abc import Callable
+from dataclasses import FrozenInstanceError, field, fields, replace
+from inspect import signature
+from typing import Any
+
+import pytest
+
+from equipoise.dataclass import Constructor, dataclass
+
+
+def made_by(decorator: Callable[..., Any]) -> Any:
+    """The same class with fields of all kinds, by one decorator or the other."""
+
+    @decorator(frozen=True)
+    class Base:
+        first: int
+        second: float = 2.0
+        hidden: str = field(default="h", repr=False)
+        aside: int = field(default=0, compare=False)
+        made: list[int] = field(default_factory=list, hash=False)
+        alone: int = field(default=7, kw_only=True)
+        own: dict[str, int] = field(default_factory=dict, init=False, compare=False)
+
+    @decorator(frozen=True)
+    class Inner(Base):
+        """With a check."""
+
+        third: str = "t"
+
+        def __post_init__(self) -> None:
+            if self.first < 0:
+                raise ValueError(self.first)
+
+    return Inner
+
+
+OURS, THEIRS = made_by(dataclass), made_by(dataclasses.dataclass)
+
+
+@pytest.mark.parametrize("kind", [OURS, THEIRS])
+def test_objects_of_both(kind):
+    one = kind(1, 3.0, third="x", alone=8)
+    assert repr(one).endswith(
+        "Inner(first=1, second=3.0, aside=0, made=[], alone=8, own={}, third='x')"
+    )
+    assert one == kind(1, 3.0, aside=5, third="x", alone=8)
+    assert one != kind(1, 3.0, third="y", alone=8)
+    assert one != (1, 3.0)
+    assert hash(one) == hash(kind(1, 3.0, aside=5, third="x", alone=8))
+    assert replace(one, first=2).first == 2
+    assert one.made is not kind(1).made
+    assert copy.deepcopy(one) == one
+    with pytest.raises(FrozenInstanceError, match="first"):
+        one.first = 2
+    with pytest.raises(FrozenInstanceError, match="third"):
+        del one.third
+    with pytest.raises(FrozenInstanceError, match="new"):
+        one.new = 2
+    with pytest.raises(ValueError, match="-1"):
+        kind(-1)
+    for wrong in [{}, {"first": 1, "nothing": 2}]:
+        with pytest.raises(TypeError):
+            kind(**wrong)
+    with pytest.raises(TypeError):
+        kind(1, 2.0, "h", 0, [], "t", 9)  # alone is by name
+
+
+def test_signatures_are_the_same():
+    assert str(signature(OURS)) == str(signature(THEIRS))
+    assert [item.name for item in fields(OURS)] == [item.name for item in fields(THEIRS)]
+
+
+def test_nothing_is_compiled_before_the_first_object():
+    kind = made_by(dataclass)
+    assert isinstance(vars(kind)["__init__"], Constructor)
+    kind(1)
+    assert not isinstance(vars(kind)["__init__"], Constructor)
+
+
+@dataclass(frozen=True)
+class Kept:
+    """A class by whose name objects are read again."""
+
+    value: float
+
+
+@dataclass(frozen=True, eq=False)
+class Apart(Kept):
+    """Equal as its base is."""
+
+    more: int = 1
+
+
+@dataclass(frozen=True)
+class OwnEqual:  # noqa: PLW1641
+    """With a comparison of its own."""
+
+    value: int
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, OwnEqual) and abs(self.value - other.value) < 2
+
+
+def test_what_a_class_has_itself_stays():
+    assert pickle.loads(pickle.dumps(Kept(1.5))) == Kept(1.5)
+    nan = float("nan")
+    assert Kept(nan) == Kept(nan)  # as tuples are that hold the same object
+    assert Apart(1.0, more=2) == Apart(1.0, more=3)  # by the base's fields
+    assert Apart(1.0) != Kept(1.0)
+    assert OwnEqual(1) == OwnEqual(2)
+    assert hash(OwnEqual(1)) == hash(OwnEqual(1))
+
+
+def test_an_object_that_holds_itself_is_printed():
+    one = Kept(1.0)
+    object.__setattr__(one, "value", one)
+    assert repr(one) == "Kept(value=...)"
