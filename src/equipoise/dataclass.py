@@ -9,6 +9,7 @@ is made, and what compares, prints and protects objects is the same code for all
 from __future__ import annotations
 
 import dataclasses
+import sys
 from collections.abc import Callable
 from dataclasses import MISSING, Field, FrozenInstanceError, fields
 from operator import attrgetter
@@ -87,19 +88,22 @@ def _constructor(cls: type) -> Callable[..., None]:
     alone = [item for item in own if item.kw_only]
     parameters = [*(_parameter(item) for item in own if not item.kw_only)]
     parameters += ["*", *(_parameter(item) for item in alone)] if alone else []
-    lines = [f" _set_field(self, {item.name!r}, {_value(item)})" for item in own]
+    lines = [f"  _set_field(self, {item.name!r}, {_value(item)})" for item in own]
     lines += [
-        f" _set_field(self, {item.name!r}, {_value(item)})"
+        f"  _set_field(self, {item.name!r}, {_value(item)})"
         for item in fields(cls)
         if not item.init and (item.default_factory is not MISSING)
     ]
-    lines += [" self.__post_init__()"] if hasattr(cls, "__post_init__") else []
+    lines += ["  self.__post_init__()"] if hasattr(cls, "__post_init__") else []
     known = {"_set_field": object.__setattr__, "_factory": _FACTORY}
     for item in fields(cls):
         known |= {f"_default_{item.name}": item.default, f"_make_{item.name}": item.default_factory}
-    text = f"def __init__({', '.join(['self', *parameters])}):\n" + "\n".join(lines or [" pass"])
-    exec(text, known)
-    function: Any = known["__init__"]
+    inner = f" def __init__({', '.join(['self', *parameters])}):\n" + "\n".join(lines or ["  pass"])
+    text = f"def made({', '.join(known)}):\n{inner}\n return __init__"
+    made: dict[str, Any] = {}
+    module = sys.modules.get(cls.__module__)  # where names of types are looked up
+    exec(text, {} if module is None else vars(module), made)
+    function = made["made"](**known)
     function.__qualname__ = f"{cls.__qualname__}.__init__"
     function.__module__ = cls.__module__
     function.__annotations__ = {item.name: item.type for item in own} | {"return": None}

@@ -8,7 +8,7 @@ import pickle
 from collections.abc import Callable
 from dataclasses import FrozenInstanceError, field, fields, replace
 from inspect import signature
-from typing import Any
+from typing import Any, get_type_hints
 
 import pytest
 
@@ -73,6 +73,7 @@ def test_objects_of_both(kind):
 
 
 def test_signatures_are_the_same():
+    assert get_type_hints(Kept.__init__) == {"value": float, "return": type(None)}
     assert str(signature(OURS)) == str(signature(THEIRS))
     assert [item.name for item in fields(OURS)] == [item.name for item in fields(THEIRS)]
 

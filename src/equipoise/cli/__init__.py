@@ -14,8 +14,10 @@ import sys
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from importlib.util import find_spec
 from threading import Event, Thread, Timer
 from time import monotonic
+from types import CodeType
 from typing import TYPE_CHECKING
 
 from cyclopts import App, CycloptsError, Parameter
@@ -64,10 +66,15 @@ MODULES = {
 """Module here, and what a command is called there if not like itself -> its commands."""
 COMMANDS = {name: place for place, names in MODULES.items() for name in names}
 
-for _name in sorted(COMMANDS):  # each is imported when it is run
-    _module, _, _what = COMMANDS[_name].partition(":")
-    app.command(f"equipoise.cli.{_module}:{_what or _name}", name=_name)
 
+def _path(name: str, place: str) -> str:
+    """Where a command is: module and what is imported of it."""
+    module, _, what = place.partition(":")
+    return f"equipoise.cli.{module}:{what or name}"
+
+
+for _name in sorted(COMMANDS):  # each is imported when it is run
+    app.command(_path(_name, COMMANDS[_name]), name=_name)
 
 LEAST, MOST = 40, 1000
 """Signs in a line below which no help is laid out, since in one or two it would never end; and
@@ -129,8 +136,20 @@ def _prepare(given: Sequence[str]) -> None:
         os.environ["LINES"] = str(min(lines, MOST))
     app.console = _console(LEAST) if columns < LEAST else None
     if not given or given[0].startswith("-"):  # the help has a line of each command
-        for name in COMMANDS:
-            _ = app[name]
+        for name, place in COMMANDS.items():
+            del app[name]
+            app.command(_path(name, place), name=name, help=_summary(name, place))
+
+
+def _summary(name: str, place: str) -> str:
+    """First line of what a command says of itself, for which its module need not be run."""
+    module, _, what = place.partition(":")
+    spec = find_spec(f"equipoise.cli.{module}")
+    code = spec.loader.get_code(spec.name)  # type: ignore[union-attr]
+    functions = (item for item in code.co_consts if isinstance(item, CodeType))
+    function = next(item for item in functions if item.co_name in (what, name))
+    text = function.co_consts[0]
+    return text.partition("\n")[0] if isinstance(text, str) else ""  # where Python drops texts
 
 
 MOST_REPEATED = 200
