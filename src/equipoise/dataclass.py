@@ -84,7 +84,7 @@ _FACTORY = _Factory()
 
 def _constructor(cls: type) -> Callable[..., None]:
     """The constructor of a frozen class: sets its fields, then calls ``__post_init__``."""
-    own = [item for item in fields(cls) if item.init]  # type: ignore[arg-type]
+    own = [item for item in fields(cls) if item.init]
     alone = [item for item in own if item.kw_only]
     parameters = [*(_parameter(item) for item in own if not item.kw_only)]
     parameters += ["*", *(_parameter(item) for item in alone)] if alone else []
