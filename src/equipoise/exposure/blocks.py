@@ -69,8 +69,7 @@ def shortened(name: str) -> str:
 def weighted_blocks(weighted: Weighted) -> Iterator[Block]:
     """What was weighted, axis by axis."""
     parts = [say(WHAT[weighted.kind])]
-    count = len(weighted.axes)
-    parts.append(say("1 axis") if count == 1 else say("{count} axes", count=count))
+    parts.append(say("{count} axes", count=len(weighted.axes)))
     if weighted.duration is not None and weighted.sampling_rate is not None:
         parts.append(
             say(

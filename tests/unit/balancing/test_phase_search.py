@@ -111,8 +111,8 @@ def test_lever_times_force_is_the_roll_moment(name: str) -> None:
     ("call", "sentence"),
     [
         (lambda: halved(6).phases, "got 6 rows; halving needs 2, 4, 8 or another power of two"),
-        (lambda: halved(1).phases, "got 1 rows; halving needs"),
-        (lambda: patterns_for(1), "got 1 rows; give two at least"),
+        (lambda: halved(1).phases, "got 1 row; halving needs"),
+        (lambda: patterns_for(1), "got 1 row; give two at least"),
         (lambda: pattern_named("4 mirror"), "did you mean '4 mirrored'"),
         (lambda: pattern_named("mirrored"), "no pattern is called 'mirrored'"),
         (lambda: pattern_named(""), "no pattern is called ''"),
@@ -156,7 +156,7 @@ def rows(count: int, phase: float = 0.0, spacing: float = 0.3) -> Machine:
     ("machine", "objectives", "step", "sentence"),
     [
         (TYPE_II, [FORCE], 5, "rows: got 0 rows, which leaves no phase to choose; give two at"),
-        (rows(1), [FORCE], 5, "rows: got 1 rows, which leaves no phase to choose; give two at"),
+        (rows(1), [FORCE], 5, "rows: got 1 row, which leaves no phase to choose; give two at"),
         (rows(2), [], 5, "got no objective; give what is to become small"),
         (rows(2), [FORCE], 0, "got a step of 0 deg; give more than 0 deg and at most 90 deg"),
         (rows(2), [FORCE], 91, "got a step of 91 deg; give more than 0 deg and at most 90 deg"),

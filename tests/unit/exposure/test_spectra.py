@@ -112,7 +112,7 @@ RECORDS: dict[str, tuple[Any, Any, dict[str, Any], str]] = {
     "nan": (TIME, np.where(TIME == 1, np.nan, SINE), {}, "acceleration: a value is not finite"),
     "text": (TIME, "loud", {}, "acceleration: got str; give rows of numbers"),
     "three axes": (TIME, np.zeros((3, len(TIME))), {"single_axis": True}, "got three axes, whose"),
-    "names": (TIME, SINE, {"axes": ("x", "y")}, "axes: got x, y; give a name to each of 1 axes"),
+    "names": (TIME, SINE, {"axes": ("x", "y")}, "axes: got x, y; give a name to each of 1 axis"),
     "repeated": (
         TIME[:126],
         SINE[:126],

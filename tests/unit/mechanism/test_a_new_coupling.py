@@ -54,7 +54,7 @@ class Rollers(Turning):
     noun = "pair of rollers"
     group = "rollers"
     heading = Note("Rollers")
-    counted = "{count} pair of rollers", "{count} pairs of rollers"
+    counted = "{count} pairs of rollers"
     special = "pair of rollers"
     columns: ClassVar[Mapping[str, Set[str]]] = {"": {"start", "lean"}}
 

@@ -328,7 +328,7 @@ def test_a_pin_that_runs_out_of_an_open_curve_says_where() -> None:
     ({"points_given": ()}, r"^curved_slots\[1\]: give exactly one of points and table"),
     ({"table": CurveTable((0.0,), (0.0,))}, r"^curved_slots\[1\]: give exactly one of points and"),
     ({"points_given": circle(3)}, r"^curved_slots\[1\]\.points: got 3 points; give 4 to 400"),
-    ({"points_given": ((0.0, 0.0),), "closed": False}, r"points: got 1 points; give 2 to 400"),
+    ({"points_given": ((0.0, 0.0),), "closed": False}, r"points: got 1 point; give 2 to 400"),
     ({"points_given": (*circle(8), circle(8)[-1])}, r"points: points 8 and 9 coincide"),
     ({"points_given": (*circle(8), circle(8)[0])}, r"points: the last point is the first again"),
     ({"own_name": "B"}, r"^curved_slots\[1\]\.label: 'B' is the name of something else"),
@@ -388,7 +388,7 @@ def test_points_may_stand_in_a_table(tmp_path: Path) -> None:
     torque = eq.analyze(eq.load(path), 30).forces.drive_torque
     np.testing.assert_array_equal(torque, eq.analyze(machine, 30).forces.drive_torque)
     table.write_text("x [mm],y [mm]\n1,2\n3\n")
-    with pytest.raises(EquipoiseError, match=r"\.csv, line 3: got 1 values"):
+    with pytest.raises(EquipoiseError, match=r"\.csv, line 3: got 1 value"):
         eq.load(path)
 
 

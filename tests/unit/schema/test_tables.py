@@ -116,7 +116,7 @@ BAD: dict[str, list[tuple[str | None, str]]] = {
         ("crank_angle [mm],torque [N m]\n0,1\n", "line 1, column crank_angle: got '0 mm'; mm is"),
         ("crank_angle [deg],torque [N m],torque [N m]\n0,1,1\n", "column torque: given twice"),
         ("crank_angle [deg],torque [N m]\n", "there are no rows"),
-        ("crank_angle [deg],torque [N m]\n0,1\n5\n", "line 3: got 1 values; the header has 2"),
+        ("crank_angle [deg],torque [N m]\n0,1\n5\n", "line 3: got 1 value; the header has 2"),
         ("crank_angle [deg],torque [N m]\n0,abc\n", "line 2, column torque: got 'abc'; give a"),
         ("crank_angle [deg],torque [N m]\n0,nan\n", "line 2, column torque: got 'nan'; give a"),
         ("crank_angle [deg],torque [N m]\n0,\n", "line 2, column torque: got ''; give a finite"),

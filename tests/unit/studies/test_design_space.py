@@ -69,7 +69,7 @@ REFUSED = {
     "same": (lambda: Range(1, 1), "the first limit must be below the second"),
     "infinite": (lambda: Range(0, inf), "got inf; give finite numbers"),
     "nan": (lambda: Choices((1, nan)), "got nan; give finite numbers"),
-    "steps": (lambda: Range(0, 1, 1), "got 1 steps; give 2 to 1000000"),
+    "steps": (lambda: Range(0, 1, 1), "got 1 step; give 2 to 1000000"),
     "no whole": (lambda: Range(1.5, 3, whole=True), "got 1.5; give whole numbers"),
     "nothing": (lambda: Choices(()), "the list is empty"),
     "twice": (lambda: Choices((1, 2, 1)), "the list has a value twice"),

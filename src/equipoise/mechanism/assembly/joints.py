@@ -256,14 +256,15 @@ def _check_mobility(joints: Structure, drives: Sequence[str], alike: Note | str)
 def _count(joints: Structure) -> Note | str:
     coupled = Counter(coupling.counted for coupling in joints.couplings)
     inner = sum(len(rider.slides) for rider in joints.riders.values())
+    free = joints.riders.keys().isdisjoint
+    pinned = [bodies for bodies in joints.pins.values() if free(bodies)]
     parts = [
         moving_links(len(joints.bodies) - 1 - len(joints.riders)),
-        _number(sum(len(bodies) - 1 for bodies in joints.pins.values()
-                    if joints.riders.keys().isdisjoint(bodies)), PINS),
-        _number(len(joints.sliders) - inner, SLIDING_JOINTS),
-        *([_number(len(joints.riders), SLOTS)] if joints.riders else ()),
-        *(_number(count, words) for words, count in coupled.items()),
-    ]  # fmt: skip
+        Note(PINS, count=sum(map(len, pinned)) - len(pinned)),
+        Note(SLIDING_JOINTS, count=len(joints.sliders) - inner),
+        *([Note(SLOTS, count=len(joints.riders))] if joints.riders else ()),
+        *(Note(words, count=count) for words, count in coupled.items()),
+    ]
     return all_of(parts, commas=True)
 
 
@@ -323,19 +324,15 @@ def subsets(joints: Structure, links: list[str]) -> Iterator[tuple[str, ...]]:
         )
 
 
-MOVING_LINKS = (to_say("{count} moving link"), to_say("{count} moving links"))
-PINS = (to_say("{count} pin"), to_say("{count} pins"))
-SLIDING_JOINTS = (to_say("{count} sliding joint"), to_say("{count} sliding joints"))
-SLOTS = (to_say("{count} pin in a slot"), to_say("{count} pins in slots"))
+MOVING_LINKS = to_say("{count} moving links")
+PINS = to_say("{count} pins")
+SLIDING_JOINTS = to_say("{count} sliding joints")
+SLOTS = to_say("{count} pins in slots")
 
 
 def moving_links(count: int) -> Note:
     """How many links move, in words."""
-    return _number(count, MOVING_LINKS)
-
-
-def _number(count: int, words: tuple[str, str]) -> Note:
-    return Note(words[count != 1], count=count)
+    return Note(MOVING_LINKS, count=count)
 
 
 def _names(links: Sequence[str]) -> Note | str:

@@ -55,7 +55,7 @@ class Belt(Turning):
     heading = Note("Belt")
     pushes = False
     columns: ClassVar[Mapping[str, Set[str]]] = {"": {"start", "tension"}}
-    counted = to_say("{count} belt"), to_say("{count} belts")
+    counted = to_say("{count} belts")
 
     teeth: tuple[int, int] | None = key(
         Listing(Whole(1), (2,)),

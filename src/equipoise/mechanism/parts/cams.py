@@ -46,7 +46,7 @@ class Cam(Coupling):
     contact = "surface"
     touch = to_say("cam")
     legend = ("cam", to_say("cams"))
-    counted = to_say("{count} cam"), to_say("{count} cams")
+    counted = to_say("{count} cams")
     most = 100
     start: ClassVar[float] = 0.0
     switches: ClassVar[bool] = False

@@ -118,8 +118,8 @@ class Coupling(PartKind):
     """Two bodies of which one drives the other, both on a carrier.
 
     table : key of its list in the model file, which is the `kind` of its `Reaction` too.
-    noun : what one is called.  counted : how one, and several, are
-        counted.  pushes : whether it is one force at one place, told as a whole and in parts.
+    noun : what one is called.  counted : how several are counted, a text with forms by ``{count}``.
+    pushes : whether it is one force at one place, told as a whole and in parts.
     preload : what its sides pull with where no torque is passed on, N.
     touch : what touches where it pushes.
     contact : how it pushes: along the line that `line` tells, or square to a surface.
@@ -133,7 +133,7 @@ class Coupling(PartKind):
 
     table: ClassVar[str]
     noun: ClassVar[str]
-    counted: ClassVar[tuple[str, str]]
+    counted: ClassVar[str]
     pushes: ClassVar[bool] = True
     preload: ClassVar[Any] = 0.0
     touch: ClassVar[str] = to_say("teeth")

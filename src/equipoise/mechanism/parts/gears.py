@@ -69,7 +69,7 @@ class Gear(Turning):
     }
     heading = Note("Gears")
     grows = True
-    counted = to_say("{count} gear"), to_say("{count} gears")
+    counted = to_say("{count} gears")
 
     ratio: float | None = key(
         Number(),

@@ -40,7 +40,7 @@ class Rack(Coupling):
     group = to_say("racks")
     columns: ClassVar[Mapping[str, Set[str]]] = {"": {"angle", "travel", "pressure_angle"}}
     special = "rack"
-    counted = to_say("{count} rack"), to_say("{count} racks")
+    counted = to_say("{count} racks")
 
     pinion: str = key(TextKind(of="body"), "link that turns", example="rocker")
     rack: str = key(
