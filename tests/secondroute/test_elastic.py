@@ -14,6 +14,7 @@ from scipy.linalg import eigh
 import equipoise as eq
 from equipoise.mechanism import LinkSection
 from equipoise.mechanism.dynamics.elastic import elastic_link
+from equipoise.mechanism.parts.balance import Balance, CenterMove, Objective
 from secondroute.test_link_elements import engine, read_beams, solved, stiffness
 from surface.running import equipoise, succeeded
 
@@ -125,3 +126,20 @@ def test_without_a_modulus_there_is_none() -> None:
     machine = engine(elastic_modulus=None)
     one = eq.analyze(machine).sections["rod"]
     assert one.natural_frequency is None and one.deflection is None and one.path_error is None
+
+
+@pytest.mark.parametrize("planned", [False, True])
+def test_balancing_says_where_rigid_links_mislead(tmp_path: Path, planned: bool) -> None:
+    """Of the machine that is balanced, whether or not somebody said what may be changed."""
+    machine = engine(height="3 mm")
+    natural = eq.analyze(machine).sections["rod"].natural_frequency
+    assert natural is not None
+    plan = None
+    if planned:
+        moves = (CenterMove("rod", x=(0.0, 0.1), y=(-0.02, 0.02)),)
+        plan = Balance(moves=moves, objectives=(Objective("shaking_force"),))
+    for times, warned in ((1.9, True), (30.0, False)):
+        drive = replace(machine.drive, speed=2 * pi * natural / times)
+        eq.save(replace(machine, drive=drive, balance=plan), tmp_path / "engine.toml")
+        text = succeeded(equipoise("balance", tmp_path / "engine.toml"))
+        assert ("the rod bends at 1.90 times the crank's speed" in text) == warned

@@ -16,7 +16,7 @@ from functools import cached_property
 
 import numpy as np
 
-from equipoise.balancing.balanced import Balanced, MoreRoom, Price
+from equipoise.balancing.balanced import Balanced, MoreRoom, Price, bending_notes
 from equipoise.balancing.beyond_masses import Beyond, beyond_masses
 from equipoise.balancing.headlines import (
     Advice,
@@ -314,8 +314,9 @@ class _Adviser:
         }
         method = Note("comparison of shapes")
         return Balanced(
-            machine, self.machine, plan, changes, objectives, cost, cost, method, prices, 0
-        )
+            machine, self.machine, plan, changes, objectives, cost, cost, method, prices, 0,
+            notes=tuple(bending_notes(self.machine)),
+        )  # fmt: skip
 
     def proved(self, found: Balanced) -> Balanced:
         """With the bound of every sector in its room, round or not."""

@@ -44,6 +44,7 @@ from equipoise.results.declaring import (
 )
 from equipoise.results.outputs import AnalysisOutputs
 from equipoise.results.result import Result
+from equipoise.results.slender_links import slender_links
 from equipoise.signals import Array
 from equipoise.vibration.response import GaugeSignals, of_support
 
@@ -174,6 +175,13 @@ class Balanced(Result):
     def whole(self) -> float:
         """Cost of the original."""
         return self.plan.combined([1.0] * len(self.plan.objectives))
+
+    @property
+    def bending(self) -> tuple[Note, ...]:
+        """Links that bend so much that balancing by rigid links misleads, also where no change is
+        offered.
+        """
+        return tuple(bending_notes(self.original))
 
     @property
     def added_mass(self) -> float:
@@ -444,7 +452,7 @@ def result_of(machine: Machine, plan: Balance, found: Solution) -> Balanced:
         method=found.method,
         prices=_prices(found),
         looked_at=best.nodes,
-        notes=tuple(_notes(found)),
+        notes=(*bending_notes(machine), *_notes(found)),
         scope=tuple(proved_of(found)),
     )
 
@@ -515,6 +523,15 @@ def _over_pins(found: Solution) -> Iterator[Note]:
                     moment=told(moment, "unbalance", digits=3),
                     at=change.values["at"],
                 )
+
+
+def bending_notes(original: Machine) -> Iterator[Note]:
+    """Links that bend so much that balancing by rigid links misleads.
+
+    Of the machine without what is added: a counterweight beyond a pin bends a link more, but would
+    count as less of the rod that lies along its line.
+    """
+    return slender_links(original.links, original.drive.speed)
 
 
 def _notes(found: Solution) -> Iterator[Note]:

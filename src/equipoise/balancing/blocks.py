@@ -90,6 +90,7 @@ def balanced_headline(found: Balanced, alone: bool = False) -> Iterator[Block]:
             yield from (Text(line, is_detail=True) for line in sentences_beyond_masses(found))
             yield Text(driven(found.original, found.original.drive.speed))
             yield _large(found)
+            yield from _bending(found)
             yield look_at_next("balance --objective OUTPUT", "balance --full")
         return
     first = [*first_sentences(found)]
@@ -117,6 +118,12 @@ def balanced_headline(found: Balanced, alone: bool = False) -> Iterator[Block]:
     if found.notes:
         yield Notes(found.notes[:MOST_NOTES])
     yield look_at_next("balance --out FILE", "balance --full")
+
+
+def _bending(found: Balanced) -> Iterator[Block]:
+    """Of a result whose other notes tell of what is not offered."""
+    if notes := found.bending:
+        yield Notes(notes)
 
 
 def _large(found: Balanced) -> Facts:
@@ -153,6 +160,7 @@ def outcome_blocks(found: Balanced) -> Iterator[Block]:
     if found.advice is not None:
         yield from advice_blocks(found)
     if found.advice is not None and not found.helps:
+        yield from _bending(found)
         return
     if found.plan.objectives:
         yield objectives_table(found)

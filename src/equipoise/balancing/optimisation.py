@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
-from equipoise.balancing.balanced import Balanced, result_of
+from equipoise.balancing.balanced import Balanced, bending_notes, result_of
 from equipoise.balancing.gear_search import GearSearch, WithShafts
 from equipoise.balancing.geared import with_shafts
 from equipoise.balancing.phase_search import PhaseSearch
@@ -157,7 +157,7 @@ def in_phases(
         method=method,
         prices={},
         looked_at=phasing.looked_at,
-        notes=phasing.notes,
+        notes=(*bending_notes(machine), *phasing.notes),
         phasing=phasing,
         scope=scope,
     )

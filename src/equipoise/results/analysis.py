@@ -238,8 +238,7 @@ class Analysis(Result):
     def notes(self) -> tuple[Note | str, ...]:
         """What to look at again, as `check` asks it: what may not be meant, and where it fails."""
         lost = () if self.solved is None else lost_contacts(self.solved)
-        sectioned = any(link.section is not None for link in self.machine.links.values())
-        bending = slender_links(self.sections, self.motion.speed) if sectioned else ()
+        bending = slender_links(self.machine.links, self.motion.speed)
         parts = (*remarks(self.motion.linkage), *lost, *bending)
         asked = (*parts, *idle_parts(self.machine.support))
         return tuple(dict.fromkeys(asked))

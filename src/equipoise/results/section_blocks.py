@@ -49,7 +49,10 @@ def section_blocks(analysis: Analysis) -> Iterator[Block]:
     rows = ([row[k] for k in shown] for row in strength)
     yield Table.of(title, [columns[k] for k in shown], rows)
     yield from _elastic_blocks(analysis)
-    if notes := (*_notes(analysis), *slender_links(analysis.sections, analysis.motion.speed)):
+    if notes := (
+        *_notes(analysis),
+        *slender_links(analysis.motion.machine.links, analysis.motion.speed),
+    ):
         yield Notes(notes)
 
 

@@ -6,20 +6,21 @@ from collections.abc import Iterator, Mapping
 from math import inf, pi
 
 from equipoise.i18n import Note, to_say
-from equipoise.mechanism.dynamics.elastic import ADDED, added_share
-from equipoise.mechanism.dynamics.link_stress import LinkStress
+from equipoise.mechanism.dynamics.elastic import ADDED, added_share, bending_frequency
+from equipoise.mechanism.parts.links import Link
 from equipoise.quantities import number, percent
 
 
-def slender_links(sections: Mapping[str, LinkStress], speed: float) -> Iterator[Note]:
+def slender_links(links: Mapping[str, Link], speed: float) -> Iterator[Note]:
     """Links, by name, of which this is so at a speed of the crank, rad/s."""
-    for name, section in sections.items():
-        if section.natural_frequency is None or not speed:
+    for name, link in links.items():
+        frequency = bending_frequency(link)
+        if frequency is None or not speed:
             continue
-        share = added_share(section.natural_frequency, speed)
+        share = added_share(frequency, speed)
         if share <= ADDED:
             continue
-        ratio = number(2 * pi * section.natural_frequency / abs(speed), digits=3)
+        ratio = number(2 * pi * frequency / abs(speed), digits=3)
         if share == inf:
             yield Note(
                 to_say(

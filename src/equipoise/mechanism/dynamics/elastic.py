@@ -14,8 +14,9 @@ import numpy as np
 
 from equipoise.dataclass import dataclass
 from equipoise.mechanism.assembly.steps import Array, planar
-from equipoise.mechanism.dynamics.section_loads import Cut, SectionLoads
+from equipoise.mechanism.dynamics.section_loads import Cut, MassAlongLine, SectionLoads
 from equipoise.mechanism.parts.links import Link
+from equipoise.mechanism.parts.sections import LinkSection
 
 PARTS = 160
 """Parts of a line over which moments are summed by the trapezoidal rule: to 1e-4."""
@@ -58,6 +59,25 @@ def natural_frequency(modulus: float, second_moment: float, mass: float, length:
     return float(pi / 2 * (modulus * second_moment / (mass * length**3)) ** 0.5)
 
 
+def _frequency(section: LinkSection, rod: float, length: float) -> float | None:
+    """First natural frequency, Hz, of a section along which a mass (kg) is spread; None without a
+    modulus, or where no mass is left to bend.
+    """
+    if section.elastic_modulus is None or rod <= 0:
+        return None
+    return natural_frequency(section.elastic_modulus, section.second_moment, rod, length)
+
+
+def bending_frequency(link: Link) -> float | None:
+    """First natural frequency, Hz, of a link on pins at both ends of its line; None without a
+    section, a modulus or a mass along it.
+    """
+    if link.section is None or link.center_of_mass is None:
+        return None
+    first, second = (planar(link.points[name]) for name in link.section.ends(link.points))
+    return _frequency(link.section, MassAlongLine.of_link(link).rod, abs(second - first))
+
+
 def elastic_link(loads: SectionLoads) -> ElasticLink | None:
     """A link as a beam under its loads; None without a modulus."""
     section, length = loads.section, loads.length
@@ -73,9 +93,7 @@ def elastic_link(loads: SectionLoads) -> ElasticLink | None:
     deflection = _summed(slope, length)
     chord = deflection[-1] / length
     stretch = _summed(np.array([item.axial for item in every]), length) / (modulus * section.area)
-    rod, frequency = loads.mass.rod, None
-    if rod > 0:
-        frequency = natural_frequency(modulus, section.second_moment, rod, length)
+    frequency = _frequency(section, loads.mass.rod, length)
     return ElasticLink(
         frequency, places, deflection - chord * places[:, None], slope - chord, stretch
     )

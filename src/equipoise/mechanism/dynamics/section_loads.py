@@ -25,6 +25,7 @@ from equipoise.mechanism.formulas.kernels import cross
 from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.kinematics.pushing import pushes
 from equipoise.mechanism.kinematics.rubbing import rubbing_joints
+from equipoise.mechanism.parts.links import Link
 from equipoise.mechanism.parts.sections import LinkSection
 
 CUTS = 41
@@ -57,6 +58,15 @@ class MassAlongLine:
         rod = 6 * (moment * length - inertia - mass * center.real**2) / length**2
         last = (moment - rod * length / 2) / length
         return cls(rod, mass - rod - last, last, center.imag)
+
+    @classmethod
+    def of_link(cls, link: Link) -> MassAlongLine:
+        """Along the line of a link with a section and a centre of mass."""
+        assert link.section is not None and link.center_of_mass is not None
+        first, second = (planar(link.points[name]) for name in link.section.ends(link.points))
+        length, along = abs(second - first), (second - first) / abs(second - first)
+        center = (planar(link.center_of_mass) - first) / along
+        return cls.of(link.mass or 0.0, center, link.inertia or 0.0, length)
 
 
 @dataclass(frozen=True, eq=False)
@@ -206,14 +216,13 @@ def section_loads(motion: Motion, solved: Pass, link: str) -> SectionLoads:
     solved : forces in all joints, by which the link moves as it does.
     """
     body = motion.machine.links[link]
-    assert body.section is not None and body.center_of_mass is not None
+    assert body.section is not None
     first, second = (planar(body.points[name]) for name in body.section.ends(body.points))
     length, along = abs(second - first), (second - first) / abs(second - first)
     turn = full(motion, motion.state[f"u({link})"], complex) * along
     begin = motion.state[f"p({motion.linkage.anchors[link]})"]
     begin = begin + turn / along * (first - planar(body.points[motion.linkage.anchors[link]]))
-    center = (planar(body.center_of_mass) - first) / along
-    mass = MassAlongLine.of(body.mass or 0.0, center, body.inertia or 0.0, length)
+    mass = MassAlongLine.of_link(body)
     still, growing = _field(motion, link, turn, begin, mass.aside)
     at: list[Array] = []
     ends: list[tuple[Array, Array, Array]] = []
