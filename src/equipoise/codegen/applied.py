@@ -79,6 +79,10 @@ class TracedBodies:
         """Rotation of a body."""
         return self.trace.state[u(body)[0]]
 
+    def turned(self, body: str, angle: Any) -> Any:
+        """Unit vector at an angle from the x axis of a body."""
+        return self.turn(body) * rotation(angle)
+
     def rate(self, body: str) -> Any:
         """Angular velocity of a body, rad/s."""
         return self.trace.state[u(body)[1]] * self.trace.rate("speed")

@@ -123,6 +123,11 @@ MEANINGS = {
     "largest stress along {name}": to_say(
         "Largest normal stress along a link, of bending and axial force."
     ),
+    "force of stop {name}": to_say("Force with which a stop pushes a point back."),
+    "gap of stop {name}": to_say(
+        "Distance of a point from the line of its stop; below 0 it presses the stop in."
+    ),
+    "loss of stop {name}": to_say("Power that a stop turns into heat while it is pressed."),
     "loss of damper {name}": to_say("Power that a damper turns into heat."),
     "loss of torsion damper {name}": to_say("Power that a torsion damper turns into heat."),
     "pull of damper {name}": to_say(

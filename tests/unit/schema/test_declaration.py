@@ -49,6 +49,7 @@ from equipoise.mechanism.parts.run_plans import RunPlan
 from equipoise.mechanism.parts.sections import LinkSection
 from equipoise.mechanism.parts.servo_motors import ServoMotor
 from equipoise.mechanism.parts.springs import Spring
+from equipoise.mechanism.parts.stops import Stop
 from equipoise.mechanism.parts.torsion_dampers import TorsionDamper
 from equipoise.mechanism.parts.torsion_springs import TorsionSpring
 from equipoise.schema import finding, models, schemas
@@ -77,7 +78,8 @@ DOCUMENTED: dict[str, type[Frozen]] = {
         joint_properties.JointProperties, RollingBearing,
         gear_shapes.GearShape, Belt, Rack, cams.Cam,
         CircularSlot, CurvedSlot,
-        force_elements.Load, Spring, TorsionSpring, Damper, TorsionDamper, Position, field.Planting,
+        force_elements.Load, Spring, TorsionSpring, Damper, TorsionDamper, Stop, Position,
+        field.Planting,
         field.PlantingArm,
         field.Soil, support.Support,
         mounts.Mount, support.Row, DutyState, RunPlan, balance.Balance, weights.CenterMove,

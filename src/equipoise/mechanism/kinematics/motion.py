@@ -371,6 +371,10 @@ class PlacedBodies:
         """Rotation of a body, complex of size 1."""
         return np.asarray(self.motion.state[u(body)[0]])
 
+    def turned(self, body: str, angle: float) -> Array:
+        """Unit vector at an angle, rad, from the x axis of a body, complex."""
+        return self.turn(body) * np.exp(1j * angle)
+
     def rate(self, body: str) -> Array:
         """Angular velocity of a body, rad/s."""
         return np.asarray(self.motion.state[u(body)[1]] * self.motion.speed)

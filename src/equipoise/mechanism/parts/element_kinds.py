@@ -38,6 +38,9 @@ class Placed(Protocol):
     def turn(self, body: str) -> Any:
         """Rotation of a body, complex of size 1."""
 
+    def turned(self, body: str, angle: Any) -> Any:
+        """Unit vector at an angle, rad, from the x axis of a body, complex."""
+
     def rate(self, body: str) -> Any:
         """Angular velocity of a body, rad/s."""
 

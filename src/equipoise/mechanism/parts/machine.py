@@ -82,6 +82,7 @@ from equipoise.mechanism.parts.run_plans import RunPlan
 from equipoise.mechanism.parts.shown_units import ShownUnits
 from equipoise.mechanism.parts.sliders import Bearing, Slider
 from equipoise.mechanism.parts.springs import Spring
+from equipoise.mechanism.parts.stops import Stop
 from equipoise.mechanism.parts.support import Row, Support
 from equipoise.mechanism.parts.torsion_dampers import TorsionDamper
 from equipoise.mechanism.parts.torsion_springs import TorsionSpring
@@ -127,7 +128,7 @@ class Machine(Driven, Displayed, Frozen):
     file_order = ("schema", "title", "description", "units", "parameters", "gravity", "drive",
                   "drives", "frame", "links", "constraints", "bearings", "assembly", "sliders",
                   "circular_slots", "curved_slots", "gears", "belts", "racks", "cams", "loads",
-                  "springs", "torsion_springs", "dampers", "torsion_dampers",
+                  "springs", "torsion_springs", "dampers", "torsion_dampers", "stops",
                   "joints", "position", "planting", "support", "rows",
                   "duty", "run", "balance")  # fmt: skip
 
@@ -197,6 +198,9 @@ class Machine(Driven, Displayed, Frozen):
 
     dampers: tuple[Damper, ...] = key(
         Tables(KeyTable(Damper)), "dampers between links, or links and frame", default=()
+    )
+    stops: tuple[Stop, ...] = key(
+        Tables(KeyTable(Stop)), "one-sided stops with stiffness and restitution", default=()
     )
     torsion_dampers: tuple[TorsionDamper, ...] = key(
         Tables(KeyTable(TorsionDamper)), "dampers of links that turn against each other", default=()

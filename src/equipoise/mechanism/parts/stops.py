@@ -1,0 +1,209 @@
+"""One-sided stops, of a point at a line of another body, as frozen values with their checks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from math import log
+from typing import Any, ClassVar
+
+from equipoise.errors import ModelError
+from equipoise.i18n import Note, to_say
+from equipoise.keys import Number, TextKind, declared, key
+from equipoise.mechanism.checks import FRAME, Bodies, unknown, unknown_body, unknown_link
+from equipoise.mechanism.formulas.kernels import cross, dot, positive
+from equipoise.mechanism.parts.element_kinds import Placed
+from equipoise.mechanism.parts.force_kinds import Action, RatedElement
+from equipoise.quantities import Dimension, told
+
+LEAST_RESTITUTION = 0.01
+"""Below which the loss per speed grows beyond all bounds."""
+HALVINGS = 80
+"""Of an interval, after which it is as narrow as numbers are."""
+
+
+def loss_factor(restitution: float) -> float:
+    """Share a of the elastic force that is added at the speed of approach.
+
+    A body that meets a force k d (1 + a d'/v) with the speed v leaves it with e v, whatever its
+    mass and k, where (1 + e) a = ln((1 + a) / (1 - e a)).
+    """
+    e = restitution
+    low, high = 0.0, 1.0 / e
+    for _ in range(HALVINGS):
+        a = (low + high) / 2
+        beyond = 1.0 - e * a <= 0.0 or log((1.0 + a) / (1.0 - e * a)) > (1.0 + e) * a
+        low, high = (low, a) if beyond else (a, high)
+    return (low + high) / 2
+
+
+@declared
+class Stop(RatedElement):
+    """A stop without mass: it pushes `point` of `link` back where that is beyond a line through
+    `to` of `on`.
+    """
+
+    called = to_say("{what} of stop {number}")
+    file_order = ("link", "point", "to", "on", "direction", "stiffness", "restitution", "speed")
+    still = ("restitution",)
+
+    special = to_say("stop")
+    legend = ("stop", to_say("stop"))
+    sign = "equipoise.symbols.stops:stop_sign"
+    title = to_say("Stops, each with its crank angle; a gap below 0 is pressed in")
+    group = to_say("stops")
+    outputs: ClassVar[Mapping[str, tuple[Dimension, str]]] = {
+        "force": ("force", to_say("force of stop {name}")),
+        "gap": ("length", to_say("gap of stop {name}")),
+        "loss": ("power", to_say("loss of stop {name}")),
+    }
+    headings: ClassVar[Mapping[str, tuple[str, str]]] = {
+        "gap": (to_say("smallest gap"), to_say("largest")),
+        "force": (to_say("smallest force"), to_say("largest")),
+    }
+
+    link: str = key(TextKind(of="link"), "the link that it stops", example="rocker")
+    point: str = key(TextKind(of="point", on="link"), "its point that meets the stop", example="C")
+    to: str = key(
+        TextKind(of="point", on="on"),
+        "point of the frame, or of `on`, through which the line of the stop goes",
+        example="S",
+        word=to_say("other point"),
+    )
+    stiffness: float = key("stiffness", "more than 0", example="200 kN/m", above=0)
+    direction: float = key(
+        "angle",
+        "from the x axis of `on`, in which the stop pushes; the line is across it",
+        default=0.0,
+    )
+    restitution: float | None = key(
+        Number(),
+        "speed after a contact over speed before it, at `speed`; it loses nothing if left out",
+        default=None,
+        example=0.6,
+        at_least=LEAST_RESTITUTION,
+        below=1,
+    )
+    speed: float | None = key(
+        "speed",
+        "of approach, at which `restitution` holds",
+        default=None,
+        example="0.5 m/s",
+        above=0,
+    )
+    on: str = key(
+        TextKind(of="body"), "the body of the stop", default=FRAME, word=to_say("other body")
+    )
+
+    @property
+    def axed(self) -> tuple[str, ...]:
+        return (self.on,)
+
+    @property
+    def bodies(self) -> tuple[str, str]:
+        """The link and the body of the stop."""
+        return self.link, self.on
+
+    @property
+    def points(self) -> tuple[tuple[str, str], ...]:
+        """Both bodies, each with its point."""
+        return (self.link, self.point), (self.on, self.to)
+
+    @property
+    def label(self) -> Note:
+        """Its two points, by which it is told from others."""
+        return Note("{point} to {other}", point=self.point, other=self.to)
+
+    @property
+    def route(self) -> tuple[str, str]:
+        """Its two points."""
+        return self.point, self.to
+
+    @property
+    def linear(self) -> bool:
+        return False
+
+    def _contact(self, at: Placed) -> tuple[Any, Any, Any, Any]:
+        """Way from the line's point, m, unit vector in which it pushes, gap, m, and speed with
+        which that grows, m/s.
+        """
+        arm = at.point(self.link, self.point) - at.point(self.on, self.to)
+        moving = at.velocity(self.link, self.point) - at.velocity(self.on, self.to)
+        normal = at.turned(self.on, self.direction)
+        opening = dot(normal, moving) + cross(normal, arm) * at.rate(self.on)
+        return arm, normal, dot(normal, arm), opening
+
+    def force(self, gap: Any, opening: Any) -> Any:
+        """Force, N, at a gap, m, that grows with a speed, m/s: it only ever pushes."""
+        elastic = self.stiffness * positive(-gap)
+        if self.speed is None or self.restitution is None:
+            return elastic
+        return elastic * positive(1.0 - loss_factor(self.restitution) * opening / self.speed)
+
+    def ways(self, at: Placed) -> tuple[tuple[Any, Any], ...]:
+        """Its gap, m, and the speed with which that grows, m/s."""
+        _, _, gap, opening = self._contact(at)
+        return ((gap, opening),)
+
+    def efforts(self, ways: Sequence[tuple[Any, Any]]) -> tuple[Any, ...]:
+        """The force, which widens the gap."""
+        ((gap, opening),) = ways
+        return (self.force(gap, opening),)
+
+    def actions(self, at: Placed) -> Iterator[Action]:
+        """Force on the point of the link, N, and its opposite there on the other body."""
+        arm, normal, gap, opening = self._contact(at)
+        force = normal * self.force(gap, opening)
+        yield self.link, self.point, force, 0.0
+        yield self.on, self.to, -force, -cross(arm, force)
+
+    def values(self, at: Placed) -> Mapping[str, Any]:
+        """Its force, N, its gap, m, and the power that it turns into heat, W."""
+        _, _, gap, opening = self._contact(at)
+        force = self.force(gap, opening)
+        loss = (self.stiffness * positive(-gap) - force) * opening
+        return {"force": force, "gap": gap, "loss": loss}
+
+    def problems(self, where: str, bodies: Bodies) -> Iterator[ModelError]:
+        """Everything that is wrong with it in a machine of these bodies."""
+        wrong = [
+            *unknown_link(f"{where}.link", self.link, bodies),
+            *unknown_body(f"{where}.on", self.on, bodies),
+        ]
+        yield from wrong
+        if wrong:
+            return
+        if self.link == self.on:
+            yield ModelError(f"{where}.on", Note("{link!r} cannot stop itself", link=self.link))
+        if self.point not in bodies[self.link]:
+            of = Note("point of {body}", body=self.link)
+            yield ModelError(f"{where}.point", unknown(self.point, bodies[self.link], of))
+        if self.to not in bodies[self.on]:
+            of = "point of the frame" if self.on == FRAME else Note("point of {body}", body=self.on)
+            yield ModelError(f"{where}.to", unknown(self.to, bodies[self.on], of))
+        if (self.speed is None) != (self.restitution is None):
+            sentence = Note("give restitution and speed together, or none of them")
+            yield ModelError(where, sentence)
+
+    def demands(self) -> Iterator[Any]:
+        """What has to be true of its numbers, or of columns of them."""
+        yield self.stiffness > 0
+        if self.speed is not None:
+            yield self.speed > 0
+
+    def sentence(self) -> Note:
+        """Its stiffness and its ends, for a report."""
+        return Note(
+            "Stop: {stiffness}, {point} of {link} on {to}",
+            stiffness=told(self.stiffness, "stiffness", "N/m"),
+            point=self.point,
+            link=self.link,
+            to=self.to,
+        )
+
+    def summary(self) -> str:
+        """All its numbers, in a line of `check`."""
+        held = f"stop: {self.point} of {self.link} on {self.to}"
+        rate = told(self.stiffness, "stiffness", "N/m")
+        if self.speed is None:
+            return f"{held}, {rate}"
+        return f"{held}, {rate}, restitution {self.restitution:g} at {told(self.speed, 'speed')}"
