@@ -105,9 +105,10 @@ lint: $(VENV)/.installed-test
 	$(BIN)/lint-imports
 	$(BIN)/python page/bundle.py --types
 
-# What is handed on, in build/release, tried in empty environments.
+# What is handed on, in build/release, tried in an empty environment, of the newest Python here; with
+# OLDEST=--oldest of the oldest too.
 release: bundle
-	.ci/release
+	.ci/release $(OLDEST)
 
 bench: $(VENV)/.installed-test
 	$(BIN)/python -m pip install --quiet --editable ".[bench]"
