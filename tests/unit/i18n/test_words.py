@@ -127,6 +127,16 @@ def test_a_translation_has_the_values_of_its_text(language):
     assert {text for text in held if placeholders(text) != placeholders(held[text])} == set()
 
 
+def test_what_joins_two_parts_keeps_its_spaces_in_german():
+    """As " and " does; Japanese and Korean have none."""
+    held = catalogue("de")
+    edges = [text for text in held if text != text.strip()]
+    assert " and " in edges
+    for text in edges:
+        assert held[text].startswith(" ") == text.startswith(" "), text
+        assert held[text].endswith(" ") == text.endswith(" "), text
+
+
 def test_numbers_of_equations_stand_behind_words():
     """Nobody has the paper at hand: what it says is told, and where it says so in brackets."""
     numbered = {text for text in said() if re.search(r"(?<![Ai])\([1-9][0-9]?\)", text)}
