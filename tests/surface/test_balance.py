@@ -513,3 +513,11 @@ def test_a_file_names_outputs_of_several_rows_as_results_do() -> None:
 def test_an_output_of_a_link_of_two_words_is_an_objective() -> None:
     aim = read_objective("--objective", "peak drives.left crank.torque orders 1")
     assert (aim.output, aim.measure, aim.orders) == ("drives.left crank.torque", "peak", (1.0,))
+
+
+@pytest.mark.parametrize("name", ["quick-return", "plunger-pump"])
+def test_where_masses_stay_the_flywheel_that_helps_stands_on_the_first_page(name: str) -> None:
+    """A torque that swings is what is large there, and only `--full` said what steadies it."""
+    output = succeeded(equipoise("balance", name)).out
+    assert "Flywheel on a shaft" in output and "keeps its speed within 20 %" in output
+    assert len(output.splitlines()) <= 15

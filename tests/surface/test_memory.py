@@ -76,6 +76,45 @@ def test_a_search_gives_back_the_memory_of_its_designs() -> None:
     assert peak < 600
 
 
+TOLERANCES = (
+    STUDY.partition("[[vary]]")[0]
+    + """
+[[vary]]
+path = "links.crank.mass"
+normal = { deviation = "5 g" }
+
+[sampling]
+method = "sobol"
+designs = 512
+
+[accuracy]
+angles = 180
+
+[[outputs]]
+name = "first order"
+value = "by_order.shaking_force.x.harmonics[2]"
+"""
+)
+
+
+def test_tolerances_give_back_the_memory_of_their_machines() -> None:
+    """512 of them held 5.3 GB."""
+    Path("study.toml").write_text(TOLERANCES, encoding="utf-8")
+    result, peak = peak_of(
+        "tolerance", "study.toml", "--designs", "512", "--workers", "1", "--json"
+    )
+    assert result.status == 0, result.err
+    assert peak < 450
+
+
+def test_a_long_sweep_gives_back_the_memory_of_its_speeds() -> None:
+    """It held 11.6 GB."""
+    words = ("yamashita-rig", "--speed", "20 rpm : 400 rpm", "--speeds", "300", "--model", "exact")
+    result, peak = peak_of("respond", *words)
+    assert result.status == 0, result.err
+    assert peak < 250
+
+
 LONG = """
 [links.wheel]
 points.E = ["0 mm", "0 mm"]

@@ -17,6 +17,7 @@ from equipoise.balancing.outcome import (
     large_figures,
     mounts_beside_change,
     sentences_beyond_masses,
+    steadying_sentence,
     why_nothing,
 )
 from equipoise.balancing.told import (
@@ -87,8 +88,10 @@ def balanced_headline(found: Balanced, alone: bool = False) -> Iterator[Block]:
     if found.advice is not None and not found.helps:
         if alone:
             yield from map(Text, why_nothing(found))
-            yield from (Text(line, is_detail=True) for line in sentences_beyond_masses(found))
-            yield Text(driven(found.original, found.original.drive.speed))
+            cure = steadying_sentence(found)
+            lines = sentences_beyond_masses(found)
+            yield from (Text(line, is_detail=line != cure) for line in lines)
+            yield Text(driven(found.original, found.original.drive.speed), is_detail=True)
             yield _large(found)
             yield from _bending(found)
             yield look_at_next("balance --objective OUTPUT", "balance --full")

@@ -10,6 +10,7 @@ from itertools import groupby
 from typing import TYPE_CHECKING
 
 from equipoise.balancing.beyond_masses import first_answers, sentences_beyond
+from equipoise.balancing.flywheels import flywheel_sentences
 from equipoise.balancing.headlines import Advice
 from equipoise.balancing.objectives import unit_of
 from equipoise.balancing.policy import (
@@ -203,6 +204,17 @@ def sentences_beyond_masses(found: Balanced) -> Iterator[str]:
     """
     yield from mounts_beside_change(found)
     yield from beside_mounts(found)
+
+
+def steadying_sentence(found: Balanced) -> str:
+    """The flywheel that a machine needs whose torque swings, where masses are best left; or "".
+
+    It is what to build there, so that it stands on the first page.
+    """
+    if found.advice is None or (flywheels := found.advice.beyond.flywheels) is None:
+        return ""
+    machine = found.original
+    return next(flywheel_sentences(flywheels, machine.drive.link, machine.mass))
 
 
 def mounts_beside_change(found: Balanced) -> Iterator[str]:
