@@ -103,6 +103,7 @@ lint: $(VENV)/.installed-test
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+	$(BIN)/python page/messages.py --check
 	$(BIN)/python page/bundle.py --types
 
 # What is handed on, in build/release, tried in an empty environment, of the newest Python here; with

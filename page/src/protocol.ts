@@ -1,6 +1,18 @@
 /** What the page and the server say to each other. Lengths in m, angles in rad, all else in SI. */
 
+import type {
+  ChartData,
+  Example,
+  Field,
+  Figure,
+  Scene,
+  Sign,
+  StateMessage,
+  Unit,
+} from "./messages";
 import type { Particles } from "./particles";
+
+export type * from "./messages";
 
 export type Pair = [number, number];
 
@@ -17,18 +29,6 @@ export type FileKind = "model" | "csv" | "report" | "drawing" | "film" | "played
 export interface Made {
   do: string;
   [key: string]: unknown;
-}
-
-/** What is told of the making of a machine. */
-export interface Status {
-  /** Number of free motions; the drive commands one. */
-  mobility: number;
-  /** What moves, or what is missing. */
-  text: string;
-  finished: boolean;
-  drive: string | null;
-  /** Crank angle at which it was drawn, degrees. */
-  stand?: number | null;
 }
 
 export type Asked =
@@ -59,11 +59,6 @@ export type Asked =
   /** Of the store that is open, or of another one of the server's folder. */
   | { type: "study"; store?: string }
   | { type: "design"; number: number; store: string };
-
-export interface Example {
-  name: string;
-  title: string;
-}
 
 export interface Hello {
   type: "hello";
@@ -118,18 +113,6 @@ export interface Spoken {
 /** Category of a count, such as `one` -> the text; `by` is the placeholder of the count. */
 export type Forms = Record<string, string>;
 
-/** What is said of a machine instead of what is said of others: by English text, and by chart. */
-export interface Wording {
-  words: Record<string, string>;
-  explained: Record<string, string>;
-}
-
-/** In which something is read, and how many of it one SI unit is. */
-export interface Unit {
-  unit: string;
-  factor: number;
-}
-
 /** How numbers are written everywhere in the product. */
 export interface NumberRules {
   /** Sizes between which there is no power of ten. */
@@ -141,208 +124,11 @@ export interface NumberRules {
   lengths: Record<string, number>;
 }
 
-export interface Field extends Unit {
-  path: string;
-  group: string;
-  /** What the group is called. */
-  heading: string;
-  label: string;
-  value: number;
-  /** With all digits that are kept, as it is typed. */
-  text: string;
-  /** As it is read where it is not typed. */
-  shown: string;
-  min?: number | null;
-  max?: number | null;
-  step?: number | null;
-  /** The point that a length or direction moves. */
-  moves?: string;
-  /** Ends of a length between points. */
-  between?: [string, string];
-}
+/** A line through corners, or a circle about its only corner. */
+export type Shape = Sign["shapes"][number];
 
-export interface Body {
-  name: string;
-  points: string[];
-}
-
-/** A line through corners, or a circle about the only one. */
-export type Shape = [
-  role: string,
-  closed: boolean,
-  /** Radius of a circle: m and pixels, one of them not 0. */
-  radius: number,
-  grown: number,
-  /** x, y (m) and offsets from there (pixels) of each corner; y upward. */
-  corners: number[],
-];
-
-/** A part of the drawing, in axes of its own; without a hold it stands still. */
-export interface Sign {
-  layer: string;
-  /** The link that it is, if any. */
-  link: string;
-  /** Its origin, and what its x axis is: that of a link, the way of a guide, or towards a point. */
-  hold: {
-    point?: string;
-    link?: string;
-    guide?: string;
-    to?: string;
-    length?: number;
-    /** Whether it keeps that length between two points. */
-    rigid?: boolean;
-    /** Of a mount: its place on the support at rest, m, and from there to its ground, pixels. */
-    mount?: string;
-    at?: Pair;
-    ground?: Pair;
-  } | null;
-  /** The slider or the coupling that it tells, if any. */
-  part: [what: "slider" | "gears" | "belts" | "racks" | "cams", name: string] | null;
-  /** Whether it stands on the ground, and not on the support. */
-  still: boolean;
-  shapes: Shape[];
-}
-
-/** A base circle that can be changed by hand, across from the point of its follower. */
-export interface BaseCircle {
-  name: string;
-  path: string;
-  /** m. */
-  radius: number;
-  axis: string;
-  point: string;
-}
-
-export interface Scene {
-  frame: string[];
-  /** Points of the frame that hold something. */
-  standing: string[];
-  bodies: Body[];
-  mass_centers: string[];
-  box: [number, number, number, number];
-  movable: string[];
-  cams: BaseCircle[];
-  /** From the back to the front. */
-  signs: Sign[];
-  /** What a support turns about, m. */
-  reference: Pair | null;
-  /** Role of a shape -> its style. */
-  looks: Record<string, string>;
-}
-
-/** What can be drawn over the crank angle, once its numbers have been asked for. */
-export interface Output extends Unit {
-  name: string;
-  label: string;
-  /** Heading under which it is offered. */
-  group: string;
-  /** An angle, which may turn fully. */
-  winds: boolean;
-}
-
-export interface Figure {
-  name: string;
-  /** What the figure is of, and which figure it is. */
-  signal: string;
-  measure: "rms" | "peak";
-  label: string;
-  unit: string;
-  /** Null where it is not finite. */
-  value: number | null;
-  before?: number | null;
-  text: string;
-  /** What it was and by how much it has changed; empty where it is the same. */
-  was?: string;
-}
-
-export type Arrays = Record<string, [offset: number, length: number]>;
-
-export interface StateMessage {
-  type: "state";
-  seq: number;
-  name: string;
-  title: string;
-  description: string;
-  undo: string | null;
-  redo: string | null;
-  /** How many steps can be undone and redone. */
-  steps: Pair;
-  /** The file that can be saved, and whether it holds what is shown. */
-  file: { name: string; saved: boolean; comments: boolean } | null;
-  angles: number;
-  turns: number;
-  speed: number;
-  /** Unit of the drawing's lengths. */
-  length: Unit;
-  /** Why there are no forces, and nothing to balance; empty where there are. */
-  lacking: string;
-  /** Whether gauges of a support read something. */
-  shaken?: boolean;
-  fields: Field[];
-  wording: Wording;
-  scene: Scene;
-  arrays: Arrays;
-  figures: Figure[];
-  outputs: Output[];
-  charts: ChartData[];
-  /** Charts that tell what the machine is for; points, those first whose paths do. */
-  first: "squares" | "output" | "answers";
-  traced: string[];
-  /** Size below which a force or moment is drawn as none, N and N m. */
-  least: number;
-  orders: number[];
-  notes: string[];
-  /** Why a point is not where it was dragged to. */
-  held?: string | null;
-  /** Whether curves of another design are drawn behind; whether figures of one are told. */
-  before: boolean;
-  status: Status;
-  compared: boolean;
-  /** Points that arrows can be at, the one at which they are, and what there is to draw there. */
-  points: string[];
-  arrows_at: string | null;
-  /** What was measured, and how it compares; its signals are `measured.` and an output. */
-  record: { name: string; told: string[]; left_out: string[] } | null;
-  arrows: ArrowOf[];
-  planting?: { tips: string[]; surface: number } | null;
-  /** Whether links lie beside each other. */
-  beside: boolean;
-}
-
-/** A vector at a point over the crank angle. */
-export interface ArrowOf extends Unit {
-  kind: "velocity" | "acceleration" | "force";
-  array: string;
-  label: string;
-}
-
-/** A curve of a chart: every `stride`th number of an array, from the `part`th on. */
-export interface CurveOf {
-  array: string;
-  stride: number;
-  part: number;
-  label: string;
-}
-
-/** What a chart can show. */
-export interface Choice extends Unit {
-  name: string;
-  label: string;
-  /** Whose forces have to be shown for it: "rows." or "" for one row; null for any. */
-  of: string | null;
-  /** Whether it is drawn over a logarithmic scale. */
-  log: boolean;
-  curves: CurveOf[];
-}
-
-export interface ChartData {
-  name: string;
-  /** Crank angle, orders, or an array, with the machine's place on it. */
-  x: "angle" | "order" | (Unit & { array: string; at: number });
-  /** What is chosen; null where it follows what is chosen elsewhere. */
-  chooser: string | null;
-  choices: Choice[];
-}
+/** Offset and length of each array. */
+export type Arrays = StateMessage["arrays"];
 
 export interface ResponseMessage {
   type: "response";
