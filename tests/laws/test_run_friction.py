@@ -40,19 +40,22 @@ def emps(motor: Motor | None = None, **given: Any) -> eq.Machine:
                       joints=(joint,))  # fmt: skip
 
 
-@pytest.mark.parametrize("speed", [0.1, 1.0])
+@pytest.mark.parametrize("speed", [0.1, 1.0, -0.1, -1.0])
 def test_a_positioning_system_comes_to_rest_as_viscous_and_dry_friction_have_it(
     speed: float,
 ) -> None:
+    """The offset helps one way and hinders the other."""
     found = eq.run(emps(), speed=speed)
     assert found.end.kind == "standstill"
-    time = MASS / VISCOUS * log(1 + VISCOUS * speed / HALT)
+    size, way = abs(speed), speed / abs(speed)
+    halt = DRY - way * OFFSET
+    time = MASS / VISCOUS * log(1 + VISCOUS * size / halt)
     assert found.end.time == pytest.approx(time, rel=1e-8)
-    wanted = (speed + HALT / VISCOUS) * np.exp(-found.time * VISCOUS / MASS) - HALT / VISCOUS
-    np.testing.assert_allclose(found.crank_speed, wanted, atol=1e-9 * speed)
+    wanted = (size + halt / VISCOUS) * np.exp(-found.time * VISCOUS / MASS) - halt / VISCOUS
+    np.testing.assert_allclose(way * found.crank_speed, wanted, atol=1e-9 * size)
     assert found.energy_error < 1e-9
-    way = MASS / VISCOUS * speed - HALT / VISCOUS * time
-    assert found.end.crank_angle == pytest.approx(way, rel=1e-8)
+    distance = MASS / VISCOUS * size - halt / VISCOUS * time
+    assert found.end.crank_angle == pytest.approx(way * distance, rel=1e-8)
 
 
 def test_a_positioning_system_is_driven_to_its_steady_speed() -> None:
