@@ -127,6 +127,7 @@ bench: $(VENV)/.installed-test
 	$(BIN)/python benchmarks/exudyn_slider_crank.py
 	$(BIN)/python benchmarks/exudyn_run.py
 	$(BIN)/python benchmarks/squeezing_mechanism.py
+	$(BIN)/python benchmarks/transplanter_start.py
 
 clean:
 	rm -rf $(VENV) build dist page/node_modules src/equipoise/web/static .pytest_cache .mypy_cache .ruff_cache .hypothesis .coverage
