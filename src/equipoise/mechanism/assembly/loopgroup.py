@@ -93,8 +93,10 @@ class LoopForces:
     def solve(self, state: State, poses: Poses, senses: Sequence[Any]) -> list[list[Array]]:
         """Strength (..., N) of every unknown of each loop."""
         matrix = self.matrix(state, poses, senses)
-        solved = np.linalg.solve(matrix, self.demand(state)[..., None])[..., 0]
-        strengths = iter(np.moveaxis(solved, -1, 0))
+        demand = self.demand(state)
+        rows = demand.reshape(-1, *demand.shape[-2:])  # (R, N, 3 n): each matrix is factored once
+        solved = np.linalg.solve(matrix, np.moveaxis(rows, 0, -1))
+        strengths = iter(solved.transpose(1, 2, 0).reshape(-1, *demand.shape[:-1]))
         return [list(islice(strengths, loop.unknowns)) for loop in self.loops]
 
     def matrix(self, state: State, poses: Poses, senses: Sequence[Any], more: int = 0) -> Array:
