@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from dataclasses import replace
 from functools import cache
@@ -174,6 +175,34 @@ def test_the_first_page_of_the_pdf_has_the_machine(name: str) -> None:
     assert first < source.index("\n= #", source.index("= #") + 1)
     drawing = document(name).drawing
     assert drawing is not None and source.count(composed._text(drawing.svg)) == 1
+
+
+@pytest.mark.parametrize("heading", ['#topic("Part")\n= Name', "= Name", "== Name"])
+def test_no_heading_stands_alone_at_the_foot_of_a_page(heading: str) -> None:
+    """Wherever on a page it comes to stand, what follows stands on the same page."""
+    style = composed._source(document("yamashita-1")).partition("#block(below: 0.9em, text(18pt")[0]
+    lines = "\n\n".join(f"line {number}" for number in range(4))
+    parts = (
+        f"#pagebreak(weak: true)\n#v({high}pt)\n{heading}\n#[#lines <after>]"
+        for high in range(600, 780, 4)
+    )
+    where = """#let page_of(found) = found.location().page()
+#context [#metadata((heading, <after>).map(what => query(what).map(page_of))) <pages>]"""
+    source = "\n".join((style, f"#let lines = block(breakable: false)[{lines}]", *parts, where))
+    asked = typst.query(source.encode(), "<pages>", field="value", one=True)
+    headings, after = json.loads(asked)
+    assert len(headings) == 45 and len({*headings}) > 1
+    assert headings == after
+
+
+def test_no_part_of_the_appendix_is_a_heading_alone() -> None:
+    """Its only picture may be the drawing that the first page has."""
+    told = document("hydraulic-loader")
+    bare = [part for part in told.appendix if not told.without_drawing(part.blocks)]
+    assert [part.name for part in bare] == ["model"]
+    appendix = composed._source(told).rpartition("\n= #")[2]
+    titles = re.findall(r"\n== #(.*)\n", appendix)
+    assert composed._text("Model") not in titles and composed._text("Motion") in titles
 
 
 @pytest.mark.parametrize("name", ["yamashita-rig", "brush-cutter"])
