@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
 
 from playwright.sync_api import Page, expect
@@ -82,22 +81,3 @@ def test_a_loader_has_cycles_and_no_crank_angles(live: Live) -> None:
         shown = page.locator(".explained:visible p").first
         expect(shown).to_contain_text("cycle" if "cycle" in called else "crank")
         why.click()
-
-
-def test_german_numbers_have_a_comma_and_fields_take_it(
-    new_page: Callable[..., Page], address: str
-) -> None:
-    """A field takes a point too; what is copied into a file keeps it."""
-    page, de = new_page(locale="de-DE"), catalogue("de")
-    Live.open(page, address)
-    expect(page.get_by_role("button", name=de["Undo"])).to_be_visible()
-    shown = page.locator("body").inner_text()
-    assert re.findall(r"(?<![\w.])\d+\.\d+(?![\w.])", shown) == []
-    assert re.search(r"\d,\d", shown)
-    fields = page.locator("input.value:visible")
-    field = fields.nth(1)
-    for typed in ("34,25", "34.25"):
-        field.focus()
-        field.fill(typed)
-        field.press("Enter")
-        expect(field).to_have_value(re.compile(r"^34,25"))
