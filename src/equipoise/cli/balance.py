@@ -66,7 +66,8 @@ def balance(
     out
         Write the balanced machine as a new model file.
     drawing
-        Write a workshop drawing of each counterweight: name of a .pdf, .dxf or .svg file.
+        Write a workshop drawing of each counterweight: name of a .pdf or .dxf file, or of an .svg
+        file, which has outlines and holes without dimensions.
     """
     from equipoise.balancing import advice, optimisation
 
