@@ -231,7 +231,8 @@ def joint_forces(machine: Machine, ride: BaseMotion, phase: float, offset: compl
     """
     motion = move(machine, ride.crank_angle + phase, acceleration=0.0)
     demands = {link: _demand(motion, link, ride, offset - ride.reference) for link in machine.links}
-    turning: Any = replace(motion, speed=ride.crank_speed)  # of each instant, for dampers
+    speeds: Any = ride.crank_speed  # one for each crank angle, which dampers need
+    turning = replace(motion, speed=speeds)
     for acting in (load_demands(motion), spring_demands(turning)):
         for link, (force, moment) in acting.items():
             demands[link] = (demands[link][0] + force, demands[link][1] + moment)
