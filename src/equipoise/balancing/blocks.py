@@ -89,8 +89,8 @@ def balanced_headline(found: Balanced, alone: bool = False) -> Iterator[Block]:
         if alone:
             yield from map(Text, why_nothing(found))
             cure = steadying_sentence(found)
-            lines = sentences_beyond_masses(found)
-            yield from (Text(line, is_detail=line != cure) for line in lines)
+            beyond = sentences_beyond_masses(found)
+            yield from (Text(line, is_detail=line != cure) for line in beyond)
             yield Text(driven(found.original, found.original.drive.speed), is_detail=True)
             yield _large(found)
             yield from _bending(found)

@@ -373,7 +373,7 @@ class PlacedBodies:
 
     def turned(self, body: str, angle: float) -> Array:
         """Unit vector at an angle, rad, from the x axis of a body, complex."""
-        return self.turn(body) * np.exp(1j * angle)
+        return np.asarray(self.turn(body) * np.exp(1j * angle))
 
     def rate(self, body: str) -> Array:
         """Angular velocity of a body, rad/s."""

@@ -178,8 +178,10 @@ class Stop(RatedElement):
             of = Note("point of {body}", body=self.link)
             yield ModelError(f"{where}.point", unknown(self.point, bodies[self.link], of))
         if self.to not in bodies[self.on]:
-            of = "point of the frame" if self.on == FRAME else Note("point of {body}", body=self.on)
-            yield ModelError(f"{where}.to", unknown(self.to, bodies[self.on], of))
+            kind: Note | str = "point of the frame"
+            if self.on != FRAME:
+                kind = Note("point of {body}", body=self.on)
+            yield ModelError(f"{where}.to", unknown(self.to, bodies[self.on], kind))
         if (self.speed is None) != (self.restitution is None):
             sentence = Note("give restitution and speed together, or none of them")
             yield ModelError(where, sentence)
