@@ -128,6 +128,8 @@ bench: $(VENV)/.installed-test
 	$(BIN)/python benchmarks/exudyn_run.py
 	$(BIN)/python benchmarks/squeezing_mechanism.py
 	$(BIN)/python benchmarks/transplanter_start.py
+	$(BIN)/python benchmarks/friction.py
+	$(BIN)/python benchmarks/pools.py
 
 clean:
 	rm -rf $(VENV) build dist page/node_modules src/equipoise/web/static .pytest_cache .mypy_cache .ruff_cache .hypothesis .coverage

@@ -264,7 +264,7 @@ def test_as_a_table(tmp_path: Path) -> None:
 
 REFUSED: list[tuple[dict[str, Any], dict[str, Any], str]] = [
     ({}, {"link": "rodd"}, "no link is called 'rodd'; did you mean 'rod'"),
-    ({}, {"link": "crank"}, "loads along crank need its section; give [links.crank.section]"),
+    ({}, {"link": "crank"}, "links.crank.section: missing; loads along a link need it"),
     ({"elastic_modulus": None}, {}, "links.rod.section.elastic_modulus: missing; finite elem"),
     ({}, {"angles": 3, "crank_angle": 0.1}, "crank_angle and angles were given; give one of them"),
 ]

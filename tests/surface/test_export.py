@@ -19,7 +19,7 @@ REFUSED = {
         "yamashita-1 -o x.xml --kept": "--kept: it goes with a store; leave it out",
         ". -o x.csv --balanced": "--balanced: a file of CSV holds the designs of a store",
         "yamashita-1 -o x.parquet": "--out: Parquet is for designs of a store; give one of mjcf,",
-        "yamashita-1 -o x.csv": "loads along crank need its section; give [links.cr",
+        "yamashita-1 -o x.csv": "yamashita-1: links.crank.section: missing; loads along a link",
         "yamashita-1 -o x.inp --link cranc": "no link is called 'cranc'; did you mean",
         "yamashita-1 -o x.xml --link crank": "--link: it goes with loads along a link, in the form",
         "yamashita-1 -o x.mat --angles 3": "--angles: it goes with loads along a link, in the",

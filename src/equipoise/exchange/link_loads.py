@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from equipoise.errors import MassError, UsageError, unknown
+from equipoise.errors import MassError, ModelError, UsageError, unknown
 from equipoise.exchange.formats import Job
 from equipoise.i18n import Note, to_say
 from equipoise.limits import check_memory
@@ -25,7 +25,8 @@ def link_of(job: Job) -> str:
 
     Raises
     ------
-    UsageError : it has no section, or several have one and none is chosen.
+    ModelError : it has no section.
+    UsageError : several have one and none is chosen.
     MassError : masses are missing.
     """
     links = job.machine.links
@@ -33,8 +34,8 @@ def link_of(job: Job) -> str:
     if job.link is not None and job.link not in links:
         raise UsageError(unknown(job.link, links, "link"))
     if not known or (job.link is not None and job.link not in known):
-        missing = to_say("loads along {link} need its section; give [links.{link}.section]")
-        raise UsageError(Note(missing, link=job.link or next(iter(links))))
+        where = f"links.{job.link or next(iter(links))}.section"
+        raise ModelError(where, Note("missing; loads along a link need it"))
     if job.link is None and len(known) > 1:
         several = to_say("several links have a section; give the link as one of {names}")
         raise UsageError(Note(several, names=", ".join(known)))
