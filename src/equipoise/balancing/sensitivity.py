@@ -16,7 +16,7 @@ import numpy as np
 from equipoise.balancing.readings import machine_size
 from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
-from equipoise.i18n import Note, say, to_say
+from equipoise.i18n import Note, number_list, say, to_say
 from equipoise.mechanism.dynamics.parameters import ACROSS, QUANTITIES, regressor
 from equipoise.mechanism.kinematics.jumps import resolved
 from equipoise.mechanism.kinematics.motion import Motion, move
@@ -280,7 +280,7 @@ def sensitivities_blocks(found: Sensitivities, zero: float = 0.0) -> Iterator[Bl
         dimension, usual, word = CHANGES[entry.change]
         unit = display(dimension, (), usual)
         shifted = np.sort(np.mod(entry.no_effect_at - zero, 2 * np.pi * found.turns))
-        places = say(", ").join(fixed(turned, at, 1) for at in shifted) or say("never")
+        places = number_list(fixed(turned, at, 1) for at in shifted) or say("never")
         size = Value(entry.rms / unit.factor)
         rows.append((entry.link, say(word), size, unit.unit, Value(entry.percent), places))
     kind = DECLARED[found.output].dimension

@@ -12,7 +12,7 @@ from equipoise.exposure.daily import DAY
 from equipoise.handheld.blocks import rpm
 from equipoise.handheld.exposed import WORKING
 from equipoise.handheld.model import PLANES
-from equipoise.i18n import say, to_say
+from equipoise.i18n import number_list, say, to_say
 from equipoise.quantities import brief
 from equipoise.results.blocks import Block, Facts, Text
 from equipoise.signals import highest_at
@@ -91,7 +91,7 @@ def modes_headline(found: ToolModes, alone: bool = False) -> Iterator[Block]:
     lines: list[str] = []
     for plane, side in zip(found.planes, PLANES, strict=True):
         swinging = plane.cycles_per_second[len(plane.rigid) :][:MOST_MODES]
-        text = say(", ").join(brief(float(value)) for value in swinging)
+        text = number_list(brief(float(value)) for value in swinging)
         if text and not (lines and found.alike):
             lines.append(say(SIDES[side], list=text))
     if lines:

@@ -56,6 +56,11 @@ def coordinates(numbers: Iterable[str]) -> str:
     return ("; " if decimal_sign() == "," else ", ").join(map(decimals, numbers))
 
 
+def number_list(numbers: Iterable[str]) -> str:
+    """Numbers one after the other; semicolons between those with a comma."""
+    return say("; " if decimal_sign() == "," else ", ").join(numbers)
+
+
 def to_say(text: str) -> str:
     """Mark a text that is said later: as it is, but known to be wanted in the catalogues."""
     return text

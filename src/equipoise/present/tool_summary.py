@@ -17,7 +17,7 @@ from equipoise.handheld.blocks import UNITS
 from equipoise.handheld.exposed import WORKING, grips
 from equipoise.handheld.hand_blocks import figure_named, varied_named
 from equipoise.handheld.response import respond_tool
-from equipoise.i18n import say, to_say
+from equipoise.i18n import number_list, say, to_say
 from equipoise.present.findings import ToolFindings
 from equipoise.present.pages import SummaryAnswer, Tile
 from equipoise.present.tool_headlines import worst_at_work
@@ -146,7 +146,7 @@ def _near(found: ToolFindings, modes: ToolModes) -> Iterator[str]:
     """The natural frequency nearest to what shakes once a turn."""
     plane = modes.planes[0]
     swinging = plane.cycles_per_second[len(plane.rigid) :]
-    text = say(", ").join(brief(float(value)) for value in swinging[:4])
+    text = number_list(brief(float(value)) for value in swinging[:4])
     if text:
         yield say("The lowest are {list} Hz.", list=text)
     operation = found.tool.operation

@@ -11,7 +11,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.exchange.export import export
-from equipoise.i18n import LANGUAGES, Note, decimals, say, speaking
+from equipoise.i18n import LANGUAGES, Note, decimals, number_list, say, speaking
 from equipoise.i18n.languages import KNOWN
 from equipoise.present import html_of
 from equipoise.present.composition import build
@@ -110,3 +110,9 @@ def test_an_interactive_file_has_it(language: str, tmp_path: Path) -> None:
     export(eq.load("yamashita-1"), tmp_path / "a.html", language=language)
     html = (tmp_path / "a.html").read_text(encoding="utf-8")
     assert json.loads(block(html, "machine"))["decimal"] == ","
+
+
+def test_numbers_of_a_list_stand_apart_where_they_have_commas():
+    assert number_list(["2.34", "6.97"]) == "2.34, 6.97"
+    with speaking("de"):
+        assert number_list(["2,34", "6,97"]) == "2,34; 6,97"
