@@ -27,6 +27,10 @@ DARK_ONLY = {
     "dim": "#525a63",
 }
 
+PRINTED_STRESS = "#8c3200"
+"""Colour of words on paper that have to be seen: as the same red of pictures, they would be paler
+than other words where a page is printed in grey."""
+
 
 def colored(color: str) -> str:
     """A colour of a picture as the page has it."""

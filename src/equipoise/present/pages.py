@@ -23,7 +23,7 @@ from equipoise.dataclass import dataclass
 from equipoise.errors import EquipoiseError
 from equipoise.i18n import Note, decimals, say, speaking, spoken
 from equipoise.present.cells import CellText, Grid, Head, grid, noted, printed, sign_of
-from equipoise.present.colors import colored, colors
+from equipoise.present.colors import PRINTED_STRESS, colored, colors
 from equipoise.present.fonts import boxes, check_pdf, families, installed
 from equipoise.present.layout import Looks
 from equipoise.quantities import Units, showing
@@ -314,7 +314,7 @@ def pdf(document: ReportDocument) -> bytes:
 @cache
 def _template() -> jinja2.Template:
     environment = jinja2.Environment(autoescape=False, trim_blocks=True, lstrip_blocks=True)
-    environment.globals["stress"] = LIGHT["stress"]
+    environment.globals["stress"] = PRINTED_STRESS
     environment.filters |= {**FILTERS, "flowed": flowed, "text": _text, "width": _width}
     return environment.from_string(text_of("report.typ.j2"))
 

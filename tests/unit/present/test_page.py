@@ -13,7 +13,7 @@ from equipoise.errors import EquipoiseError, UsageError
 from equipoise.figures import paint
 from equipoise.figures.style import LOOKS
 from equipoise.present import fonts
-from equipoise.present.colors import colored, colors
+from equipoise.present.colors import PRINTED_STRESS, colored, colors
 from equipoise.present.composition import build
 from equipoise.present.findings import ToolFindings, find
 from equipoise.present.pages import boxed_in_pdf, page, pdf
@@ -168,3 +168,9 @@ def test_other_names_and_languages_are_refused(tmp_path):
         eq.report("scotch-yoke", tmp_path / "report.docx")
     with pytest.raises(UsageError, match="give one of en, de, ja, ko"):
         eq.report("scotch-yoke", tmp_path / "report.html", language="fr")
+
+
+def test_words_that_have_to_be_seen_are_dark_in_grey_print():
+    ink, gray = lightness("#1a1a1a"), lightness("#4d5359")
+    assert ink < lightness(PRINTED_STRESS) < gray
+    assert f".strong{{color:{PRINTED_STRESS}}}" in page(build(find("brush-cutter")))
