@@ -90,8 +90,8 @@ def test_options_and_values_stand_as_they_are_typed(site: Path) -> None:
     assert "With --json: add every force by cause and by link." in told
 
 
-def test_the_glossary_has_every_term_and_its_meaning_in_three_languages(site: Path) -> None:
-    """As the catalogues say it, and none in English where it is to be Japanese or Korean."""
+def test_the_glossary_has_every_term_and_its_meaning_in_every_language(site: Path) -> None:
+    """As the catalogues say it, and none in English where it is to be in another language."""
     text = (site / "glossary.html").read_text(encoding="utf-8")
     cells = re.findall(r"<strong>(.*?)</strong>(?:<br>)?(.*?)(?:</p>)?</td>", text)
     shown = {html.unescape(term): html.unescape(meaning) for term, meaning in cells}
@@ -100,7 +100,7 @@ def test_the_glossary_has_every_term_and_its_meaning_in_three_languages(site: Pa
             with speaking(language):
                 said, means = say(term, name="B"), say(meaning)
             assert shown[said] == means, said
-            assert language == "en" or not (said.isascii() or means.isascii())
+            assert language == "en" or means != meaning
 
 
 def test_every_table_of_the_model_file_has_a_page(site: Path) -> None:

@@ -96,7 +96,7 @@ class LoopForces:
         demand = self.demand(state)
         rows = demand.reshape(-1, *demand.shape[-2:])  # (R, N, 3 n): each matrix is factored once
         solved = np.linalg.solve(matrix, np.moveaxis(rows, 0, -1))
-        strengths = iter(solved.transpose(1, 2, 0).reshape(-1, *demand.shape[:-1]))
+        strengths = iter(solved.transpose(1, 2, 0).reshape(matrix.shape[-1], *demand.shape[:-1]))
         return [list(islice(strengths, loop.unknowns)) for loop in self.loops]
 
     def matrix(self, state: State, poses: Poses, senses: Sequence[Any], more: int = 0) -> Array:
