@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
+from equipoise.cli import sweep
 from equipoise.schema.study_units import study_of
 from equipoise.studies.selection import NothingBestError
 from equipoise.studies.store import checksum_of
@@ -227,6 +228,18 @@ def test_an_interrupted_sweep_goes_on() -> None:
     assert "Traceback" not in result.err
     store = eq.studies.open_store("long.zarr")
     assert 0 < len(store.missing()) < store.chunks
+
+
+def test_an_interrupt_while_designs_are_drawn_tells_how_to_go_on(monkeypatch) -> None:
+    def interrupt(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(sweep, "_charts", interrupt)
+    done = equipoise("sweep", written(LENGTHS), "-o", "drawn.zarr", "--plot", "pictures")
+    assert done.status == 130
+    assert done.err.splitlines()[-1] == (
+        "equipoise: interrupted; what is stored stays; go on by: equipoise resume drawn.zarr"
+    )
 
 
 REFUSED = {

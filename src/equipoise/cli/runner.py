@@ -75,6 +75,8 @@ class CommandResult:
     pictures : by name.
     save : writes further files, after columns and pictures, and returns what is said of them.
     lines : what is printed instead of title and blocks, once all files are in their places.
+    around : the context in which files are written, such as one that adds to an interrupt how the
+        work goes on.
     """
 
     blocks: Blocks | None = None
@@ -86,6 +88,7 @@ class CommandResult:
     pictures: Drawings = dict
     save: Callable[[], Iterable[str]] = tuple
     lines: Callable[[], Iterable[str]] | None = None
+    around: Callable[[], AbstractContextManager[None]] = nullcontext
 
     @staticmethod
     def of(result: Result, **options: Any) -> CommandResult:
@@ -170,7 +173,7 @@ class FinishedCommand:
 
     def write(self) -> list[str]:
         """Write the files that are wanted; returns what is said of them."""
-        with self._naming():
+        with self._naming(), self.answer.around():
             return [*self._written()]
 
     def _written(self) -> Iterator[str]:

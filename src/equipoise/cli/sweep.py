@@ -94,6 +94,7 @@ def _computed(work: Callable[..., Store], path: str, units: dict[str, Unit]) -> 
         lambda: _values(summary, end),
         title=summary.title,
         pictures=lambda: _charts(store, units),
+        around=lambda: _going_on(path),
     )
 
 
