@@ -5,7 +5,8 @@ that shakes: what gauges read at the speeds at which the machine runs, a force, 
 couple.  Remedies are other phases of rows, which cost nothing, holes, and counterweights of steel
 plate in the room that is assumed (`balancing.room`, `balancing.remedies`).  A remedy is offered
 where it takes away enough of its aim for its mass, and leaves no headline figure worse; to leave
-the machine as it is, is an answer too.
+the machine as it is, is an answer too.  Where nothing moves but rotors
+(`results.rotors`), no remedy is offered that was not asked for.
 """
 
 from __future__ import annotations
@@ -70,6 +71,7 @@ from equipoise.mechanism.dynamics.forces import massless
 from equipoise.mechanism.parts.balance import Balance, Limit, Objective, Phases
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.objectives import GAUGES, OF_ROWS, ROWS
+from equipoise.results.rotors import unbalances
 from equipoise.results.yardsticks import FigureAssessment
 from equipoise.vibration.forced import check_moving
 from equipoise.vibration.linear import Linear, gauges_of
@@ -357,6 +359,8 @@ class _Adviser:
             enough = enough and outweighs(found.gain, self.mounts)
         if found.added_mass > 0:
             enough = enough and not self.is_for_more_arms(found)
+        if not self.own.objectives and unbalances(self.machine):
+            enough = False  # it may be what the machine is for
         offered, before = enough and not worse, self.before.headline
         beyond = self.beyond
         if offered:  # what else helps is for the machine with the remedy
@@ -395,7 +399,7 @@ class _Adviser:
     def mounts(self) -> ResonantMounts | None:
         """The resonance beside a speed at which the machine runs, and other mounts."""
         aims = self.loud_gauges
-        if not aims:
+        if not aims or (unbalances(self.machine) and not self.own.objectives):
             return None
         speeds = {speed for aim in aims for speed in aim.speeds} or {self.machine.drive.speed}
         before, plan = self.values(aims), Balance(objectives=aims)

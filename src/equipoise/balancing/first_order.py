@@ -29,6 +29,7 @@ from equipoise.mechanism.parts.machine import Machine
 from equipoise.quantities import display, percent, told
 from equipoise.results.analysis import Analysis
 from equipoise.results.declaring import Declarations, ResultOutput
+from equipoise.results.rotors import unbalances
 from equipoise.results.yardsticks import FigureAssessment, throw_of
 from equipoise.signals import Array
 
@@ -152,6 +153,8 @@ def balance_shafts_for(
     force = next((entry for entry in entries if entry.output == "shaking_force"), None)
     if force is None or not analysis.machine.has_crank or force.ratio < WORTH_SHAFTS:
         return None
+    if unbalances(analysis.machine):
+        return None  # a rotor is balanced by itself, an exciter not at all
     first = FirstOrder.of_shaking_force(analysis)
     gain = first.gain(first.without())
     if gain < WORTH_NAMING:

@@ -37,6 +37,7 @@ from equipoise.mechanism.parts.objectives import GAUGES, ROWS
 from equipoise.quantities import change, display, percent, told
 from equipoise.results.blocks import Block, Cell, Column, RelativeChange, Table, Text
 from equipoise.results.outputs import objective_named, shown_in
+from equipoise.results.rotors import rotor_sentence, unbalances
 from equipoise.results.yardsticks import FigureAssessment, sentence
 
 if TYPE_CHECKING:
@@ -157,6 +158,9 @@ def reasons_to_leave(found: Balanced) -> Iterator[str]:
     largest = next(iter(advice.before), None)
     own = found.original.balance
     asked = own is not None and bool(own.objectives)
+    if not asked and (words := rotor_sentence(found.original)):
+        yield words
+        return
     if (largest is None or not largest.is_large) and not (asked and found.changes):
         yield say("Leave the machine as it is: nothing is large beside its yardstick.")
     elif found.changes:
@@ -378,6 +382,8 @@ def why_not(found: Balanced) -> str:
         reason = fall
     elif arms is not None and arms.gain >= found.gain:
         reason = say("more arms bring more")
+    elif unbalances(found.original):
+        reason = say("the unbalance may be what the machine is for")
     else:
         mass = told(found.added_mass, "mass", digits=3)
         reason = say("{mass} would be added, too much for that", mass=mass)

@@ -240,6 +240,13 @@ def _number_complaint(text: str, kind: QuantityKind) -> str:
         return Note('did you mean "{number} {unit}"?', number=angle, unit="deg")
     if re.fullmatch(NUMBER, text.strip()):
         return Note("the unit is missing; give {noun}, {such}", noun=Note(kind.noun), such=such)
+    if kind is KINDS["density"] and text.strip().isalpha():
+        return Note(
+            'give number and unit, {such}; to name a material, write material = "{name}" instead '
+            "(of gears gear_material)",
+            such=such,
+            name=text.strip(),
+        )
     if re.match(r"[+-]?[0-9]+,[0-9]+", text.strip()):
         return _comma_complaint(text.strip(), kind)
     return Note(_number_slip(text), such=such)

@@ -16,6 +16,7 @@ from equipoise.mechanism.parts.objectives import GAUGES
 from equipoise.quantities import told
 from equipoise.results.blocks import Block, Facts, Notes, Text, broken_if
 from equipoise.results.drive_blocks import driven
+from equipoise.results.rotors import rotor_sentence
 from equipoise.results.yardsticks import (
     FigureAssessment,
     GaugeReading,
@@ -83,7 +84,7 @@ def verdict_blocks(
     """
     entries = assess(analysis, readings)
     first, figure_assessment = verdict(entries), kept_contact(entries)
-    words = []
+    words = [*filter(None, [rotor_sentence(analysis.machine)])]
     if first is not None and first is not figure_assessment:
         words.append(say("{sentence}.", sentence=sentence(first, analysis.machine.crank_turns)))
     if figure_assessment is not None:

@@ -17,7 +17,8 @@ declared with them (`yardstick` in `mechanism.outputs.declared`):
     transmission  a transmission angle: its distance from 90 deg, over 50 deg
     limit         a limit that is declared: of a gauge
     contact       of a cam: the speed of the crank, over that at which the follower lifts off
-    vibration     the velocity of a gauge without a limit: RMS, over 4.5 mm/s
+    vibration     the velocity of a gauge without a limit: RMS, over 4.5 mm/s; but where nothing
+                  moves except rotors (`results.rotors`), which may be there to shake
 
 A ratio of 1 is the yardstick itself.  More is large; of what a machine always has of its kind,
 more than `LARGE_FROM`: a joint carries what acts on it, and a torque without a mean swings to both
@@ -49,6 +50,7 @@ from equipoise.quantities import SI, Dimension, angle, display, number, percent
 from equipoise.results.analysis import Analysis
 from equipoise.results.drive_blocks import pushing
 from equipoise.results.outputs import FIGURES, AnalysisOutput
+from equipoise.results.rotors import unbalances
 
 LARGE, NOTHING = 1.0, 1e-9
 """Ratio from which a figure is large, and up to which it is rounding."""
@@ -614,7 +616,7 @@ def _of_gauge(machine: Machine, name: str, reading: GaugeReading) -> Iterator[Fi
             f"{output}.{path}", label, value, dimension, most, Note("its limit"), ratio,
             output, name, is_limit=True,
         )  # fmt: skip
-    if known:
+    if known or unbalances(machine):  # a rotor's vibration may be what the machine is for
         return
     rate: Dimension = "angular speed" if reading.rotation else "speed"
     most = VIBRATION / (_reach_of_support(machine) if reading.rotation else 1.0)

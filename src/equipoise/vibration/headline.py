@@ -14,6 +14,7 @@ from equipoise.results.blocks import Block, Facts, Notes, Text, broken_if
 from equipoise.results.drive_blocks import driven
 from equipoise.results.headline import look_at_next
 from equipoise.results.outputs import shown_in
+from equipoise.results.rotors import rotor_sentence
 from equipoise.results.yardsticks import assess, sentence, verdict
 from equipoise.vibration.forced import excitation_model_of, readings_of
 from equipoise.vibration.linear import Linear
@@ -53,6 +54,8 @@ def response_headline(response: Response, alone: bool = False) -> Iterator[Block
     if first is not None:
         words = say("{sentence}.", sentence=sentence(first, machine.crank_turns))
         yield Text(words, broken_if(first.is_limit and first.is_large))
+    elif words := rotor_sentence(machine):
+        yield Text(words)
     if not alone:
         return
     yield Text(driven(machine, response.speed))

@@ -119,6 +119,7 @@ def test_degrees_are_the_nearest_floats() -> None:
         ("50 Hz", "angular speed", 'give "50 turn/s" or "3000 rpm"'),
         ("5 Nm", "torque", 'did you mean "5 N m"?'),
         ("5 kg mm2", "inertia", 'did you mean "5 kg mm^2"?'),
+        ("aluminum", "density", 'to name a material, write material = "aluminum" instead'),
         ("5 kg/m3", "density", 'did you mean "5 kg/m^3"?'),
         ("5 kg/m^2", "density", "there is no unit 'kg/m^2' here; a density is wanted: kg/m^3"),
         ("5 N m", "energy", "N m is the unit of a torque; an energy is wanted: J, mJ"),
