@@ -201,6 +201,9 @@ def _shared(body: SupportBody, load: Array) -> dict[str, float]:
             break
         touching = kept
     over = left - stiffness @ settled
+    if known:  # what they leave over along them, the support settles by; the linear model notes it
+        along = np.array([rows[name] for name in known]).T
+        over = over - along @ lstsq(along, over, rcond=1e-12)[0]
     if np.linalg.norm(over) > LOOSE * (np.linalg.norm(load) + np.linalg.norm(left)):
         raise ModelError("support.mounts", _uncarried(body, over))
     return {**{name: floats.get(name, 0.0) for name in mounts}, **known}

@@ -290,6 +290,22 @@ def test_given_preloads_may_leave_a_load_over() -> None:
     assert linear.motion(10.0).mean[1] == pytest.approx((100 - 10 * G) / 1000)
 
 
+def test_given_preloads_may_leave_a_load_over_beside_mounts_without_any() -> None:
+    across = Mount((0.0, 0.0, 0.0), direction=0.0, stiffness=300.0)
+    mounts = {
+        "a": Mount((-0.5, 0.0, 0.0), stiffness=500.0, preload=50.0),
+        "b": Mount((0.5, 0.0, 0.0), stiffness=500.0, preload=50.0),
+        "across": across,
+    }
+    linear = Linear.of(block(mounts=mounts), "moment")
+    assert linear.rest.preload == pytest.approx({"a": 50, "b": 50, "across": 0})
+    assert linear.rest.unbalance[1] == pytest.approx(100 - 10 * G)
+    assert "do not hold the weight" in " ".join(map(str, linear.unsettled))
+    sideways = {"across": across, "preloaded": replace(across, preload=3.0)}
+    with pytest.raises(ModelError, match="they do not carry the weight in heave"):
+        _ = Linear.of(block(mounts=sideways), "moment").rest
+
+
 @pytest.mark.parametrize(
     ("mount", "wanted"),
     [
