@@ -30,7 +30,7 @@ def unbalances(machine: Machine) -> dict[str, complex]:
         return {}
     if machine.sliders or machine.cams:
         return {}
-    speed = max(abs(machine.drive.speed), *map(abs, machine.drive.range or (0.0,)))
+    speed = max(map(abs, (machine.drive.speed, *(machine.drive.range or ()))))
     found: dict[str, complex] = {}
     for name, link in machine.links.items():
         pins = [place for point, place in link.points.items() if point in machine.frame]
@@ -38,7 +38,7 @@ def unbalances(machine: Machine) -> dict[str, complex]:
             return {}
         arm = complex(*link.center_of_mass) - complex(*pins[0])
         if abs(arm) * speed > BALANCED:
-            found[name] = link.mass * arm
+            found[name] = (link.mass or 0.0) * arm
     return found
 
 

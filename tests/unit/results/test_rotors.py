@@ -61,7 +61,9 @@ point = ["0 mm", "100 mm"]
 
 def sieve(arm: float) -> eq.Machine:
     """A sieve whose shaft has its centre of mass so many mm from its pivot."""
-    return eq.loads(SIEVE.replace("{arm}", str(arm)))
+    machine = eq.loads(SIEVE.replace("{arm}", str(arm)))
+    assert isinstance(machine, eq.Machine)
+    return machine
 
 
 def test_an_exciter_is_not_robbed_of_its_unbalance() -> None:
