@@ -36,7 +36,7 @@ def unbalances(machine: Machine) -> dict[str, complex]:
         pins = [place for point, place in link.points.items() if point in machine.frame]
         if len(pins) != 1:
             return {}
-        arm = complex(*link.center_of_mass) - complex(*pins[0])
+        arm = complex(*(link.center_of_mass or pins[0])) - complex(*pins[0])
         if abs(arm) * speed > BALANCED:
             found[name] = (link.mass or 0.0) * arm
     return found
