@@ -88,10 +88,10 @@ def balanced_headline(found: Balanced, alone: bool = False) -> Iterator[Block]:
     if found.advice is not None and not found.helps:
         if alone:
             yield from map(Text, why_nothing(found))
-            cure = steadying_sentence(found)
-            beyond = sentences_beyond_masses(found)
-            yield from (Text(line, is_detail=line != cure) for line in beyond)
-            yield Text(driven(found.original, found.original.drive.speed), is_detail=True)
+            cure = steadying_sentence(found)  # first, since details are left out from the last on
+            beyond = sorted(sentences_beyond_masses(found), key=lambda line: line != cure)
+            yield from (Text(line, is_detail=True) for line in beyond)
+            yield Text(driven(found.original, found.original.drive.speed))
             yield _large(found)
             yield from _bending(found)
             yield look_at_next("balance --objective OUTPUT", "balance --full")
