@@ -136,7 +136,7 @@ def _prepare(given: Sequence[str]) -> None:
         os.environ["LINES"] = str(min(lines, MOST))
     app.console = _console(LEAST) if columns < LEAST else None
     if not given or given[0].startswith("-"):  # the help has a line of each command
-        for name, place in COMMANDS.items():
+        for name, place in sorted(COMMANDS.items()):
             del app[name]
             app.command(_path(name, place), name=name, help=_summary(name, place))
 

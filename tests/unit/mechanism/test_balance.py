@@ -291,9 +291,9 @@ def test_steps_of_phases(degrees: float) -> None:
 
 
 def test_phases_need_rows() -> None:
-    for machine, count in ((ALONE, 0), (replace(ALONE, rows=(Row(),)), 1)):
+    for machine, count in ((ALONE, "0 rows"), (replace(ALONE, rows=(Row(),)), "1 row")):
         refused("balance.phases",
-                f"got {count} rows, which leaves no phase to choose; give two at least",
+                f"got {count}, which leaves no phase to choose; give two at least",
                 Balance(phases=Phases()), machine)  # fmt: skip
     assert FOUR.with_balance(Balance(phases=Phases(pi / 2))).balance is not None
 

@@ -283,7 +283,7 @@ def test_a_hatching_marks_the_frame(tmp_path: Path) -> None:
         ([CRANK, PIVOT], {"pin": ["a = b"]}, "--pin does nothing to SVG drawing"),
         ([CRANK, PIVOT], {"crank": "rod"}, "--crank: no link is called 'rod'"),
         ([PIVOT], {}, "there is no line in it"),
-        (['<line x1="nan" y1="0" x2="1" y2="1"/>'], {}, "x1: got 'nan'; give 1 numbers"),
+        (['<line x1="nan" y1="0" x2="1" y2="1"/>'], {}, "x1: got 'nan'; give 1 number"),
         (['<line x1="1e400" y1="0" x2="1" y2="1"/>'], {}, "x1: got '1e400'"),
         (['<path d="M 0 0 L 1e99 0"/>'], {}, "beyond all machines"),
         (["<g>" * 120 + "</g>" * 120], {}, "more than 100 elements inside of each other"),
