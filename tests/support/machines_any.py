@@ -326,6 +326,7 @@ def dress(chance: random.Random, document: Document, wanted: str) -> Files:
         _sections(twist, document)
     if twist.random() < 0.3:
         _bearings(twist, document)
+    _damped(twist, document)
     if twist.random() < 0.05:
         document["units"] = {"length": "in", "force": "lbf", "angle": "rad", "speed": "ft/s"}
     if chance.random() < 0.3 or likely.get("planting"):
@@ -563,6 +564,33 @@ def _twisted(chance: random.Random, document: Document) -> None:
     if chance.random() < 0.5:
         point = chance.choice([*document["links"][link]["points"]])
         document["joints"] = [{"joint": f"joints.{point}", "radius": "4 mm"}]
+
+
+def _damped(chance: random.Random, document: Document) -> None:
+    """Of a fifth, dampers, torsion dampers and a stop, between links or a link and the frame."""
+    bodies = {name: link["points"] for name, link in document["links"].items()}
+    bodies["frame"] = document["frame"]["points"]
+    link, on = chance.choice([*bodies][:-1]), chance.choice([*bodies])
+    if link == on or chance.random() >= 0.2:
+        return
+    ends: Document = {"link": link} | ({} if on == "frame" else {"on": on})
+    held = ends | {"point": chance.choice([*bodies[link]]), "to": chance.choice([*bodies[on]])}
+    if chance.random() < 0.5:
+        laws: list[Document] = [
+            {"damping": "40 N s/m"},
+            {"speeds": ["-1 m/s", "0 m/s", "2 m/s"], "forces": ["-20 N", "0 N", "90 N"]},
+        ]
+        document["dampers"] = [held | chance.choice(laws)]
+    if chance.random() < 0.5:
+        laws = [
+            {"damping": "0.2 N m s/rad"},
+            {"speeds": ["-9 rad/s", "0 rad/s", "9 rad/s"], "torques": ["-1 N m", "0 N m", "3 N m"]},
+        ]
+        document["torsion_dampers"] = [ends | chance.choice(laws)]
+    if chance.random() < 0.5:
+        law: Document = {"stiffness": "20 N/mm", "direction": deg(chance.uniform(-pi, pi))}
+        law |= chance.choice([{}, {"restitution": 0.6, "speed": "0.5 m/s"}])
+        document["stops"] = [held | law]
 
 
 def _rubbing(chance: random.Random, document: Document) -> None:
