@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from importlib.resources import files
 
 from equipoise.errors import UsageError
@@ -35,4 +36,8 @@ def asset(name: str) -> str:
     try:
         return (files("equipoise.web") / "static" / name).read_text(encoding="utf-8")
     except OSError:
+        if sys.platform == "emscripten":  # a site has it beside the page, and not once more here
+            from pyodide.http import open_url  # type: ignore[import-not-found]
+
+            return str(open_url(name).read())
         raise UsageError(MAKE) from None
