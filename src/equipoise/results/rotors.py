@@ -31,15 +31,15 @@ def unbalances(machine: Machine) -> dict[str, complex]:
     if machine.sliders or machine.cams:
         return {}
     speed = max(map(abs, (machine.drive.speed, *(machine.drive.range or ()))))
-    found: dict[str, complex] = {}
+    rotors: dict[str, complex] = {}
     for name, link in machine.links.items():
         pins = [place for point, place in link.points.items() if point in machine.frame]
         if len(pins) != 1:
             return {}
         arm = complex(*(link.center_of_mass or pins[0])) - complex(*pins[0])
         if abs(arm) * speed > BALANCED:
-            found[name] = (link.mass or 0.0) * arm
-    return found
+            rotors[name] = (link.mass or 0.0) * arm
+    return rotors
 
 
 def rotor_sentence(machine: Machine) -> str:

@@ -11,6 +11,7 @@ from equipoise.keys import ROW, Conditions, File, Listing, Quantity, TextKind, d
 from equipoise.keys.csv_tables import CsvTable
 from equipoise.mechanism.checks import FRAME, Bodies
 from equipoise.mechanism.formulas import kernels
+from equipoise.mechanism.parts.between import BetweenPoints
 from equipoise.mechanism.parts.damping import Damping, one_law
 from equipoise.mechanism.parts.element_kinds import Placed
 from equipoise.mechanism.parts.force_kinds import Action
@@ -36,7 +37,7 @@ class DamperTable(CsvTable):
 
 
 @declared
-class Damper(Damping):
+class Damper(BetweenPoints, Damping):
     """A damper without mass between `point` of `link` and the point `to` of `on`: it resists the
     speed with which their distance changes.
     """
@@ -98,26 +99,6 @@ class Damper(Damping):
         default=None,
         example="damper.csv",
     )
-
-    @property
-    def bodies(self) -> tuple[str, str]:
-        """The link and the body of its other point."""
-        return self.link, self.on
-
-    @property
-    def points(self) -> tuple[tuple[str, str], ...]:
-        """Both bodies, each with the point at which it is held."""
-        return (self.link, self.point), (self.on, self.to)
-
-    @property
-    def label(self) -> Note:
-        """Its two points, by which it is told from others."""
-        return Note("{point} to {other}", point=self.point, other=self.to)
-
-    @property
-    def route(self) -> tuple[str, str]:
-        """Its two points."""
-        return self.point, self.to
 
     @property
     def rows(self) -> tuple[tuple[Any, ...], tuple[Any, ...]]:

@@ -10,6 +10,7 @@ from equipoise.i18n import Note, to_say
 from equipoise.keys import TextKind, declared, key
 from equipoise.mechanism.checks import FRAME, Bodies, unknown, unknown_body, unknown_link
 from equipoise.mechanism.formulas import kernels
+from equipoise.mechanism.parts.between import BetweenPoints
 from equipoise.mechanism.parts.element_kinds import Placed
 from equipoise.mechanism.parts.force_kinds import Action, ForceElement
 from equipoise.quantities import Dimension, told
@@ -21,7 +22,7 @@ MEETING = to_say(
 
 
 @declared
-class Spring(ForceElement):
+class Spring(BetweenPoints, ForceElement):
     """A linear spring without mass: it pulls `point` of `link` towards the point `to` of `on`."""
 
     called = to_say("{what} of spring {number}")
@@ -63,21 +64,6 @@ class Spring(ForceElement):
     )
 
     @property
-    def bodies(self) -> tuple[str, str]:
-        """The link and the body of its other point."""
-        return self.link, self.on
-
-    @property
-    def points(self) -> tuple[tuple[str, str], ...]:
-        """Both bodies, each with the point at which it is held."""
-        return (self.link, self.point), (self.on, self.to)
-
-    @property
-    def label(self) -> Note:
-        """Its two points, by which it is told from others."""
-        return Note("{point} to {other}", point=self.point, other=self.to)
-
-    @property
     def meeting(self) -> str:
         """What is wrong where its ends meet, of a spring with a free length."""
         return MEETING if self.free_length else ""
@@ -101,11 +87,6 @@ class Spring(ForceElement):
     def problems(self, where: str, bodies: Bodies) -> Iterator[ModelError]:
         """Everything that is wrong with its ends in a machine of these bodies."""
         return wrong_ends(where, self, bodies)
-
-    @property
-    def route(self) -> tuple[str, str]:
-        """Its two points."""
-        return self.point, self.to
 
     def sentence(self) -> Note:
         """Its stiffness and its ends, for a report."""

@@ -11,6 +11,7 @@ from equipoise.i18n import Note, to_say
 from equipoise.keys import Number, TextKind, declared, key
 from equipoise.mechanism.checks import FRAME, Bodies, unknown, unknown_body, unknown_link
 from equipoise.mechanism.formulas.kernels import cross, dot, positive
+from equipoise.mechanism.parts.between import BetweenPoints
 from equipoise.mechanism.parts.element_kinds import Placed
 from equipoise.mechanism.parts.force_kinds import Action, RatedElement
 from equipoise.quantities import Dimension, told
@@ -37,7 +38,7 @@ def loss_factor(restitution: float) -> float:
 
 
 @declared
-class Stop(RatedElement):
+class Stop(BetweenPoints, RatedElement):
     """A stop without mass: it pushes `point` of `link` back where that is beyond a line through
     `to` of `on`.
     """
@@ -97,26 +98,6 @@ class Stop(RatedElement):
     @property
     def axed(self) -> tuple[str, ...]:
         return (self.on,)
-
-    @property
-    def bodies(self) -> tuple[str, str]:
-        """The link and the body of the stop."""
-        return self.link, self.on
-
-    @property
-    def points(self) -> tuple[tuple[str, str], ...]:
-        """Both bodies, each with its point."""
-        return (self.link, self.point), (self.on, self.to)
-
-    @property
-    def label(self) -> Note:
-        """Its two points, by which it is told from others."""
-        return Note("{point} to {other}", point=self.point, other=self.to)
-
-    @property
-    def route(self) -> tuple[str, str]:
-        """Its two points."""
-        return self.point, self.to
 
     @property
     def linear(self) -> bool:

@@ -10,6 +10,7 @@ from equipoise.i18n import Note, to_say
 from equipoise.keys import ROW, Conditions, File, Listing, Quantity, TextKind, declared, inside, key
 from equipoise.keys.csv_tables import CsvTable
 from equipoise.mechanism.checks import FRAME, Bodies, unknown_body, unknown_link
+from equipoise.mechanism.parts.between import BetweenBodies
 from equipoise.mechanism.parts.damping import Damping, one_law
 from equipoise.mechanism.parts.element_kinds import Placed
 from equipoise.mechanism.parts.force_kinds import Action
@@ -34,7 +35,7 @@ class TorsionDamperTable(CsvTable):
 
 
 @declared
-class TorsionDamper(Damping):
+class TorsionDamper(BetweenBodies, Damping):
     """A damper without mass that resists the angular speed of `link` relative to `on`."""
 
     called = to_say("{what} of torsion damper {number}")
@@ -89,21 +90,6 @@ class TorsionDamper(Damping):
         default=None,
         example="damper.csv",
     )
-
-    @property
-    def bodies(self) -> tuple[str, str]:
-        """The link and the body on which it is held."""
-        return self.link, self.on
-
-    @property
-    def label(self) -> Note:
-        """Its bodies, by which it is told from others."""
-        return Note("{link} on {on}", link=self.link, on=self.on)
-
-    @property
-    def route(self) -> tuple[str, str]:
-        """From the body on which it is held to the link."""
-        return self.on, self.link
 
     @property
     def rows(self) -> tuple[tuple[Any, ...], tuple[Any, ...]]:

@@ -23,6 +23,7 @@ from equipoise.keys import (
 )
 from equipoise.keys.csv_tables import CsvTable
 from equipoise.mechanism.checks import FRAME, Bodies, unknown_body, unknown_link
+from equipoise.mechanism.parts.between import BetweenBodies
 from equipoise.mechanism.parts.element_kinds import Placed
 from equipoise.mechanism.parts.force_kinds import Action, ForceElement
 from equipoise.mechanism.parts.ramps import Ramps, ramp_integral, ramp_value, ramps_of, wrong_rows
@@ -47,7 +48,7 @@ class TorsionTable(CsvTable):
 
 
 @declared
-class TorsionSpring(ForceElement):
+class TorsionSpring(BetweenBodies, ForceElement):
     """A spring without mass that turns `link` against `on` by the angle between both."""
 
     called = to_say("{what} of torsion spring {number}")
@@ -112,19 +113,9 @@ class TorsionSpring(ForceElement):
         return self.bodies
 
     @property
-    def bodies(self) -> tuple[str, str]:
-        """The link and the body on which it is held."""
-        return self.link, self.on
-
-    @property
     def idle_keys(self) -> tuple[str, ...]:
         """Keys that count for nothing beside a table."""
         return () if self.stiffness is not None else ("angle", "preload")
-
-    @property
-    def label(self) -> Note:
-        """Its bodies, by which it is told from others."""
-        return Note("{link} on {on}", link=self.link, on=self.on)
 
     @property
     def rows(self) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
@@ -201,11 +192,6 @@ class TorsionSpring(ForceElement):
         if self.stiffness is not None:
             yield self.stiffness > 0
         yield from (after > before for before, after in pairwise(self.rows[0]))
-
-    @property
-    def route(self) -> tuple[str, str]:
-        """From the body on which it is held to the link."""
-        return self.on, self.link
 
     def sentence(self) -> Note:
         """Its stiffness and its bodies, for a report."""
