@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from functools import cache, reduce
+from functools import cache, partial, reduce
 from typing import Any
 
 import numpy as np
@@ -18,7 +18,7 @@ import equipoise as eq
 from equipoise.mechanism.parts.field import Soil, SoilTable
 from equipoise.mechanism.parts.machine import FRAME
 from support import machines_cams
-from support.loads import force_and_torque, has_soil, soil_force, tips_of
+from support.loads import axes_angle, force_and_torque, has_soil, soil_force, tips_of
 from support.machines import KINDS, make
 from support.machines_redundant import REDUNDANT
 from support.machines_torsion import torque_of
@@ -145,14 +145,22 @@ def acting(found: eq.mechanism.Forces) -> Iterator[tuple[str, str | None, Array,
     """Link and point of each load, its force (complex, N) and torque (N m), evaluated anew."""
     motion, machine = found.motion, found.motion.machine
     for load in machine.loads:
-        force, torque = force_and_torque(load, motion.crank_angle)
-        yield load.link, load.point, force[:, 0] + 1j * force[:, 1], torque
+        parts, torque = force_and_torque(load, motion.crank_angle)
+        force = parts[:, 0] + 1j * parts[:, 1]
+        if load.axes is not None:
+            force = force * np.exp(1j * axes_angle(machine, load, partial(angle_of, motion)))
+        yield load.link, load.point, force, torque
     if has_soil(machine):
         for link, point, _ in tips_of(machine):
             tip = motion.points[point]
             place, velocity = (np.stack([z.real, z.imag], -1) for z in (tip.place, tip.velocity))
             force = soil_force(machine, place, velocity, motion.speed)
             yield link, point, force[:, 0] + 1j * force[:, 1], np.zeros(len(force))
+
+
+def angle_of(motion: eq.mechanism.Motion, body: str) -> Array:
+    """Angle of a body in the frame, rad."""
+    return np.zeros(len(motion.crank_angle)) if body == FRAME else motion.links[body].angle
 
 
 def along(a: Any, b: Any) -> Any:

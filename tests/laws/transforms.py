@@ -170,6 +170,8 @@ def turned_position(position: eq.mechanism.Position, angle: float) -> eq.mechani
 
 def turned_load(load: eq.Load, angle: float) -> eq.Load:
     turn = complex(np.exp(1j * angle))
+    if load.axes is not None:
+        turn = 1.0 + 0j
     force = None if load.force is None else vector(lambda z: z * turn, load.force)
     return replace(
         load,
@@ -177,6 +179,16 @@ def turned_load(load: eq.Load, angle: float) -> eq.Load:
         start=None if load.start is None else load.start + angle,
         stop=None if load.stop is None else load.stop + angle,
         table=None if load.table is None else table(load.table, lambda z: z * turn, angle),
+    )
+
+
+def in_other_axes(load: eq.Load, change: Map) -> eq.Load:
+    """A load whose link gets other axes; change : of a direction in these."""
+    given = load.table
+    return replace(
+        load,
+        force=None if load.force is None else vector(change, load.force),
+        table=None if given is None else table(given, change),
     )
 
 
@@ -478,6 +490,12 @@ def with_axes(machine: eq.Machine, link: str, angle: float, shift: complex) -> e
     return replace(
         machine,
         links={**machine.links, link: new},
+        loads=tuple(
+            in_other_axes(load, lambda z: z * complex(np.exp(-1j * angle)))
+            if load.link == link and load.axes == "link"
+            else load
+            for load in machine.loads
+        ),
         sliders=tuple(
             replace(
                 s,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from itertools import chain
 
@@ -45,6 +45,16 @@ def force_and_torque(load: Load, crank_angle: Array) -> tuple[Array, Array]:
     elif load.torque is not None:
         torque = torque + load.torque
     return force * acting[:, None], torque * acting
+
+
+def axes_angle(machine: Machine, load: Load, angle_of: Callable[[str], Array]) -> Array:
+    """Return the angle (N,) of the axes of a load that turns: of its link, or of its guide."""
+    if load.axes == "link":
+        return angle_of(load.link)
+    own = [slider for slider in machine.sliders if slider.link == load.link]
+    at_point = [slider for slider in own if slider.point == load.point] or own
+    guide = own[0] if len(own) == 1 else at_point[0]
+    return angle_of(guide.on) + guide.direction
 
 
 def within(load: Load, crank_angle: Array) -> np.ndarray:
@@ -139,6 +149,12 @@ def on_links(machine: Machine, poses: Poses) -> Iterator[tuple[str, Array, Array
         local = (0.0, 0.0)
         if load.point is not None:
             local = machine.links[load.link].points[load.point]
+        if load.axes is not None:
+            angle = axes_angle(machine, load, poses.angle_of)
+            x, y = force.T
+            force = np.stack(
+                [x * np.cos(angle) - y * np.sin(angle), x * np.sin(angle) + y * np.cos(angle)], -1
+            )
         yield load.link, poses.place(load.link, local), force, torque
     if has_soil(machine):
         for link, _, local in tips_of(machine):

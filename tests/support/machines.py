@@ -173,7 +173,8 @@ class Draft:
             if what == 0:
                 force = _pair(rng.normal(size=2) * 100)
                 reaction: Literal["frame"] | None = "frame" if start is None else None
-                yield Load(name, point, force, start=start, stop=stop, reaction=reaction)
+                yield Load(name, point, force, start=start, stop=stop, reaction=reaction,
+                           axes=self._axes_of_load(name, point, force))  # fmt: skip
             elif what == 1:
                 yield Load(
                     name, torque=float(rng.normal()) * 100 * self.size, start=start, stop=stop
@@ -183,6 +184,15 @@ class Draft:
                 # what holds has no mirror image that a table can tell
                 outside: Literal["zero", "wrap"] = "wrap" if len(table.crank_angle) % 2 else "zero"
                 yield Load(name, point, table=table, outside=outside)
+
+    def _axes_of_load(
+        self, link: str, point: str, force: Vector
+    ) -> Literal["link", "slider"] | None:
+        """Those of the frame, a link or a slider, as the force tells, so that nothing is drawn."""
+        guides = Load(link, point, force).guides(self.sliders)
+        if force[1] > 0:
+            return None
+        return "slider" if len(guides) == 1 and force[0] > 0 else "link"
 
     def _springs(self) -> Iterable[Spring]:
         """Draw springs to a hook that no point comes near, or of no free length to any pivot."""

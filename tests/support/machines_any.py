@@ -499,7 +499,10 @@ def _forces(chance: random.Random, document: Document) -> Files:
         load: Document = {"link": link, "table": "load.csv", "outside": chance.choice(
             ["zero", "hold", "wrap"])}  # fmt: skip
         header = chance.choice(LAID)
-        loads.append(load | ({"point": point} if "force" in header else {}))
+        load |= {"point": point} if "force" in header else {}
+        if chance.random() < 0.3:
+            load["axes"] = chance.choice(("link", "slider"))
+        loads.append(load)
         end = 360.0 * chance.choice((1, 1, 2, 3, 12))
         tables["load.csv"] = columns(
             chance, header, end, rises=chance.random() < 0.95, c1=300.0, c2=90.0
@@ -515,6 +518,8 @@ def _forces(chance: random.Random, document: Document) -> Files:
         if chance.random() < 0.5:
             start = chance.uniform(-360, 720)
             load |= {"from": f"{start:.5g} deg", "to": f"{start + chance.uniform(1, 359):.5g} deg"}
+        if chance.random() < (0.4 if "force" in load else 0.03):
+            load["axes"] = chance.choice(("link", "link", "slider"))
         loads.append(load)
     springs = document.setdefault("springs", [])
     fixed = {*document["frame"]["points"]}

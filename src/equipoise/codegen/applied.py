@@ -39,7 +39,17 @@ def trace_load(trace: Trace, number: int, load: Load) -> Held:
         for key in ("x", "y", "torque")
     )
     x, y, torque = parts
-    return _held(trace, load.link, load.point, VectorTerm(x, y), torque)
+    force = VectorTerm(x, y)
+    if load.axes is not None:
+        force = force * trace.state[u(load.link)[0]]
+    if load.axes == "slider":
+
+        def turn(found: Linkage) -> Any:
+            machine = found.machine
+            return np.exp(1j * machine.loads[number - 1].axes_angle(machine.sliders))
+
+        force = force * trace.slot(f"load {number} axes", turn, vector=True)
+    return _held(trace, load.link, load.point, force, torque)
 
 
 def _part_of_load(load: Load, key: str, theta: Array) -> Array:

@@ -113,8 +113,11 @@ def _row(model: Data, tree: Tree, job: Job, flywheel: float) -> None:
         job.leave_out("the torsion springs")
     for _, load in constant_loads(job):
         end = _end(tree, load.link, load.point or next(iter(machine.links[load.link].points)))
-        force = list(load.force or (0.0, 0.0))
-        model["loads"].append({"end": end, "force": force, "torque": load.torque or 0.0})
+        force, turns = complex(*(load.force or (0.0, 0.0))), load.axes is not None
+        if turns:
+            force *= np.exp(1j * load.axes_angle(machine.sliders))
+        model["loads"].append({"end": end, "force": [float(force.real), float(force.imag)],
+                               "torque": load.torque or 0.0, "turns": turns})  # fmt: skip
 
 
 def _end(tree: Tree, body: str, point: str) -> End:

@@ -102,10 +102,14 @@ class Build:
             )
         )
 
-    def load(self, end: Any, force: list[float], torque: float) -> None:
-        """Load a body by a force at a point and a torque, always the same."""
+    def load(self, end: Any, force: list[float], torque: float, turns: bool) -> None:
+        """Load a body by a force at a point and a torque, always the same; turns : whether the
+        force turns with the body.
+        """
         at = self.place(end)
-        self.system.AddLoad(item.LoadForceVector(markerNumber=at, loadVector=[*force, 0]))
+        self.system.AddLoad(
+            item.LoadForceVector(markerNumber=at, loadVector=[*force, 0], bodyFixed=turns)
+        )
         self.system.AddLoad(item.LoadTorqueVector(markerNumber=at, loadVector=[0, 0, torque]))
 
     def mount(

@@ -269,29 +269,37 @@ def _loads(root: ET.Element, world: ET.Element, tree: Tree, job: Job) -> None:
     for number, load in constant_loads(job):
         name = f"load {number}{tree.suffix}"
         point = load.point or next(iter(tree.machine.links[load.link].points))
-        gear = (*(load.force or (0, 0)), 0, 0, 0, load.torque or 0)
-        _site(world, name, (0, 0, 0))
-        _push(root, name, _place(tree, load.link, point), name, gear, (1.0, 0.0, 0.0))
+        force = complex(*(load.force or (0, 0)))
+        site, turns = _place(tree, load.link, point), load.axes is not None
+        if turns:
+            force *= np.exp(1j * load.axes_angle(tree.machine.sliders))
+        else:
+            _site(world, name, (0, 0, 0))
+        gear = (force.real, force.imag, 0, 0, 0, load.torque or 0)
+        _push(root, name, site, None if turns else name, gear, (1.0, 0.0, 0.0))
 
 
 def _push(
     root: ET.Element,
     name: str,
     site: str,
-    against: str,
+    against: str | None,
     gear: Sequence[float],
     push: Sequence[float],
     one_sided: bool = False,
 ) -> None:
-    """A force on a site along a direction of another: at the start, less by way and by speed."""
+    """A force on a site along a direction of another, or of its own where there is none: at the
+    start, less by way and by speed.
+    """
     limits = {"forcerange": _row((0.0, FAR))} if one_sided else {}
+    if against is not None:
+        limits["refsite"] = against
     ET.SubElement(
         _part(root, "actuator"),
         "general",
         limits,
         name=name,
         site=site,
-        refsite=against,
         gear=_row(gear),
         gainprm="0",
         biastype="affine",

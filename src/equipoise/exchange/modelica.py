@@ -15,7 +15,7 @@ from equipoise.exchange.formats import Job
 from equipoise.exchange.tree import constant_loads, mass_of, weighed
 from equipoise.mechanism.assembly.joints import structure
 from equipoise.mechanism.kinematics.motion import Motion, move
-from equipoise.mechanism.parts.machine import FRAME, Machine
+from equipoise.mechanism.parts.machine import FRAME, Load, Machine
 
 
 @dataclass
@@ -206,10 +206,21 @@ def _forces(model: Flat, job: Job) -> None:
     _torsion_springs(model, job)
     for _, load in constant_loads(job):
         if load.force is not None and load.point is not None:
-            fx, fy = map(_in_brackets, load.force)
+            fx, fy = _force(model, load)
             model.push(load.link, load.point, (fx, fy), "+")
         if load.torque is not None:
             model.turn(load.link, _in_brackets(load.torque))
+
+
+def _force(model: Flat, load: Load) -> tuple[str, str]:
+    """Components along x and y of the frame."""
+    assert load.force is not None
+    fx, fy = map(_in_brackets, load.force)
+    if load.axes is None:
+        return fx, fy
+    turn = load.axes_angle(model.machine.sliders)
+    angle = f"({model.angle(load.link)} + {_in_brackets(turn)})"
+    return f"({fx} * cos{angle} - {fy} * sin{angle})", f"({fx} * sin{angle} + {fy} * cos{angle})"
 
 
 def _torsion_springs(model: Flat, job: Job) -> None:

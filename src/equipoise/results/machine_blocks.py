@@ -216,8 +216,20 @@ def _parts(machine: Machine) -> Iterator[str]:
     for load in machine.loads:
         if load.point is None:
             yield say("Load: a torque on {link}", link=load.link)
-        else:
+        elif load.axes is None:
             yield say("Load: a force at {point} of {link}", point=load.point, link=load.link)
+        elif load.axes == "link":
+            yield say(
+                "Load: a force at {point} of {link}, which turns with the link",
+                point=load.point,
+                link=load.link,
+            )
+        else:
+            yield say(
+                "Load: a force at {point} of {link}, in the axes of its slider",
+                point=load.point,
+                link=load.link,
+            )
 
 
 def _support(machine: Machine) -> Iterator[str]:

@@ -85,7 +85,8 @@ def test_a_support_from_rest(name: str, tmp_path: Path) -> None:
 
 
 def test_a_constant_load(tmp_path: Path) -> None:
-    loads = eq.Load("crank", point="B", force=(3.0, 4.0)), eq.Load("rocker", torque=0.5)
+    turns = eq.Load("coupler", point="C", force=(-2.0, 5.0), axes="link")
+    loads = eq.Load("crank", point="B", force=(3.0, 4.0)), eq.Load("rocker", torque=0.5), turns
     machine = replace(eq.load("yamashita-1"), loads=loads)
     found = run(machine, tmp_path / "model.py", 0.25)
     wanted = eq.forces(eq.move(machine, found["crank_angle"])).drive_torque

@@ -13,7 +13,7 @@ from equipoise.errors import ModelError
 from equipoise.i18n import Note, key_names
 from equipoise.mechanism.assembly.joints import coupling_pins
 from equipoise.mechanism.assembly.steps import Array
-from equipoise.mechanism.dynamics.loads import load_at
+from equipoise.mechanism.dynamics.loads import acting_load
 from equipoise.mechanism.dynamics.reactions import Acting, Demand, demands_of
 from equipoise.mechanism.kinematics.motion import Motion, PlacedBodies
 from equipoise.mechanism.kinematics.tip import surface_of, tip_link
@@ -94,7 +94,7 @@ def outer_loads(motion: Motion) -> Iterator[Acting]:
 
 def given_loads(motion: Motion) -> Iterator[Acting]:
     """Link, point, force and torque of each load of the file, which depend on the crank angle
-    alone.
+    alone, be it by the angle of a link.
     """
     yield from _acting(motion, "frame")
     yield from _acting(motion, None)
@@ -110,7 +110,7 @@ def soil_loads(motion: Motion) -> Iterator[Acting]:
 
 def _acting(motion: Motion, reaction: str | None) -> Iterator[Acting]:
     for load in (item for item in motion.machine.loads if item.reaction == reaction):
-        yield load.link, load.point, *load_at(load, motion.crank_angle)
+        yield load.link, load.point, *acting_load(motion, load)
 
 
 def soil_force(motion: Motion, tip: str | None = None) -> Array:

@@ -8,9 +8,9 @@ from typing import NamedTuple
 import numpy as np
 
 from equipoise.mechanism.assembly.linkage import assemble
-from equipoise.mechanism.assembly.steps import Array
+from equipoise.mechanism.assembly.steps import Array, u
 from equipoise.mechanism.formulas import kernels
-from equipoise.mechanism.kinematics.motion import move
+from equipoise.mechanism.kinematics.motion import Motion, move
 from equipoise.mechanism.parts.force_elements import ROUNDING
 from equipoise.mechanism.parts.machine import Load, LoadTable, Machine
 
@@ -28,7 +28,7 @@ def _interpolated(load: Load, table: LoadTable, crank_angle: Array) -> list[Arra
 
 
 def load_at(load: Load, crank_angle: Array) -> tuple[Array, Array]:
-    """Force (complex, N) and torque (N m) of a load at crank angles (N,)."""
+    """Force (complex, N), in the load's axes, and torque (N m) at crank angles (N,)."""
     zero = np.zeros(len(crank_angle))
     if load.table is not None:
         columns = _interpolated(load, load.table, crank_angle)
@@ -43,6 +43,15 @@ def load_at(load: Load, crank_angle: Array) -> tuple[Array, Array]:
     if len(columns) == 2:
         return columns[0] + 1j * columns[1], zero
     return zero + 0j, columns[0]
+
+
+def acting_load(motion: Motion, load: Load) -> tuple[Array, Array]:
+    """Force (complex, N) in the axes of the frame, and torque (N m) of a load in a motion."""
+    force, torque = load_at(load, motion.crank_angle)
+    if load.axes is None:
+        return force, torque
+    turn = motion.state[u(load.link)[0]] * np.exp(1j * load.axes_angle(motion.machine.sliders))
+    return force * turn, torque
 
 
 PIECE, NODES = pi / 12, 4
@@ -78,7 +87,7 @@ def work_in_cycle(machine: Machine, load: Load) -> LoadWork:
     half = 0.5 * np.diff(edges)
     theta = (edges[:-1] + half + half * nodes[:, None]).ravel()
     motion = move(machine, theta)
-    force, torque = load_at(load, theta)
+    force, torque = acting_load(motion, load)
     turning = motion.links[load.link].angle_1
     way = turning * 0j if load.point is None else motion.points[load.point].place_1
     share = (half * weights[:, None]).ravel()

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from itertools import pairwise
 from math import ceil, degrees, pi
-from typing import ClassVar, Literal
+from typing import ClassVar, Literal, Protocol
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, key_names, to_say
@@ -43,6 +43,7 @@ MOTOR_KINDS = (
 """Keys of a motor of which it has those of one kind."""
 MEAN_SPEEDS = ("held", "free")
 OUTSIDE = ("zero", "hold", "wrap")
+AXES = ("link", "slider")
 TURN = 2 * pi * (1 + 1e-12)
 """rad: a whole turn, rounding included."""
 ROUNDING = 1e-9
@@ -105,6 +106,17 @@ class LoadTable(CsvTable):
                 yield from (begin, end)
 
 
+class LoadGuide(Protocol):
+    """A slider, as far as a load along it knows it."""
+
+    @property
+    def link(self) -> str: ...
+    @property
+    def point(self) -> str: ...
+    @property
+    def angle(self) -> float: ...
+
+
 @declared
 class Load(Frozen):
     """A force at a point of a link, or a torque on a link: from outside the machine, or between the
@@ -114,11 +126,13 @@ class Load(Frozen):
     """
 
     called = to_say("{what} of load {number}")
-    file_order = ("link", "point", "force", "torque", "table", "outside", "from", "to", "reaction")
+    file_order = ("link", "point", "force", "torque", "table", "axes", "outside", "from", "to",
+                  "reaction")  # fmt: skip
     conditions: ClassVar[Conditions] = {
         "oneOf": [{"required": [name]} for name in ("force", "torque", "table")],
         "dependentRequired": {
-            "from": ["to"], "to": ["from"], "force": ["point"], "outside": ["table"]
+            "from": ["to"], "to": ["from"], "force": ["point"], "outside": ["table"],
+            "axes": ["point"],
         },
     }  # fmt: skip
 
@@ -127,7 +141,7 @@ class Load(Frozen):
         TextKind(of="point", on="link"), "where a force acts; not for torques", default=None
     )
     force: Vector | None = key(
-        Listing(Quantity("force"), (2,)), "along x and y of the frame", default=None
+        Listing(Quantity("force"), (2,)), "along x and y of the frame, or of `axes`", default=None
     )
     torque: float | None = key("torque", "positive counterclockwise", default=None)
     start: float | None = key(
@@ -151,6 +165,13 @@ class Load(Frozen):
         "between both",
         default=None,
     )
+    axes: Literal["link", "slider"] | None = key(
+        TextKind(AXES),
+        "in which `force` or the table gives a force that turns: `link` for those of the loaded "
+        "link; `slider` for those of the slider in which the link slides, x along its direction, "
+        "wherever its guide turns; those of the frame where left out",
+        default=None,
+    )
     reaction: Literal["frame"] | None = key(
         TextKind(("frame",)),
         "what bears its opposite, in the same line: the frame, as of gas between a piston and the "
@@ -158,6 +179,18 @@ class Load(Frozen):
         "where left out",
         default=None,
     )
+
+    def guides(self, sliders: Iterable[LoadGuide]) -> list[LoadGuide]:
+        """Sliders in which its link slides: of several those, if any, whose point it acts at."""
+        own = [slider for slider in sliders if slider.link == self.link]
+        at_point = [slider for slider in own if slider.point == self.point]
+        return own if len(own) == 1 else at_point or own
+
+    def axes_angle(self, sliders: Iterable[LoadGuide]) -> float:
+        """From the x axis of its link to the one along which its force is given, rad; of a load
+        whose axes turn with its link.
+        """
+        return -self.guides(sliders)[0].angle if self.axes == "slider" else 0.0
 
     @property
     def jumps(self) -> tuple[tuple[float, int], ...]:
@@ -307,6 +340,8 @@ def wrong_load(where: str, load: Load, bodies: Bodies) -> Iterator[ModelError]:
         yield ModelError(
             f"{where}.point", Note("a torque acts on a link, not at a point; leave it out")
         )
+    if not forces and load.axes is not None:
+        yield ModelError(f"{where}.axes", Note("goes with a force; leave it out"))
     if (load.start is None) != (load.stop is None):
         yield ModelError(where, Note("give both from and to, or neither"))
     elif None not in (load.start, load.stop) and not 0 < abs(load.stop - load.start) <= TURN:  # type: ignore[operator]
@@ -317,6 +352,27 @@ def wrong_load(where: str, load: Load, bodies: Bodies) -> Iterator[ModelError]:
         yield from _wrong_loads(where, load.table, load.outside is not None or _within_rows(load))
     elif load.outside is not None:
         yield ModelError(f"{where}.outside", Note("goes with a table; leave it out"))
+
+
+def wrong_axes(where: str, load: Load, sliders: Iterable[LoadGuide]) -> Iterator[ModelError]:
+    """What is wrong with the slider along which a load acts."""
+    if load.axes != "slider":
+        return
+    if not (guides := load.guides(sliders)):
+        yield ModelError(
+            f"{where}.axes",
+            Note('{link!r} does not slide on any body; give axes = "link", or leave it out',
+                 link=load.link),
+        )  # fmt: skip
+    elif len(guides) > 1:
+        yield ModelError(
+            f"{where}.axes",
+            Note(
+                "{link!r} slides in several guides; give the point of one of them, or "
+                'axes = "link"',
+                link=load.link,
+            ),
+        )
 
 
 def _within_rows(load: Load) -> bool:

@@ -13,7 +13,7 @@ from equipoise.mechanism.parts.couplings import coupling_kinds
 from equipoise.mechanism.parts.drive_checks import wrong_drive, wrong_further, wrong_together
 from equipoise.mechanism.parts.element_kinds import part_kinds
 from equipoise.mechanism.parts.field import wrong_planting
-from equipoise.mechanism.parts.force_elements import wrong_load
+from equipoise.mechanism.parts.force_elements import wrong_axes, wrong_load
 from equipoise.mechanism.parts.joint_kinds import JointKind, wrong_names
 from equipoise.mechanism.parts.joint_properties import wrong_joint
 from equipoise.mechanism.parts.links import wrong_link, wrong_points
@@ -47,6 +47,8 @@ def problems_of(machine: Any) -> Iterator[ModelError]:
     for name, wrong in LISTS.items():
         for where, item in numbered(name, getattr(machine, name)):
             yield from wrong(where, item, bodies)
+    for where, item in numbered("loads", machine.loads):
+        yield from wrong_axes(where, item, machine.sliders)
     placed: list[tuple[str, Any]] = [
         pair
         for table in part_kinds(type(machine))
