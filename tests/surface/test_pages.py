@@ -152,13 +152,13 @@ CLAIMS = {
         f"{reports.SVG_FRAMES} steps a turn",
     ],
     "balancing.md": [
-        f"at least {100 * policy.LEAST_GAIN:.0f} % of its aim",
-        f"{100 * policy.LEAST_NET_GAIN:.0f} % more of it than the share that it adds",
-        f"of what adds mass {100 * policy.LEAST_GAIN_OF_ADDED:.0f} %",
-        f"makes at least {policy.AMPLIFIED:g} times the motion",
+        f"reduces its objective by at least {100 * policy.LEAST_GAIN:.0f} %",
+        f"by {100 * policy.LEAST_NET_GAIN:.0f} % more than the share that it adds",
+        f"with added mass by at least {100 * policy.LEAST_GAIN_OF_ADDED:.0f} %",
+        f"at least {policy.AMPLIFIED:g} times that of stiffness or mass alone",
         (
-            f"no thicker than {policy.THICKNESS_OF_REACH:g} of the largest radius that is looked "
-            f"at, {1e3 * policy.THICKEST_PLATE:.0f} mm, and"
+            f"no thicker than {policy.THICKNESS_OF_REACH:g} of the largest radius that is "
+            f"considered, {1e3 * policy.THICKEST_PLATE:.0f} mm, and"
         ),
         f"meet, {branch_and_bound.MOST_NODES} at the most",
         f"{geared.GRID} ratios, then",
@@ -204,8 +204,8 @@ CLAIMS = {
         f"most {steady.ROUNDS} times",
         f"{coupled.KNOTS} crank angles a turn",
     ],
-    "tools.md": [f"{design.TRIED} designs spread over the room"],
-    "trust.md": [f"{SAMPLES_OF_TURN} a turn"],
+    "tools.md": [f"{design.TRIED} designs of a Sobol sequence"],
+    "trust.md": [f"{SAMPLES_OF_TURN} crank angles a turn"],
     "vibration.md": [f"at most {steady.MOST_SWINGS} free swings"],
 }
 """Numbers in words of pages that are constants of the code."""
