@@ -24,7 +24,7 @@ from equipoise.mechanism.dynamics.undecided import undecided
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.kinematics.dwell import Dwell
 from equipoise.mechanism.kinematics.jumps import jumps_of, resolved
-from equipoise.mechanism.kinematics.motion import Motion, move
+from equipoise.mechanism.kinematics.motion import Motion, move, move_again
 from equipoise.mechanism.kinematics.stroke_figures import Stroke
 from equipoise.mechanism.kinematics.strokes import dwell, strokes
 from equipoise.mechanism.outputs.declared import DECLARED, Found
@@ -225,7 +225,7 @@ class Analysis(Result):
             for phase in (row.phase for row in rows):
                 if phase not in of_phase:
                     theta = self.crank_angle + phase
-                    turned = move(self.machine, theta, motion.speed, motion.acceleration)
+                    turned = move_again(self.machine, theta, motion.speed, motion.acceleration)
                     own = forces(turned, found.about) if phase else found
                     of_phase[phase] = _of_one_row(own)
                 yield of_phase[phase]

@@ -132,13 +132,13 @@ class Friction(Source):
         of_acceleration = parts[:, :, 2]
         without = parts[:, :, 0] + speed**2 * parts[:, :, 1] + free * of_acceleration
         response = parts[:, :, KNOWN:] + np.einsum("jcn,kn->jckn", of_acceleration, rates / inertia)
-        result = self._found(rates, speed, sense, Press(without, response))
+        result = self._found(rates, speed, sense, Press.of(without, response))
         return np.asarray(result.reshape(shape))
 
     def breakaway(self, columns: Array, sense: float) -> float:
         """Torque, N m, that has to be exceeded for the crank to leave its rest in a sense."""
         _, rates, parts = self._split(columns)
-        press = Press(parts[:, :, 0], parts[:, :, KNOWN:])
+        press = Press.of(parts[:, :, 0], parts[:, :, KNOWN:])
         return -sense * float(self._found(rates, np.zeros(1), sense, press)[0])
 
     def _split(self, columns: Array) -> tuple[Array, Array, Array]:

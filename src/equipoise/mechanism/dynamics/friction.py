@@ -12,16 +12,20 @@ radius of the driven one, and v how fast that turns on its carrier.
 
 The pass over the joints is linear in what acts on links, friction too.  So what presses in each
 joint is known, by one stack of passes, as a sum of what it is without friction and of what a unit
-of each friction adds; and the friction of all joints follows by Newton's method, at all crank
-angles at once.  Where coefficients grow from 0, the solution changes smoothly until the matrix of
-this method is singular: there a machine locks itself, and beyond no drive torque moves it that way.
+of each friction adds, which depends on the pose alone and is kept with it.  Then the law is put
+into itself, at all crank angles at once, until it holds: where friction changes what presses by
+less than itself, this converges to the only solution, and in few rounds, as coefficients are small.
+Elsewhere friction follows by Newton's method.  Where coefficients grow from 0, the solution changes
+smoothly until the matrix of this method is singular: there a machine locks itself, and beyond no
+drive torque moves it that way.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
 from math import degrees
+from typing import TypeVar
 
 import numpy as np
 
@@ -44,11 +48,16 @@ from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.kinematics.rubbing import RubbingJoint, rubbing_joints
 
 Demands = Mapping[str, Demand]
+Kept = TypeVar("Kept")
 
 CLOSE = 1e-13
 """Share of the largest friction at a crank angle by which the law may be missed."""
 MOST_ROUNDS = 20
 """Of Newton's method, which takes 3 to 6: the law is a piecewise linear or a smooth one."""
+FIRST_INSERTIONS, MOST_INSERTIONS = 4, 16
+"""Of the law into itself, after which it is looked at whether it holds, and at most.  Machines of
+usual coefficients take 5 to 10 of these, each of which costs a tenth of a round of Newton's method;
+what takes more is left to that."""
 FLANKS = 8
 """Rounds after which flanks, or strands, that friction loads the other way have to stay."""
 FIRST_STEP, LAST_STEP = 0.25, 1e-4
@@ -99,48 +108,56 @@ class FrictionLaw:
         return np.array(rows)
 
     @cached_property
-    def pins(self) -> Array:
-        """(J,) whether a joint is a pin, whose force presses whatever its direction."""
-        return np.array([joint.slider is None for joint in self.joints])
+    def sliders(self) -> Array:
+        """Places of joints whose force presses across their guide; that of all others presses
+        whatever its direction, and both its parts count as they are.
+        """
+        return np.flatnonzero([joint.slider is not None for joint in self.joints])
 
-    def pressing(self, parts: Array) -> tuple[Array, Array]:
-        """What presses (J, N), N, by parts (J, 2, N), and its derivatives (J, 2, N) by them."""
+    def pressing(self, parts: Array) -> Array:
+        """What presses (J, N), N, by parts (J, 2, N)."""
+        size = _length(parts[:, 0], parts[:, 1])
+        if len(sliders := self.sliders):
+            size[sliders] = np.max(np.abs(parts[sliders]) * self.levers[sliders, :, None], axis=1)
+        return size
+
+    def slopes(self, parts: Array) -> Array:
+        """Derivatives (J, 2, N) of what presses by parts (J, 2, N)."""
         scaled = parts * self.levers[..., None]
-        size, slopes = np.empty(parts[:, 0].shape), np.empty_like(scaled)
-        if len(pins := np.flatnonzero(self.pins)):
-            own = scaled[pins]
-            size[pins] = length = np.hypot(own[:, 0], own[:, 1])
-            slopes[pins] = own / np.where(length > 0, length, 1.0)[:, None]
-        if len(sliders := np.flatnonzero(~self.pins)):
+        size = _length(scaled[:, 0], scaled[:, 1])
+        slopes = scaled / np.where(size > 0, size, 1.0)[:, None]
+        if len(sliders := self.sliders):
             own = scaled[sliders]
             first, second = np.abs(own[:, 0]), np.abs(own[:, 1])
-            size[sliders] = np.maximum(first, second)
-            larger = np.stack([first >= second, second > first], axis=1)
-            slopes[sliders] = np.sign(own) * larger
-        return size, slopes * self.levers[..., None]
+            slopes[sliders] = np.sign(own) * np.stack([first >= second, second > first], axis=1)
+        return np.asarray(slopes * self.levers[..., None])
+
+    def followed(self, efforts: Array, press: Press) -> Array:
+        """Friction (J, N) of what presses with some friction (J, N)."""
+        return np.asarray(-(self.grip * self.pressing(press.parts(efforts)) + self.given))
 
     def missed(self, efforts: Array, share: Array, press: Press) -> tuple[Array, Array]:
         """By how much efforts (J, N) miss the law, and its derivatives (J, J, N) by them.
 
         share : (N,) of the coefficients.
         """
-        size, slopes = self.pressing(press.parts(efforts))
-        grip = share * self.grip
-        missed = efforts + grip * size + self.given
-        slopes = grip[:, None] * slopes
+        parts, grip = press.parts(efforts), share * self.grip
+        missed = efforts + grip * self.pressing(parts) + self.given
+        slopes = grip[:, None] * self.slopes(parts)
         slope = slopes[:, 0, None] * press.response[:, 0]
         slope += slopes[:, 1, None] * press.response[:, 1]
         own = np.arange(len(self.joints))
         slope[own, own] += 1.0
         return missed, slope
 
-    def contracts(self, press: Press) -> bool:
-        """Whether friction changes what presses by less than itself, whatever presses: then rows
-        of the derivatives have more on their diagonal than beside it.
+    def contraction(self, press: Press) -> Array:
+        """By which share of itself (N,), at most, friction changes friction, whatever presses.
+
+        Below 1 rows of the derivatives have more on their diagonal than beside it, and the law put
+        into itself converges by this share each time.
         """
-        reach = np.abs(self.grip)[:, None] * np.abs(self.levers)[..., None]
-        beside = np.einsum("jcn,jckn->jn", reach, np.abs(press.response))
-        return bool(np.max(beside, initial=0.0) < 1)
+        beside = np.abs(self.grip) * np.einsum("jc,jcn->jn", np.abs(self.levers), press.most)
+        return np.asarray(np.max(beside, axis=0, initial=0.0))
 
     def at(self, some: Array) -> FrictionLaw:
         """At some of the N crank angles."""
@@ -154,10 +171,17 @@ class Press:
     slider.
 
     without : (J, 2, N) without friction.  response : (J, 2, J, N) to a unit of each friction.
+    most : (J, 2, N) that a unit of every friction adds at most, of whatever signs.
     """
 
     without: Array
     response: Array
+    most: Array
+
+    @classmethod
+    def of(cls, without: Array, response: Array) -> Press:
+        """With what units add at most."""
+        return cls(without, response, most_added(response))
 
     def parts(self, efforts: Array) -> Array:
         """(J, 2, N), with friction (J, N)."""
@@ -166,7 +190,17 @@ class Press:
 
     def at(self, some: Array) -> Press:
         """At some of the N crank angles."""
-        return Press(self.without[..., some], self.response[..., some])
+        return Press(self.without[..., some], self.response[..., some], self.most[..., some])
+
+
+def most_added(response: Array) -> Array:
+    """What a unit of every friction (J, 2, J, N) adds at most (J, 2, N), of whatever signs."""
+    return np.asarray(np.sum(np.abs(response), axis=2))
+
+
+def _length(x: Array, y: Array) -> Array:
+    """Of vectors, in a fifth of the time that `hypot` takes to keep forces of 1e154 N and more."""
+    return np.asarray(np.sqrt(x * x + y * y))
 
 
 # -- the law and the balance of forces together ----------------------------------------------------
@@ -176,19 +210,50 @@ def balanced(law: FrictionLaw, press: Press, start: Array | None = None) -> tupl
     """Friction (J, N) that obeys the law with the forces that it makes itself, and the share (N,)
     of the coefficients up to which there is one: 1 where it is that of the whole.
     """
-    count = law.rates.shape[1]
-    efforts = np.zeros_like(law.rates) if start is None else start
-    whole = np.ones(count)
-    efforts, good = _newton(law, press, efforts, whole)
-    if not np.all(good):
-        bad = np.flatnonzero(~good)
+    efforts = np.zeros_like(law.rates) if start is None else start.copy()
+    whole, contraction = np.ones(law.rates.shape[1]), law.contraction(press)
+    contracts = contraction < 1
+    good = np.zeros_like(contracts)
+    if np.any(contracts):
+        inserted, held = _inserted(law, press, efforts, contraction)
+        good = held & contracts
+        efforts = np.where(good, inserted, efforts)
+    for some in (contracts, ~contracts):
+        if len(rest := np.flatnonzero(some & ~good)):
+            own, beside = law.at(rest), press.at(rest)
+            efforts[:, rest], good[rest] = _newton(
+                own, beside, efforts[:, rest], whole[rest], some is contracts
+            )
+    if len(bad := np.flatnonzero(~good)):
         efforts[:, bad], whole[bad] = _grown(law.at(bad), press.at(bad))
     return efforts, whole
 
 
-def _newton(law: FrictionLaw, press: Press, efforts: Array, share: Array) -> tuple[Array, Array]:
-    """Efforts (J, N), and where they obey the law and are those that grow from none (N,)."""
-    contracts = law.contracts(press)
+def _inserted(
+    law: FrictionLaw, press: Press, efforts: Array, contraction: Array
+) -> tuple[Array, Array]:
+    """Efforts (J, N) by the law put into itself, and where (N,) they obey it: what the last time
+    has changed, times the contraction (N,), is what they miss it by at most.
+    """
+    given = np.max(np.abs(law.given), axis=0)
+    for _ in range(FIRST_INSERTIONS):
+        efforts = law.followed(efforts, press)
+    for _ in range(MOST_INSERTIONS - FIRST_INSERTIONS):
+        before, efforts = efforts, law.followed(efforts, press)
+        size = np.max(np.abs(before), axis=0) + given
+        good = contraction * np.max(np.abs(efforts - before), axis=0) <= CLOSE * size
+        if np.all(good):
+            break
+    return efforts, good
+
+
+def _newton(
+    law: FrictionLaw, press: Press, efforts: Array, share: Array, contracts: bool
+) -> tuple[Array, Array]:
+    """Efforts (J, N), and where they obey the law and are those that grow from none (N,).
+
+    contracts : as the law says of all these crank angles.
+    """
     step_of = _eliminated if contracts else _step
     for _ in range(MOST_ROUNDS):
         missed, slopes = law.missed(efforts, share, press)
@@ -247,7 +312,8 @@ def _grown(law: FrictionLaw, press: Press) -> tuple[Array, Array]:
     while np.any(going := (share < 1) & (step >= LAST_STEP)):
         some = np.flatnonzero(going)
         tried = np.minimum(share[some] + step[some], 1.0)
-        result, good = _newton(law.at(some), press.at(some), efforts[:, some], tried)
+        own, beside = law.at(some), press.at(some)
+        result, good = _newton(own, beside, efforts[:, some], tried, contracts=False)
         efforts[:, some[good]], share[some[good]] = result[:, good], tried[good]
         step[some] *= np.where(good, 1.0, 0.5)
     return efforts, share
@@ -259,8 +325,31 @@ def _grown(law: FrictionLaw, press: Press) -> tuple[Array, Array]:
 def law_of(motion: Motion) -> FrictionLaw:
     """The law of the joints of a motion."""
     joints = rubbing_joints(motion.linkage)
-    rates = np.array([joint.rate(motion) for joint in joints]) * motion.speed
-    return FrictionLaw.of(joints, rates, np.sign(rates))
+    rates = _kept(motion, "rates of friction", joints,
+                  lambda: np.array([joint.rate(motion) for joint in joints]))  # fmt: skip
+    return FrictionLaw.of(joints, rates * motion.speed, np.sign(rates * motion.speed))
+
+
+def response_of(
+    motion: Motion, joints: Sequence[RubbingJoint], units: Sequence[Demands]
+) -> tuple[Array, Array]:
+    """Parts (J, 2, J, N) of what presses in joints with a unit of friction in each of them, where
+    no coupling bears on one flank or the other, and what they add at most (J, 2, N).
+    """
+    response = _kept(motion, "response to friction", joints,
+                     lambda: pressing_rows(motion, units, joints, None))  # fmt: skip
+    return response, _kept(motion, "most friction", joints, lambda: most_added(response))
+
+
+def _kept(
+    motion: Motion, what: str, joints: Sequence[RubbingJoint], compute: Callable[[], Kept]
+) -> Kept:
+    """What depends on the pose and on which joints rub alone: kept with the state of the motion."""
+    name = f"{what}({', '.join(joint.name for joint in joints)})"
+    if name not in motion.state:
+        motion.state[name] = compute()
+    value: Kept = motion.state[name]
+    return value
 
 
 def unit_demands(motion: Motion, joints: Sequence[RubbingJoint]) -> list[dict[str, Demand]]:
@@ -311,7 +400,7 @@ def with_friction(motion: Motion, demands: Demands, like: Pass | None = None) ->
     LockError : the machine locks itself.
     """
     law = law_of(motion)
-    units = unit_demands(motion, law.joints)
+    units = _kept(motion, "units of friction", law.joints, lambda: unit_demands(motion, law.joints))
     result = like
     if result is None and motion.machine.switches:
         result = reactions(motion, demands)
@@ -325,7 +414,7 @@ def with_friction(motion: Motion, demands: Demands, like: Pass | None = None) ->
         if result is None or like is not None or _same_flanks(result, solved):
             break
         result = solved
-    size, _ = law.pressing(press.parts(efforts))
+    size = law.pressing(press.parts(efforts))
     frictions = [
         JointFriction(
             joint.on,
@@ -351,8 +440,12 @@ def press_of(
     like: Pass | None,
 ) -> Press:
     """What presses in joints: of the demands, and of each unit."""
+    if like is None:
+        shape = motion.crank_angle.shape
+        without = pressing_parts(reactions(motion, demands), joints, shape)
+        return Press(without, *response_of(motion, joints, units))
     parts = pressing_rows(motion, [demands, *units], joints, like)
-    return Press(parts[:, :, 0], parts[:, :, 1:])
+    return Press.of(parts[:, :, 0], parts[:, :, 1:])
 
 
 def pressing_rows(

@@ -16,7 +16,7 @@ import numpy as np
 
 from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.assembly.steps import Array
-from equipoise.mechanism.kinematics.motion import Motion, move
+from equipoise.mechanism.kinematics.motion import Motion, move, move_again
 from equipoise.mechanism.kinematics.rubbing import RubbingJoint, rubbing_joints
 from equipoise.mechanism.kinematics.tip import crossings, roots, surface_of
 from equipoise.mechanism.parts.cams import Cam
@@ -113,9 +113,13 @@ def resolved(motion: Motion) -> Motion:
     jumps = jumps_of_rows(motion.linkage)
     if not len(jumps):
         return motion
-    bends = bends_of_rows(motion.machine, motion.turns)
-    sampling = JumpSampling.of(motion.crank_angle, motion.turns, jumps, bends)
-    moved = move(motion.machine, sampling.crank_angle, motion.speed, motion.acceleration)
+    bends, theta = bends_of_rows(motion.machine, motion.turns), motion.crank_angle
+    key = len(theta), jumps.tobytes(), bends.tobytes()
+    last_key, sampling = motion.linkage.memory.get("sampling", (None, None))
+    if key != last_key:
+        sampling = JumpSampling.of(theta, motion.turns, jumps, bends)
+        motion.linkage.memory["sampling"] = key, sampling  # the last alone, as they take memory
+    moved = move_again(motion.machine, sampling.crank_angle, motion.speed, motion.acceleration)
     return replace(moved, whole_cycle=True, sampling=sampling)
 
 

@@ -130,7 +130,11 @@ class Motion(Displayed):
         def taken(value: Any) -> Any:
             return value[..., places] if np.shape(value)[-1:] == (count,) else value
 
-        state = {name: taken(value) for name, value in self.state.items()}
+        state = {  # what is kept with it, such as units of inertia, is of all crank angles
+            name: taken(value)
+            for name, value in self.state.items()
+            if not isinstance(value, Mapping | list)
+        }
         angles = self.crank_angle[places]
         return replace(self, crank_angle=angles, whole_cycle=False, state=state, sampling=None)
 
@@ -439,11 +443,24 @@ def move(
         return _in_slots(Motion(linkage, theta, *rates, True, state))
     theta = _given_angles(angles)
     rates = _rates(machine.drive, speed, acceleration)
+    return _in_slots(Motion(linkage, theta, *rates, False, _solved(linkage, theta)))
+
+
+def move_again(machine: Machine, angles: Array, speed: float, acceleration: float) -> Motion:
+    """As `move` at crank angles (N,), of which the poses are kept: for angles that a machine is
+    looked at again and again, with other masses or speeds.
+    """
+    linkage = assemble(machine)
+    find = _poses_at if len(angles) > MOST_KEPT else _kept_poses_at
+    theta, state = find(_Angles(linkage, angles))
+    return _in_slots(Motion(linkage, theta, speed, acceleration, False, state))
+
+
+def _solved(linkage: Linkage, theta: Array) -> State:
     try:
-        state = linkage.solve(theta)
+        return linkage.solve(theta)
     except (RangeError, ChangePointError) as error:
-        state = solve_swinging(linkage, theta, error)
-    return _in_slots(Motion(linkage, theta, *rates, False, state))
+        return solve_swinging(linkage, theta, error)
 
 
 def _in_slots(motion: Motion) -> Motion:
@@ -483,14 +500,42 @@ class _CycleGrid:
 def _poses(grid: _CycleGrid) -> tuple[Array, State]:
     """Crank angles and state, in arrays to which nobody writes."""
     theta = _cycle_angles(grid.linkage, grid.count)
-    state = grid.linkage.solve(theta)
+    return _unwritten(theta, grid.linkage.solve(theta))
+
+
+@dataclass(frozen=True, eq=False)
+class _Angles:
+    """Crank angles of a linkage: equal for machines that differ in masses or speed."""
+
+    linkage: Linkage
+    crank_angle: Array
+
+    def __eq__(self, other: object) -> bool:
+        return (
+            isinstance(other, _Angles)
+            and other.linkage.anchors is self.linkage.anchors
+            and np.array_equal(other.crank_angle, self.crank_angle)
+        )
+
+    def __hash__(self) -> int:
+        return hash((id(self.linkage.anchors), self.crank_angle.tobytes()))
+
+
+def _poses_at(angles: _Angles) -> tuple[Array, State]:
+    """Likewise at given crank angles."""
+    theta = angles.crank_angle.copy()
+    return _unwritten(theta, _solved(angles.linkage, theta))
+
+
+def _unwritten(theta: Array, state: State) -> tuple[Array, State]:
+    """Both, in arrays to which nobody writes."""
     for values in (theta, *state.values()):
         if isinstance(values, np.ndarray):
             values.setflags(write=False)
     return theta, state
 
 
-_kept_poses = lru_cache(8)(_poses)
+_kept_poses, _kept_poses_at = lru_cache(8)(_poses), lru_cache(8)(_poses_at)
 """Those of the last few linkages, so that other speeds and masses reuse them."""
 
 
