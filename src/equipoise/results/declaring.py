@@ -287,7 +287,7 @@ def figures_of(holder: Any, declared: Declarations) -> Iterator[Table]:
 
 def documented(declared: Declarations) -> str:
     """The outputs of a result as a table of the documentation, in Markdown."""
-    head = "| key | unit | what it is | CSV |\n|---|---|---|---|\n"
+    head = "| key | unit | meaning | CSV |\n|---|---|---|---|\n"
     return head + "".join(_rows(declared, ""))
 
 

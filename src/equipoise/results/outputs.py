@@ -204,7 +204,7 @@ def unit_of(name: str) -> str:
 
 def documented() -> str:
     """All declared outputs as the table of the documentation, in Markdown."""
-    head = "| output | unit | what it is | needs | stands in |\n|---|---|---|---|---|\n"
+    head = "| output | unit | meaning | needs | listed in |\n|---|---|---|---|---|\n"
     return head + "".join(map(_documented, DECLARED.values()))
 
 
@@ -232,7 +232,7 @@ def documented_figures(of: type) -> str:
 
 
 def _documented_figures(classes: Mapping[str, type]) -> str:
-    head = "| figure | unit | what it is |\n|---|---|---|\n"
+    head = "| figure | unit | meaning |\n|---|---|---|\n"
     return head + "".join(
         f"| `{before}{one.name}` | {_unit_of_figure(one)} | {one.metadata['label']} |\n"
         for before, of in classes.items()
