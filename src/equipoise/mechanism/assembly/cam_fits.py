@@ -210,7 +210,7 @@ def pressure_angle(cam: Cam, state: State) -> Array:
 
 def sharpest(fit: CamFit) -> tuple[float, float]:
     """Least radius of curvature of a cam's surface, m, and the cam angle, rad, of it."""
-    return lowest(fit.shape(fit.knots), lambda one: abs(one.radius_of_curvature), fit.knots)
+    return lowest(fit.shape(fit.knots), lambda item: abs(item.radius_of_curvature), fit.knots)
 
 
 @dataclass(frozen=True)
@@ -238,18 +238,18 @@ def check_shape(machine: Machine, joints: Structure, fit: CamFit) -> None:
             raise ModelError(place_in_file(joints, fit.cam), note)
 
 
-def _with_radius(told: Note, machine: Machine, joints: Structure, cam: Cam) -> Note:
+def _with_radius(note: Note, machine: Machine, joints: Structure, cam: Cam) -> Note:
     """What is wrong with a cam, and with which base radius it can be made."""
     least = larger_base(machine, joints, cam)
     if least is None:
         most = LARGEST * cam.base_radius * 1e3
         return Note(
             "{told}; no {base_radius} up to {most:.4g} mm does",
-            told=told, most=most, **key_names("base_radius"),
+            told=note, most=most, **key_names("base_radius"),
         )  # fmt: skip
     return Note(
         "{told}; {least:.4g} mm is the least {base_radius} that does",
-        told=told,
+        told=note,
         least=least * 1e3,
         **key_names("base_radius"),
     )
@@ -322,7 +322,7 @@ def _demands(cam: Cam) -> Iterator[Demand]:
             mended=False,
         )
     yield Demand(
-        lambda one: np.cos(one.pressure_angle) - STEEPEST,
+        lambda item: np.cos(item.pressure_angle) - STEEPEST,
         lambda _, angle: Note(
             "the follower jams at cam angle {angle:.4g} deg, where the pressure angle is 90 "
             "deg; give a larger {base_radius}, or another place of the follower",

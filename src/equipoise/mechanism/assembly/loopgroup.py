@@ -143,11 +143,11 @@ class LoopForces:
 
 
 def loop_group(
-    builder: Builder, joints: Structure, links: tuple[str, ...], near: Position | None = None
+    builder: Builder, joints: Structure, links: tuple[str, ...], guess: Position | None = None
 ) -> Group:
     """Make the group of these links, with `builder` knowing them afterwards.
 
-    near : about where they are at crank angle 0, if not the file but others tell it.
+    guess : about where they are at crank angle 0, if not the file but others tell it.
     """
     maker = Maker(builder, joints, links)
     before, loops = maker.prepare()
@@ -168,7 +168,7 @@ def loop_group(
         solved = replace(unsolved, start=text[:, 0])
     else:
         run(before, builder.now)
-        solved, loops = _solve_start(builder, before, unsolved, loops, near)
+        solved, loops = _solve_start(builder, before, unsolved, loops, guess)
     builder.add(maker.anchors, {maker.anchors[link] for link in links})
     builder.running.update(place.link for place in solved.tree if place.counted)
     reactions = tuple(maker.reaction(loop) for loop in loops)

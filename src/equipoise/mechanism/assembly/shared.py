@@ -237,7 +237,7 @@ def too_short(groups: Sequence[Group], state: State, size: float) -> Note | str:
         off = np.abs(needed - abs(call.parameters[0]))
         at = int(np.argmax(off))
         result.append((off[at], at, group.links[0], first[2:-1], second[2:-1], needed, call))
-    if not result or (worst := max(result, key=lambda one: one[0]))[0] <= AGREES * size:
+    if not result or (worst := max(result, key=lambda item: item[0]))[0] <= AGREES * size:
         return ""
     off, at, link, first, second, needed, call = worst
     low, high = float(np.min(needed)), float(np.max(needed))

@@ -112,19 +112,19 @@ class SwingWithin:
     room: Note
 
 
-def swing_within(linkage: Assembled, found: Reach) -> SwingWithin:
+def swing_within(linkage: Assembled, reach: Reach) -> SwingWithin:
     """A sine within what a crank can reach, with ends that a file can hold.
 
     Its ends keep transmission angles that a designer would take, where these leave enough of the
     range.  Where a rough position or starts of couplings say how the machine is at a crank angle,
     the crank is there at that angle as before.
     """
-    machine, span = linkage.machine, found.high - found.low
+    machine, span = linkage.machine, reach.high - reach.low
     digits = max(0, DIGITS - floor(log10(degrees(span))))
     at = None
     if machine.couplings or machine.position is not None:
         at = 0.0 if machine.position is None else degrees(machine.position.crank_angle)
-    choices = [(found.low + share * span, found.high - share * span, room)
+    choices = [(reach.low + share * span, reach.high - share * span, room)
                for share, room in ((AWAY, KEEPS_AWAY), (SHORT, KEEPS_SHORT))]  # fmt: skip
     if (good := _well_transmitted(linkage, *choices[0][:2])) is not None:
         choices.insert(0, (*good, KEEPS_ANGLES))

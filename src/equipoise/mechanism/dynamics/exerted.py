@@ -59,4 +59,4 @@ class Exerted(HasCouplings, ABC):
     @cached_property
     def couplings(self) -> CouplingForces:
         """Force of each coupling on its driven body, by list of the file and name."""
-        return self.solved.couplings(lambda one: one.preload if self.preloads else 0.0)
+        return self.solved.couplings(lambda item: item.preload if self.preloads else 0.0)

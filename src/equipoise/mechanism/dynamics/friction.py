@@ -476,9 +476,9 @@ def added(demands: Demands, units: Sequence[Demands], efforts: Array) -> dict[st
     return total
 
 
-def _same_flanks(one: Pass, other: Pass) -> bool:
+def _same_flanks(reactions: Pass, other: Pass) -> bool:
     flanks = other.flanks
-    return all(np.array_equal(value, flanks[name]) for name, value in one.flanks.items())
+    return all(np.array_equal(value, flanks[name]) for name, value in reactions.flanks.items())
 
 
 def _locked(

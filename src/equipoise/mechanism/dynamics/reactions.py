@@ -353,9 +353,9 @@ def _passed(motion: Motion, demands: Mapping[str, Demand], like: Pass | None) ->
     return Pass(motion, state)
 
 
-def pushed(found: Pass) -> Array | None:
+def pushed(reactions: Pass) -> Array | None:
     """Force of a drive that pushes, None of any other."""
-    return found.drive_force if found.motion.machine.drive.pushes else None
+    return reactions.drive_force if reactions.motion.machine.drive.pushes else None
 
 
 def full(motion: Motion, value: Any, kind: type) -> Array:

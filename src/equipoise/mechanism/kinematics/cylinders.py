@@ -317,9 +317,9 @@ def _shown(length: float) -> str:
     return format_exact(float(f"{length:.5g}"), "length")
 
 
-def _has(one: Branch, at: float) -> bool:
+def _has(branch: Branch, at: float) -> bool:
     """Whether an angle, or the same some turns on, is in a branch."""
-    low, high = one.ends
+    low, high = branch.ends
     return low <= at + 2 * pi * ceil((low - at) / (2 * pi)) <= high
 
 

@@ -257,14 +257,14 @@ class MachineDraft:
         return Drive(next(iter(self.links), ""), 0.0)
 
 
-def _known(one: Turning, angles: Mapping[str, tuple[float, float]]) -> bool:
+def _known(turning: Turning, angles: Mapping[str, tuple[float, float]]) -> bool:
     """Whether its driver and its carrier stand where it is known, and what it drives does not."""
-    return {one.driver, one.carrier} <= angles.keys() and one.driven not in angles
+    return {turning.driver, turning.carrier} <= angles.keys() and turning.driven not in angles
 
 
-def _way(one: Turning, driver: tuple[float, float], carrier: tuple[float, float]) -> float:
+def _way(turning: Turning, driver: tuple[float, float], carrier: tuple[float, float]) -> float:
     """How far a driven link turns while driver and carrier turn from one angle to another."""
-    kernel, numbers = one.relation
+    kernel, numbers = turning.relation
     before, after = (
         float(kernel(angle, 0.0, 0.0, other, 0.0, 0.0, *numbers, 0.0)[0])
         for angle, other in zip(driver, carrier, strict=True)

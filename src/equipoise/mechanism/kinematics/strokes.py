@@ -189,7 +189,7 @@ def _turning(angles: Array, places: Array) -> list[DeadPosition]:
 
 
 def _stroke(
-    one: _Output,
+    output: _Output,
     linkage: Linkage,
     samples: Array,
     dead: tuple[DeadPosition, ...],
@@ -207,11 +207,11 @@ def _stroke(
     fall = float(np.min(way * (angles[bottoms] - top.gone(way)) % period))
     held = longest_dwell(_along(samples[0], samples[1], samples[2], period), SHARE * stroke)
     advantage, at = None, None
-    holds = one.kind == "rocker" or one.name in guided(linkage.machine)
+    holds = output.kind == "rocker" or output.name in guided(linkage.machine)
     if holds and linkage.machine.has_crank:
         advantage, at = 1 / float(fastest[0]), float(fastest[1] % period)
     return Stroke(
-        one.kind,
+        output.kind,
         stroke,
         low.place,
         low.crank_angle,
@@ -290,5 +290,5 @@ def _held(path: Path, tolerance: float | None) -> Dwell:
     return longest_dwell(path, tolerance)
 
 
-def _ends_of(found: Dwell) -> tuple[float, float]:
-    return found.angle, found.begin
+def _ends_of(dwell: Dwell) -> tuple[float, float]:
+    return dwell.angle, dwell.begin

@@ -44,7 +44,7 @@ XY, FORCES = (".x", ".y"), (".force_x", ".force_y")
 
 of_link = alike(
     "links.{}.",
-    lambda name, found, link: getattr(found.motion.links[link], name),
+    lambda name, result, link: getattr(result.motion.links[link], name),
     needs="motion",
     members=lambda machine: machine.links,
     summed=False,
@@ -67,7 +67,7 @@ of_link(
 
 of_point = alike(
     "points.{}.",
-    lambda name, found, point: getattr(found.motion.points[point], name),
+    lambda name, result, point: getattr(result.motion.points[point], name),
     needs="motion",
     members=lambda machine: bodies_at(machine.bodies),
     summed=False,
@@ -92,7 +92,7 @@ of_point(
 
 of_slider = alike(
     "sliders.{}.",
-    lambda name, found, slider: getattr(found.motion.sliders[slider], name),
+    lambda name, result, slider: getattr(result.motion.sliders[slider], name),
     needs="motion",
     members=slider_names,
     spoken=joint_named,
@@ -116,16 +116,16 @@ of_slider(
 )
 of_dyad = alike(
     "transmission.{}",
-    lambda _, found, joint: found.motion.transmission[joint],
+    lambda _, result, joint: result.motion.transmission[joint],
     needs="motion",
     members=lambda machine: (),
-    items=lambda found: found.motion.transmission,
+    items=lambda result: result.motion.transmission,
     spoken=joint_named,
 )
 of_dyad("", "angle", to_say("transmission angle at {name}"), yardstick="transmission")
 of_pair = alike(
     "centers.{}",
-    lambda _, found, pair: instant_center(found.motion, pair),
+    lambda _, result, pair: instant_center(result.motion, pair),
     needs="motion",
     members=pairs,
     spoken=pair_named,
@@ -137,8 +137,8 @@ of_pair("", "length", to_say("instant centre of {name}"), (".x", ".y"))
 # -- frame and drive -------------------------------------------------------------------------------
 
 
-def _force(name: str, found: Any) -> Any:
-    return getattr(found.forces, name)
+def _force(name: str, result: Any) -> Any:
+    return getattr(result.forces, name)
 
 
 linear = alike("", _force, linear=True, loop=True)
@@ -156,7 +156,7 @@ linear("frame_force", "force", to_say("force on the frame"), XY, summed=(True, F
 linear("frame_moment", "torque", to_say("moment on the frame"), about=True)
 of_space = alike(
     "",
-    lambda name, found: getattr(found.forces.across, name),
+    lambda name, result: getattr(result.forces.across, name),
     needs="planes",
     members=lambda machine: ("",) if machine.has_planes else (),
     linear=True,
@@ -182,9 +182,9 @@ of_weight("weight", "force", to_say("weight"), XY, sized=False)
 of_weight("weight_moment", "torque", to_say("moment of the weight"), about=True)
 of_center = alike(
     "mass_center.",
-    lambda _, found: -found.forces.shaking_force.value / found.machine.mass,
+    lambda _, result: -result.forces.shaking_force.value / result.machine.mass,
     reason=to_say("{what} is the shaking force over the mass; take the shaking force instead"),
-    items=lambda found: ("",) if found.machine.mass else (),
+    items=lambda result: ("",) if result.machine.mass else (),
     ordered=True,
     summed=False,
     sized=False,
@@ -193,8 +193,8 @@ of_center("acceleration", "acceleration", to_say("acceleration of the common cen
           ("ax", "ay"))  # fmt: skip
 
 
-def _of_drive(name: str, found: Any, link: str) -> Any:
-    effort, motion = found.forces.drives[link], found.motion
+def _of_drive(name: str, result: Any, link: str) -> Any:
+    effort, motion = result.forces.drives[link], result.motion
     return effort * motion.way(link) * motion.speed if name == "power" else effort
 
 
@@ -236,10 +236,10 @@ def _members(forces: Any, name: str, member: str) -> Any:
     return getattr(forces[member], name[1:]) if name else forces[member]
 
 
-def _of_joint(name: str, found: Any, joint: str) -> Any:
+def _of_joint(name: str, result: Any, joint: str) -> Any:
     if name == "tilting_moments":
-        return found.forces.across.tilting_moments[joint]
-    return _members(found.forces.joints, name, joint)
+        return result.forces.across.tilting_moments[joint]
+    return _members(result.forces.joints, name, joint)
 
 
 of_joint = alike(
@@ -256,7 +256,7 @@ of_joint(
     to_say("force in joint {name}"),
     FORCES,
     members=joint_names,
-    items=lambda found: found.forces.joints,
+    items=lambda result: result.forces.joints,
     loop=looked_up("joint force"),
     summed=(True, False),
     compared=FORCE,
@@ -266,7 +266,7 @@ of_joint(
 
 def _having(part: str) -> dict[str, Any]:
     """Joints whose force has a part."""
-    return {"items": lambda found: [n for n, joint in found.forces.joints.items()
+    return {"items": lambda result: [n for n, joint in result.forces.joints.items()
                                     if hasattr(joint, part)]}  # fmt: skip
 
 
@@ -285,17 +285,17 @@ of_joint(
     to_say("tilting moment in joint {name}"),
     XY,
     members=lambda machine: joint_names(machine) if machine.has_planes else (),
-    items=lambda found: found.forces.across.tilting_moments if found.machine.has_planes else (),
+    items=lambda result: result.forces.across.tilting_moments if result.machine.has_planes else (),
     had="tilting_moments",
     needs="planes",
     summed=(True, False),
 )
 of_bearing = alike(
     "bearings.{}",
-    lambda _, found, bearing: found.forces.across.bearings[bearing],
+    lambda _, result, bearing: result.forces.across.bearings[bearing],
     needs="planes",
     members=lambda machine: machine.bearings,
-    items=lambda found: found.forces.across.bearings if found.machine.bearings else (),
+    items=lambda result: result.forces.across.bearings if result.machine.bearings else (),
     linear=True,
     internal=True,
     by_friction=True,
@@ -312,8 +312,8 @@ of_bearing(
 )
 
 
-def _of_friction(name: str, found: Any, joint: str) -> Any:
-    return getattr(found.forces.frictions[joint], name)
+def _of_friction(name: str, result: Any, joint: str) -> Any:
+    return getattr(result.forces.frictions[joint], name)
 
 
 def _named_in_file(machine: Any, wanted: Callable[[Any], bool]) -> list[str]:
@@ -331,8 +331,8 @@ def _rubbing(*kinds: str) -> dict[str, Any]:
         mine = _named_in_file(machine, lambda one: one.rubs)
         return [item for item in mine if ("slider" if item in sliders else "pin") in kinds]
 
-    def items(found: Any) -> list[str]:
-        frictions = found.forces.frictions.items()
+    def items(result: Any) -> list[str]:
+        frictions = result.forces.frictions.items()
         return [name for name, item in frictions
                 if not item.table and ("pin" if item.is_pin else "slider") in kinds]  # fmt: skip
 
@@ -358,9 +358,9 @@ alike("", _force)(
 
 of_plain_bearing = alike(
     "joints.{}.",
-    lambda name, found, joint: getattr(found.forces.plain_bearings[joint], name),
-    members=lambda machine: _named_in_file(machine, lambda one: one.width is not None),
-    items=lambda found: found.forces.plain_bearings,
+    lambda name, result, joint: getattr(result.forces.plain_bearings[joint], name),
+    members=lambda machine: _named_in_file(machine, lambda item: item.width is not None),
+    items=lambda result: result.forces.plain_bearings,
     spoken=joint_named,
 )
 of_plain_bearing("pressure", "modulus", to_say("pressure in joint {name}"))
@@ -369,7 +369,7 @@ of_plain_bearing("pressure_speed", "pressure times speed",
 
 of_section = alike(
     "links.{}.",
-    lambda name, found, link: getattr(found.forces.sections[link], name),
+    lambda name, result, link: getattr(result.forces.sections[link], name),
     members=lambda machine: [name for name, link in machine.links.items() if link.section],
 )
 of_section("stress", "modulus", to_say("largest stress along {name}"))
@@ -391,9 +391,9 @@ def of_mesh(table: str) -> None:
         given = {joint.joint for joint in machine.joints if joint.mesh_loss}
         return [item.name for item in getattr(machine, table) if f"{table}.{item.name}" in given]
 
-    def items(found: Any) -> list[str]:
+    def items(result: Any) -> list[str]:
         return [
-            name for name, friction in found.forces.frictions.items() if friction.table == table
+            name for name, friction in result.forces.frictions.items() if friction.table == table
         ]
 
     label = to_say("power lost in passing on the force {name}")
@@ -419,13 +419,13 @@ def of_coupling(table: str) -> Callable[..., None]:
     """
     shared: dict[str, Any] = {"linear": True, "internal": True, "by_friction": True}
     shared |= _members_of(table)
-    read = lambda name, found, item: _members(found.forces.couplings[table], name, item)  # noqa: E731
+    read = lambda name, result, item: _members(result.forces.couplings[table], name, item)  # noqa: E731
     return alike(table + ".{}", read, **shared)
 
 
 def of_contacts(table: str) -> Callable[..., None]:
     """A way to declare what the motion tells of the contacts of couplings of a list."""
-    read = lambda name, found, item: getattr(found.motion, name + "s")[item]  # noqa: E731
+    read = lambda name, result, item: getattr(result.motion, name + "s")[item]  # noqa: E731
     return alike(table + ".{}.", read, needs="motion", **_members_of(table))
 
 
@@ -433,7 +433,7 @@ def of_element(table: str, name: str, dimension: Dimension, label: str) -> None:
     """Declare an output of the elements of a list of the file."""
     alike(
         table + ".{}.",
-        lambda name, found, item: found.motion.element_values(table, int(item) - 1)[name],
+        lambda name, result, item: result.motion.element_values(table, int(item) - 1)[name],
         members=lambda machine: [str(k + 1) for k in range(len(getattr(machine, table)))],
         needs="motion",
     )(name, dimension, label, loop=lambda value: value("element", table, name))
@@ -441,7 +441,7 @@ def of_element(table: str, name: str, dimension: Dimension, label: str) -> None:
 
 # -- rows and support ------------------------------------------------------------------------------
 
-of_rows = alike("rows.", lambda name, found: found.together[name], needs="rows", linear=True)
+of_rows = alike("rows.", lambda name, result: result.together[name], needs="rows", linear=True)
 of_rows("shaking_force", "force", to_say("shaking force"), XY, summed=(True, False), compared=FORCE,
         yardstick="weight")  # fmt: skip
 of_rows("shaking_moment", "torque", to_say("shaking moment"), compared=FORCE, yardstick="span")

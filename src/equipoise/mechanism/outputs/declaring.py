@@ -199,13 +199,13 @@ class Declared:
         """
         return _said(self, item, of_one and self.is_of_row, spoken())
 
-    def items_of(self, found: Any) -> Iterable[str]:
+    def items_of(self, result: Any) -> Iterable[str]:
         """Members that an analysis has; ``""`` where it is no family."""
-        return self.members(found.machine) if self.items is None else self.items(found)
+        return self.members(result.machine) if self.items is None else self.items(result)
 
-    def values(self, found: Any, item: str = "") -> Array:
+    def values(self, result: Any, item: str = "") -> Array:
         """Values (N,) of an analysis; the component, or the size, of what is a vector."""
-        whole = self.component(self.vector(found, item))
+        whole = self.component(self.vector(result, item))
         return abs(whole) if self.is_vector else whole
 
     def component(self, whole: Array) -> Array:
@@ -214,13 +214,13 @@ class Declared:
             return whole.real
         return whole.imag if self.part == "y" else whole
 
-    def vector(self, found: Any, item: str = "") -> Array:
+    def vector(self, result: Any, item: str = "") -> Array:
         """The same, complex of a vector, whichever of its parts this is.
 
-        found : whatever has the motion and the forces; (..., N) where the forces have more axes.
+        result : whatever has the motion and the forces; (..., N) where the forces have more axes.
         """
         assert self.read is not None
-        whole = self.read(found, item) if self.is_family else self.read(found)
+        whole = self.read(result, item) if self.is_family else self.read(result)
         import numpy as np  # here, so that a file is read without it
 
         return np.asarray(getattr(whole, "value", whole))
@@ -245,9 +245,9 @@ DECLARED: dict[str, Declared] = {}
 """Everything that is declared, by name, in the order in which it is told."""
 
 
-def declare_as(one: Declared) -> None:
+def declare_as(declared: Declared) -> None:
     """Declare an output as it is."""
-    DECLARED[one.name] = one
+    DECLARED[declared.name] = declared
     _matches.cache_clear()
 
 
@@ -356,11 +356,11 @@ def declared(name: str) -> tuple[Declared, str] | None:
 
 
 @lru_cache(8192)
-def _said(one: Declared, item: str, of_one: bool, language: str) -> str:
+def _said(declared: Declared, item: str, of_one: bool, language: str) -> str:
     """What a member is called in a language; a page says a hundred names at each move of a drag."""
     with speaking(language):
-        said = one.note(item).said()
-        if not Note(one.label).is_translated:
+        said = declared.note(item).said()
+        if not Note(declared.label).is_translated:
             said = f"{said} (en)"
         return say("one row: {what}", what=said) if of_one else said
 

@@ -33,12 +33,12 @@ def _way(line: Ends) -> Place:
     return to_x - x, to_y - y
 
 
-def _dot(one: Place, other: Place) -> Any:
-    return one[0] * other[0] + one[1] * other[1]
+def _dot(place: Place, other: Place) -> Any:
+    return place[0] * other[0] + place[1] * other[1]
 
 
-def _cross(one: Place, other: Place) -> Any:
-    return one[0] * other[1] - one[1] * other[0]
+def _cross(place: Place, other: Place) -> Any:
+    return place[0] * other[1] - place[1] * other[0]
 
 
 def _length(line: Ends) -> Any:

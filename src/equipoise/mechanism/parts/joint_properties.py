@@ -145,72 +145,77 @@ class JointProperties(Frozen):
         return JointProperties(self.joint, **{name: getattr(self, name) for name in APART})
 
 
-def wrong_joint(where: str, one: JointProperties, families: Iterable[str]) -> Iterator[ModelError]:
+def wrong_joint(
+    where: str, properties: JointProperties, families: Iterable[str]
+) -> Iterator[ModelError]:
     """Report what is wrong with an entry by itself; the linkage knows which joints there are.
 
     families : groups of outputs that are forces of joints and couplings.
     """
-    if not one.joint.startswith((*(f"{family}." for family in families),)):
-        note = Note("got {joint!r}; give a joint as joints.B", joint=one.joint)
+    if not properties.joint.startswith((*(f"{family}." for family in families),)):
+        note = Note("got {joint!r}; give a joint as joints.B", joint=properties.joint)
         yield ModelError(f"{where}.joint", note)
-    if not one.says and one.friction is None:
+    if not properties.says and properties.friction is None:
         yield ModelError(where, Note("give radius, stiffness, bearing or friction of the joint"))
-    if one.width is not None and one.radius is None:
+    if properties.width is not None and properties.radius is None:
         yield ModelError(f"{where}.radius", Note("missing; a width goes with the pin's radius"))
-    yield from _wrong_friction(where, one)
+    yield from _wrong_friction(where, properties)
 
 
-def _wrong_friction(where: str, one: JointProperties) -> Iterator[ModelError]:
+def _wrong_friction(where: str, properties: JointProperties) -> Iterator[ModelError]:
     """Report keys of friction that do not go together."""
-    if (one.static_friction is None) != (one.stribeck_speed is None):
-        missing = "static_friction" if one.static_friction is None else "stribeck_speed"
+    if (properties.static_friction is None) != (properties.stribeck_speed is None):
+        missing = "static_friction" if properties.static_friction is None else "stribeck_speed"
         note = Note(
             "missing; {static_friction} and {stribeck_speed} go together",
             **key_names("static_friction", "stribeck_speed"),
         )
         yield ModelError(f"{where}.{missing}", note)
     for name in ("static_friction", "guide_length"):
-        if one.friction is None and getattr(one, name) is not None:
+        if properties.friction is None and getattr(properties, name) is not None:
             yield ModelError(f"{where}.{name}", Note("goes with friction; give that too"))
-    if one.friction is not None and (one.static_friction or one.friction) < one.friction:
+    if (
+        properties.friction is not None
+        and (properties.static_friction or properties.friction) < properties.friction
+    ):
         note = Note(
             "got {static}; give at least the friction of {friction}, from which it falls",
-            static=f"{one.static_friction:g}",
-            friction=f"{one.friction:g}",
+            static=f"{properties.static_friction:g}",
+            friction=f"{properties.friction:g}",
         )
         yield ModelError(f"{where}.static_friction", note)
 
 
 def wrong_of_kind(
-    where: str, one: JointProperties, kind: str, in_slot: bool, varies: bool = False
+    where: str, properties: JointProperties, kind: str, in_slot: bool, varies: bool = False
 ) -> Iterator[ModelError]:
     """Report properties that a joint of this kind does not have, or lacks.
 
     in_slot : whether it is a pin in a slot.  varies : whether it is a pair of gears of varying
         ratio.
     """
-    if one.mesh_loss is not None and (varies or kind not in MESHES):
+    if properties.mesh_loss is not None and (varies or kind not in MESHES):
         note = Note("{joint!r} is no belt or pair of gears of one ratio; leave it out",
-                    joint=one.joint)  # fmt: skip
+                    joint=properties.joint)  # fmt: skip
         yield ModelError(f"{where}.mesh_loss", note)
-    if in_slot and (one.bearing or one.width) is not None:
+    if in_slot and (properties.bearing or properties.width) is not None:
         note = Note("a pin in a slot has no bearing whose load is computed; leave it out")
-        yield ModelError(f"{where}.{'bearing' if one.bearing else 'width'}", note)
-    if in_slot and one.rubs:
+        yield ModelError(f"{where}.{'bearing' if properties.bearing else 'width'}", note)
+    if in_slot and properties.rubs:
         note = Note("friction of a pin in a slot is not computed; leave it out")
         yield ModelError(where, note)
-    if one.radius is not None and kind != "pin":
-        note = Note("{joint!r} is no pin and has no radius; leave it out", joint=one.joint)
+    if properties.radius is not None and kind != "pin":
+        note = Note("{joint!r} is no pin and has no radius; leave it out", joint=properties.joint)
         yield ModelError(f"{where}.radius", note)
     for names, of in ((OF_PIN[1:], "pin"), (OF_SLIDER, "slider")):
         for name in names:
-            if getattr(one, name) and kind != of:
+            if getattr(properties, name) and kind != of:
                 what = to_say("{joint!r} is no pin; this key is of pins, leave it out")
                 if of == "slider":
                     what = to_say("{joint!r} is no slider; this key is of sliders, leave it out")
-                yield ModelError(f"{where}.{name}", Note(what, joint=one.joint))
-    if one.friction is not None and kind not in JOINTS:
-        note = Note("{joint!r} is no pin or slider; leave friction out", joint=one.joint)
+                yield ModelError(f"{where}.{name}", Note(what, joint=properties.joint))
+    if properties.friction is not None and kind not in JOINTS:
+        note = Note("{joint!r} is no pin or slider; leave friction out", joint=properties.joint)
         yield ModelError(f"{where}.friction", note)
-    if one.friction is not None and kind == "pin" and one.radius is None:
+    if properties.friction is not None and kind == "pin" and properties.radius is None:
         yield ModelError(f"{where}.radius", Note("missing; friction in a pin acts at its radius"))

@@ -190,10 +190,10 @@ def output_of(name: str, machine: Mechanism) -> Declared:
     raise ModelError("", unknown(item, names, kind))
 
 
-def _balanced(one: Declared, item: str, machine: Mechanism) -> Declared:
+def _balanced(declared: Declared, item: str, machine: Mechanism) -> Declared:
     """An output that balancing can take, with the dimension that it has in this machine."""
-    name = one.named(item).removeprefix("rows.")
-    if one.needs == "rows" and not machine.rows:
+    name = declared.named(item).removeprefix("rows.")
+    if declared.needs == "rows" and not machine.rows:
         raise ModelError(
             "",
             Note(
@@ -202,11 +202,11 @@ def _balanced(one: Declared, item: str, machine: Mechanism) -> Declared:
                 name=name,
             ),
         )
-    if one.reason:
-        raise ModelError("", Note(one.reason, what=name))
-    if one.needs == "support" and machine.support.gauges[item].axis is not None:  # type: ignore[union-attr]
-        return replace(one, dimension="angle")
-    return one
+    if declared.reason:
+        raise ModelError("", Note(declared.reason, what=name))
+    if declared.needs == "support" and machine.support.gauges[item].axis is not None:  # type: ignore[union-attr]
+        return replace(declared, dimension="angle")
+    return declared
 
 
 def balanced_names(machine: Mechanism) -> list[str]:
