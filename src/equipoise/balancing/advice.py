@@ -116,18 +116,18 @@ def advise(machine: Machine, solve: Solve = balance) -> Balanced:
     return _Adviser(machine.with_balance(None), own, solve).advised()
 
 
-def beside(found: Balanced, machine: Machine) -> Balanced:
+def beside(balanced: Balanced, machine: Machine) -> Balanced:
     """Advice on a machine without its counterweights, judged beside the machine that has them."""
-    advice, aims = found.advice, found.plan.objectives
+    advice, aims = balanced.advice, balanced.plan.objectives
     if advice is None:
-        return found
+        return balanced
     before = dict(zip((aim.name for aim in aims), Problem.values_of(machine, aims), strict=True))
-    objectives = {name: (before[name], after) for name, (_, after) in found.objectives.items()}
-    judged = replace(found, original=machine, objectives=objectives)
-    old, new = assessed(machine), assessed(found.machine)
+    objectives = {name: (before[name], after) for name, (_, after) in balanced.objectives.items()}
+    judged = replace(balanced, original=machine, objectives=objectives)
+    old, new = assessed(machine), assessed(balanced.machine)
     share = max(judged.added_mass, 0.0) / (machine.mass or 1.0)
     figure = 1.0 if machine.balance and machine.balance.objectives else old.figure_gain(aims, new)
-    worth = found.helps and bool(is_worth(judged.gain, share, figure))
+    worth = balanced.helps and bool(is_worth(judged.gain, share, figure))
     worse = old.worse_in(new, _saving(old, judged))
     offered = worth and not worse
     return replace(
@@ -135,9 +135,11 @@ def beside(found: Balanced, machine: Machine) -> Balanced:
     )
 
 
-def _saving(before: AssessedMachine, found: Balanced) -> Saving:
-    pairs = {objective: found.objectives[objective.name] for objective in found.plan.objectives}
-    return before.saving(pairs, found.gain)
+def _saving(before: AssessedMachine, balanced: Balanced) -> Saving:
+    pairs = {
+        objective: balanced.objectives[objective.name] for objective in balanced.plan.objectives
+    }
+    return before.saving(pairs, balanced.gain)
 
 
 class _Adviser:
@@ -175,10 +177,10 @@ class _Adviser:
         best = max(first, key=lambda one: one.gain)
         return self.with_more_room(replace(best, tried=tuple(tried)))
 
-    def with_more_room(self, found: Balanced) -> Balanced:
+    def with_more_room(self, result: Balanced) -> Balanced:
         """With the best counterweight of twice the room that is assumed, where it is worth it."""
-        plan = replace(self.own, objectives=found.plan.objectives)
-        least = _score(found) + LEAST_GAIN if found.helps else 0.0
+        plan = replace(self.own, objectives=result.plan.objectives)
+        least = _score(result) + LEAST_GAIN if result.helps else 0.0
         more_rooms = [
             MoreRoom(balanced, room.at, assumed, room.assumed)
             for link in pivots_of(self.machine)
@@ -188,8 +190,8 @@ class _Adviser:
             for balanced in self.first_good(self.counterweights(plan, (room,)))
             if balanced.helps and _score(balanced) >= least and _radius_of(balanced) > assumed
         ]
-        best = max(more_rooms, key=lambda one: _score(one.remedy), default=None)
-        return replace(found, with_room=best)
+        best = max(more_rooms, key=lambda item: _score(item.remedy), default=None)
+        return replace(result, with_room=best)
 
     def values(self, objectives: tuple[Objective, ...]) -> list[float]:
         """Values of the machine as it is."""
@@ -320,65 +322,65 @@ class _Adviser:
             notes=tuple(bending_notes(self.machine)),
         )  # fmt: skip
 
-    def proved(self, found: Balanced) -> Balanced:
+    def proved(self, balanced: Balanced) -> Balanced:
         """With the bound of every sector in its room, round or not."""
-        if not found.plan.masses:
-            return found
-        saving = _saving(self.before, found)
+        if not balanced.plan.masses:
+            return balanced
+        saving = _saving(self.before, balanced)
         limits = tuple(
             limit
             for item in self.watched
-            for limit in item.limits(found.gain, saving.excess, saving.steadies)
+            for limit in item.limits(balanced.gain, saving.excess, saving.steadies)
             if not limit.objective.output.startswith(GAUGES)
         )
         kept = (Note("where no headline figure gets worse"),)
         for asked, scope in ((limits, kept), (self.own.limits, ())):
-            plan = replace(found.plan, limits=asked, added_mass=self.most_mass(found.plan))
+            plan = replace(balanced.plan, limits=asked, added_mass=self.most_mass(balanced.plan))
             try:
                 proof = self.solve(self.machine, plan)
             except UsageError:  # the least that a limit allows is too much for the program
                 continue
             return replace(
-                found,
-                bound=min(proof.bound, found.cost),
+                balanced,
+                bound=min(proof.bound, balanced.cost),
                 method=proof.method,
                 looked_at=proof.looked_at,
                 scope=(*scope, *proof.scope),
                 notes=proof.notes,
             )
-        return found
+        return balanced
 
-    def judged(self, found: Balanced) -> Balanced:
+    def judged(self, balanced: Balanced) -> Balanced:
         """With what its figures are against their yardsticks, and whether it is offered."""
-        after = assessed(found.machine)
-        worse = self.before.worse_in(after, _saving(self.before, found))
-        share = max(found.added_mass, 0.0) / (self.machine.mass or 1.0)
-        figure = self.figure_gain(found, after)
-        enough = bool(is_worth(found.gain, share, figure)) and self.keeps_limits(found)
+        after = assessed(balanced.machine)
+        worse = self.before.worse_in(after, _saving(self.before, balanced))
+        share = max(balanced.added_mass, 0.0) / (self.machine.mass or 1.0)
+        figure = self.figure_gain(balanced, after)
+        enough = bool(is_worth(balanced.gain, share, figure)) and self.keeps_limits(balanced)
         if self.mounts is not None:
-            enough = enough and outweighs(found.gain, self.mounts)
-        if found.added_mass > 0:
-            enough = enough and not self.is_for_more_arms(found)
+            enough = enough and outweighs(balanced.gain, self.mounts)
+        if balanced.added_mass > 0:
+            enough = enough and not self.is_for_more_arms(balanced)
         if not self.own.objectives and unbalances(self.machine):
             enough = False  # it may be what the machine is for
         offered, before = enough and not worse, self.before.headline
         beyond = self.beyond
         if offered:  # what else helps is for the machine with the remedy
-            mounts = self.mounts if found.gain < ALL_BUT_GONE else None
+            mounts = self.mounts if balanced.gain < ALL_BUT_GONE else None
             beyond = beyond_masses(after.analysis, after.headline, mounts, self.beyond)
-        return replace(found, advice=Advice(before, after.headline, worse, offered, beyond))
+        return replace(balanced, advice=Advice(before, after.headline, worse, offered, beyond))
 
-    def is_for_more_arms(self, found: Balanced) -> bool:
+    def is_for_more_arms(self, balanced: Balanced) -> bool:
         """Whether more arms on a carrier, which make up for each other, take off more of what is
         not large, against which nobody builds a weight then.
         """
-        arms, aim = self.beyond.spaced, self.before.largest_aim(found.plan.objectives)
+        arms, aim = self.beyond.spaced, self.before.largest_aim(balanced.plan.objectives)
         small = aim is not None and not aim.is_large and not self.own.objectives
-        return small and arms is not None and arms.gain >= found.gain
+        return small and arms is not None and arms.gain >= balanced.gain
 
-    def figure_gain(self, found: Balanced, after: AssessedMachine) -> float:
+    def figure_gain(self, balanced: Balanced, after: AssessedMachine) -> float:
         """Share that is gone of the figure that is large; 1 of aims that somebody asked for."""
-        aims = found.plan.objectives
+        aims = balanced.plan.objectives
         return 1.0 if self.own.objectives else self.before.figure_gain(aims, after)
 
     @cached_property
@@ -410,9 +412,11 @@ class _Adviser:
 
         return resonant_mounts_for(self.machine, sorted(speeds, key=abs), gain)
 
-    def keeps_limits(self, found: Balanced) -> bool:
+    def keeps_limits(self, balanced: Balanced) -> bool:
         """Whether the limits that the file gives are kept."""
-        return all(price.used <= price.at_most * (1 + ROUNDING) for price in found.prices.values())
+        return all(
+            price.used <= price.at_most * (1 + ROUNDING) for price in balanced.prices.values()
+        )
 
     def unchanged(self) -> Balanced:
         """The machine as it is, where nothing that could be tried acts on what is large."""
@@ -423,26 +427,26 @@ class _Adviser:
         return replace(result, advice=Advice(headline, headline, (), False, self.beyond))
 
 
-def _in_whole_degrees(found: Balanced) -> Balanced:
+def _in_whole_degrees(balanced: Balanced) -> Balanced:
     """Phases that can be set: of the nearest whole degrees."""
-    plan, machine = found.plan, found.original
-    assert found.phasing is not None
+    plan, machine = balanced.plan, balanced.original
+    assert balanced.phasing is not None
     search = PhaseSearch(machine, plan.objectives, Phases(), plan.combine)
-    phases = np.array(found.phasing.phases) - found.phasing.phases[0]
+    phases = np.array(balanced.phasing.phases) - balanced.phasing.phases[0]
     whole = np.radians(np.round(np.degrees(phases))) % search.cost.period
     if np.array_equal(whole, phases):
-        return found
-    proof = PhaseProof(whole, found.phasing.bound, found.looked_at, complete=True)
-    phasing = replace(phasing_of(search, whole, proof), notes=found.phasing.notes)
-    return in_phases(machine, plan, phasing, found.method, found.scope)
+        return balanced
+    proof = PhaseProof(whole, balanced.phasing.bound, balanced.looked_at, complete=True)
+    phasing = replace(phasing_of(search, whole, proof), notes=balanced.phasing.notes)
+    return in_phases(machine, plan, phasing, balanced.method, balanced.scope)
 
 
-def _twists_of(found: Balanced) -> tuple[Limit, ...]:
+def _twists_of(balanced: Balanced) -> tuple[Limit, ...]:
     """Limits of the couples between the rows that phases make where there were none."""
-    assert found.advice is not None
+    assert balanced.advice is not None
     made = (
         (Objective(new.output.removeprefix(ROWS)), new)
-        for was, new in found.advice.worse
+        for was, new in balanced.advice.worse
         if abs(was.value) <= COUPLE_FROM_NOTHING * abs(new.value)
     )
     return tuple(
@@ -452,20 +456,24 @@ def _twists_of(found: Balanced) -> tuple[Limit, ...]:
     )
 
 
-def _is_aim(one: FigureAssessment) -> bool:
+def _is_aim(assessment: FigureAssessment) -> bool:
     """Whether masses are tried against it: what shakes, and a torque, which weights may steady."""
-    return one.ratio >= AIMED_FROM if one.is_shaking else one.is_large and one.is_torque
+    return (
+        assessment.ratio >= AIMED_FROM
+        if assessment.is_shaking
+        else assessment.is_large and assessment.is_torque
+    )
 
 
-def _score(found: Balanced) -> float:
+def _score(balanced: Balanced) -> float:
     """Gain, less the price of mass."""
-    share = max(found.added_mass, 0.0) / (found.original.mass or 1.0)
-    return found.gain - MASS_PRICE * share
+    share = max(balanced.added_mass, 0.0) / (balanced.original.mass or 1.0)
+    return balanced.gain - MASS_PRICE * share
 
 
-def _radius_of(found: Balanced) -> float:
+def _radius_of(balanced: Balanced) -> float:
     """Of the largest piece that is added, m."""
-    pieces = (piece for change in found.changes for piece in change.values.get("pieces", ()))
+    pieces = (piece for change in balanced.changes for piece in change.values.get("pieces", ()))
     return max((float(piece["outer_radius"]) for piece in pieces), default=0.0)
 
 

@@ -100,8 +100,8 @@ class MoreRoom:
 WHY = "see [Balancing](balancing.md#why-nothing-is-better)"
 
 
-def _changes(found: Balanced) -> list[dict[str, Any]]:
-    return [change.to_dict() for change in found.changes]
+def _changes(balanced: Balanced) -> list[dict[str, Any]]:
+    return [change.to_dict() for change in balanced.changes]
 
 
 def _dimension_of(model: Any, figure: str) -> Dimension | None:
@@ -342,17 +342,17 @@ class Balanced(Result):
             'objective, such as `"rms of shaking_force.y"`: `before` and `after`, in SI units; a '
             "whole signal's measure as `before` and `after` have it",
             family=True,
-            read=lambda found: {
-                name: {"before": old, "after": new} for name, (old, new) in found.reported.items()
+            read=lambda result: {
+                name: {"before": old, "after": new} for name, (old, new) in result.reported.items()
             },
         ),
-        "method": ResultOutput("how it was found", read=lambda found: str(found.method)),
+        "method": ResultOutput("how it was found", read=lambda result: str(result.method)),
         "cost": ResultOutput(WHY),
         "bound": ResultOutput(WHY),
         "gap": ResultOutput(WHY),
         "scope": ResultOutput(
             "of what the bound is proved, where that is not all that the plan allows",
-            read=lambda found: " and ".join(map(str, found.scope)),
+            read=lambda result: " and ".join(map(str, result.scope)),
         ),
         "changes": ResultOutput("list of what to change, see below", read=_changes),
         "prices": ResultOutput(
@@ -361,7 +361,7 @@ class Balanced(Result):
             "more of the limit, in the unit of the objective, or over its value before where "
             "there are several",
             family=True,
-            read=lambda found: {name: asdict(price) for name, price in found.limits.items()},
+            read=lambda result: {name: asdict(price) for name, price in result.limits.items()},
         ),
         "added_mass": ResultOutput("mass that is added", "mass"),
         "before": ResultOutput("figures of the whole machine, see below", lookup=_dimension_of),
@@ -369,9 +369,9 @@ class Balanced(Result):
         "worse": ResultOutput(
             "list of `figure`, `before`, `after`: every figure that got larger by more than 1 %, "
             "the important ones first",
-            read=lambda found: [
+            read=lambda result: [
                 {"figure": worse.objective.name, "before": worse.before, "after": worse.after}
-                for worse in found.worse
+                for worse in result.worse
             ],
         ),
         "equivalent_speeds": ResultOutput(
@@ -406,15 +406,15 @@ class Balanced(Result):
             "`crank_angle`: figures [against their yardsticks](balancing.md#without-a-plan), the "
             "largest ratio first; `figure` is its path in the summary of `analyze`, or in the "
             "output of `respond` for gauges",
-            read=lambda found: [item.to_dict() for item in found.advice.before],
+            read=lambda result: [item.to_dict() for item in result.advice.before],
             present="advice",
         ),
         "tried": ResultOutput(
             "there: list of `gain`, `worth`, `changes`: what was tried, the share of the aims that "
             "each takes away, and whether it is offered",
-            read=lambda found: [
+            read=lambda result: [
                 {"gain": item.gain, "worth": item.helps, "changes": _changes(item)}
-                for item in found.tried
+                for item in result.tried
             ],
             present="advice",
         ),
@@ -434,66 +434,71 @@ class Balanced(Result):
     }
 
 
-def result_of(machine: Machine, plan: Balance, found: Solution) -> Balanced:
+def result_of(machine: Machine, plan: Balance, solution: Solution) -> Balanced:
     """The result, with what was asked read off the new machine."""
-    problem, old, new, best = found.problem, found.problem.before, found.machine, found.best
-    each = (part.changes(own) for part, own in problem.with_numbers(found.numbers))
+    problem, old, new, best = (
+        solution.problem,
+        solution.problem.before,
+        solution.machine,
+        solution.best,
+    )
+    each = (part.changes(own) for part, own in problem.with_numbers(solution.numbers))
     return Balanced(
         machine=new,
         original=machine,
         plan=plan,
-        changes=(*found.meshes, *chain.from_iterable(each)),
+        changes=(*solution.meshes, *chain.from_iterable(each)),
         objectives={
             objective.name: (old[objective.name], problem.value_of(new, objective))
             for objective in plan.objectives
         },
         cost=problem.cost_of(new),
         bound=best.bound,
-        method=found.method,
-        prices=_prices(found),
+        method=solution.method,
+        prices=_prices(solution),
         looked_at=best.nodes,
-        notes=(*bending_notes(machine), *_notes(found)),
-        scope=tuple(proved_of(found)),
+        notes=(*bending_notes(machine), *_notes(solution)),
+        scope=tuple(proved_of(solution)),
     )
 
 
-def proved_of(found: Solution) -> Iterator[Note]:
+def proved_of(solution: Solution) -> Iterator[Note]:
     """Of what the bound is proved, where that is not all that the plan allows."""
-    problem = found.problem
+    problem = solution.problem
     if problem.reads_gauges and problem.supports_more:
         yield Note("for small changes about it")
-    if any(part.stopped(own) for part, own in problem.with_numbers(found.numbers)):
+    if any(part.stopped(own) for part, own in problem.with_numbers(solution.numbers)):
         yield Note("within where it was stopped")
     if problem.flips:
         yield Note("for the flanks of teeth and strands of chains that bear here")
     if problem.rubs:
         yield Note("without friction in joints")
-    if found.gears_left or any(geared_range(geared) for geared in problem.plan.geared):
+    if solution.gears_left or any(geared_range(geared) for geared in problem.plan.geared):
         yield Note("for each of the gears tried")
 
 
-def _prices(found: Solution) -> dict[str, Price]:
+def _prices(solution: Solution) -> dict[str, Price]:
     """Prices of all limits, in SI units: those asked for, and those that parts have of themselves.
 
     What is nothing but the solver's rounding is 0.
     """
-    problem, plan = found.problem, found.problem.plan
+    problem, plan = solution.problem, solution.problem.plan
     only = plan.objectives[0] if len(plan.objectives) == 1 else None
     unit = 1.0 if only is None else problem.scale(only) / plan.factors[0]
     prices = {}
 
     def add(bound: Bound, scale: float, rounding: float) -> None:
-        paid = found.best.prices.get(bound.name, 0.0) * unit / scale
+        paid = solution.best.prices.get(bound.name, 0.0) * unit / scale
         paid = paid if paid > ROUNDING * unit / rounding else 0.0
         prices[bound.name] = Price(bound.at_most, bound.used, paid, bound.unit)
 
     for limit in plan.limits:
         scale, at_most = problem.scale(limit.objective), limit.most(problem.before[limit.name])
-        used = problem.value_of(found.machine, limit.objective)
+        used = problem.value_of(solution.machine, limit.objective)
         si_unit = unit_of(limit.objective, problem.machine)
         add(Bound(limit.name, at_most, used, si_unit), scale, scale)
     weights = 0.0
-    for part, own in problem.with_numbers(found.numbers):
+    for part, own in problem.with_numbers(solution.numbers):
         weights += 0.0 if part.mass_place is None else float(own @ part.effect[:, 0])
         for bound in part.bounds(own):
             add(bound, 1.0, bound.at_most)
@@ -502,16 +507,16 @@ def _prices(found: Solution) -> dict[str, Price]:
     return prices
 
 
-def _over_pins(found: Solution) -> Iterator[Note]:
+def _over_pins(solution: Solution) -> Iterator[Note]:
     """That plates lie where pins of their own link are, which a plan's room does not know."""
-    bodies = bodies_at(found.machine.bodies)
-    for part, own in found.problem.with_numbers(found.numbers):
+    bodies = bodies_at(solution.machine.bodies)
+    for part, own in solution.problem.with_numbers(solution.numbers):
         for change in part.changes(own):
             pieces = change.values.get("pieces", ())
             if not pieces or not (moment := change.values["moment"]):
                 continue
             center = complex(*change.values["center"])
-            points = found.machine.links[change.link].points
+            points = solution.machine.links[change.link].points
             pins = [name for name, at in points.items() if len(bodies.get(name, ())) > 1
                     and any(covers(piece, center, complex(*at)) for piece in pieces)]  # fmt: skip
             if pins:
@@ -534,9 +539,9 @@ def bending_notes(original: Machine) -> Iterator[Note]:
     return slender_links(original.links, original.drive.speed)
 
 
-def _notes(found: Solution) -> Iterator[Note]:
+def _notes(solution: Solution) -> Iterator[Note]:
     """What a reader has to know."""
-    problem, rows = found.problem, len(found.problem.machine.rows)
+    problem, rows = solution.problem, len(solution.problem.machine.rows)
     if problem.machine.drive.acceleration:
         yield Note("the drive's acceleration is left out: the crank is taken as turning steadily")
     if problem.rubs:
@@ -550,24 +555,24 @@ def _notes(found: Solution) -> Iterator[Note]:
             "added mass makes the support heavier, which bends what is linear "
             "otherwise: the bound is that of small changes about this result"
         )
-    yield from filter(None, (part.stopped(x) for part, x in problem.with_numbers(found.numbers)))
-    yield from _over_pins(found)
+    yield from filter(None, (part.stopped(x) for part, x in problem.with_numbers(solution.numbers)))
+    yield from _over_pins(solution)
     if rows > 1 and any(part.mass_place is not None for part in problem.parts):
         yield Note("masses are those of one row; the machine has {rows}", rows=rows)
-    if found.ties > found.weighed:
+    if solution.ties > solution.weighed:
         yield Note(
             "{count} of the ratios tried are as good, and the lightest of {weighed} of them was "
             "taken; drive and joints may tell them apart: give them a limit",
-            count=found.ties,
-            weighed=found.weighed,
+            count=solution.ties,
+            weighed=solution.weighed,
         )
-    elif found.ties > 1:
+    elif solution.ties > 1:
         yield Note(
             "{count} of the ratios tried are as good, and the lightest was taken;"
             " drive and joints may tell them apart: give them a limit",
-            count=found.ties,
+            count=solution.ties,
         )
-    if found.best.nodes >= 1 and found.best.value - found.best.bound > 1e-7:
+    if solution.best.nodes >= 1 and solution.best.value - solution.best.bound > 1e-7:
         yield Note(
             "the search ended before it had proved that nothing better exists; "
             "the gap tells how far it came"

@@ -74,79 +74,81 @@ def shown_unit(unit: str) -> str | None:
     return None if dimension is None else USUAL.get(dimension)
 
 
-def balanced_blocks(found: Balanced) -> Iterator[Block]:
+def balanced_blocks(balanced: Balanced) -> Iterator[Block]:
     """Changes, before and after, prices of limits, equivalent speeds."""
-    yield Text(driven(found.original, found.original.drive.speed))
-    yield from outcome_blocks(found)
+    yield Text(driven(balanced.original, balanced.original.drive.speed))
+    yield from outcome_blocks(balanced)
 
 
-def balanced_headline(found: Balanced, alone: bool = False) -> Iterator[Block]:
+def balanced_headline(balanced: Balanced, alone: bool = False) -> Iterator[Block]:
     """What is gained; alone also what to change for it, and what gets worse.
 
     alone : whether nothing follows, as on a terminal.
     """
-    if found.advice is not None and not found.helps:
+    if balanced.advice is not None and not balanced.helps:
         if alone:
-            yield from map(Text, why_nothing(found))
-            cure = steadying_sentence(found)  # first, since details are left out from the last on
-            beyond = sorted(sentences_beyond_masses(found), key=lambda line: line != cure)
+            yield from map(Text, why_nothing(balanced))
+            cure = steadying_sentence(
+                balanced
+            )  # first, since details are left out from the last on
+            beyond = sorted(sentences_beyond_masses(balanced), key=lambda line: line != cure)
             yield from (Text(line, is_detail=True) for line in beyond)
-            yield Text(driven(found.original, found.original.drive.speed))
-            yield _large(found)
-            yield from _bending(found)
+            yield Text(driven(balanced.original, balanced.original.drive.speed))
+            yield _large(balanced)
+            yield from _bending(balanced)
             yield look_at_next("balance --objective OUTPUT", "balance --full")
         return
-    first = [*first_sentences(found)]
+    first = [*first_sentences(balanced)]
     yield from map(Text, first)
-    aims = tuple(_aims(found))
+    aims = tuple(_aims(balanced))
     if aims:
         without = to_say("Without that: {sentence}.")
         yield Text(say(without if first else to_say("{sentence}."), sentence=aims[0]))
     if not alone:
         return
-    lines = tuple(line for change in found.changes for line in in_short(change))
+    lines = tuple(line for change in balanced.changes for line in in_short(change))
     title = say("Changes; places and directions in the axes of each link")
     yield Facts(title, lines, is_whole=True)
     if aims[1:]:
         yield Facts(say("What else was made small"), aims[1:])
-    if found.advice is not None:
-        is_long = found.advice.beyond.mounts is not None
-        yield from (Text(line, is_detail=is_long) for line in beside_the_aim(found))
-    yield from (Text(line, "worse") for line in worst_told(found))
-    yield from map(Text, mounts_beside_change(found))
-    details = [*beside_mounts(found)]  # of which the last are left out first
-    if found.advice is not None:
-        details += large_besides(found)
-    yield from (Text(line, is_detail=found.advice is not None) for line in details)
-    if found.notes:
-        yield Notes(found.notes[:MOST_NOTES])
+    if balanced.advice is not None:
+        is_long = balanced.advice.beyond.mounts is not None
+        yield from (Text(line, is_detail=is_long) for line in beside_the_aim(balanced))
+    yield from (Text(line, "worse") for line in worst_told(balanced))
+    yield from map(Text, mounts_beside_change(balanced))
+    details = [*beside_mounts(balanced)]  # of which the last are left out first
+    if balanced.advice is not None:
+        details += large_besides(balanced)
+    yield from (Text(line, is_detail=balanced.advice is not None) for line in details)
+    if balanced.notes:
+        yield Notes(balanced.notes[:MOST_NOTES])
     yield look_at_next("balance --out FILE", "balance --full")
 
 
-def _bending(found: Balanced) -> Iterator[Block]:
+def _bending(balanced: Balanced) -> Iterator[Block]:
     """Of a result whose other notes tell of what is not offered."""
-    if notes := found.bending:
+    if notes := balanced.bending:
         yield Notes(notes)
 
 
-def _large(found: Balanced) -> Facts:
+def _large(balanced: Balanced) -> Facts:
     """What is large on an advised machine."""
-    assert found.advice is not None
-    large, few = large_figures(found.advice)
-    lines = tuple(sentence(item, found.original.crank_turns) for item in few)
+    assert balanced.advice is not None
+    large, few = large_figures(balanced.advice)
+    lines = tuple(sentence(item, balanced.original.crank_turns) for item in few)
     largest = to_say("What is large, each beside its own yardstick")
     nearest = to_say("What comes nearest to its yardstick")
     return Facts(say(largest if large else nearest), lines)
 
 
-def _aims(found: Balanced) -> Iterator[str]:
+def _aims(balanced: Balanced) -> Iterator[str]:
     """What was made small, before and after."""
-    for item, (before, after) in found.aims.items():
-        what = objective_named(item, len(found.original.rows))
+    for item, (before, after) in balanced.aims.items():
+        what = objective_named(item, len(balanced.original.rows))
         unit = display(
-            DIMENSIONS.get(si_unit(item, found.original)),
+            DIMENSIONS.get(si_unit(item, balanced.original)),
             [before, after],
-            shown_unit(si_unit(item, found.original)),
+            shown_unit(si_unit(item, balanced.original)),
         )
         yield say(
             "{what}: {before} → {after} {unit} ({change})",
@@ -158,62 +160,64 @@ def _aims(found: Balanced) -> Iterator[str]:
         )
 
 
-def outcome_blocks(found: Balanced) -> Iterator[Block]:
+def outcome_blocks(balanced: Balanced) -> Iterator[Block]:
     """The same without what machine it is."""
-    if found.advice is not None:
-        yield from advice_blocks(found)
-    if found.advice is not None and not found.helps:
-        yield from _bending(found)
+    if balanced.advice is not None:
+        yield from advice_blocks(balanced)
+    if balanced.advice is not None and not balanced.helps:
+        yield from _bending(balanced)
         return
-    if found.plan.objectives:
-        yield objectives_table(found)
-    lines = tuple(line for change in found.changes for line in sentences(change))
+    if balanced.plan.objectives:
+        yield objectives_table(balanced)
+    lines = tuple(line for change in balanced.changes for line in sentences(change))
     yield Facts(say("Changes; places and directions in the axes of each link"), lines)
-    yield from (Text(line, "worse") for line in worse_told(found))
-    if found.phasing is not None:
-        yield from phasing_blocks(found.phasing)
-    yield from map(Text, proof_told(found))
-    yield before_after(found)
-    if found.prices:
-        yield _prices(found)
-    speeds = tuple(_speeds(found))
+    yield from (Text(line, "worse") for line in worse_told(balanced))
+    if balanced.phasing is not None:
+        yield from phasing_blocks(balanced.phasing)
+    yield from map(Text, proof_told(balanced))
+    yield before_after(balanced)
+    if balanced.prices:
+        yield _prices(balanced)
+    speeds = tuple(_speeds(balanced))
     if speeds:
         columns = (Column(""), Column(say("speed"), "angular speed", "rpm"))
         yield Table(say("Speed at which it shakes as before"), columns, speeds, detail=True)
-    if found.planting_kept is not None:
+    if balanced.planting_kept is not None:
         kept = say("The planting figures stay as they are.")
         changed = say("The planting figures have changed.")
-        yield Text(kept if found.planting_kept else changed, worse_if(not found.planting_kept))
-    if found.notes:
-        yield Notes(found.notes)
+        yield Text(
+            kept if balanced.planting_kept else changed, worse_if(not balanced.planting_kept)
+        )
+    if balanced.notes:
+        yield Notes(balanced.notes)
 
 
 BEFORE_AFTER = (to_say("before"), to_say("after"), to_say("change"))
 
 
-def objectives_table(found: Balanced) -> Table:
+def objectives_table(balanced: Balanced) -> Table:
     """What was made small, before and after."""
     rows: list[tuple[Cell, ...]] = []
-    for item, (before, after) in found.aims.items():
-        unit = si_unit(item, found.original)
-        name = objective_named(item, len(found.original.rows))
+    for item, (before, after) in balanced.aims.items():
+        unit = si_unit(item, balanced.original)
+        name = objective_named(item, len(balanced.original.rows))
         pair = (quantity(before, unit), quantity(after, unit, before))
         rows.append(
             (name, *pair, RelativeChange(before, after, worse_if(after > (1 + WORSE) * before)))
         )
     if len(rows) > 1:
-        share = found.cost / found.whole
+        share = balanced.cost / balanced.whole
         left = Value(100 * share if share > FAINT else 0.0)
         rows.append((f"{say('together')}, %", Value(100.0), left, RelativeChange(1.0, share)))
     columns = (Column(""), *(Column(say(label)) for label in BEFORE_AFTER))
     return Table(say("What was made small"), columns, tuple(rows))
 
 
-def before_after(found: Balanced) -> Table:
+def before_after(balanced: Balanced) -> Table:
     """Every figure but those of planting; rounding beside the largest of its unit is 0."""
-    before, after = found.before, found.after
+    before, after = balanced.before, balanced.after
     units = {
-        name: figure_unit(found, name)
+        name: figure_unit(balanced, name)
         for name in before | after
         if not name.startswith("planting.")
     }
@@ -234,7 +238,7 @@ def before_after(found: Balanced) -> Table:
             changed = RelativeChange(old, new, worse) if old > nothing else None
             if changed is None and isinstance(has, Value):  # there is no share to stand out
                 has = replace(has, emphasis=worse)
-        rows.append((figure_named(name, len(found.original.rows)), had, has, changed))
+        rows.append((figure_named(name, len(balanced.original.rows)), had, has, changed))
     columns = (Column(""), *(Column(say(label)) for label in BEFORE_AFTER))
     return Table(say("Before and after"), columns, tuple(rows))
 
@@ -244,28 +248,28 @@ def _kin(unit: str) -> str:
     return "N m" if unit == "J" else unit
 
 
-def _prices(found: Balanced) -> Table:
-    named = {limit.name: objective_named(limit.objective) for limit in found.plan.limits}
+def _prices(balanced: Balanced) -> Table:
+    named = {limit.name: objective_named(limit.objective) for limit in balanced.plan.limits}
     rows: list[tuple[Cell, ...]] = []
-    for name, price in found.limits.items():
-        unit = found.units[name]
+    for name, price in balanced.limits.items():
+        unit = balanced.units[name]
         over = broken_if(price.used > price.at_most * (1 + 1e-6))
         used = replace(quantity(price.used, unit), emphasis=over)
         most = quantity(price.at_most, unit)
-        rows.append((named.get(name, said(name)), most, used, _saved(found, price, unit)))
+        rows.append((named.get(name, said(name)), most, used, _saved(balanced, price, unit)))
     labels = ("", say("at most"), say("used"), say("more of it saves"))
     return Table(say("Limits"), tuple(map(Column, labels)), tuple(rows))
 
 
-def _saved(found: Balanced, price: Price, unit: str) -> str:
+def _saved(balanced: Balanced, price: Price, unit: str) -> str:
     """What one more of a limit's unit would save."""
     if not price.active:
         return say("nothing")
     per = _shown(unit)
-    if len(found.plan.objectives) != 1:
-        share = number(100 * price.price / per[0] / found.whole)
+    if len(balanced.plan.objectives) != 1:
+        share = number(100 * price.price / per[0] / balanced.whole)
         return say("{share} % of all per {unit}", share=share, unit=per[1])
-    factor, own = _shown(found.units[found.plan.objectives[0].name])
+    factor, own = _shown(balanced.units[balanced.plan.objectives[0].name])
     size = number(price.price * factor / per[0])
     return say("{size} {own} per {unit}", size=size, own=own, unit=per[1])
 
@@ -284,17 +288,17 @@ FASTER = 10.0
 faster, tells no more than that next to nothing is left."""
 
 
-def _speeds(found: Balanced) -> Iterator[tuple[Cell, ...]]:
-    most = FASTER * abs(found.original.drive.speed)
+def _speeds(balanced: Balanced) -> Iterator[tuple[Cell, ...]]:
+    most = FASTER * abs(balanced.original.drive.speed)
     speeds = {
         name: equivalent_speed
-        for name, equivalent_speed in found.equivalent_speeds.items()
+        for name, equivalent_speed in balanced.equivalent_speeds.items()
         if abs(equivalent_speed) <= most
     }
     several = any(name.startswith(ROWS) for name in speeds)
     for name, speed in speeds.items():
         if name.startswith(f"{ROWS}shaking_") if several else name.count(".") == 1:
-            yield figure_named(name, len(found.original.rows)), Value(speed)
+            yield figure_named(name, len(balanced.original.rows)), Value(speed)
 
 
 # -- phases of rows --------------------------------------------------------------------------------
@@ -302,10 +306,10 @@ def _speeds(found: Balanced) -> Iterator[tuple[Cell, ...]]:
 LATERAL = {"roll_moment": to_say("roll moment"), "yaw_moment": to_say("yaw moment")}
 
 
-def phasing_blocks(found: Phasing) -> Iterator[Block]:
+def phasing_blocks(phasing: Phasing) -> Iterator[Block]:
     """Rows with their phases, what is left of the shaking force and how it twists."""
-    yield rows_table(found.machine)
-    texts = [f"{order:.4g}" for order in found.remaining]
+    yield rows_table(phasing.machine)
+    texts = [f"{order:.4g}" for order in phasing.remaining]
     if texts:
         orders = say(", ").join(texts[:MOST_ORDERS])
         more = len(texts) - MOST_ORDERS
@@ -313,10 +317,10 @@ def phasing_blocks(found: Phasing) -> Iterator[Block]:
         yield Text(say("Orders of the shaking force that are left: {orders}.", orders=orders))
     else:
         yield Text(say("No order of the shaking force is left."))
-    whole = max(max(values) for values in found.lateral.values())
+    whole = max(max(values) for values in phasing.lateral.values())
     rows: tuple[tuple[Cell, ...], ...] = tuple(
         (say(LATERAL[name]), *(Value(value, 1e3 * whole) for value in values))
-        for name, values in found.lateral.items()
+        for name, values in phasing.lateral.items()
     )
     columns = (Column(""), Column(say("before"), "torque"), Column(say("after"), "torque"))
     yield Table(say("Twist by the shaking force, RMS"), columns, rows)

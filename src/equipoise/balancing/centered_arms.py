@@ -113,19 +113,19 @@ def _distance(link: Link, pin: str) -> float:
     return 0.0 if center is None else abs(complex(*center) - complex(*link.points[pin]))
 
 
-def centered_arms_sentence(found: CenteredArms) -> str:
+def centered_arms_sentence(arms: CenteredArms) -> str:
     """What the arms would leave of the force."""
-    shown = display("force", [found.before, found.after])
+    shown = display("force", [arms.before, arms.after])
     return say(
         "With the centre of mass of {links} on {pins}, from which it is {distance} now, {what}, "
         "would go from {before} to {after} ({gain} % less): take mass off beyond the pin, or lay "
         "some behind it, up to {weight} on each.",
-        weight=weight_named(found.moment, found.distance),
-        links=say(", ").join(found.links),
-        pins=say(", ").join(found.pins),
-        distance=told(found.distance, "length", digits=3),
-        what=found.label,
-        before=shown.with_unit(shown.text(found.before, digits=3)),
-        after=shown.with_unit(shown.text(found.after, digits=3)),
-        gain=percent(found.gain, 0),
+        weight=weight_named(arms.moment, arms.distance),
+        links=say(", ").join(arms.links),
+        pins=say(", ").join(arms.pins),
+        distance=told(arms.distance, "length", digits=3),
+        what=arms.label,
+        before=shown.with_unit(shown.text(arms.before, digits=3)),
+        after=shown.with_unit(shown.text(arms.after, digits=3)),
+        gain=percent(arms.gain, 0),
     )

@@ -93,8 +93,8 @@ def worse_of(
     return tuple(worses.values())
 
 
-def _is_part(one: Objective) -> bool:
-    known = declared(one.output)
+def _is_part(objective: Objective) -> bool:
+    known = declared(objective.output)
     return known is not None and known[0].part in ("x", "y")
 
 
@@ -103,10 +103,10 @@ def _group_of(output: str) -> str:
     return known[0].group if known is not None else output.partition(".")[0]
 
 
-def _unit(one: Objective) -> str:
+def _unit(objective: Objective) -> str:
     """SI unit of a figure; of all gauges the same."""
-    gauge = one.output.startswith("gauges.")
-    return "gauges" if gauge else unit_of_measure(one.output, one.measure)
+    gauge = objective.output.startswith("gauges.")
+    return "gauges" if gauge else unit_of_measure(objective.output, objective.measure)
 
 
 def _kin(unit: str) -> str:
@@ -132,15 +132,15 @@ def merged(plan: Balance, values: Mapping[str, Pair]) -> dict[Objective, Pair]:
     return by_name
 
 
-def figure_of(one: Objective, rows: int, figures: Collection[str]) -> str | None:
+def figure_of(objective: Objective, rows: int, figures: Collection[str]) -> str | None:
     """The name among figures of what an objective asks for; None where it is none of them.
 
     rows : of the machine, which add up in all but what acts within one of them.
     """
-    if one.about or one.orders or one.speeds:
+    if objective.about or objective.orders or objective.speeds:
         return None
-    inner = rows < 2 or one.output.startswith((GAUGES, *WITHIN))
-    name = f"{'' if inner else ROWS}{one.output}.{one.measure}"
+    inner = rows < 2 or objective.output.startswith((GAUGES, *WITHIN))
+    name = f"{'' if inner else ROWS}{objective.output}.{objective.measure}"
     return name if name in figures else None
 
 

@@ -201,44 +201,44 @@ def _arm(a: Array, b: Array) -> Array:
 # -- sentences -------------------------------------------------------------------------------------
 
 
-def cylinder_sentences(found: Cylinder) -> Iterator[str]:
+def cylinder_sentences(cylinder: Cylinder) -> Iterator[str]:
     """The bore at a pressure, the rod where it is slender, and a lever that can be built."""
     words = {
-        "pressure": number(found.pressure / BAR, digits=3),
-        "bore": told(found.bore, "length", "mm", digits=3),
-        "rod": told(found.rod, "length", "mm", digits=3),
-        "open": told(found.open, "length", digits=3),
+        "pressure": number(cylinder.pressure / BAR, digits=3),
+        "bore": told(cylinder.bore, "length", "mm", digits=3),
+        "rod": told(cylinder.rod, "length", "mm", digits=3),
+        "open": told(cylinder.open, "length", digits=3),
     }
     usual = to_say("At {pressure} bar a cylinder of {bore} bore with a rod of {rod} holds that.")
     slender = to_say(
         "At {pressure} bar a cylinder of {bore} bore holds that; {open} long, it takes a rod of "
         "{rod} not to buckle."
     )
-    yield say(slender if found.is_slender else usual, **words)
-    shown = display("length", [found.closed, found.open])
-    if not found.is_buildable:
+    yield say(slender if cylinder.is_slender else usual, **words)
+    shown = display("length", [cylinder.closed, cylinder.open])
+    if not cylinder.is_buildable:
         yield say(
             "Closed it is {closed}, which leaves no room for its stroke of {stroke} and {dead} of "
             "piston and ends: it cannot be built so.",
-            closed=shown.with_unit(shown.text(found.closed, digits=3)),
-            stroke=shown.with_unit(shown.text(found.open - found.closed, digits=3)),
-            dead=shown.with_unit(shown.text(found.dead, digits=3)),
+            closed=shown.with_unit(shown.text(cylinder.closed, digits=3)),
+            stroke=shown.with_unit(shown.text(cylinder.open - cylinder.closed, digits=3)),
+            dead=shown.with_unit(shown.text(cylinder.dead, digits=3)),
         )
-    if (lever := found.lever) is not None:
+    if (lever := cylinder.lever) is not None:
         yield say(
             "With {point} {distance} from {pivot} it needs {share} % less force, and is from "
             "{closed} to {open} long, which can be built.",
             point=lever.point,
             distance=told(lever.distance, "length", digits=3),
-            pivot=found.pivot,
-            share=percent(1 - lever.force / max(found.push, found.pull)),
+            pivot=cylinder.pivot,
+            share=percent(1 - lever.force / max(cylinder.push, cylinder.pull)),
             closed=told(lever.closed, "length", digits=3),
             open=told(lever.open, "length", digits=3),
         )
-    elif found.is_lever_stopped and found.is_buildable:
+    elif cylinder.is_lever_stopped and cylinder.is_buildable:
         yield say(
             "A longer lever about {pivot} would need a stroke for which its closed length, "
             "{closed}, has no room.",
-            pivot=found.pivot,
-            closed=told(found.closed, "length", digits=3),
+            pivot=cylinder.pivot,
+            closed=told(cylinder.closed, "length", digits=3),
         )

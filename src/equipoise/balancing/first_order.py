@@ -246,16 +246,16 @@ def shafts_sentence(
     )
 
 
-def piston_sentences(found: PistonBalance, crank: str) -> Iterator[str]:
+def piston_sentences(balance: PistonBalance, crank: str) -> Iterator[str]:
     """How much of a piston is balanced, and the choice of half of it, with both forces."""
-    forces = (found.along, found.across, found.half_along, found.half_across)
+    forces = (balance.along, balance.across, balance.half_along, balance.half_across)
     shown = display("force", forces)
     names = ("along", "across", "half_along", "half_across")
     values = {
         name: shown.with_unit(shown.text(force, max(forces), 3))
         for name, force in zip(names, forces, strict=True)
     }
-    if found.is_half:
+    if balance.is_half:
         yield say(
             "Half of what reciprocates is balanced on {crank} already: the shaking force is "
             "{along} along the stroke and {across} across it, and more on {crank} only trades one "
@@ -272,8 +272,8 @@ def piston_sentences(found: PistonBalance, crank: str) -> Iterator[str]:
         "Nothing of what reciprocates is balanced on {crank}: the shaking force is {along} along "
         "the stroke and {across} across it."
     )
-    template = turning if found.share < 0 else now
-    present = say(template, share=percent(found.share), crank=crank, **values)
+    template = turning if balance.share < 0 else now
+    present = say(template, share=percent(balance.share), crank=crank, **values)
     added = to_say(
         "With half of it balanced, by {moment} added on {crank} at {direction} in its axes, or "
         "taken off opposite, it is {half_along} along and {half_across} across: choose by what the "
@@ -284,11 +284,11 @@ def piston_sentences(found: PistonBalance, crank: str) -> Iterator[str]:
         "{direction} in its axes, it is {half_along} along and {half_across} across: choose by "
         "what the mounts bear."
     )
-    too_much = found.share > 0.5  # a part of a counterweight that is there
-    way = found.direction + pi * too_much
+    too_much = balance.share > 0.5  # a part of a counterweight that is there
+    way = balance.direction + pi * too_much
     choice = say(
         taken if too_much else added,
-        moment=weight_named(found.moment, found.radius),
+        moment=weight_named(balance.moment, balance.radius),
         crank=crank,
         direction=direction_named(phase(rect(1.0, radians(round(degrees(way)))))),
         **values,

@@ -189,12 +189,12 @@ def _rounded_up(value: float) -> float:
 # -- sentences -------------------------------------------------------------------------------------
 
 
-def flywheel_sentences(found: Flywheels, crank: str, links: float) -> Iterator[str]:
+def flywheel_sentences(flywheels: Flywheels, crank: str, links: float) -> Iterator[str]:
     """What flywheels weigh, what they bring, and what the motor gives then.
 
     links : mass of the moving links, kg.
     """
-    for (ratio, is_assumed), same in groupby(found.choices, key=_shaft):
+    for (ratio, is_assumed), same in groupby(flywheels.choices, key=_shaft):
         on_crank = to_say("Flywheel on {crank}: {discs}.")
         on_motor = to_say("Flywheel on the shaft of the motor: {discs}.")
         assumed = to_say(
@@ -204,33 +204,33 @@ def flywheel_sentences(found: Flywheels, crank: str, links: float) -> Iterator[s
         discs = say("; ").join(_disc(item, links) for item in same)
         template = on_crank if ratio == 1 else assumed if is_assumed else on_motor
         yield say(template, crank=crank, ratio=f"{ratio:.4g}", discs=discs)
-    if _lets_swing(found.choices):
+    if _lets_swing(flywheels.choices):
         yield say(
             "A motor that lets the speed swing so far then gives {mean} at {crank} ({power}) "
             "instead of up to {most}.",
             crank=crank,
-            mean=told(found.mean_torque, "torque", digits=3),
-            power=told(found.power, "power", digits=3),
-            most=told(found.largest_torque, "torque", digits=3),
+            mean=told(flywheels.mean_torque, "torque", digits=3),
+            power=told(flywheels.power, "power", digits=3),
+            most=told(flywheels.largest_torque, "torque", digits=3),
         )
 
 
-def _shaft(one: RequiredFlywheel) -> tuple[float, bool]:
-    return one.ratio, one.is_shaft_assumed
+def _shaft(flywheel: RequiredFlywheel) -> tuple[float, bool]:
+    return flywheel.ratio, flywheel.is_shaft_assumed
 
 
 def _lets_swing(choices: Iterable[RequiredFlywheel]) -> bool:
     return any(choice.fluctuation > STEADY for choice in choices)
 
 
-def _disc(one: RequiredFlywheel, links: float) -> str:
+def _disc(flywheel: RequiredFlywheel, links: float) -> str:
     return say(
         "at least {inertia}, as of a steel disc of {diameter} by {thickness} and {mass} ({ratio} "
         "times the moving links), keeps its speed within {share} %",
-        inertia=told(one.inertia, "inertia", digits=2),
-        diameter=told(one.diameter, "length", "mm", digits=3),
-        thickness=told(one.thickness, "length", "mm", digits=2),
-        mass=told(one.mass, "mass", "kg", digits=2),
-        ratio=number(one.mass / links, digits=2),
-        share=percent(one.fluctuation),
+        inertia=told(flywheel.inertia, "inertia", digits=2),
+        diameter=told(flywheel.diameter, "length", "mm", digits=3),
+        thickness=told(flywheel.thickness, "length", "mm", digits=2),
+        mass=told(flywheel.mass, "mass", "kg", digits=2),
+        ratio=number(flywheel.mass / links, digits=2),
+        share=percent(flywheel.fluctuation),
     )

@@ -119,7 +119,7 @@ class AssessedMachine:
     def largest_aim(self, objectives: Iterable[Objective]) -> FigureAssessment | None:
         """The headline figure for which objectives stand; None where it is none."""
         entries = (entry for _, entry in self.aims(objectives))
-        return max(entries, key=lambda one: one.excess, default=None)
+        return max(entries, key=lambda item: item.excess, default=None)
 
     def figure_gain(self, objectives: Iterable[Objective], after: AssessedMachine) -> float:
         """Share of the largest figure of objectives, in its own measure, that is gone in another
@@ -244,32 +244,37 @@ class HeadlineLimit:
         yield from (Limit(objective, at_most=at_most) for objective in self.objectives)
 
 
-def watched_of(found: AssessedMachine) -> Iterator[HeadlineLimit]:
+def watched_of(assessed: AssessedMachine) -> Iterator[HeadlineLimit]:
     """Figures that masses change, and the most that they may become."""
-    for part in found.headline:
+    for part in assessed.headline:
         if part.output.startswith(GAUGES):
-            yield from _watched_gauge(found.analysis.machine, part)
+            yield from _watched_gauge(assessed.analysis.machine, part)
             continue
         members = [
-            out.name for out in found.analysis.outputs if out.declared.name == part.family[0]
+            out.name for out in assessed.analysis.outputs if out.declared.name == part.family[0]
         ]
         yield from _watched(part, members, HEADLINE_GROWTH)
-    for part in found.parts:
+    for part in assessed.parts:
         yield from _watched(part, [part.output], PART_GROWTH)
 
 
-def _watched(one: FigureAssessment, outputs: list[str], growth: float) -> Iterator[HeadlineLimit]:
+def _watched(
+    assessment: FigureAssessment, outputs: list[str], growth: float
+) -> Iterator[HeadlineLimit]:
     """What the largest of some outputs may become; nothing where masses do not change it."""
-    known, measure = declared(one.output), one.family[1]
+    known, measure = declared(assessment.output), assessment.family[1]
     if known is None or known[0].reason or measure not in MEASURES:
         return
     objectives = tuple(Objective(name.removeprefix(ROWS), measure) for name in outputs)
-    yield HeadlineLimit(objectives, entry=one, growth=growth)
+    yield HeadlineLimit(objectives, entry=assessment, growth=growth)
 
 
-def _watched_gauge(machine: Machine, one: FigureAssessment) -> Iterator[HeadlineLimit]:
+def _watched_gauge(machine: Machine, assessment: FigureAssessment) -> Iterator[HeadlineLimit]:
     """What a gauge reads at the machine's own speed."""
-    for objective in (Objective(one.output, "ripple"), Objective(one.output, "peak_to_peak")):
+    for objective in (
+        Objective(assessment.output, "ripple"),
+        Objective(assessment.output, "peak_to_peak"),
+    ):
         yield HeadlineLimit((objective,), HEADLINE_GROWTH * Problem.value_of(machine, objective))
 
 

@@ -282,18 +282,18 @@ def conditions_blocks(*found: Conditions, verdict: Sequence[str] = ()) -> Iterat
         yield Facts(title, tuple(verdict))
 
 
-def _conditions(found: Conditions) -> Block:
-    subject = say(" and ").join(map(output_named, found.outputs))
-    text = {"what": subject, "wanted": say(WANTED[found.kind, found.crank])}
-    if not found.count:
+def _conditions(conditions: Conditions) -> Block:
+    subject = say(" and ").join(map(output_named, conditions.outputs))
+    text = {"what": subject, "wanted": say(WANTED[conditions.kind, conditions.crank])}
+    if not conditions.count:
         return Text(say("Conditions for {what} to be {wanted}: none, it always is.", **text))
     now = [
         parameter_sum.factor * float(k)
-        for parameter_sum, k in zip(found.readings, found.residuals, strict=True)
+        for parameter_sum, k in zip(conditions.readings, conditions.residuals, strict=True)
     ]
     rows = tuple(
         (f"{parameter_sum.words} = 0", Value(unit.factor * value), unit.unit)
-        for parameter_sum, value in zip(found.readings, now, strict=True)
+        for parameter_sum, value in zip(conditions.readings, now, strict=True)
         for dimension, usual in [SHOWN[parameter_sum.unit]]
         for unit in [display(dimension, now, usual)]
     )

@@ -52,11 +52,11 @@ class Near:
         return Linear.of(self.machine)
 
 
-def signals_of(effects: Effects, objective: Objective, near: Near) -> list[Signal]:
+def signals_of(effects: Effects, objective: Objective, point: Near) -> list[Signal]:
     """Signals whose largest measure an objective is: one for each speed at which it is read."""
     output, machine = objective.output, effects.machine
     if output.startswith(GAUGES):
-        signals = _gauge_signals(effects, objective, near)
+        signals = _gauge_signals(effects, objective, point)
     elif output in OF_ROWS or (len(machine.rows) > 1 and not output.startswith(WITHIN)):
         signals = [of_all_rows(effects, output, objective.about)]
     else:
@@ -106,22 +106,22 @@ def of_rows_alone(effects: Effects, output: str, about: str | None = None) -> li
 # -- gauges of the support -------------------------------------------------------------------------
 
 
-def _gauge_signals(effects: Effects, objective: Objective, near: Near) -> list[Signal]:
+def _gauge_signals(effects: Effects, objective: Objective, point: Near) -> list[Signal]:
     """A gauge's displacement (m or rad, without its mean) at each of the objective's speeds."""
-    linear, row = reading_of(objective, near)
-    speeds, rows = objective.speeds or (effects.machine.drive.speed,), rows_of(near.machine)
-    return [read(effects, linear, row, speed, near.numbers, rows) for speed in speeds]
+    linear, row = reading_of(objective, point)
+    speeds, rows = objective.speeds or (effects.machine.drive.speed,), rows_of(point.machine)
+    return [read(effects, linear, row, speed, point.numbers, rows) for speed in speeds]
 
 
-def reading_of(objective: Objective, near: Near) -> tuple[Linear, Array]:
+def reading_of(objective: Objective, point: Near) -> tuple[Linear, Array]:
     """The support near the solution, and a row (D,) that reads a gauge off its coordinates."""
-    if near.machine.support is None:
+    if point.machine.support is None:
         raise ModelError("support", Note("missing; a gauge needs a support that it stands on"))
-    body, name = near.linear.body, objective.output.removeprefix(GAUGES)
+    body, name = point.linear.body, objective.output.removeprefix(GAUGES)
     gauges = gauges_of(body)
     if name not in gauges:
         raise ModelError("support.gauges", unknown(name, gauges, "gauge"))
-    return near.linear, body.row(gauges[name])[body.free]
+    return point.linear, body.row(gauges[name])[body.free]
 
 
 def read(

@@ -95,37 +95,37 @@ def _heavy(balanced: Balanced) -> Iterator[str]:
         )
 
 
-def nothing_told(found: Balanced) -> Iterator[str]:
+def nothing_told(balanced: Balanced) -> Iterator[str]:
     """That balancing brings nothing; how small the aims are, and what is proved."""
-    if found.advice is not None:
-        yield from why_nothing(found)
-        yield from sentences_beyond_masses(found)
+    if balanced.advice is not None:
+        yield from why_nothing(balanced)
+        yield from sentences_beyond_masses(balanced)
         return
-    for item, (before, _) in found.aims.items():
-        unit = shown_in(unit_of(item, found.original), [before])
+    for item, (before, _) in balanced.aims.items():
+        unit = shown_in(unit_of(item, balanced.original), [before])
         yield say(
             "{what}, {value} {unit}, is {already}.",
-            what=capital(objective_named(item, len(found.original.rows))),
+            what=capital(objective_named(item, len(balanced.original.rows))),
             value=unit.text(before, digits=3),
             unit=unit.name,
-            already=good_already(found),
+            already=good_already(balanced),
         )
-    yield from proof_told(found)
+    yield from proof_told(balanced)
 
 
-def why_nothing(found: Balanced) -> Iterator[str]:
+def why_nothing(balanced: Balanced) -> Iterator[str]:
     """What is done first where no change of masses is advised, and why none is."""
-    assert found.advice is not None
-    if (mounts := found.advice.beyond.mounts) is not None:
+    assert balanced.advice is not None
+    if (mounts := balanced.advice.beyond.mounts) is not None:
         yield from mount_sentences(mounts, comes_first=True)
-    first = [*first_sentences(found)]
+    first = [*first_sentences(balanced)]
     yield from first
-    yield from reasons_beside_weights(found) if first else reasons_to_leave(found)
+    yield from reasons_beside_weights(balanced) if first else reasons_to_leave(balanced)
 
 
-def good_already(found: Balanced) -> str:
+def good_already(balanced: Balanced) -> str:
     """What a machine is where balancing brings nothing, as a part of a sentence."""
-    if found.advice is not None:
+    if balanced.advice is not None:
         return say("leave the masses as they are")
     return say("already as small as what may be changed can make it")
 
@@ -151,29 +151,29 @@ def large_sentences(advice: Advice, crank_turns: bool) -> Iterator[str]:
         yield say(template if large else nearest, figure=sentence(item, crank_turns))
 
 
-def reasons_to_leave(found: Balanced) -> Iterator[str]:
+def reasons_to_leave(balanced: Balanced) -> Iterator[str]:
     """Why the masses are best left as they are."""
-    advice = found.advice
+    advice = balanced.advice
     assert advice is not None
     largest = next(iter(advice.before), None)
-    own = found.original.balance
+    own = balanced.original.balance
     asked = own is not None and bool(own.objectives)
-    if not asked and (words := rotor_sentence(found.original)):
+    if not asked and (words := rotor_sentence(balanced.original)):
         yield words
         return
-    if (largest is None or not largest.is_large) and not (asked and found.changes):
+    if (largest is None or not largest.is_large) and not (asked and balanced.changes):
         yield say("Leave the machine as it is: nothing is large beside its yardstick.")
-    elif found.changes:
+    elif balanced.changes:
         yield say(
             "Leave the masses as they are: the best that fits the room that is assumed, "
             "{remedy}, takes {gain} % off {aims}; {why}.",
-            **_best_tried(found),
+            **_best_tried(balanced),
         )
     elif largest is not None and largest.is_shaking:
         yield say(
             "Leave the masses as they are: in the room that is assumed, no change of a mass about "
             "a pivot of the frame makes {aims} noticeably smaller.",
-            aims=aims_told(found),
+            aims=aims_told(balanced),
         )
     elif largest is not None:
         yield say(
@@ -182,85 +182,85 @@ def reasons_to_leave(found: Balanced) -> Iterator[str]:
         )
 
 
-def _best_tried(found: Balanced) -> dict[str, str]:
+def _best_tried(balanced: Balanced) -> dict[str, str]:
     """Values of a sentence on the best of what was tried, and why it is not offered."""
     return {
-        "aims": aims_told(found),
-        "remedy": remedy_named(found),
-        "gain": percent(max(found.gain, 0.0), 1),
-        "why": why_not(found),
+        "aims": aims_told(balanced),
+        "remedy": remedy_named(balanced),
+        "gain": percent(max(balanced.gain, 0.0), 1),
+        "why": why_not(balanced),
     }
 
 
-def reasons_beside_weights(found: Balanced) -> Iterator[str]:
+def reasons_beside_weights(balanced: Balanced) -> Iterator[str]:
     """Why no other mass is offered, where a weight is named first."""
-    if found.changes:
+    if balanced.changes:
         yield say(
             "Nothing else that was tried is worth building: the best that fits the room that is "
             "assumed, {remedy}, takes {gain} % off {aims}; {why}.",
-            **_best_tried(found),
+            **_best_tried(balanced),
         )
 
 
-def sentences_beyond_masses(found: Balanced) -> Iterator[str]:
+def sentences_beyond_masses(balanced: Balanced) -> Iterator[str]:
     """What helps beyond masses, with the change that is offered, if one is; without one, other
     mounts stand before that masses are best left.
     """
-    yield from mounts_beside_change(found)
-    yield from beside_mounts(found)
+    yield from mounts_beside_change(balanced)
+    yield from beside_mounts(balanced)
 
 
-def steadying_sentence(found: Balanced) -> str:
+def steadying_sentence(balanced: Balanced) -> str:
     """The flywheel that a machine needs whose torque swings, where masses are best left; or "".
 
     It is what to build there, so that it stands on the first page.
     """
-    if found.advice is None or (flywheels := found.advice.beyond.flywheels) is None:
+    if balanced.advice is None or (flywheels := balanced.advice.beyond.flywheels) is None:
         return ""
-    machine = found.original
+    machine = balanced.original
     return next(flywheel_sentences(flywheels, machine.drive.link, machine.mass))
 
 
-def mounts_beside_change(found: Balanced) -> Iterator[str]:
+def mounts_beside_change(balanced: Balanced) -> Iterator[str]:
     """Other mounts that a machine needs beside a change that was advised, or before it."""
-    if found.advice is None or not found.helps:
+    if balanced.advice is None or not balanced.helps:
         return
-    if (mounts := found.advice.beyond.mounts) is not None:
-        yield from mount_sentences(mounts, comes_first=mounts.gain > found.gain)
+    if (mounts := balanced.advice.beyond.mounts) is not None:
+        yield from mount_sentences(mounts, comes_first=mounts.gain > balanced.gain)
 
 
-def first_sentences(found: Balanced) -> Iterator[str]:
+def first_sentences(balanced: Balanced) -> Iterator[str]:
     """What helps more than the masses that were tried, and stands before them."""
-    yield from _beyond(found, first=True)
+    yield from _beyond(balanced, first=True)
 
 
-def beside_mounts(found: Balanced) -> Iterator[str]:
+def beside_mounts(balanced: Balanced) -> Iterator[str]:
     """What helps beyond masses and mounts, but for what stands first."""
-    if found.advice is not None:
-        yield from _beyond(found, first=False)
-        yield from _with_more_room(found)
+    if balanced.advice is not None:
+        yield from _beyond(balanced, first=False)
+        yield from _with_more_room(balanced)
 
 
-def _beyond(found: Balanced, first: bool) -> Iterator[str]:
-    advice = found.advice
+def _beyond(balanced: Balanced, first: bool) -> Iterator[str]:
+    advice = balanced.advice
     if advice is None:
         return
-    machine = found.machine if found.helps else found.original
-    gain = found.gain if found.helps else None
+    machine = balanced.machine if balanced.helps else balanced.original
+    gain = balanced.gain if balanced.helps else None
     leading = first_answers(advice.beyond, advice.before, gain)
-    for name, said in sentences_beyond(advice.beyond, machine, found.helps).items():
+    for name, said in sentences_beyond(advice.beyond, machine, balanced.helps).items():
         if (name in leading) == first:
             yield from said
 
 
-def beside_the_aim(found: Balanced) -> Iterator[str]:
+def beside_the_aim(balanced: Balanced) -> Iterator[str]:
     """Of a change that was advised: which other figures that were large fall with it, and which
     one is the largest after it, against the yardstick that it had before.
     """
-    assert found.advice is not None
-    pairs = [*_before_and_after(found.advice)]
+    assert balanced.advice is not None
+    pairs = [*_before_and_after(balanced.advice)]
     aims = {
-        f"{rows}{objective.output}" for objective in found.plan.objectives for rows in ("", ROWS)
+        f"{rows}{objective.output}" for objective in balanced.plan.objectives for rows in ("", ROWS)
     }
     fallen = [_from_to(was, new) for was, new in pairs
               if was.is_large and was.output not in aims and not was.output.startswith(GAUGES)
@@ -268,22 +268,24 @@ def beside_the_aim(found: Balanced) -> Iterator[str]:
               and not was.is_limit]  # fmt: skip
     if fallen:
         yield say("That also brings down {figures}.", figures=listed(fallen))
-    poor = found.advice.beyond.transmission
-    for item in _left(found.advice)[:1]:
+    poor = balanced.advice.beyond.transmission
+    for item in _left(balanced.advice)[:1]:
         if poor is not None and item.yardstick_kind == "transmission":
             break
-        yield say("Large after that: {figure}.", figure=sentence(item, found.original.crank_turns))
+        yield say(
+            "Large after that: {figure}.", figure=sentence(item, balanced.original.crank_turns)
+        )
     if poor is not None:
-        yield transmission_sentence(poor, found.original.crank_turns)
+        yield transmission_sentence(poor, balanced.original.crank_turns)
 
 
-def large_besides(found: Balanced) -> Iterator[str]:
+def large_besides(balanced: Balanced) -> Iterator[str]:
     """Of a change that was advised: what else is large after it, but for a transmission angle that
     has a sentence of its own.
     """
-    assert found.advice is not None
-    told_of = found.advice.beyond.transmission is not None
-    others = [item for item in _left(found.advice)[1:]
+    assert balanced.advice is not None
+    told_of = balanced.advice.beyond.transmission is not None
+    others = [item for item in _left(balanced.advice)[1:]
               if not (told_of and item.yardstick_kind == "transmission")]  # fmt: skip
     if others:
         figures = listed(map(_valued, others[: MOST_LARGE - 1]))
@@ -311,10 +313,10 @@ def _against(new: FigureAssessment, was: FigureAssessment) -> FigureAssessment:
     return replace(new, yardstick=was.yardstick, against=was.against, ratio=ratio)
 
 
-def _valued(one: FigureAssessment) -> str:
-    shown = display(one.dimension, [one.value], one.shown_unit)
-    value = shown.with_unit(shown.text(one.value, digits=3))
-    return say("{what}: {value}", what=one.label.said(), value=value)
+def _valued(assessment: FigureAssessment) -> str:
+    shown = display(assessment.dimension, [assessment.value], assessment.shown_unit)
+    value = shown.with_unit(shown.text(assessment.value, digits=3))
+    return say("{what}: {value}", what=assessment.label.said(), value=value)
 
 
 def _from_to(was: FigureAssessment, new: FigureAssessment) -> str:
@@ -327,9 +329,9 @@ def _from_to(was: FigureAssessment, new: FigureAssessment) -> str:
     )
 
 
-def _with_more_room(found: Balanced) -> Iterator[str]:
+def _with_more_room(balanced: Balanced) -> Iterator[str]:
     """What a counterweight would do where there is more room than is assumed."""
-    if (with_room := found.with_room) is not None:
+    if (with_room := balanced.with_room) is not None:
         assumed, wanted = display("length", [with_room.assumed, with_room.wanted]), with_room.wanted
         yield say(
             "The room about {at} is assumed, from the lengths of the links, to reach {assumed}: "
@@ -343,26 +345,26 @@ def _with_more_room(found: Balanced) -> Iterator[str]:
         )
 
 
-def remedy_named(found: Balanced) -> str:
+def remedy_named(balanced: Balanced) -> str:
     """What is changed, in a few words."""
-    off = [change.link for change in found.changes if change.kind == "removed mass"]
+    off = [change.link for change in balanced.changes if change.kind == "removed mass"]
     if off:
         return say("less mass on {link}", link=listed(off))
-    phases = [phases_told(change.values["phases"]) for change in found.changes
+    phases = [phases_told(change.values["phases"]) for change in balanced.changes
               if change.kind == "phases"]  # fmt: skip
     if phases:
         return say("phases {phases} of the rows", phases=phases[0])
-    remedy = listed(freedoms(found.plan))
+    remedy = listed(freedoms(balanced.plan))
     for kind in ("beside", "beside_links"):
-        beside = {name: None for item in found.changes for name in item.values.get(kind, ())}
+        beside = {name: None for item in balanced.changes for name in item.values.get(kind, ())}
         if beside:
             return in_its_plane(remedy, {kind: beside})
     return remedy
 
 
-def why_not(found: Balanced) -> str:
+def why_not(balanced: Balanced) -> str:
     """Why a remedy is not offered; empty of one that is."""
-    advice = found.advice
+    advice = balanced.advice
     assert advice is not None
     if advice.offered:
         return ""
@@ -370,42 +372,42 @@ def why_not(found: Balanced) -> str:
     figures = [_from_to(*pair) for pair in advice.worse[:MOST_WORSE]]
     if more := len(advice.worse) - len(figures):
         figures.append(say("{count} more", count=more))
-    if found.gain < LEAST_GAIN:
+    if balanced.gain < LEAST_GAIN:
         reason = say("that is too little")
-    elif mounts is not None and not outweighs(found.gain, mounts):
+    elif mounts is not None and not outweighs(balanced.gain, mounts):
         reason = say("other mounts bring more")
     elif figures:
         reason = say("{figures} would grow", figures=listed(figures))
-    elif found.gain < least_gain(found.added_mass):
+    elif balanced.gain < least_gain(balanced.added_mass):
         reason = say("that is too little")
-    elif (fall := _fall_of_figure(found)) is not None:
+    elif (fall := _fall_of_figure(balanced)) is not None:
         reason = fall
-    elif arms is not None and arms.gain >= found.gain:
+    elif arms is not None and arms.gain >= balanced.gain:
         reason = say("more arms bring more")
-    elif unbalances(found.original):
+    elif unbalances(balanced.original):
         reason = say("the unbalance may be what the machine is for")
     else:
-        mass = told(found.added_mass, "mass", digits=3)
+        mass = told(balanced.added_mass, "mass", digits=3)
         reason = say("{mass} would be added, too much for that", mass=mass)
     return reason
 
 
-def _fall_of_figure(found: Balanced) -> str | None:
+def _fall_of_figure(balanced: Balanced) -> str | None:
     """That the figure that is large falls by too little in its own measure, where it does, though
     the aim falls by enough.
     """
-    assert found.advice is not None
-    share = max(found.added_mass, 0.0) / (found.original.mass or 1.0)
-    own = found.original.balance
-    if not is_worth(found.gain, share) or (own is not None and own.objectives):
+    assert balanced.advice is not None
+    share = max(balanced.added_mass, 0.0) / (balanced.original.mass or 1.0)
+    own = balanced.original.balance
+    if not is_worth(balanced.gain, share) or (own is not None and own.objectives):
         return None
     outputs = {
-        f"{rows}{objective.output}" for objective in found.plan.objectives for rows in ("", ROWS)
+        f"{rows}{objective.output}" for objective in balanced.plan.objectives for rows in ("", ROWS)
     }
-    pairs = ((was, new) for was, new in _before_and_after(found.advice) if was.output in outputs)
+    pairs = ((was, new) for was, new in _before_and_after(balanced.advice) if was.output in outputs)
     for was, new in pairs:
         gone = 1 - abs(new.value / was.value)
-        if not is_worth(found.gain, share, gone):
+        if not is_worth(balanced.gain, share, gone):
             fallen = percent(max(gone, 0.0), 1)
             return say("{figure}, falls by only {gain} %", figure=was.label.said(), gain=fallen)
     return None
@@ -414,29 +416,29 @@ def _fall_of_figure(found: Balanced) -> str | None:
 # -- what was tried --------------------------------------------------------------------------------
 
 
-def advice_blocks(found: Balanced) -> Iterator[Block]:
+def advice_blocks(balanced: Balanced) -> Iterator[Block]:
     """What is large, and what was tried against it."""
-    advice = found.advice
+    advice = balanced.advice
     assert advice is not None
-    yield from map(Text, large_sentences(advice, found.original.crank_turns))
-    if not found.helps:
-        yield from map(Text, nothing_told(found))
+    yield from map(Text, large_sentences(advice, balanced.original.crank_turns))
+    if not balanced.helps:
+        yield from map(Text, nothing_told(balanced))
     else:
-        yield from map(Text, first_sentences(found))
-        yield from map(Text, sentences_beyond_masses(found))
-    for aims, same in groupby(found.tried, key=aims_told):
+        yield from map(Text, first_sentences(balanced))
+        yield from map(Text, sentences_beyond_masses(balanced))
+    for aims, same in groupby(balanced.tried, key=aims_told):
         rows: tuple[tuple[Cell, ...], ...] = tuple(
             (remedy_named(item), RelativeChange(1.0, 1 - item.gain), why_not(item)) for item in same
         )
         columns = (Column(say("remedy")), Column(say("change")), Column(say("why not")))
         title = say("What was tried to make smaller {aims}", aims=aims)
         yield Table(title, columns, rows, detail=True)
-    yield from map(Text, _asking_for_more(found))
+    yield from map(Text, _asking_for_more(balanced))
 
 
-def _asking_for_more(found: Balanced) -> Iterator[str]:
+def _asking_for_more(balanced: Balanced) -> Iterator[str]:
     """What is offered, and how to ask for something else."""
-    if found.tried:
+    if balanced.tried:
         yield say(
             "A change is offered that takes away at least {least} % of its aim, of what adds mass "
             "{added} % and {net} % more than the share that it adds to the mass of the moving "
@@ -462,4 +464,4 @@ def _asking_for_more(found: Balanced) -> Iterator[str]:
         "The file does not say what may be changed: [balance] in it asks for something else, or "
         "options such as --objective, --phases, --counterweight and --move-cm."
     )
-    yield say(of_rows if len(found.original.rows) > 1 else of_one)
+    yield say(of_rows if len(balanced.original.rows) > 1 else of_one)

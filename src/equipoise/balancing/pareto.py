@@ -163,21 +163,21 @@ def _least_of_both(machine: Machine, plan: Balance, first: Objective, least: Bal
     )
 
 
-def front_blocks(found: Front) -> Iterator[Block]:
+def front_blocks(front: Front) -> Iterator[Block]:
     """The trade-off, a point a row."""
-    labels = (objective_named(found.first), objective_named(found.second), say("added mass"))
-    units = [unit for _, unit, _ in found.columns()]
+    labels = (objective_named(front.first), objective_named(front.second), say("added mass"))
+    units = [unit for _, unit, _ in front.columns()]
     columns = [
         Column(label, DIMENSIONS.get(unit), shown_unit(unit))
         for label, unit in zip(labels, units, strict=True)
     ]
-    values = (column.tolist() for _, _, column in found.columns())
+    values = (column.tolist() for _, _, column in front.columns())
     rows = tuple(tuple(Value(item, 1e-9) for item in row) for row in zip(*values, strict=True))
     yield Table(say("Trade-off"), tuple(columns), rows)
     yield Text(
         say(
             "Every point is as good as any can be, to {gap} of the value before{scope}.",
-            gap=gap_told(found.gap),
-            scope=scope_of(found.points[0]),
+            gap=gap_told(front.gap),
+            scope=scope_of(front.points[0]),
         )
     )

@@ -226,10 +226,10 @@ def _step(cost: Cost, phases: Array, region: float) -> tuple[Array, float]:
     return result.x[:free] * region, float(weights @ np.maximum(now, _least(cost)) - result.fun)
 
 
-def _below(found: list[Pieces], unit: Array) -> Array:
+def _below(pieces: list[Pieces], unit: Array) -> Array:
     """Rows (P, m - 1 + terms): slopes of each value, less that of the largest of its term."""
-    slopes = np.vstack([slopes[:, 1:] for _, slopes in found])
-    owner = np.repeat(np.arange(len(found)), [len(values) for values, _ in found])
+    slopes = np.vstack([slopes[:, 1:] for _, slopes in pieces])
+    owner = np.repeat(np.arange(len(pieces)), [len(values) for values, _ in pieces])
     return np.hstack([slopes, -np.diag(unit)[owner]])
 
 

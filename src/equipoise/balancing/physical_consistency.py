@@ -62,13 +62,13 @@ class ConsistentMasses:
     scale: Array
 
     @classmethod
-    def of(cls, machine: Machine, found: Conditions) -> ConsistentMasses:
+    def of(cls, machine: Machine, conditions: Conditions) -> ConsistentMasses:
         links = machine.links
         mass = np.array([link.mass or 0.0 for link in links.values()])
         inertia = np.array([link.inertia or 0.0 for link in links.values()])
         unit = float(np.sum(mass)) or 1.0
         scale = parameter_scales(machine) * unit
-        rows = np.linalg.qr((found.coefficients * scale).T)[0].T
+        rows = np.linalg.qr((conditions.coefficients * scale).T)[0].T
         least = inertia / (unit * machine_size(machine) ** 2)
         return cls(tuple(links), rows, mass / unit, least, unit, scale)
 

@@ -125,7 +125,7 @@ def _mended(motion: Motion, joint: str) -> Mending | None:
                 enough = after[joint] >= TRANSMISSION
                 score = 1 - abs(share) if enough else after[joint] - TRANSMISSION
                 pairs.append((score, (link, between, share, length, after[joint])))
-    return max(pairs, key=lambda one: one[0], default=(0.0, None))[1]
+    return max(pairs, key=lambda item: item[0], default=(0.0, None))[1]
 
 
 def _worst_angles(motion: Motion) -> dict[str, float]:
@@ -158,7 +158,7 @@ def _with_length(
 # -- sentences -------------------------------------------------------------------------------------
 
 
-def transmission_sentence(found: PoorTransmission, crank_turns: bool) -> str:
+def transmission_sentence(transmission: PoorTransmission, crank_turns: bool) -> str:
     """Where the angle is poor."""
     of_crank = to_say(
         "Transmission angle at {joint}: {value} at crank angle {angle} (usual: {limit})."
@@ -168,29 +168,31 @@ def transmission_sentence(found: PoorTransmission, crank_turns: bool) -> str:
     )
     return say(
         of_crank if crank_turns else of_cycle,
-        joint=joint_named(found.joint),
-        value=angle(found.transmission),
-        angle=angle(found.crank_angle),
-        limit=angle(found.limit, 0),
+        joint=joint_named(transmission.joint),
+        value=angle(transmission.transmission),
+        angle=angle(transmission.crank_angle),
+        limit=angle(transmission.limit, 0),
     )
 
 
-def mending_sentences(found: PoorTransmission) -> Iterator[str]:
+def mending_sentences(transmission: PoorTransmission) -> Iterator[str]:
     """Which length mends the angle, and what the joint bears."""
-    yield _length_sentence(found)
-    if found.force is not None:
-        force = told(found.force, "force", digits=3)
-        yield say("Joint {joint} bears up to {force}.", joint=joint_named(found.joint), force=force)
+    yield _length_sentence(transmission)
+    if transmission.force is not None:
+        force = told(transmission.force, "force", digits=3)
+        yield say(
+            "Joint {joint} bears up to {force}.", joint=joint_named(transmission.joint), force=force
+        )
 
 
-def _length_sentence(found: PoorTransmission) -> str:
+def _length_sentence(transmission: PoorTransmission) -> str:
     """Which length mends it."""
-    if found.between is None:
+    if transmission.between is None:
         return say(
             "No mass mends that transmission angle, nor any single length by a fifth: change "
             "several."
         )
-    first, second = found.between
+    first, second = transmission.between
     longer = to_say(
         "No mass mends that transmission angle: {link} {share} % longer from {first} to "
         "{second} ({length}) brings it to {mended}, with other strokes."
@@ -200,11 +202,11 @@ def _length_sentence(found: PoorTransmission) -> str:
         "{second} ({length}) brings it to {mended}, with other strokes."
     )
     return say(
-        longer if found.share > 0 else shorter,
-        link=found.link,
-        share=percent(abs(found.share)),
+        longer if transmission.share > 0 else shorter,
+        link=transmission.link,
+        share=percent(abs(transmission.share)),
         first=first,
         second=second,
-        length=told(found.length, "length", digits=3),
-        mended=angle(found.mended),
+        length=told(transmission.length, "length", digits=3),
+        mended=angle(transmission.mended),
     )

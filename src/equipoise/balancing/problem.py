@@ -91,14 +91,14 @@ class Problem:
         """Whether forces count in which it matters on which flank gears are in contact, or which
         strand of a chain pulls.
         """
-        return self.start.switches and any(one.output.startswith(WITHIN) for one in self.asked)
+        return self.start.switches and any(item.output.startswith(WITHIN) for item in self.asked)
 
     @property
     def rubs(self) -> tuple[str, ...]:
         """Outputs asked of that friction in joints changes, so that they are not linear."""
         if not self.machine.rubs:
             return ()
-        asked = dict.fromkeys(one.output for one in self.asked)
+        asked = dict.fromkeys(item.output for item in self.asked)
         known = ((name, declared(name)) for name in asked)
         return tuple(name for name, one in known if one is not None and one[0].by_friction)
 
@@ -114,7 +114,7 @@ class Problem:
     @property
     def reads_gauges(self) -> bool:
         """Whether the support's vibration counts."""
-        return any(one.output.startswith("gauges.") for one in self.asked)
+        return any(item.output.startswith("gauges.") for item in self.asked)
 
     @cached_property
     def before(self) -> Mapping[str, float]:
@@ -135,10 +135,10 @@ class Problem:
         effects, near = Effects(machine, ()), Near(machine)
         return [
             max(
-                measured(found.start, one.measure, found.sampling)
-                for found in signals_of(effects, one, near)
+                measured(found.start, objective.measure, found.sampling)
+                for found in signals_of(effects, objective, near)
             )
-            for one in objectives
+            for objective in objectives
         ]
 
     def cost_of(self, machine: Machine) -> float:
@@ -155,7 +155,9 @@ class Problem:
     def cost_at(self, numbers: list[Array]) -> float:
         """The same for the parts' numbers, as the program has it."""
         x = np.concatenate(numbers)
-        each = ((one.measure, self.signals[one.name]) for one in self.plan.objectives)
+        each = (
+            (objective.measure, self.signals[objective.name]) for objective in self.plan.objectives
+        )
         return self.plan.combined(
             [max(measured(s.at(x), how, s.sampling) for s in found) for how, found in each]
         )
@@ -175,19 +177,21 @@ class Problem:
     def signals(self) -> dict[str, list[Signal]]:
         """Signals of each objective and limit, over its scale."""
         return {
-            one.name: [signal.divided(self.scale(one)) for signal in self.unscaled[one.name]]
-            for one in self.asked
+            item.name: [signal.divided(self.scale(item)) for signal in self.unscaled[item.name]]
+            for item in self.asked
         }
 
     @cached_property
     def unscaled(self) -> dict[str, list[Signal]]:
         """Signals of each objective and limit, in SI units."""
-        unique = {one.name: one for one in self.asked}
+        unique = {item.name: item for item in self.asked}
         return {name: signals_of(self.effects, one, self.close) for name, one in unique.items()}
 
-    def moves(self, one: Objective) -> bool:
+    def moves(self, objective: Objective) -> bool:
         """Whether an objective is something, and something that is free has an effect on it."""
-        return not self._is_nothing(one) and self._effect(one) >= WITHOUT_EFFECT * self.scale(one)
+        return not self._is_nothing(objective) and self._effect(
+            objective
+        ) >= WITHOUT_EFFECT * self.scale(objective)
 
     def check_influence(self) -> None:
         """Refuse an objective that is 0 already, or that nothing free can change."""
@@ -244,11 +248,11 @@ class Problem:
         program, plan = Program(), self.plan
         places = [program.numbers(part.count) for part in self.parts]
         squares = [
-            one for part, at in self.with_numbers(places) for one in part.constrain(program, at)
+            item for part, at in self.with_numbers(places) for item in part.constrain(program, at)
         ]
         self.keep_added_mass(program, places)
         numbers = np.concatenate(places)
-        terms = [self._term(program, numbers, one) for one in plan.objectives]
+        terms = [self._term(program, numbers, objective) for objective in plan.objectives]
         for limit in plan.limits:
             scale, most = self.scale(limit.objective), limit.at_most
             bound = Affine.fixed(limit.ratio if most is None else most / scale)
@@ -300,7 +304,7 @@ class Problem:
 
     def _change(self, outputs: Iterable[Objective]) -> Array:
         """Whether each number (K,) changes any of some outputs."""
-        signals = [signal for one in outputs for signal in self.signals[one.name]]
+        signals = [signal for output in outputs for signal in self.signals[output.name]]
         sizes = [np.max(np.abs(signal.columns), axis=1, initial=0.0) for signal in signals]
         return np.asarray(np.max(sizes, axis=0) > WITHOUT_EFFECT)
 

@@ -208,12 +208,14 @@ class Comparison:
             fine[left] = np.max(most, axis=0) <= figure.most(gain[left], excess, steadies)
         return fine
 
-    def _values(self, one: Objective, numbers: Array) -> Array:
+    def _values(self, objective: Objective, numbers: Array) -> Array:
         """A figure (M,), SI units; of several speeds the largest."""
         each = []
-        for signal in self._signals[one.name]:
+        for signal in self._signals[objective.name]:
             values = [
-                measured_each(signal.start + some @ signal.columns, one.measure, signal.sampling)
+                measured_each(
+                    signal.start + some @ signal.columns, objective.measure, signal.sampling
+                )
                 for some in np.array_split(numbers, 1 + len(numbers) // CHUNK)
             ]
             each.append(np.concatenate(values))

@@ -139,8 +139,8 @@ def _loud_beside(
     return pairs
 
 
-def _is_near(one: Resonance, other: Resonance) -> bool:
-    return abs(one.speed / other.speed - 1) < SAME_SPEED
+def _is_near(resonance: Resonance, other: Resonance) -> bool:
+    return abs(resonance.speed / other.speed - 1) < SAME_SPEED
 
 
 def _strained(linear: Linear, met: Sequence[tuple[Resonance, float]]) -> tuple[str, ...]:
@@ -196,12 +196,12 @@ def _scaled(mounts: Mapping[str, Mount], names: Sequence[str], factor: float) ->
 # -- sentences -------------------------------------------------------------------------------------
 
 
-def mount_sentences(found: ResonantMounts, comes_first: bool) -> Iterator[str]:
+def mount_sentences(mounts: ResonantMounts, comes_first: bool) -> Iterator[str]:
     """Which resonance lies beside the speed, and what moves it away.
 
     comes_first : whether other mounts bring more than the change of masses, if there is one.
     """
-    low, high = sorted(map(abs, found.avoid))
+    low, high = sorted(map(abs, mounts.avoid))
     beside = to_say(
         "First move the resonance at {speed} rpm (keep away from {low} to {high} rpm), beside "
         "which it runs at {near} rpm"
@@ -211,25 +211,25 @@ def mount_sentences(found: ResonantMounts, comes_first: bool) -> Iterator[str]:
     )
     besides = to_say("The resonance at {speed} rpm amplifies the motion at {near} rpm too: move it")
     above, below = to_say("run above {away} rpm"), to_say("run below {away} rpm")
-    is_within = low <= found.near <= high
+    is_within = low <= mounts.near <= high
     first = say(
         beside if is_within else amplifies if comes_first else besides,
-        speed=brief(found.speed / PER_RPM),
+        speed=brief(mounts.speed / PER_RPM),
         low=number(low / PER_RPM),
         high=number(high / PER_RPM),
-        near=brief(found.near / PER_RPM),
+        near=brief(mounts.near / PER_RPM),
     )
-    other = say(above if found.away > found.near else below, away=brief(found.away / PER_RPM))
+    other = say(above if mounts.away > mounts.near else below, away=brief(mounts.away / PER_RPM))
     yield say("{first}, or {other}.", first=first, other=other)
-    if found.factor is None:
+    if mounts.factor is None:
         return
     single, several = to_say("Mount {names}"), to_say("Mounts {names}")
     softer = to_say("{mounts} {times} times softer would take {gain} % off what the gauges read.")
     stiffer = to_say("{mounts} {times} times stiffer would take {gain} % off what the gauges read.")
-    names = found.mounts
+    names = mounts.mounts
     yield say(
-        softer if found.factor < 1 else stiffer,
+        softer if mounts.factor < 1 else stiffer,
         mounts=say(single if len(names) == 1 else several, names=say(", ").join(names)),
-        times=number(max(found.factor, 1 / found.factor), digits=1),
-        gain=percent(found.gain),
+        times=number(max(mounts.factor, 1 / mounts.factor), digits=1),
+        gain=percent(mounts.gain),
     )

@@ -458,8 +458,8 @@ def outline_of(link: Link, body: Body | None) -> Iterator[complex]:
             yield from _between(corner, other)
 
 
-def _between(one: complex, other: complex) -> Iterator[complex]:
-    yield from (one + (other - one) * np.linspace(0, 1, EDGE_SAMPLES)).tolist()
+def _between(point: complex, other: complex) -> Iterator[complex]:
+    yield from (point + (other - point) * np.linspace(0, 1, EDGE_SAMPLES)).tolist()
 
 
 def _over_ground(machine: Machine, pivot: complex) -> float:

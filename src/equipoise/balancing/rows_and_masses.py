@@ -346,15 +346,15 @@ def jumping_designs(effects: Effects, objective: Objective) -> JumpingDesigns | 
     return JumpingDesigns.of(at, jumps, turns, bends_of(effects.machine, turns))
 
 
-def of_each_row(effects: Effects, objective: Objective, near: Near) -> Array:
+def of_each_row(effects: Effects, objective: Objective, point: Near) -> Array:
     """Amplitudes (1 + K, V, m, C, N) of what an objective reads: of every row as it is, and by a
     unit of each number, in phase 0.
 
-    near : whose mass the support has to carry.
+    point : whose mass the support has to carry.
     """
     if objective.output.startswith(GAUGES):
-        linear, row = reading_of(objective, near)
-        rows = [replace(row, phase=0.0) for row in near.machine.rows]
+        linear, row = reading_of(objective, point)
+        rows = [replace(row, phase=0.0) for row in point.machine.rows]
         speeds = objective.speeds or (effects.machine.drive.speed,)
         each = [[read(effects, linear, row, v, None, [item]) for item in rows] for v in speeds]
     else:

@@ -270,20 +270,20 @@ def _sign_changes(motion: Motion, output: str, values: Array) -> list[Array]:
     return [np.sort(root[smooth & (which == row)]) for row in range(len(values))]
 
 
-def sensitivities_blocks(found: Sensitivities, zero: float = 0.0) -> Iterator[Block]:
+def sensitivities_blocks(sensitivities: Sensitivities, zero: float = 0.0) -> Iterator[Block]:
     """What each parameter does to an output, the largest first; crank angles from `zero`, rad."""
     if zero:
         yield Text(say("theta: crank angle from {angle}", angle=angle(zero)))
     rows: list[tuple[Cell, ...]] = []
     turned = display("angle")
-    for entry in found.ranked:
+    for entry in sensitivities.ranked:
         dimension, usual, word = CHANGES[entry.change]
         unit = display(dimension, (), usual)
-        shifted = np.sort(np.mod(entry.no_effect_at - zero, 2 * np.pi * found.turns))
+        shifted = np.sort(np.mod(entry.no_effect_at - zero, 2 * np.pi * sensitivities.turns))
         places = number_list(fixed(turned, at, 1) for at in shifted) or say("never")
         size = Value(entry.rms / unit.factor)
         rows.append((entry.link, say(word), size, unit.unit, Value(entry.percent), places))
-    kind = DECLARED[found.output].dimension
+    kind = DECLARED[sensitivities.output].dimension
     columns = (
         Column(say("link")),
         Column(""),
@@ -294,7 +294,7 @@ def sensitivities_blocks(found: Sensitivities, zero: float = 0.0) -> Iterator[Bl
     )
     title = say(
         "{what}: effect of each parameter, at constant crank speed",
-        what=output_named(found.output),
+        what=output_named(sensitivities.output),
     )
     yield Table(title, columns, tuple(rows))
     yield Text(
@@ -305,7 +305,7 @@ def sensitivities_blocks(found: Sensitivities, zero: float = 0.0) -> Iterator[Bl
     )
     still = [
         f"{item.link} ({say(CHANGES[item.change][2])})"
-        for item in found.by_name.values()
+        for item in sensitivities.by_name.values()
         if not item.has_effect
     ]
     if still:

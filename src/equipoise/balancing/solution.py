@@ -109,11 +109,11 @@ def _gauged(problem: Problem) -> list[Limit]:
 
 
 def _on_the_way(
-    problem: Problem, found: Solution, towards: Solution, cost: float
+    problem: Problem, solution: Solution, towards: Solution, cost: float
 ) -> Solution | None:
     """A solution between two that costs less than the first; None where there is none."""
     for share in SHARES:
-        pairs = zip(found.numbers, towards.numbers, strict=True)
+        pairs = zip(solution.numbers, towards.numbers, strict=True)
         numbers = problem.tightened([(1 - share) * item + share * two for item, two in pairs])
         machine = problem.machine_with(numbers)
         if problem.cost_of(machine) < cost - STILL:

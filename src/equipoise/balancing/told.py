@@ -46,10 +46,10 @@ def capital(text: str) -> str:
 # -- what got worse --------------------------------------------------------------------------------
 
 
-def worse_told(found: Balanced) -> Iterator[str]:
+def worse_told(balanced: Balanced) -> Iterator[str]:
     """Every figure that got larger by more than 1 %, a sentence for each group of outputs."""
-    for group, ones in groupby(found.worse, key=lambda one: one.group):
-        figures = say("; ").join(_grown(found, item) for item in ones)
+    for group, ones in groupby(balanced.worse, key=lambda one: one.group):
+        figures = say("; ").join(_grown(balanced, item) for item in ones)
         yield say(
             "In exchange these become larger, {group}: {figures}.",
             group=say(GROUPS[group]),
@@ -61,25 +61,25 @@ MOST_WORST = 3
 """Figures that are named in short."""
 
 
-def worst_told(found: Balanced) -> Iterator[str]:
+def worst_told(balanced: Balanced) -> Iterator[str]:
     """In one sentence the figures that grew most."""
-    worse = sorted(found.worse, key=lambda one: -one.growth)
+    worse = sorted(balanced.worse, key=lambda one: -one.growth)
     if worse:
-        figures = [_grown(found, item) for item in worse[:MOST_WORST]]
+        figures = [_grown(balanced, item) for item in worse[:MOST_WORST]]
         if more := len(worse) - len(figures):
             figures.append(say("and {count} more", count=more))
         yield say("In exchange these become larger: {figures}.", figures=say("; ").join(figures))
 
 
-def _grown(found: Balanced, one: Worse) -> str:
-    aim, rows = one.objective, len(found.original.rows)
+def _grown(balanced: Balanced, worse: Worse) -> str:
+    aim, rows = worse.objective, len(balanced.original.rows)
     what = figure_named(f"{aim.output}.{aim.measure}", rows)
     if aim.speeds or aim.about or aim.orders:
         what = objective_named(aim, rows)
-    if one.before > 0:
-        return larger(what, one.growth)
-    unit = shown_in(figure_unit(found, f"{aim.output}.{aim.measure}"), [one.after])
-    size = unit.text(one.after, digits=3)
+    if worse.before > 0:
+        return larger(what, worse.growth)
+    unit = shown_in(figure_unit(balanced, f"{aim.output}.{aim.measure}"), [worse.after])
+    size = unit.text(worse.after, digits=3)
     return say("{what}, from 0 to {size} {unit}", what=what, size=size, unit=unit.name)
 
 
@@ -96,33 +96,33 @@ def figure_named(name: str, rows: int) -> str:
     return say(", ").join((output_named(output, rows), say(MEASURES[measure])))
 
 
-def figure_unit(found: Balanced, name: str) -> str:
+def figure_unit(balanced: Balanced, name: str) -> str:
     """SI unit of such a figure."""
     if name == "mass":
         return "kg"
     output, _, measure = name.rpartition(".")
     if output.startswith("gauges."):
-        return unit_of(Objective(output), found.original)
+        return unit_of(Objective(output), balanced.original)
     return unit_of_measure(output, measure)
 
 
 # -- what is proved --------------------------------------------------------------------------------
 
 
-def proof_told(found: Balanced) -> Iterator[str]:
+def proof_told(balanced: Balanced) -> Iterator[str]:
     """What is proved: of which freedom, of which aim, at which speed; nothing where no program was
     solved.
     """
-    if not (free := [*freedoms(found.plan)]):
+    if not (free := [*freedoms(balanced.plan)]):
         return
     yield say(
         "Proof, by {method}: with {freedom}, no choice makes {aims} smaller than here by more than "
         "{gap} of the value before{scope}.",
-        method=said(found.method),
+        method=said(balanced.method),
         freedom=listed(free),
-        aims=aims_told(found),
-        gap=gap_told(found.gap),
-        scope=scope_of(found),
+        aims=aims_told(balanced),
+        gap=gap_told(balanced.gap),
+        scope=scope_of(balanced),
     )
 
 
@@ -134,16 +134,16 @@ def gap_told(gap: float) -> str:
     return f"{100 * digit * ceil(gap / digit):.4g} %"
 
 
-def scope_of(found: Balanced) -> str:
+def scope_of(balanced: Balanced) -> str:
     """Of what the proof holds, where that is not all that the plan allows."""
-    limits = [say("within the limits")] if found.plan.limits else []
-    parts = say(" and ").join([*limits, *map(said, found.scope)])
+    limits = [say("within the limits")] if balanced.plan.limits else []
+    parts = say(" and ").join([*limits, *map(said, balanced.scope)])
     return f" {parts}" if parts else ""
 
 
-def aims_told(found: Balanced) -> str:
+def aims_told(balanced: Balanced) -> str:
     """What was made small, and at which speed."""
-    rows, aims = len(found.original.rows), [*found.aims]
+    rows, aims = len(balanced.original.rows), [*balanced.aims]
     text = _gauges_named(aims) or listed(objective_named(aim, rows) for aim in aims)
     if len(aims) > 1:
         ways = {
@@ -152,10 +152,10 @@ def aims_told(found: Balanced) -> str:
                 "the root of the sum of squares, each over its value before, of {aims}"
             ),
         }
-        text = say(ways[found.plan.combine], aims=text)
+        text = say(ways[balanced.plan.combine], aims=text)
     if all(aim.speeds for aim in aims):
         return text
-    speed = brief(abs(found.original.drive.speed) / PER_RPM)
+    speed = brief(abs(balanced.original.drive.speed) / PER_RPM)
     return say("{aims} at {speed} rpm", aims=text, speed=speed)
 
 
