@@ -102,11 +102,14 @@ class Aim:
                 for sign in (1.0,) if self.output.is_vector else (1.0, -1.0):
                     yield Line(sign * most, "limit", say("limit"), axis="y")
 
-    def _told(self, one: Objective, most: float | None) -> str:
+    def _told(self, objective: Objective, most: float | None) -> str:
         """A measure before and after, and its limit."""
-        pair = [measured(self.pair[when], one.measure) for when in ("before", "after")]
-        axis = Axis("", shown_in(unit_of(one, self.machine), pair))
-        what, both = say(MEASURES[one.measure]), f"{axis.told(pair[0])} → {axis.quantity(pair[1])}"
+        pair = [measured(self.pair[when], objective.measure) for when in ("before", "after")]
+        axis = Axis("", shown_in(unit_of(objective, self.machine), pair))
+        what, both = (
+            say(MEASURES[objective.measure]),
+            f"{axis.told(pair[0])} → {axis.quantity(pair[1])}",
+        )
         text = say("{what}: {value}", what=what, value=_whole(both))
         if most is None:
             return text
@@ -118,37 +121,37 @@ def _whole(text: str) -> str:
     return text.replace(" ", "\N{NO-BREAK SPACE}")
 
 
-def aims_of(found: Balanced) -> Iterator[Aim]:
+def aims_of(balanced: Balanced) -> Iterator[Aim]:
     """Each signal that a plan asks for, by itself at each speed."""
     asked: dict[Objective, list[tuple[Objective, float | None]]] = {}
     wanted: list[tuple[Objective, float | None]] = [
-        (objective, None) for objective in found.plan.objectives
+        (objective, None) for objective in balanced.plan.objectives
     ]
-    for limit in found.plan.limits:
-        price = found.prices[limit.name]
+    for limit in balanced.plan.limits:
+        price = balanced.prices[limit.name]
         wanted.append((limit.objective, price.at_most))
     for item, most in wanted:
-        for speed in item.speeds or (found.original.drive.speed,):
+        for speed in item.speeds or (balanced.original.drive.speed,):
             own = replace(item, speeds=(speed,), weight=1.0)
             asked.setdefault(replace(own, measure="rms"), []).append((own, most))
-    force, moment = rounding(analyze(found.original, SAMPLES))
+    force, moment = rounding(analyze(balanced.original, SAMPLES))
     least = {"force": force, "torque": moment}
-    effects = [Effects(machine, ()) for machine in (found.original, found.machine)]
+    effects = [Effects(machine, ()) for machine in (balanced.original, balanced.machine)]
     for signal, of_it in asked.items():
         before, after = (
             signals_of(each, signal, Near(each.machine))[0].on_grid for each in effects
         )
-        dimension = str(output_of(signal.output, found.original).dimension)
-        yield Aim(found.original, tuple(of_it), before, after, least.get(dimension, 0.0))
+        dimension = str(output_of(signal.output, balanced.original).dimension)
+        yield Aim(balanced.original, tuple(of_it), before, after, least.get(dimension, 0.0))
 
 
-def aims(found: Balanced) -> Iterator[Chart]:
+def aims(balanced: Balanced) -> Iterator[Chart]:
     """What was made small or limited and changed, before and after."""
-    every = [aim for aim in aims_of(found) if changed(aim.pair)]
+    every = [aim for aim in aims_of(balanced) if changed(aim.pair)]
     speeds = {speed for aim in every for speed in aim.asked[0][0].speeds}
     when = say("before and after")
-    if speeds == {found.original.drive.speed}:
-        when = say("before and after, at {speed}", speed=told_speed(found.original.drive.speed))
+    if speeds == {balanced.original.drive.speed}:
+        when = say("before and after, at {speed}", speed=told_speed(balanced.original.drive.speed))
     heading = f"{say('What was made small or limited')}, {when}"
     for suffix, some in groups(every, MOST_AIMS):
         last = max(last_order(aim.read) for aim in some)
@@ -157,4 +160,4 @@ def aims(found: Balanced) -> Iterator[Chart]:
             text += "; " + say("orders of forces: both components together")
         panels = [panel for aim in some for panel in aim.panels(last, len(speeds) > 1)]
         drawn = keys(*(aim.pair for aim in some))
-        yield Chart(f"aims{suffix}", found.original.title, text, tuple(panels), 2, keys=drawn)
+        yield Chart(f"aims{suffix}", balanced.original.title, text, tuple(panels), 2, keys=drawn)

@@ -303,12 +303,12 @@ def _sizes_where_narrow(stage: Stage) -> tuple[float, float]:
     return larger, max(stage.size_of_type, fitting) if len(stage.lines) > 1 else larger
 
 
-def _colors(mark: str, drawn: Moving) -> Iterator[str]:
-    unit = drawn.stage.unit
-    used = {stroke.role for part in drawn.parts for stroke in part.strokes}
+def _colors(mark: str, moving: Moving) -> Iterator[str]:
+    unit = moving.stage.unit
+    used = {stroke.role for part in moving.parts for stroke in part.strokes}
     yield f".{mark}{{{_properties(LIGHT)};max-width:100%;height:auto}}"
     yield f"@media screen and (prefers-color-scheme:dark){{.{mark}{{{_properties(DARK)}}}}}"
-    size = drawn.stage.size_of_type
+    size = moving.stage.size_of_type
     yield f".{mark} path{{stroke-linecap:round;stroke-linejoin:round}}"
     yield f".{mark} .paper{{fill:var(--paper)}}"
     yield f".{mark}:root{{background:var(--paper)}}"
@@ -316,12 +316,12 @@ def _colors(mark: str, drawn: Moving) -> Iterator[str]:
         yield f".{mark} .{name}{{{LOOKS[name].css(unit)}}}"
     yield f".{mark} text{{font:{pixels(size)}px 'DejaVu Sans',Verdana,sans-serif;"
     yield "dominant-baseline:central;paint-order:stroke;stroke:var(--paper);stroke-width:3px}"
-    larger, strip = _sizes_where_narrow(drawn.stage)
+    larger, strip = _sizes_where_narrow(moving.stage)
     rules = f".{mark} text{{font-size:{pixels(larger)}px}}"
     if strip < larger:
         rules += f".{mark} text.strip{{font-size:{pixels(strip)}px}}"
     yield f"@media (max-width:{NARROW}px){{{rules}}}"
-    for color in sorted({label.color for label in drawn.labels}):
+    for color in sorted({label.color for label in moving.labels}):
         yield f".{mark} text.{color}{{fill:var(--{color})}}"
 
 

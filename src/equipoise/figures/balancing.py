@@ -55,17 +55,17 @@ IN_LINE = 6
 """Dials side by side."""
 
 
-def charts(found: Balanced) -> dict[str, Chart]:
+def charts(balanced: Balanced) -> dict[str, Chart]:
     """Charts of a balanced machine by name, which also does for a file.
 
     ``aims``, what was made small or limited, with ``aims-2`` and so on where that is much;
     ``force``, ``polar``, ``moment``, ``torque`` where the linkage is changed; ``phases`` and
     ``rows`` where phases of rows are chosen.  What did not change is left out.
     """
-    of_linkage = any(change.kind != "phases" for change in found.changes)
-    drawn = by_name(aims(found)) | (signals(found) if of_linkage else {})
-    if found.phasing is not None:
-        drawn |= row_charts(found.original, found.machine)
+    of_linkage = any(change.kind != "phases" for change in balanced.changes)
+    drawn = by_name(aims(balanced)) | (signals(balanced) if of_linkage else {})
+    if balanced.phasing is not None:
+        drawn |= row_charts(balanced.original, balanced.machine)
     return drawn
 
 
@@ -77,15 +77,15 @@ def row_charts(original: Machine | None, machine: Machine) -> dict[str, Chart]:
 # -- before and after ------------------------------------------------------------------------------
 
 
-def signals(found: Balanced) -> dict[str, Chart]:
+def signals(balanced: Balanced) -> dict[str, Chart]:
     """``force``, ``polar``, ``moment`` and ``torque`` before and after, but for what is alike.
 
     Moment and torque of a single row that are aims are left to `aims`.
     """
-    columns = {name: values for name, _, values in found.columns()}
-    angles, drive = columns["crank_angle"], found.original.drive
-    least_force, least_moment = rounding(analyze(found.original, SAMPLES))
-    title, when = found.original.title, _told(found)
+    columns = {name: values for name, _, values in balanced.columns()}
+    angles, drive = columns["crank_angle"], balanced.original.drive
+    least_force, least_moment = rounding(analyze(balanced.original, SAMPLES))
+    title, when = balanced.original.title, _told(balanced)
 
     def pair_of(output: str, least: float) -> Pair:
         return paired(columns[f"{output}.before"], columns[f"{output}.after"], least)
@@ -100,10 +100,10 @@ def signals(found: Balanced) -> dict[str, Chart]:
         )
         what = f"{say('Shaking force')}, {when}"
         drawn["force"] = Chart("force", title, what, panels, keys=keys(*moved.values()))
-        drawn["polar"] = polar(found, angles, force)
+        drawn["polar"] = polar(balanced, angles, force)
     aimed = (
-        {objective.output for objective in found.plan.objectives}
-        if len(found.original.rows) < 2
+        {objective.output for objective in balanced.plan.objectives}
+        if len(balanced.original.rows) < 2
         else ()
     )
     shown = SIGNALS | dict([PUSHED] if drive.pushes else [])
@@ -116,14 +116,14 @@ def signals(found: Balanced) -> dict[str, Chart]:
     return drawn
 
 
-def _told(found: Balanced) -> str:
+def _told(balanced: Balanced) -> str:
     """What is shown of a signal, in words."""
-    of_one = say("of one row") + ", " if len(found.original.rows) > 1 else ""
-    speed = told_speed(found.original.drive.speed)
+    of_one = say("of one row") + ", " if len(balanced.original.rows) > 1 else ""
+    speed = told_speed(balanced.original.drive.speed)
     return of_one + say("before and after, at {speed}", speed=speed)
 
 
-def polar(found: Balanced, angles: Array, force: Mapping[str, Pair]) -> Chart:
+def polar(balanced: Balanced, angles: Array, force: Mapping[str, Pair]) -> Chart:
     """The end of the shaking force's arrow over a cycle, on axes of one scale."""
     ends = {when: force["x"][when] + 1j * force["y"][when] for when in ("before", "after")}
     columns, size = roles_of(ends), extent(*ends.values(), np.zeros(1))
@@ -139,8 +139,8 @@ def polar(found: Balanced, angles: Array, force: Mapping[str, Pair]) -> Chart:
     x, y = (Axis.of(say("shaking force along {axis}", axis=a), "force", every) for a in ("x", "y"))
     message = "" if np.any(every) else say("zero at every crank angle")
     panel = Panel(x, y, tuple(curves), tuple(marks), message=message, equal=True)
-    what = f"{say('Shaking force')}, {_told(found)}; {say('numbers: crank angle, deg')}"
-    return Chart("polar", found.original.title, what, (panel,), keys=keys(ends))
+    what = f"{say('Shaking force')}, {_told(balanced)}; {say('numbers: crank angle, deg')}"
+    return Chart("polar", balanced.original.title, what, (panel,), keys=keys(ends))
 
 
 # -- rows ------------------------------------------------------------------------------------------
@@ -216,12 +216,12 @@ SENSIBLE, MARGIN = 3.0, 0.12
 that the curve does not get small; free at each side, over what is drawn."""
 
 
-def front(found: Front) -> Chart:
+def front(result: Front) -> Chart:
     """The second objective against the first, each point as good as any can be."""
-    values = found.values
-    both = (found.first, found.second)
-    before = np.array([Problem.value_of(found.original, which) for which in both])
-    names = [objective_named(item, len(found.original.rows)) for item in both]
+    values = result.values
+    both = (result.first, result.second)
+    before = np.array([Problem.value_of(result.original, which) for which in both])
+    names = [objective_named(item, len(result.original.rows)) for item in both]
     low, high = np.min(values, axis=0), np.max(values, axis=0)
     room = SENSIBLE * (high - low)
     seen = bool(np.all((before <= high + room) & (before >= low - room)))
@@ -229,7 +229,7 @@ def front(found: Front) -> Chart:
     x, y = (
         _objective_axis(short(name, most), unit, column)
         for name, most, (_, unit, _), column in zip(
-            names, (60, 46), found.columns()[:2], held.T, strict=True
+            names, (60, 46), result.columns()[:2], held.T, strict=True
         )
     )
     label = f"{x.quantity(before[0])}, {y.quantity(before[1])}"
@@ -239,14 +239,14 @@ def front(found: Front) -> Chart:
         marks.append(Mark.of(complex(*before), text, "own", 90.0))
     for k, wish in ((0, 20.0), (len(values) - 1, 110.0)):
         text = f"{x.quantity(values[k, 0])}, {y.quantity(values[k, 1])}"
-        if (added := found.points[k].added_mass) > NOTHING * found.original.mass:
+        if (added := result.points[k].added_mass) > NOTHING * result.original.mass:
             text += "\n" + say("with {mass} more", mass=grams(added))
         marks.append(Mark.of(complex(*values[k]), text, "best", wish, sign=False))
     curve = Curve(values[:, 0], values[:, 1], "", "best")
     panel = Panel(x, y, (curve,), tuple(marks), remark=remark, height=250.0)
-    speed = told_speed(found.original.drive.speed)
+    speed = told_speed(result.original.drive.speed)
     title = say("Trade-off: the least of one for every value of the other")
-    return Chart("front", found.original.title, f"{title}, at {speed}", (panel,))
+    return Chart("front", result.original.title, f"{title}, at {speed}", (panel,))
 
 
 def _objective_axis(label: str, unit: str, values: Array) -> Axis:

@@ -44,7 +44,7 @@ def captions(stage: Stage, traced: tuple[str, ...]) -> tuple[Label, ...]:
     for choices in (*_strip(stage), *places):
         free = [choice for choice in choices if _fits(choice, labels, stage)]
         if free:
-            labels.append(min(free, key=lambda one: _covered(one, stage)))
+            labels.append(min(free, key=lambda item: _covered(item, stage)))
     return tuple(labels)
 
 

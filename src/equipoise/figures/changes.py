@@ -104,17 +104,17 @@ class Addition:
         return replace(self, outline=self.outline / MM, at=self.at / MM, holes=holes)
 
 
-def changes(found: Balanced) -> Chart:
+def changes(balanced: Balanced) -> Chart:
     """The new machine, as far as can be with nothing on top of each other, and its changes.
 
     It is drawn at the crank angle at which joints and links of the original keep apart; where there
     are new springs, at that at which links keep apart from them, too.
     """
-    machine, original = found.machine, found.original
+    machine, original = balanced.machine, balanced.original
     clearest = machine if len(machine.springs) > len(original.springs) else original
     posed = Posed(machine, clear_angle(Scene.of(move(clearest, ANGLES))))
-    new = [addition.in_meters() for addition in additions(posed, found.changes, found.plan)]
-    scene = _without_new(Scene.of(posed.motion), Scene.of(move(original, [0.0])), found.changes)
+    new = [addition.in_meters() for addition in additions(posed, balanced.changes, balanced.plan)]
+    scene = _without_new(Scene.of(posed.motion), Scene.of(move(original, [0.0])), balanced.changes)
     changed = any(item.kind != "room" for item in new)
     what = say("What to change, to scale") if changed else say("Nothing to change, to scale")
     text = told_angle(posed.angle(machine.drive.link))

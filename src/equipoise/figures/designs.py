@@ -43,7 +43,7 @@ BELOW = -0.06
 
 
 def best_charts(
-    found: Best,
+    best: Best,
     title: str,
     units: Units,
     store: Store,
@@ -58,22 +58,24 @@ def best_charts(
     store : with all designs.  own : the model itself.  aimed : whether the study or the reader
     says which way is good; else no design is better than another, and none is chosen.
     """
-    labels = [str(number) for number in found.designs.tolist()]
-    table = np.hstack([found.values, found.figures])[: None if aimed else 0]
-    given = (title, found.by, found.numbers, store.wishes, units, table, labels)
-    designs = CloudDesigns(*given, store.in_blocks, store.size, own, found.trade_off, aimed)
+    labels = [str(number) for number in best.designs.tolist()]
+    table = np.hstack([best.values, best.figures])[: None if aimed else 0]
+    given = (title, best.by, best.numbers, store.wishes, units, table, labels)
+    designs = CloudDesigns(*given, store.in_blocks, store.size, own, best.trade_off, aimed)
     return charts_of(designs)
 
 
-def searched_charts(found: Searched, units: Units, own: Own | None = None) -> dict[str, Chart]:
+def searched_charts(searched: Searched, units: Units, own: Own | None = None) -> dict[str, Chart]:
     """The same of a search, and ``search``: how it got better from generation to generation."""
-    study = found.study
-    labels = [str(number) for number in range(len(found.values))]
-    table = np.hstack([found.values, found.figures])
-    given = (study.title, found.objectives, study.paths, study.outputs, units, table, labels)
-    front = found.figures[:, [study.names.index(name) for name in found.objectives]]
-    designs = CloudDesigns(*given, lambda: [(0, found.tried)], len(found.tried.values), own, front)
-    return {**charts_of(designs), "search": grown(found, units)}
+    study = searched.study
+    labels = [str(number) for number in range(len(searched.values))]
+    table = np.hstack([searched.values, searched.figures])
+    given = (study.title, searched.objectives, study.paths, study.outputs, units, table, labels)
+    front = searched.figures[:, [study.names.index(name) for name in searched.objectives]]
+    designs = CloudDesigns(
+        *given, lambda: [(0, searched.tried)], len(searched.tried.values), own, front
+    )
+    return {**charts_of(designs), "search": grown(searched, units)}
 
 
 def charts_of(designs: CloudDesigns) -> dict[str, Chart]:
@@ -172,15 +174,15 @@ def _all(cloud: Cloud, pair: Pair) -> tuple[tuple[Cells, ...], list[Curve]]:
 # -- a search --------------------------------------------------------------------------------------
 
 
-def grown(found: Searched, units: Units) -> Chart:
+def grown(searched: Searched, units: Units) -> Chart:
     """How good the best designs were after each generation."""
-    counts = {"count": found.computed, "generations": found.generations}
+    counts = {"count": searched.computed, "generations": searched.generations}
     what = say("{count} designs in {generations} generations", **counts)
-    last = len(found.volumes)
+    last = len(searched.volumes)
     x = Axis(say("generation"), low=1.0, high=float(max(2, last)))
     y = Axis(say("share that the front dominates"), PERCENT)
-    if len(found.objectives) == 1:
-        best = unit_in(units, *found.objectives)
+    if len(searched.objectives) == 1:
+        best = unit_in(units, *searched.objectives)
         y = Axis(say("best {name}", name=short(best.called, 24)), unit_of(best))
-    curve = Curve(np.arange(1.0, last + 1), np.asarray(found.volumes, float), steps=True)
-    return Chart("search", found.study.title, what, (Panel(x, y, (curve,)),))
+    curve = Curve(np.arange(1.0, last + 1), np.asarray(searched.volumes, float), steps=True)
+    return Chart("search", searched.study.title, what, (Panel(x, y, (curve,)),))

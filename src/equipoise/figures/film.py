@@ -149,17 +149,17 @@ def _prepared(
     return moving
 
 
-def _in_a_cycle(drawn: Moving) -> int:
+def _in_a_cycle(moving: Moving) -> int:
     """Frames until the motion is where it began; without a cycle it goes back the way it came."""
-    steps = len(drawn.stage.times) - 1
-    return steps if drawn.stage.closed else 2 * steps
+    steps = len(moving.stage.times) - 1
+    return steps if moving.stage.closed else 2 * steps
 
 
-def _cycle(drawn: Moving, colors: Colors) -> Iterator[Array]:
+def _cycle(moving: Moving, colors: Colors) -> Iterator[Array]:
     from equipoise.figures.film import draw_frames
 
-    frames = draw_frames(drawn, colors)
-    if drawn.stage.closed:
+    frames = draw_frames(moving, colors)
+    if moving.stage.closed:
         return frames
     there = list(frames)
     return iter(there + there[-2:0:-1])
@@ -183,8 +183,8 @@ class Shades:
     palette : (n, 3) uint8.
     """
 
-    def __init__(self, drawn: Moving, colors: Colors) -> None:
-        named = sorted(_colors(drawn), key=list(colors).index)
+    def __init__(self, moving: Moving, colors: Colors) -> None:
+        named = sorted(_colors(moving), key=list(colors).index)
         few = [np.frombuffer(bytes.fromhex(colors[name][1:]), np.uint8) for name in named]
         between = (MOST_COLORS - len(few)) * 2 // (len(few) * (len(few) - 1))
         parts = np.arange(1, between + 1)[:, None] / (between + 1)
@@ -207,11 +207,11 @@ class Shades:
         return self._known[codes]
 
 
-def _colors(drawn: Moving) -> set[str]:
+def _colors(moving: Moving) -> set[str]:
     """Names of those that are drawn with."""
-    looks = [LOOKS[stroke.role] for part in drawn.parts for stroke in part.strokes]
+    looks = [LOOKS[stroke.role] for part in moving.parts for stroke in part.strokes]
     names = {name for look in looks for name in (look.fill, look.line) if name is not None}
-    return names | {label.color for label in drawn.labels} | {"paper"}
+    return names | {label.color for label in moving.labels} | {"paper"}
 
 
 # -- how long, how large and how many frames a film may be -----------------------------------------
@@ -238,15 +238,15 @@ DOTS = 72
 """An inch, so that a point is a pixel."""
 
 
-def draw_frames(drawn: Moving, colors: Colors = LIGHT) -> Iterator[Array]:
+def draw_frames(moving: Moving, colors: Colors = LIGHT) -> Iterator[Array]:
     """Frames of the motion, each (height, width, 3) uint8; none of them twice."""
-    stage = drawn.stage
+    stage = moving.stage
     canvas: Any = RendererAgg(stage.width, stage.height, DOTS)  # type: ignore[no-untyped-call]
     behind, before = (
         [(part, list(_brushed(canvas, part, colors, stage.unit))) for part in parts]
-        for parts in (drawn.behind, drawn.before)
+        for parts in (moving.behind, moving.before)
     )
-    texts, cover = _texts(drawn, colors)
+    texts, cover = _texts(moving, colors)
     upright = Affine2D().scale(1, -1).translate(0, stage.height)
     image = np.asarray(canvas.buffer_rgba())
     ground = [round(255 * part) for part in to_rgba(colors["paper"])]
@@ -301,14 +301,14 @@ def _brush(canvas: Any, look: Look, colors: Colors, unit: float) -> Any:
     return brush
 
 
-def _texts(drawn: Moving, colors: Colors) -> tuple[Array, Array]:
+def _texts(moving: Moving, colors: Colors) -> tuple[Array, Array]:
     """Pixels (P, 4) that texts cover, their colours already weighed, and which (height, width)."""
-    stage = drawn.stage
+    stage = moving.stage
     with settings():
         figure = Figure(figsize=(stage.width / DOTS, stage.height / DOTS), dpi=DOTS)
         figure.patch.set_alpha(0)
         canvas: Any = FigureCanvasAgg(figure)
-        for label in drawn.labels:
+        for label in moving.labels:
             figure.text(
                 label.place.real / stage.width,
                 1 - label.place.imag / stage.height,

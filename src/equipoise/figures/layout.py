@@ -106,9 +106,9 @@ def _panels(sheet: Sheet, chart: Chart, top: float) -> float:
     return top
 
 
-def _same_x(one: Cell, other: Cell) -> bool:
-    alike = one.panel.x.text == other.panel.x.text and one.panel.x.scale == other.panel.x.scale
-    return alike and bool(np.allclose(one.x_ends, other.x_ends)) and not one.panel.equal
+def _same_x(cell: Cell, other: Cell) -> bool:
+    alike = cell.panel.x.text == other.panel.x.text and cell.panel.x.scale == other.panel.x.scale
+    return alike and bool(np.allclose(cell.x_ends, other.x_ends)) and not cell.panel.equal
 
 
 def _sides(cell: Cell) -> None:

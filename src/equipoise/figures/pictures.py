@@ -93,34 +93,34 @@ def mode_pictures(free: FreeVibration) -> Pictures:
     return {f"mode-{k}": mode_chart(free, k) for k in range(1, len(free.modes) + 1)}
 
 
-def balance_pictures(found: Balanced) -> Pictures:
+def balance_pictures(balanced: Balanced) -> Pictures:
     """Charts of a balanced machine and, where its linkage is changed, ``changes``."""
     from equipoise.figures.balancing import charts
     from equipoise.figures.changes import changes
 
-    pictures: Pictures = {**charts(found)}
-    if any(change.kind != "phases" for change in found.changes):
-        pictures["changes"] = changes(found)
+    pictures: Pictures = {**charts(balanced)}
+    if any(change.kind != "phases" for change in balanced.changes):
+        pictures["changes"] = changes(balanced)
     return pictures
 
 
-def phasing_pictures(found: Phasing) -> Pictures:
+def phasing_pictures(phasing: Phasing) -> Pictures:
     """Charts of rows whose phases are chosen."""
     from equipoise.figures.balancing import row_charts
 
-    return {**row_charts(None, found.machine)}
+    return {**row_charts(None, phasing.machine)}
 
 
-def front_pictures(found: Front) -> Pictures:
+def front_pictures(result: Front) -> Pictures:
     """``front``, the chart of a trade-off."""
     from equipoise.figures.balancing import front
 
-    return {"front": front(found)}
+    return {"front": front(result)}
 
 
-def landscape_pictures(found: Landscape) -> Pictures:
+def landscape_pictures(result: Landscape) -> Pictures:
     """The map of a measure over two numbers."""
     from equipoise.figures.studies import landscape
 
-    chart = landscape(found)
+    chart = landscape(result)
     return {chart.name: chart}

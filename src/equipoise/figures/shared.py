@@ -237,17 +237,17 @@ def bounded(values: Array) -> Array:
 def ordered(read: Mapping[str, Array]) -> list[SpeedCurve]:
     """Curves that are named, in their order; behind them the quieter ones that are not."""
     speed_curves = [SpeedCurve(name, values) for name, values in read.items()]
-    loudest = sorted(speed_curves, key=lambda one: -one.largest)[: len(KINDS)]
+    loudest = sorted(speed_curves, key=lambda item: -item.largest)[: len(KINDS)]
     return [c for c in speed_curves if c in loudest] + [c for c in speed_curves if c not in loudest]
 
 
 def curves_of(
-    x: Array, found: Sequence[SpeedCurve], stable: Array | None = None
+    x: Array, result: Sequence[SpeedCurve], stable: Array | None = None
 ) -> tuple[Curve, ...]:
     """Curves over places (S,), dashed where they are not stable; the quieter ones share a name."""
     curves = []
-    quieter = say("{count} quieter ones", count=len(found) - len(KINDS))
-    for number, item in enumerate(found):
+    quieter = say("{count} quieter ones", count=len(result) - len(KINDS))
+    for number, item in enumerate(result):
         named = number < len(KINDS)
         role = f"kind {number}" if named else "quieter"
         label = short(item.name, 40) if named else quieter
@@ -262,10 +262,10 @@ def curves_of(
 
 
 def log_ends(
-    found: Sequence[SpeedCurve], below: float, above: float, more: Any = ()
+    curves: Sequence[SpeedCurve], below: float, above: float, more: Any = ()
 ) -> tuple[float, float]:
     """Ends of a log axis that holds curves and some more values, with room as factors."""
-    every = np.concatenate([*(bounded(item.values) for item in found), np.asarray(more, float)])
+    every = np.concatenate([*(bounded(item.values) for item in curves), np.asarray(more, float)])
     heard = every[np.isfinite(every) & (every > 0)]
     high = float(np.max(heard, initial=0.0)) or 1.0
     low = max(float(np.min(heard, initial=high)), high * 1e-6)

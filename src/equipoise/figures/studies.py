@@ -52,81 +52,86 @@ def unit_of(unit: Unit) -> Display:
 # -- tolerances ------------------------------------------------------------------------------------
 
 
-def tolerance_charts(found: Tolerances, units: Units) -> dict[str, Chart]:
+def tolerance_charts(tolerances: Tolerances, units: Units) -> dict[str, Chart]:
     """``scatter``: each figure over all machines; ``tighten``: what half of each tolerance does;
     ``shares``: what causes the scatter of each figure.
 
     More than ten figures go on in ``scatter-2`` and so on.
     """
-    return by_name([*scatter(found, units), tighten(found, units), *shares(found, units)])
+    return by_name(
+        [*scatter(tolerances, units), tighten(tolerances, units), *shares(tolerances, units)]
+    )
 
 
-def scatter(found: Tolerances, units: Units) -> Iterator[Chart]:
+def scatter(tolerances: Tolerances, units: Units) -> Iterator[Chart]:
     """A histogram of each figure; bars outside of its limits are pale."""
-    every = list(found.scatters)
+    every = list(tolerances.scatters)
     keys = [("machines", say("machines")), ("model", say("the model itself"))]
-    if any(_limits(one) for one in found.scatters.values()):
+    if any(_limits(item) for item in tolerances.scatters.values()):
         keys += [("outside", say("outside of limits")), ("bound", say("limit"))]
     for suffix, names in groups(every):
-        what = say("Scatter over {count} machines", count=found.designs) + continued(names, every)
+        what = say("Scatter over {count} machines", count=tolerances.designs) + continued(
+            names, every
+        )
         panels = tuple(
-            _histogram(found.scatters[name], unit_in(units, name), found.designs) for name in names
+            _histogram(tolerances.scatters[name], unit_in(units, name), tolerances.designs)
+            for name in names
         )
         own, columns = f"scatter{suffix}", min(2, len(panels))
-        yield Chart(own, found.study.title, what, panels, columns, False, tuple(keys))
+        yield Chart(own, tolerances.study.title, what, panels, columns, False, tuple(keys))
 
 
-def _histogram(one: Scatter, unit: Unit, designs: int) -> Panel:
-    edges, shares = np.asarray(one.edges, float), one.counts / designs
-    limits = [end for end in _limits(one) if edges[0] < end < edges[-1]]
+def _histogram(scatter: Scatter, unit: Unit, designs: int) -> Panel:
+    edges, shares = np.asarray(scatter.edges, float), scatter.counts / designs
+    limits = [end for end in _limits(scatter) if edges[0] < end < edges[-1]]
     cut = np.union1d(edges, limits)  # a bar that a limit goes through is two, just as high
     edges, shares = cut, shares[np.searchsorted(edges, cut[:-1], "right") - 1]
-    output = one.output
+    output = scatter.output
     least = -np.inf if output.at_least is None else output.at_least
     most = np.inf if output.at_most is None else output.at_most
     inside = (edges[:-1] >= least) & (edges[1:] <= most)
     roles = tuple("machines" if good else "outside" for good in inside)
-    lines = [Line(limit, "bound") for limit in _limits(one)]
-    if np.isfinite(one.base):
-        lines.append(Line(one.base, "model"))
+    lines = [Line(limit, "bound") for limit in _limits(scatter)]
+    if np.isfinite(scatter.base):
+        lines.append(Line(scatter.base, "model"))
     held = [*(line.at for line in lines), float(edges[0]), float(edges[-1])]
     room = NARROW * (max(held) - min(held)) or 0.05 * abs(held[0]) or 1.0
     x = Axis(unit.called, unit_of(unit), low=min(held) - room, high=max(held) + room)
     bars = Bars((edges[:-1] + edges[1:]) / 2, shares, np.diff(edges), roles=roles)
     title = ""
-    if one.within is not None:
-        title = say("{share} % within limits", share=shown(100 * one.within.value))
+    if scatter.within is not None:
+        title = say("{share} % within limits", share=shown(100 * scatter.within.value))
     y = Axis(say("machines"), PERCENT, low=0.0)
     return Panel(x, y, lines=tuple(lines), bars=(bars,), title=title, height=98.0)
 
 
-def _limits(one: Scatter) -> list[float]:
-    ends = (one.output.at_least, one.output.at_most)
+def _limits(scatter: Scatter) -> list[float]:
+    ends = (scatter.output.at_least, scatter.output.at_most)
     return [end for end in ends if end is not None]
 
 
-def tighten(found: Tolerances, units: Units) -> Chart:
+def tighten(tolerances: Tolerances, units: Units) -> Chart:
     """By how much the scatter falls where one tolerance is halved."""
-    gains = np.array([max(cause.gain, 0.0) for cause in found.causes])
+    gains = np.array([max(cause.gain, 0.0) for cause in tolerances.causes])
     bars = Bars(np.arange(len(gains)), gains, TALL, across="y", told=True)
     most = 1.12 * float(np.max(gains)) or 1.0
     x = Axis(say("variance less"), PERCENT, low=0.0, high=most)
-    panel = _bars_of(found.causes, units, (bars,), x)
+    panel = _bars_of(tolerances.causes, units, (bars,), x)
     what = say("What half of a tolerance does: variance less, in the mean of the figures")
-    return Chart("tighten", found.study.title, what, (panel,))
+    return Chart("tighten", tolerances.study.title, what, (panel,))
 
 
-def shares(found: Tolerances, units: Units) -> Iterator[Chart]:
+def shares(tolerances: Tolerances, units: Units) -> Iterator[Chart]:
     """Share of each tolerance in the variance of each figure, each with its 95 % interval."""
-    causes = found.causes
-    every = [name for name in found.scatters if name in causes[0].effects]
+    causes = tolerances.causes
+    every = [name for name in tolerances.scatters if name in causes[0].effects]
     together = say("with all that it does together with others")
     keys = (("part", say("by itself")), ("whole", together), ("interval", say("95 % interval")))
     rows = np.arange(len(causes))
     kinds = (("first", "part", -THIN / 2), ("total", "whole", THIN / 2))
     estimates = (getattr(cause.effects[n], kind) for n in every for cause in causes
                  for kind, *_ in kinds)  # fmt: skip
-    most = max((one.high for one in estimates), default=1.0)
+    most = max((estimate.high for estimate in estimates), default=1.0)
     x = Axis(say("share of the variance"), PERCENT, low=0.0, high=max(most, 1.0))
     for suffix, names in groups(every, MOST_SHARES):
         panels = []
@@ -138,12 +143,12 @@ def shares(found: Tolerances, units: Units) -> Iterator[Chart]:
             )
             panels.append(_bars_of(causes, units, bars, x, title=unit_in(units, name).called))
         what = say("What causes the scatter of each figure") + continued(names, every)
-        yield Chart(f"shares{suffix}", found.study.title, what, tuple(panels), keys=keys)
+        yield Chart(f"shares{suffix}", tolerances.study.title, what, tuple(panels), keys=keys)
 
 
 def _shares(estimates: Sequence[IntervalEstimate], rows: Array, role: str) -> Bars:
     """Estimates that may come out below 0 within their interval, as bars from 0."""
-    told = [(one.value, one.low, one.high) for one in estimates]
+    told = [(estimate.value, estimate.low, estimate.high) for estimate in estimates]
     size, low, high = np.maximum(np.array(told).T, 0.0)
     return Bars(rows, size, THIN, role, across="y", interval=(low, high))
 
@@ -171,59 +176,66 @@ def number_unit(dimension: str | None) -> Display:
     return display(cast(Dimension, dimension), (), HANDY.get(dimension))
 
 
-def told_best(found: Landscape) -> str:
+def told_best(landscape: Landscape) -> str:
     """The best place in a sentence."""
     places = (
-        f"{named(found, path)} = {Axis(path, number_unit(found.dimensions[path])).quantity(value)}"
-        for path, value in zip(found.paths, found.best, strict=True)
+        f"{named(landscape, path)} = {_in_units(landscape, path, value, path)}"
+        for path, value in zip(landscape.paths, landscape.best, strict=True)
     )
-    value = f"{shown(found.least)} {typeset(found.unit)}"
-    edge = (f"; {named(found, path)} is at an end of its range" for path in found.at_edge)
-    aim = objective_named(found.objective)
+    value = f"{shown(landscape.least)} {typeset(landscape.unit)}"
+    edge = (f"; {named(landscape, path)} is at an end of its range" for path in landscape.at_edge)
+    aim = objective_named(landscape.objective)
     return f"least {aim}: {value}, at {' and '.join(places)}{''.join(edge)}"
 
 
-def named(found: Landscape, path: str) -> str:
+def _in_units(landscape: Landscape, path: str, value: float, label: str = "") -> str:
+    """A value of one of the numbers, with its unit."""
+    return Axis(label, number_unit(landscape.dimensions[path])).quantity(value)
+
+
+def named(landscape: Landscape, path: str) -> str:
     """One of the numbers in words."""
-    words = found.words[path]
+    words = landscape.words[path]
     return words.said() if isinstance(words, Note) else words
 
 
-def landscape(found: Landscape) -> Chart:
+def landscape(result: Landscape) -> Chart:
     """Lines of equal value with their values, the least of all, and the model as it is."""
     x, y = (
         Axis(
-            named(found, path),
-            number_unit(found.dimensions[path]),
+            named(result, path),
+            number_unit(result.dimensions[path]),
             low=float(values[0]),
             high=float(values[-1]),
         )
-        for path, values in zip(found.paths, (found.x, found.y), strict=True)
+        for path, values in zip(result.paths, (result.x, result.y), strict=True)
     )
-    unit = typeset(found.unit)
-    told = f"{x.quantity(found.best[0])}, {y.quantity(found.best[1])}"
-    places = {"least": (found.best, f"{shown(found.least)} {unit}\n{told}", say("least"))}
-    if found.start is not None and not np.isnan(found.before):
+    unit = typeset(result.unit)
+    told = f"{x.quantity(result.best[0])}, {y.quantity(result.best[1])}"
+    places = {"least": (result.best, f"{shown(result.least)} {unit}\n{told}", say("least"))}
+    if result.start is not None and not np.isnan(result.before):
         inside = (
             values[0] <= one <= values[-1]
-            for values, one in zip((found.x, found.y), found.start, strict=True)
+            for values, one in zip((result.x, result.y), result.start, strict=True)
         )
         if all(inside):
-            places["own"] = (found.start, f"{shown(found.before)} {unit}", say("as it is"))
+            places["own"] = (result.start, f"{shown(result.before)} {unit}", say("as it is"))
     marks = [
         Mark(*at, text, role, bold=True, label=name) for role, (at, text, name) in places.items()
     ]
-    lacking = say("cannot turn") if np.any(np.isnan(found.values)) else ""
-    surface = Surface(found.x, found.y, found.values, Axis("", Display(found.unit, 1.0)), lacking)
+    lacking = say("cannot turn") if np.any(np.isnan(result.values)) else ""
+    surface = Surface(
+        result.x, result.y, result.values, Axis("", Display(result.unit, 1.0)), lacking
+    )
     panel = Panel(x, y, marks=tuple(marks), surface=surface, height=330.0, zero=False, grid=False)
     values = {
-        "objective": objective_named(found.objective, len(found.machine.rows)),
+        "objective": objective_named(result.objective, len(result.machine.rows)),
         "unit": unit,
-        "speed": told_speed(found.machine.drive.speed),
+        "speed": told_speed(result.machine.drive.speed),
     }
     others = [
-        f"{named(found, path)} = {Axis('', number_unit(found.dimensions[path])).quantity(value)}"
-        for path, value in found.given.items()
+        f"{named(result, path)} = {_in_units(result, path, value)}"
+        for path, value in result.given.items()
     ]
     what = "; ".join([say("{objective}, {unit}, at {speed}", **values), *others])
-    return Chart("landscape", found.machine.title, what, (panel,))
+    return Chart("landscape", result.machine.title, what, (panel,))

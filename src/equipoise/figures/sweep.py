@@ -111,10 +111,10 @@ def fraction(order: float) -> str:
     return str(Fraction(order).limit_denominator(1000))
 
 
-def peaks(axis: Axis, speed: Array, found: Sequence[SpeedCurve]) -> tuple[Mark, ...]:
+def peaks(axis: Axis, speed: Array, curves: Sequence[SpeedCurve]) -> tuple[Mark, ...]:
     """Value and speed at the highest places of the loudest of the named curves."""
     marks: list[Mark] = []
-    named = [*enumerate(found[: len(KINDS)])]
+    named = [*enumerate(curves[: len(KINDS)])]
     for number, item in sorted(named, key=lambda pair: -pair[1].largest)[:PEAKS]:
         if not item.largest or np.nanmax(item.values) > item.largest:
             continue
@@ -136,12 +136,12 @@ def own_speed(sweep: Sweep) -> tuple[Line, ...]:
     return (Line(at, "work", text),) if low <= at <= high else ()
 
 
-def at_work(axis: Axis, sweep: Sweep, found: Sequence[SpeedCurve]) -> Iterator[Mark]:
+def at_work(axis: Axis, sweep: Sweep, curves: Sequence[SpeedCurve]) -> Iterator[Mark]:
     """Value of the named curves at the speed of the machine, where it is in sight."""
     least, most = ends(axis)
     for line in own_speed(sweep):
         k = int(np.argmin(np.abs(np.abs(sweep.speed) - line.at)))
-        for number, item in enumerate(found[: len(KINDS)]):
+        for number, item in enumerate(curves[: len(KINDS)]):
             value = float(item.values[k])
             if least <= value <= most:
                 text, role = axis.told(value), f"kind {number}"
@@ -191,10 +191,10 @@ def mounts(sweep: Sweep) -> Chart:
 
 
 def _panel(
-    sweep: Sweep, label: str, quantity: str, rotation: bool, found: Sequence[SpeedCurve]
+    sweep: Sweep, label: str, quantity: str, rotation: bool, curves: Sequence[SpeedCurve]
 ) -> Panel:
     """Curves over one axis; where it is a quantity, with their highest peaks."""
-    heard = np.concatenate([bounded(item.values) for item in found])
+    heard = np.concatenate([bounded(item.values) for item in curves])
     speed = np.abs(sweep.speed)
     y = Axis(label)
     if quantity:
@@ -206,10 +206,10 @@ def _panel(
     if not np.any(heard > 0):
         y = replace(y, low=0.0, high=1.0 / y.unit.factor, ticks=())
         return Panel(speed_axis(sweep), y, message=say("nothing moves"), **parts)
-    low, high = log_ends(found, 1.6, 3.0)
+    low, high = log_ends(curves, 1.6, 3.0)
     y = replace(y, low=low, high=high, scale="log")
-    marks = (*(peaks(y, speed, found) if quantity else ()), *at_work(y, sweep, found))
-    return Panel(speed_axis(sweep), y, curves_of(speed, found, sweep.stable), marks, **parts)
+    marks = (*(peaks(y, speed, curves) if quantity else ()), *at_work(y, sweep, curves))
+    return Panel(speed_axis(sweep), y, curves_of(speed, curves, sweep.stable), marks, **parts)
 
 
 def flags(resonances: Sequence[Resonance]) -> tuple[PlaceLabel, ...]:

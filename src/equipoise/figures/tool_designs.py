@@ -205,38 +205,38 @@ def _numbers(variation: Variation, x: Axis) -> Iterator[Mark]:
 # -- a design --------------------------------------------------------------------------------------
 
 
-def design(found: ToolDesign) -> Chart:
+def design(result: ToolDesign) -> Chart:
     """What the hand that gets most gets over the band, before and after.
 
     The worst hand over the band is made better; at some speeds another one may be worse.
     """
-    plan = found.tool.design
+    plan = result.tool.design
     hands = plan.hands if plan is not None else ()
     before, after = (
         [
             SpeedCurve(name, grip.a_hv)
-            for name, grip in grips(respond_tool(tool, found.speed)).items()
+            for name, grip in grips(respond_tool(tool, result.speed)).items()
             if not hands or name in hands
         ]
-        for tool in (found.tool, found.better)
+        for tool in (result.tool, result.better)
     )
-    x = engine_axis(found.speed)
+    x = engine_axis(result.speed)
     low, high = log_ends([*before, *after], 1.8, 2.2)
     y = Axis(say("total value a_hv"), RATE, "log", low, high)
-    old = (replace(curve, label="", dashed=True) for curve in curves_of(found.speed, before))
-    work = work_line(found.tool, x)
-    marks = (*hand_peaks(found.better, found.speed, after, y), *work_mark(work, y, above=False))
-    curves = (*old, *curves_of(found.speed, after))
+    old = (replace(curve, label="", dashed=True) for curve in curves_of(result.speed, before))
+    work = work_line(result.tool, x)
+    marks = (*hand_peaks(result.better, result.speed, after, y), *work_mark(work, y, above=False))
+    curves = (*old, *curves_of(result.speed, after))
     panel = Panel(x, y, curves, marks, lines=work, height=209.0)
-    figure = found.figures[MEASURES.index("rms" if plan is None else plan.measure)]
+    figure = result.figures[MEASURES.index("rms" if plan is None else plan.measure)]
     what = f"{figure_named(figure)}: {shown(figure.before)} → {shown(figure.after)} m/s²"
     keys = (("dashed ink", say("before")), ("ink", say("after")))
-    return Chart("design", found.tool.title, what, (panel,), keys=keys)
+    return Chart("design", result.tool.title, what, (panel,), keys=keys)
 
 
-def changes_told(found: ToolDesign) -> list[str]:
+def changes_told(design: ToolDesign) -> list[str]:
     """What was changed but is not moved, in words; where they are many, the first of them."""
-    every = zip(found.variables, found.edges, strict=True)
+    every = zip(design.variables, design.edges, strict=True)
     values = [(item, edge) for item, edge in every if item.dimension != "length"]
     words, count = [], len(values)
     for entry, edge in values:

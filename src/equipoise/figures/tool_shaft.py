@@ -132,27 +132,27 @@ def shapes(modes: ToolModes, plane: int) -> Iterator[Chart]:
         yield Chart(name + suffix, modes.tool.title, what, tuple(panels), keys=keys)
 
 
-def _shape(modes: ToolModes, found: PlaneModes, number: int) -> Panel:
+def _shape(modes: ToolModes, result: PlaneModes, number: int) -> Panel:
     """One shape with its stations and nodes; its number at the left, its figures at the right."""
-    shape, x = found.shapes[number], modes.places
+    shape, x = result.shapes[number], modes.places
     marks = [
         Mark(station.position, float(np.interp(station.position, x, shape)), "", kind_of(station))
         for station in modes.tool.stations
     ]
     marks += [
         Mark(float(node), 0.0, f"{MM * node:.0f}", "node", optional=True, near=5.0)
-        for node in found.nodes[number]
+        for node in result.nodes[number]
     ]
-    hertz = float(found.cycles_per_second[number])
+    hertz = float(result.cycles_per_second[number])
     if hertz:
-        minute = turns_told(float(found.frequency[number]))
+        minute = turns_told(float(result.frequency[number]))
         lines = [
             f"{shown(hertz)} Hz",
             f"{minute} 1/min",
-            decimals(f"λ = {found.parameter[number]:.3f}"),
+            decimals(f"λ = {result.parameter[number]:.3f}"),
         ]
     else:
-        lines = [say("free:"), *wrap(found.rigid[number], LETTERS)]
+        lines = [say("free:"), *wrap(result.rigid[number], LETTERS)]
     return Panel(
         shaft_axis(modes.tool),
         Axis(low=-REACH, high=REACH, ticks=()),

@@ -107,19 +107,19 @@ def _swinging(modes: ToolModes, k: int, phases: Array) -> list[Panel]:
     return [replace(panel, signs=tuple(tool_scene.at(instant))) for instant in range(len(phases))]
 
 
-def side_design(found: ToolDesign) -> Chart:
+def side_design(design: ToolDesign) -> Chart:
     """``side-design``: the tool before and after, with arrows of what is moved along the shaft."""
-    old = side_of(found.tool)
+    old = side_of(design.tool)
     moved = [
         (station.position, other.position)
-        for station, other in zip(found.tool.stations, found.better.stations, strict=True)
+        for station, other in zip(design.tool.stations, design.better.stations, strict=True)
         if station.position != other.position
     ]
-    before = _panel(old, _named(found.tool), say("before"))
-    after = _panel(side_of(found.better), _named(found.better), say("after"), moved)
+    before = _panel(old, _named(design.tool), say("before"))
+    after = _panel(side_of(design.better), _named(design.better), say("after"), moved)
     what = say("The tool from the side before and after; arrows: what is moved along the shaft")
     return Chart(
-        "side-design", found.tool.title, what, (before, after), words=tuple(changes_told(found))
+        "side-design", design.tool.title, what, (before, after), words=tuple(changes_told(design))
     )
 
 
@@ -201,6 +201,6 @@ def mode_pictures(modes: ToolModes) -> dict[str, Chart]:
     return by_name([side_modes(modes)]) | mode_charts(modes)
 
 
-def design_pictures(found: ToolDesign) -> dict[str, Chart]:
+def design_pictures(result: ToolDesign) -> dict[str, Chart]:
     """``side-design`` and ``design``."""
-    return by_name([side_design(found), design(found)])
+    return by_name([side_design(result), design(result)])

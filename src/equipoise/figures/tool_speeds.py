@@ -94,19 +94,21 @@ def transmission_charts(
     return by_name(transmission(transmissions, plane, modes) for plane in planes)
 
 
-def transmission(found: Transmissions, plane: int, modes: ToolModes | None) -> Chart:
+def transmission(transmissions: Transmissions, plane: int, modes: ToolModes | None) -> Chart:
     """Force ratio and phase of every station that is held: Fig. 6 of Nagamine and Irie."""
-    curves = ordered({name: station.size[plane] for name, station in found.stations.items()})
-    x = engine_axis(found.speed)
+    curves = ordered(
+        {name: station.size[plane] for name, station in transmissions.stations.items()}
+    )
+    x = engine_axis(transmissions.speed)
     lines, flags = mode_lines(np.empty(0) if modes is None else modes.planes[plane].frequency, x)
     low, high = log_ends(curves, 3.0, 2.0)
     y = Axis(say("force ratio"), scale="log", low=low, high=high)
-    work = work_line(found.tool, x)
+    work = work_line(transmissions.tool, x)
     size = Panel(
         x,
         y,
-        curves_of(found.speed, curves),
-        (*_quiet(found, curves, plane, low), *work_mark(work, y)),
+        curves_of(transmissions.speed, curves),
+        (*_quiet(transmissions, curves, plane, low), *work_mark(work, y)),
         lines=(*lines, *work),
         flags=flags,
         flag_words=(say("mode"),) if flags else (),
@@ -120,33 +122,41 @@ def transmission(found: Transmissions, plane: int, modes: ToolModes | None) -> C
     phases = Panel(
         x,
         Axis(say("phase"), DEGREES, low=-reach, high=reach, ticks=ticks),
-        tuple(_phase(found, curve.name, number, plane) for number, curve in enumerate(curves)),
+        tuple(
+            _phase(transmissions, curve.name, number, plane) for number, curve in enumerate(curves)
+        ),
         lines=(*lines, *work),
         height=97.0,
         zero=False,
     )
-    text = say("Force on the body under a unit force at {station}", station=short(found.source))
-    what = f"{text}, {plane_named(plane, found.tool.alike)}"
+    text = say(
+        "Force on the body under a unit force at {station}", station=short(transmissions.source)
+    )
+    what = f"{text}, {plane_named(plane, transmissions.tool.alike)}"
     name = "transmission-lateral" if plane else "transmission"
-    return Chart(name, found.tool.title, what, (size, phases), keys=tuple(keys))
+    return Chart(name, transmissions.tool.title, what, (size, phases), keys=tuple(keys))
 
 
 def _quiet(
-    found: Transmissions, curves: Sequence[SpeedCurve], plane: int, low: float
+    transmissions: Transmissions, curves: Sequence[SpeedCurve], plane: int, low: float
 ) -> Iterator[Mark]:
     """Marks at quiet speeds, on the curves, with their speeds."""
     for number, curve in enumerate(curves[: len(KINDS)]):
-        for speed in found.stations[curve.name].quiet[plane].tolist():
-            value = np.exp(np.interp(speed, found.speed, np.log(np.maximum(curve.values, 1e-300))))
+        for speed in transmissions.stations[curve.name].quiet[plane].tolist():
+            value = np.exp(
+                np.interp(speed, transmissions.speed, np.log(np.maximum(curve.values, 1e-300)))
+            )
             at, role = max(float(value), low), f"quiet speed {number}"
             yield Mark(speed, at, turns_told(speed), role, -90.0, optional=True)
 
 
-def _phase(found: Transmissions, name: str, number: int, plane: int) -> Curve:
-    phase = found.stations[name].phase[plane]
+def _phase(transmissions: Transmissions, name: str, number: int, plane: int) -> Curve:
+    phase = transmissions.stations[name].phase[plane]
     leap = np.flatnonzero(np.abs(np.diff(phase)) > np.radians(BREAK)) + 1
     role = f"kind {number}" if number < len(KINDS) else "quieter"
-    return Curve(np.insert(found.speed, leap, np.nan), np.insert(phase, leap, np.nan), "", role)
+    return Curve(
+        np.insert(transmissions.speed, leap, np.nan), np.insert(phase, leap, np.nan), "", role
+    )
 
 
 def exposure_charts(exposure: ToolExposure) -> dict[str, Chart]:

@@ -171,17 +171,17 @@ def spectra(response: Response) -> Iterator[Chart]:
         yield Chart(f"spectrum{suffix}", response.machine.title, what, panels, min(2, len(panels)))
 
 
-def _last_order(found: GaugeSignals) -> float:
+def _last_order(signals: GaugeSignals) -> float:
     """Up to where orders matter."""
-    signal = found.displacement
+    signal = signals.displacement
     sizes = signal.sizes[1:]
     above = np.flatnonzero(sizes > MATTERS * np.max(sizes, initial=0.0))
     count = max(int(above[-1]) + 1 if above.size else 0, LEAST_ORDER * signal.turns)
     return min(count, max(MOST_BARS, LEAST_ORDER * signal.turns)) / signal.turns
 
 
-def _bars(found: GaugeSignals, name: str, last: float) -> Panel:
-    signal = found.displacement
+def _bars(signals: GaugeSignals, name: str, last: float) -> Panel:
+    signal = signals.displacement
     orders, sizes = signal.orders[1:], signal.sizes[1:]
     orders, sizes = orders[orders <= last], sizes[orders <= last]
     largest = float(np.max(sizes, initial=0.0))
@@ -189,7 +189,7 @@ def _bars(found: GaugeSignals, name: str, last: float) -> Panel:
     if largest:
         ends = {"low": largest * MATTERS, "high": largest * 6, "scale": "log"}
     x = Axis(say("order: events in one turn of the crank"), low=0.0, high=last + 1)
-    y = read_axis(say("amplitude"), "displacement", found.rotation, sizes, **ends)
+    y = read_axis(say("amplitude"), "displacement", signals.rotation, sizes, **ends)
     title = short(name, 44)
     if not largest:
         return Panel(x, y, title=title, message=say("does not move"), height=SMALL)
