@@ -251,8 +251,8 @@ def _drive(response: Response) -> Iterator[Block]:
         )
 
 
-def _extremes(name: str, found: Figures, kind: Kind) -> tuple[Cell, ...]:
-    return _row(name, (found.mean, found.max, found.min, found.peak_to_peak), kind)
+def _extremes(name: str, figures: Figures, kind: Kind) -> tuple[Cell, ...]:
+    return _row(name, (figures.mean, figures.max, figures.min, figures.peak_to_peak), kind)
 
 
 def _solution(response: Response) -> Iterator[str]:
@@ -276,23 +276,23 @@ def _solution(response: Response) -> Iterator[str]:
 # -- in time ---------------------------------------------------------------------------------------
 
 
-def transient_blocks(found: Transient) -> Iterator[Block]:
+def transient_blocks(transient: Transient) -> Iterator[Block]:
     """Extremes of every gauge and mount, in the first and the last stretch of the time."""
     yield Text(
         say(
             "From rest for {time} s, {turns} turns of the crank",
-            time=number(float(found.time[-1])),
-            turns=number(abs(float(found.crank_angle[-1])) / (2 * pi)),
+            time=number(float(transient.time[-1])),
+            turns=number(abs(float(transient.crank_angle[-1])) / (2 * pi)),
         )
     )
     rows = []
-    turning = members_of("gauges")(found.machine)
-    for name, values in found.gauges.items():
+    turning = members_of("gauges")(transient.machine)
+    for name, values in transient.gauges.items():
         rows.append(_stretch(name, values, (TURNED if turning[name] else MOVED)[0]))
-    turning = members_of("mounts")(found.machine)
-    for name, values in found.mounts.items():
+    turning = members_of("mounts")(transient.machine)
+    for name, values in transient.mounts.items():
         rows.append(_stretch(name, values, ("torque" if turning[name] else "force", None)))
-    rows.append(_stretch(say("crank speed"), found.crank_speed, ("angular speed", "rpm")))
+    rows.append(_stretch(say("crank speed"), transient.crank_speed, ("angular speed", "rpm")))
     ranges = (say("range in the first fifth"), say("range in the last fifth"))
     labels = ("", say("smallest"), say("largest"), *ranges)
     yield Table.of(say("Gauges, mounts and drive"), labels, rows)

@@ -62,12 +62,12 @@ def solve_exact(
     machine: Machine,
     speed: float,
     drive: bool,
-    near: Guess | None = None,
+    guess: Guess | None = None,
     patient: bool = True,
 ) -> ExactSolution:
     """The periodic solution itself.
 
-    near : states (n, M) against the crank's turning (M,), such as those at another speed, to start
+    guess : states (n, M) against the crank's turning (M,), such as those at another speed, to start
         from; the linear response if None.
     patient : whether to follow the machine from rest where these lead nowhere, which takes seconds.
 
@@ -77,7 +77,7 @@ def solve_exact(
     """
     system, linear = equations(machine, speed, drive)
     setting = motor_setting(machine, speed) if drive else None
-    guesses: list[Guess] = [] if near is None else [near]
+    guesses: list[Guess] = [] if guess is None else [guess]
     guesses.append(partial(from_linear, system, linear, setting))
     if patient and setting is None:
         guesses.append(partial(settled, system))

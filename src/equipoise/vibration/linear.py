@@ -287,24 +287,24 @@ class SupportExcitation:
         # Springs pull frame and links alike; left in, (57) would count their torque on the drive.
         return self._signals_of(forces(motion, self.pivot).outer)
 
-    def _signals_of(self, found: Forces) -> Array:
-        force = found.frame_force.value - found.weight.value
+    def _signals_of(self, forces: Forces) -> Array:
+        force = forces.frame_force.value - forces.weight.value
         rocking = np.zeros(len(force), complex)
         if self.model == "moment" and self.machine.has_planes:
             gravity = complex(*self.machine.gravity)
-            rocking = found.across.frame_rocking_moment.value - 1j * self.across * gravity
-        moment = self._moment(found)
+            rocking = forces.across.frame_rocking_moment.value - 1j * self.across * gravity
+        moment = self._moment(forces)
         return np.stack([force.real, force.imag, moment, rocking.real, rocking.imag])
 
-    def _moment(self, found: Forces) -> Array:
+    def _moment(self, forces: Forces) -> Array:
         if self.model == "linear":
-            return np.zeros(len(found.motion.crank_angle))
+            return np.zeros(len(forces.motion.crank_angle))
         if self.model == "torque":
-            return -found.drive_torque
+            return -forces.drive_torque
         gravity = complex(*self.machine.gravity)
         # what the mounts carry at rest
         mean = self.machine.mass * float(cross(self._mean_center - self.pivot, gravity))
-        return np.asarray(found.frame_moment - mean)
+        return np.asarray(forces.frame_moment - mean)
 
 
 # -- forced vibration ------------------------------------------------------------------------------

@@ -58,7 +58,7 @@ class Resonance:
         "avoid": ResultOutput(
             "speeds between which the order is amplified more than three times, or null",
             "angular speed",
-            read=lambda one: None if one.avoid is None else list(one.avoid),
+            read=lambda item: None if item.avoid is None else list(item.avoid),
         ),
     }
 
@@ -78,20 +78,20 @@ def around(drive: Drive, speed: float) -> tuple[float, float]:
     return slow, fast
 
 
-def nearest_loud(found: Iterable[Resonance], speed: float) -> Resonance:
+def nearest_loud(resonances: Iterable[Resonance], speed: float) -> Resonance:
     """Of the loud ones of some resonances the one whose speed is nearest to a speed, rad/s.
 
     One that shakes a few per cent of what the loudest does is no reason to change a speed, however
     near it is.
     """
-    every = tuple(found)
+    every = tuple(resonances)
     loud = [item for item in every if item.is_loud] or every
     return min(loud, key=lambda one: abs(abs(one.speed / speed) - 1))
 
 
-def resonance_note(found: Iterable[Resonance], speed: float) -> Note:
+def resonance_note(resonances: Iterable[Resonance], speed: float) -> Note:
     """The nearest loud resonance (speed in rad/s), and between which speeds it is to be avoided."""
-    resonance = nearest_loud(found, speed)
+    resonance = nearest_loud(resonances, speed)
     of_one = to_say(
         "the nearest loud resonance is at {speed} rpm, where order {order} meets mode {mode} "
         "({frequency} Hz); no speed about it has to be avoided"
@@ -112,9 +112,9 @@ def resonance_note(found: Iterable[Resonance], speed: float) -> Note:
     )
 
 
-def within(found: Iterable[Resonance], speed: float) -> Iterator[Note]:
+def within(resonances: Iterable[Resonance], speed: float) -> Iterator[Note]:
     """Which resonances amplify at a speed (rad/s) so much that it is to be kept away from."""
-    for item in found:
+    for item in resonances:
         low, high = sorted(map(abs, item.avoid or (0.0, 0.0)))
         if low <= abs(speed) <= high and item.avoid is not None:
             said = to_say(

@@ -323,8 +323,8 @@ def _gathered(
     )
 
 
-def _gauge_curve(name: str, found: list[Response], there: Array) -> GaugeCurve:
-    gauges = [answer.gauges[name] for answer in found]
+def _gauge_curve(name: str, responses: list[Response], there: Array) -> GaugeCurve:
+    gauges = [answer.gauges[name] for answer in responses]
     curves = {}
     for quantity, prefix in PREFIXES.items():
         signal = _together([getattr(gauge, quantity) for gauge in gauges])
@@ -335,8 +335,8 @@ def _gauge_curve(name: str, found: list[Response], there: Array) -> GaugeCurve:
     return GaugeCurve(**curves, rotation=gauges[0].rotation)
 
 
-def _mount_curve(name: str, found: list[Response], there: Array) -> MountCurve:
-    mounts = [answer.mounts[name] for answer in found]
+def _mount_curve(name: str, responses: list[Response], there: Array) -> MountCurve:
+    mounts = [answer.mounts[name] for answer in responses]
     force = _together([mount.force for mount in mounts])
     smallest = np.maximum(force.extreme(-1)[0], [mount.least for mount in mounts])
     return MountCurve(
