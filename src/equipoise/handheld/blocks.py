@@ -144,15 +144,15 @@ def unbounded(tool: Tool) -> Iterator[Block]:
 # -- free vibration --------------------------------------------------------------------------------
 
 
-def modes_blocks(found: ToolModes) -> Iterator[Block]:
+def modes_blocks(modes: ToolModes) -> Iterator[Block]:
     """Natural frequencies, eigenvalues with damping, and points that stand still."""
-    names = [say("both planes")] if found.alike else [say("vertical plane"), say("lateral plane")]
-    for name, plane in zip(names, found.planes, strict=False):
+    names = [say("both planes")] if modes.alike else [say("vertical plane"), say("lateral plane")]
+    for name, plane in zip(names, modes.planes, strict=False):
         yield _frequencies(name, plane)
-        if found.tool.damped:
+        if modes.tool.damped:
             yield _damped(name, plane)
-    if found.notes:
-        yield Notes(found.notes)
+    if modes.notes:
+        yield Notes(modes.notes)
 
 
 def _frequencies(name: str, plane: PlaneModes) -> Table:
@@ -201,69 +201,72 @@ def _damped(name: str, plane: PlaneModes) -> Table:
 # -- forced vibration ------------------------------------------------------------------------------
 
 
-def sweep_blocks(found: ToolSweep) -> Iterator[Block]:
+def sweep_blocks(sweep: ToolSweep) -> Iterator[Block]:
     """Transmission of a unit force, and what the stations do, over a range of speeds."""
-    count = len(found.speed)
+    count = len(sweep.speed)
     yield Text(
-        say("Engine at {low} to {high} rpm, {count} speeds", count=count, **ends_told(found.speed))
+        say("Engine at {low} to {high} rpm, {count} speeds", count=count, **ends_told(sweep.speed))
     )
-    yield from unbounded(found.tool)
-    if found.transmissions is not None:
-        yield from transmissions_blocks(found.transmissions)
-    if found.response is None:
+    yield from unbounded(sweep.tool)
+    if sweep.transmissions is not None:
+        yield from transmissions_blocks(sweep.transmissions)
+    if sweep.response is None:
         return
-    yield _stations(found)
-    yield _forces(found)
-    moment, place = found.largest_moment
+    yield _stations(sweep)
+    yield _forces(sweep)
+    moment, place = sweep.largest_moment
     k = int(highest_at(moment, smooth=False))
     yield Text(
         say(
             "Largest bending moment: {moment} RMS at {place} of the shaft, engine at {speed} rpm",
             moment=told(float(moment[k]), "torque"),
             place=told(float(place[k]), "length"),
-            speed=rpm(float(found.speed[k])),
+            speed=rpm(float(sweep.speed[k])),
         )
     )
 
 
-def transmissions_blocks(found: Transmissions) -> Iterator[Block]:
+def transmissions_blocks(transmissions: Transmissions) -> Iterator[Block]:
     """Peaks and quiet speeds of the force at each station."""
     labels = (say("peaks, the largest first"), say("quiet between them"))
     columns = (Column(""), *(Column(label, at=RPM) for label in labels))
-    sides = [say("both planes")] if found.tool.alike else [say(SIDES[side]) for side in PLANES]
-    for name, station in found.stations.items():
+    sides = (
+        [say("both planes")] if transmissions.tool.alike else [say(SIDES[side]) for side in PLANES]
+    )
+    for name, station in transmissions.stations.items():
         rows = tuple(
-            (label, *_peaks(found.speed, station, plane)) for plane, label in enumerate(sides)
+            (label, *_peaks(transmissions.speed, station, plane))
+            for plane, label in enumerate(sides)
         )
-        text = {"station": name, "source": found.source}
+        text = {"station": name, "source": transmissions.source}
         title = say("Force at {station} over a force at {source}, once a turn; at speeds", **text)
         yield Table(title, columns, rows)
 
 
-def _peaks(speed: Array, one: Transmission, plane: int) -> tuple[Cell, Cell]:
+def _peaks(speed: Array, transmission: Transmission, plane: int) -> tuple[Cell, Cell]:
     """The largest peaks of a curve, the largest first, and its quiet places, as they come."""
-    size = one.size[plane]
+    size = transmission.size[plane]
     inner = np.flatnonzero((size[1:-1] > size[:-2]) & (size[1:-1] >= size[2:])) + 1
     tops = sorted(inner.tolist(), key=lambda k: -size[k])[:MOST_PEAKS]
     peaks = tuple(Value(float(size[k]), at=float(speed[k])) for k in tops)
     scale = SILENT * float(np.max(size))
-    dips = zip(one.lowest[plane].tolist(), one.quiet[plane].tolist(), strict=True)
+    dips = zip(transmission.lowest[plane].tolist(), transmission.quiet[plane].tolist(), strict=True)
     quiet = tuple(Value(depth, scale, at) for depth, at in dips)
     shown = Many(quiet[:MOST_QUIET], max(len(quiet) - MOST_QUIET, 0))
     return Many(peaks) if peaks else say("none"), shown if quiet else say("none")
 
 
-def _stations(found: ToolSweep) -> Table:
+def _stations(sweep: ToolSweep) -> Table:
     """The speed at which each station is accelerated most, and what it does there."""
-    named = [(station.name, station.position) for station in found.tool.stations]
-    named += [("", place) for place in found.further]
-    at = found.places([place for _, place in named])
-    largest = float(np.max(found.largest_moment[0]))
+    named = [(station.name, station.position) for station in sweep.tool.stations]
+    named += [("", place) for place in sweep.further]
+    at = sweep.places([place for _, place in named])
+    largest = float(np.max(sweep.largest_moment[0]))
     rows: list[tuple[Cell, ...]] = []
     for row, (name, place) in enumerate(named):
         k = int(highest_at(at.acceleration[row], smooth=False))
         *moved, bent = (float(part[row, k]) for part in at)
-        cells = map(Value, (place, float(found.speed[k]), *moved))
+        cells = map(Value, (place, float(sweep.speed[k]), *moved))
         rows.append((name, *cells, Value(bent, largest)))
     columns = (
         Column(""),
@@ -281,13 +284,13 @@ def _stations(found: ToolSweep) -> Table:
     return Table(title, columns, tuple(rows))
 
 
-def _forces(found: ToolSweep) -> Block:
+def _forces(sweep: ToolSweep) -> Block:
     rows: list[tuple[Cell, ...]] = []
-    for station in found.tool.stations:
-        powers = found.power(station.name)
-        for part, force in found.force(station.name).items():
+    for station in sweep.tool.stations:
+        powers = sweep.power(station.name)
+        for part, force in sweep.force(station.name).items():
             k = int(highest_at(force, smooth=False))
-            largest = Value(float(force[k]), at=float(found.speed[k]))
+            largest = Value(float(force[k]), at=float(sweep.speed[k]))
             rows.append(
                 (station.name, say(part), largest, Value(float(np.max(powers[part])), 1e-6))
             )
@@ -300,14 +303,14 @@ def _forces(found: ToolSweep) -> Block:
     return Table(title, columns, tuple(rows))
 
 
-def response_blocks(found: ToolResponse) -> Iterator[Block]:
+def response_blocks(response: ToolResponse) -> Iterator[Block]:
     """What every station does at each speed that was computed, at most some of them."""
-    step = -(-len(found.speed) // MOST_ROWS)
-    names = [station.name for station in found.tool.stations]
-    rms = [rms_over_time(found.acceleration(name)) for name in names]
+    step = -(-len(response.speed) // MOST_ROWS)
+    names = [station.name for station in response.tool.stations]
+    rms = [rms_over_time(response.acceleration(name)) for name in names]
     rows = tuple(
-        tuple(Value(float(row[k])) for row in (found.speed, *rms))
-        for k in range(0, len(found.speed), step)
+        tuple(Value(float(row[k])) for row in (response.speed, *rms))
+        for k in range(0, len(response.speed), step)
     )
     columns = (
         column(say("engine"), "angular speed"),

@@ -62,10 +62,10 @@ class Search(DesignProblem):
         tool: Tool,
         design: DesignPlan,
         speed: Array,
-        told: Told = lambda done, total: None,
+        report: Told = lambda done, total: None,
         starts: Array | None = None,
     ) -> None:
-        self.solvers = (QuadraticPrograms(told, starts),)
+        self.solvers = (QuadraticPrograms(report, starts),)
         self.tool, self.design, self.band = tool, design, SpeedBand(tool, speed, LEAST)
         self.numbers: list[Number] = [
             (variable.station, variable.key) for variable in design.variables

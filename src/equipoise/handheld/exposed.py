@@ -161,9 +161,9 @@ class ToolExposure(Result):
             "total value of each hand at the speeds of `[operation]`",
             "acceleration",
             family=True,
-            read=lambda found: {
+            read=lambda result: {
                 what: {name: float(grip.a_hv[0]) for name, grip in part.items()}
-                for what, part in found.named.items()
+                for what, part in result.named.items()
             },
         ),
         "days": ResultOutput(
@@ -305,6 +305,6 @@ def tool_sensitivities(tool: Tool, speed: Array) -> dict[Number, float]:
         (station.name, key) for station in tool.stations for key in KEYS if has(station, key)
     ]
     means = [mean_over_band(hand) for hand in SpeedBand(tool, speed).felt(numbers).hands.values()]
-    worst = max(means, key=lambda one: float(one.value[0]))
+    worst = max(means, key=lambda item: float(item.value[0]))
     slopes = worst.slopes[:, 0] / (2 * np.sqrt(worst.value))
     return dict(zip(numbers, slopes.tolist(), strict=True))

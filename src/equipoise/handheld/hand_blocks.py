@@ -70,16 +70,16 @@ def varied_named(name: str) -> str:
 # -- hands -----------------------------------------------------------------------------------------
 
 
-def exposure_of_tool(found: ToolExposure) -> Iterator[Block | ReportSection]:
+def exposure_of_tool(exposure: ToolExposure) -> Iterator[Block | ReportSection]:
     """Weighted acceleration of every hand, and the day of the one that gets most."""
-    yield _hands(found)
+    yield _hands(exposure)
     least, most = (
         say(
             "{value} m/s² at {speed} rpm",
-            value=number(float(found.a_hv[k])),
-            speed=rpm(float(found.speed[k])),
+            value=number(float(exposure.a_hv[k])),
+            speed=rpm(float(exposure.speed[k])),
         )
-        for k in (highest_at(-found.a_hv, smooth=False), highest_at(found.a_hv, smooth=False))
+        for k in (highest_at(-exposure.a_hv, smooth=False), highest_at(exposure.a_hv, smooth=False))
     )
     yield Text(
         say(
@@ -91,28 +91,28 @@ def exposure_of_tool(found: ToolExposure) -> Iterator[Block | ReportSection]:
     yield Text(
         say("Along the shaft nothing moves in bending, so the total value a_hv has two axes.")
     )
-    yield from unbounded(found.response.tool)
-    if found.worst is None:
+    yield from unbounded(exposure.response.tool)
+    if exposure.worst is None:
         yield Text(say("There is no daily exposure without work; the file tells none."))
         return
-    title = say("A day at {hand}, the hand that gets most", hand=found.worst)
-    yield ReportSection("day", title, tuple(exposure_blocks(found.days[found.worst])))
+    title = say("A day at {hand}, the hand that gets most", hand=exposure.worst)
+    yield ReportSection("day", title, tuple(exposure_blocks(exposure.days[exposure.worst])))
 
 
-def _hands(found: ToolExposure) -> Table:
+def _hands(exposure: ToolExposure) -> Table:
     """At the speeds that the file names: a_hv, with idling and racing as one value."""
     rows: list[tuple[Cell, ...]] = []
-    for name, grip in found.grips.items():
-        for what, part in found.named.items():
+    for name, grip in exposure.grips.items():
+        for what, part in exposure.named.items():
             here = part[name]
             plain = float(np.sqrt(np.sum(here.acceleration[:, 0] ** 2)))
             values = (plain, *here.a_hw[:, 0].tolist(), float(here.a_hv[0]))
             rows.append((name, say(NAMED[what]), *map(Value, values)))
-        if name in found.equivalents:
+        if name in exposure.equivalents:
             label = say("idling and racing, ISO 22867")
-            rows.append((name, label, None, None, None, Value(found.equivalents[name])))
+            rows.append((name, label, None, None, None, Value(exposure.equivalents[name])))
         k = int(highest_at(grip.a_hv, smooth=False))
-        top = Value(float(grip.a_hv[k]), at=float(found.speed[k]))
+        top = Value(float(grip.a_hv[k]), at=float(exposure.speed[k]))
         rows.append((name, say("most"), None, None, None, top))
     labels = (say("unweighted"), say("vertical"), say("lateral"), say("total value a_hv"))
     columns = (
@@ -127,35 +127,35 @@ def _hands(found: ToolExposure) -> Table:
 # -- what to change --------------------------------------------------------------------------------
 
 
-def design_blocks(found: ToolDesign) -> Iterator[Block]:
+def design_blocks(design: ToolDesign) -> Iterator[Block]:
     """What a day of work amounts to then; what to change, and what that brings."""
-    yield from _verdict(found)
+    yield from _verdict(design)
     rows: list[tuple[Cell, ...]] = []
-    for variable, edge in zip(found.variables, found.edges, strict=True):
+    for variable, edge in zip(design.variables, design.edges, strict=True):
         text = say(EDGES[edge]) if edge in EDGES else ""
         rows.append((figure_named(variable), *_pair(variable), text))
-    rows += [(figure_named(figure), *_pair(figure, told=True), "") for figure in found.figures]
+    rows += [(figure_named(figure), *_pair(figure, told=True), "") for figure in design.figures]
     labels = ("", say("before"), say("after"), say("change"), "")
     title = say(
-        "What to change, and what that brings at {low} to {high} rpm", **ends_told(found.speed)
+        "What to change, and what that brings at {low} to {high} rpm", **ends_told(design.speed)
     )
     yield Table(title, tuple(map(Column, labels)), tuple(rows))
-    yield from unbounded(found.tool)
+    yield from unbounded(design.tool)
     yield Text(
         say(
             "{arrived} of {searches} searches from places spread over the whole room came to this "
             "design",
-            arrived=found.arrived,
-            searches=found.searches,
+            arrived=design.arrived,
+            searches=design.searches,
         )
     )
 
 
-def _verdict(found: ToolDesign) -> Iterator[Text]:
+def _verdict(design: ToolDesign) -> Iterator[Text]:
     """Whether a day of work keeps below the limits with the design."""
-    if found.days is None:
+    if design.days is None:
         return
-    before, after = found.days
+    before, after = design.days
     values = {"before": brief(before.a8), "after": brief(after.a8)}
     words = {"verdict": say(VERDICTS[after.verdict]), "meaning": say(MEANING[after.verdict])}
     template = to_say(
@@ -165,38 +165,38 @@ def _verdict(found: ToolDesign) -> Iterator[Text]:
     yield Text(say(template, **values, **words), limit_broken(after.a8))
 
 
-def _pair(one: Before, told: bool = False) -> tuple[Cell, ...]:
-    worse = told and one.dimension != "mass" and one.after > 1.001 * one.before
-    pair = (cell(one.before, one.dimension), cell(one.after, one.dimension))
-    return (*pair, RelativeChange(one.before, one.after, worse_if(worse)))
+def _pair(before: Before, told: bool = False) -> tuple[Cell, ...]:
+    worse = told and before.dimension != "mass" and before.after > 1.001 * before.before
+    pair = (cell(before.before, before.dimension), cell(before.after, before.dimension))
+    return (*pair, RelativeChange(before.before, before.after, worse_if(worse)))
 
 
-def figure_named(one: Before) -> str:
+def figure_named(before: Before) -> str:
     """A figure of a design, or a number that it may change, in words."""
-    return varied_named(one.name) if one.said is None else one.said.said()
+    return varied_named(before.name) if before.said is None else before.said.said()
 
 
-def variation_blocks(found: Variation) -> Iterator[Block]:
+def variation_blocks(variation: Variation) -> Iterator[Block]:
     """Natural frequencies against a number of a station."""
-    step = -(-len(found.values) // MOST_ROWS)
-    what = varied_named(f"{found.station} {found.key}")
-    count = range(1, found.frequency.shape[-1] + 1)
+    step = -(-len(variation.values) // MOST_ROWS)
+    what = varied_named(f"{variation.station} {variation.key}")
+    count = range(1, variation.frequency.shape[-1] + 1)
     columns = (
-        column(what, KEYS[found.key]),
+        column(what, KEYS[variation.key]),
         *(Column(f"λ {k}") for k in count),
         *(Column(f"N{k}", unit="1/min") for k in count),
     )
-    for plane, side in enumerate(PLANES[: 1 if found.tool.alike else 2]):
+    for plane, side in enumerate(PLANES[: 1 if variation.tool.alike else 2]):
         rows = tuple(
             (
-                Value(float(found.values[v])),
-                *(Value(item, digits=DIGITS) for item in found.parameter[plane, v].tolist()),
-                *(Value(30 / np.pi * item) for item in found.frequency[plane, v].tolist()),
+                Value(float(variation.values[v])),
+                *(Value(item, digits=DIGITS) for item in variation.parameter[plane, v].tolist()),
+                *(Value(30 / np.pi * item) for item in variation.frequency[plane, v].tolist()),
             )
-            for v in range(0, len(found.values), step)
+            for v in range(0, len(variation.values), step)
         )
         title = say("Natural frequencies against {what}", what=what)
-        if not found.tool.alike:
+        if not variation.tool.alike:
             text = {"what": what, "plane": say(SIDES[side])}
             title = say("Natural frequencies against {what}, {plane}", **text)
         yield Table(title, columns, rows)

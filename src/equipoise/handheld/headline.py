@@ -27,28 +27,28 @@ MOST_MODES = 4
 """Natural frequencies that stand first."""
 
 
-def exposure_headline(found: ToolExposure, alone: bool = False) -> Iterator[Block]:
+def exposure_headline(exposure: ToolExposure, alone: bool = False) -> Iterator[Block]:
     """What a day of work amounts to, and which hand gets most.
 
     alone : whether nothing follows, as on a terminal.
     """
-    if found.worst is not None:
-        day = found.days[found.worst]
+    if exposure.worst is not None:
+        day = exposure.days[exposure.worst]
         above = limit_broken(day.a8)
         verdict = say(VERDICTS[day.verdict])
         template = to_say("A day of work: A(8) = {a8} m/s², {verdict}; {meaning}.")
         values = {"a8": brief(day.a8), "verdict": verdict, "meaning": say(MEANING[day.verdict])}
         yield Text(say(template, **values), above)
         yield from _time_left(day.times)
-    elif WORKING in found.named:
-        at_work = {name: float(grip.a_hv[0]) for name, grip in found.named[WORKING].items()}
+    elif WORKING in exposure.named:
+        at_work = {name: float(grip.a_hv[0]) for name, grip in exposure.named[WORKING].items()}
         hand = max(at_work, key=at_work.__getitem__)
         template = to_say("The hand at {hand} gets most: {value} m/s² at the working speed")
         text = say(template, hand=hand, value=brief(at_work[hand]))
         yield Text(say("{sentence}.", sentence=text))
     if not alone:
         return
-    if lines := tuple(_hands(found)):
+    if lines := tuple(_hands(exposure)):
         yield Facts(say("Vibration of the hands, total value a_hv"), lines)
 
 
@@ -61,17 +61,17 @@ def _time_left(times: WorkingTimes) -> Iterator[Block]:
         yield Text(say(template, action=clock(times.to_action), limit=clock(times.to_limit)))
 
 
-def _hands(found: ToolExposure) -> Iterator[str]:
+def _hands(exposure: ToolExposure) -> Iterator[str]:
     """Each hand at the working speed, and the speed at which one gets most."""
-    for name, grip in found.named.get(WORKING, {}).items():
+    for name, grip in exposure.named.get(WORKING, {}).items():
         yield say(
             "{hand}: {value} m/s² at the working speed", hand=name, value=brief(float(grip.a_hv[0]))
         )
-    k = int(highest_at(found.a_hv, smooth=False))
+    k = int(highest_at(exposure.a_hv, smooth=False))
     yield say(
         "most over these speeds: {value} m/s² at {speed} rpm",
-        value=brief(float(found.a_hv[k])),
-        speed=rpm(float(found.speed[k])),
+        value=brief(float(exposure.a_hv[k])),
+        speed=rpm(float(exposure.speed[k])),
     )
 
 
@@ -81,7 +81,7 @@ SIDES = {
 }
 
 
-def modes_headline(found: ToolModes, alone: bool = False) -> Iterator[Block]:
+def modes_headline(modes: ToolModes, alone: bool = False) -> Iterator[Block]:
     """The lowest natural frequencies.
 
     alone : whether nothing follows, as on a terminal.
@@ -89,27 +89,27 @@ def modes_headline(found: ToolModes, alone: bool = False) -> Iterator[Block]:
     if not alone:
         return
     lines: list[str] = []
-    for plane, side in zip(found.planes, PLANES, strict=True):
+    for plane, side in zip(modes.planes, PLANES, strict=True):
         swinging = plane.cycles_per_second[len(plane.rigid) :][:MOST_MODES]
         text = number_list(brief(float(value)) for value in swinging)
-        if text and not (lines and found.alike):
+        if text and not (lines and modes.alike):
             lines.append(say(SIDES[side], list=text))
     if lines:
         text = say("; ").join(lines)
         yield Text(say("Lowest natural frequencies: {list}.", list=text))
 
 
-def sweep_headline(found: ToolSweep, alone: bool = False) -> Iterator[Block]:
+def sweep_headline(sweep: ToolSweep, alone: bool = False) -> Iterator[Block]:
     """At which speed what holds the tool gets the largest share of a force.
 
     alone : whether nothing follows, as on a terminal.
     """
     if not alone:
         return
-    if found.transmissions is not None:
-        passed = found.transmissions
+    if sweep.transmissions is not None:
+        passed = sweep.transmissions
         sizes = {name: np.max(station.size, axis=0) for name, station in passed.stations.items()}
-        name = max(sizes, key=lambda one: float(np.max(sizes[one])))
+        name = max(sizes, key=lambda item: float(np.max(sizes[item])))
         k = int(highest_at(sizes[name], smooth=False))
         yield Text(
             say(

@@ -269,7 +269,7 @@ Shape = tuple[Array, Array]
 
 
 def _share(
-    layout: Layout, plane: int, frequency: float, places: Array, one: Shape, other: Shape
+    layout: Layout, plane: int, frequency: float, places: Array, item: Shape, other: Shape
 ) -> float:
     """How much of one shape is in another, by the momentum that they share."""
 
@@ -278,18 +278,18 @@ def _share(
         for start, stop, section in layout.tool.shaft.pieces:
             inside = (places >= start) & (places <= stop)
             for kind, density in ((0, section.mass_per_length), (1, section.rotary_inertia)):
-                along = np.trapezoid((one[kind] * shape[kind])[inside], places[inside])
+                along = np.trapezoid((item[kind] * shape[kind])[inside], places[inside])
                 total += density * float(along)
         for station in layout.tool.stations:
             here, there = (
                 [float(np.interp(station.position, places, part)) for part in each]
-                for each in (one, shape)
+                for each in (item, shape)
             )
             total += _mass(layout, station, plane, frequency) * here[0] * there[0]
             total += station.inertia[plane] * here[1] * there[1]
         return total
 
-    own = momentum(one)
+    own = momentum(item)
     return momentum(other) / own if own else 0.0
 
 

@@ -56,24 +56,24 @@ def shakes(tool: Tool) -> tuple[Shake, ...]:
     return tuple(shake for excitation in tool.excitations for shake in _shakes(excitation))
 
 
-def _shakes(one: Excitation) -> Iterable[Shake]:
-    if one.linkage is not None:
-        yield from _of_linkage(one, one.linkage)
+def _shakes(excitation: Excitation) -> Iterable[Shake]:
+    if excitation.linkage is not None:
+        yield from _of_linkage(excitation, excitation.linkage)
         return
-    if one.unbalance is not None:
-        force, power = one.unbalance * one.ratio**2 * _turning(one), 2
+    if excitation.unbalance is not None:
+        force, power = excitation.unbalance * excitation.ratio**2 * _turning(excitation), 2
     else:
-        assert one.force is not None
-        ahead = np.exp(1j * one.phase)
+        assert excitation.force is not None
+        ahead = np.exp(1j * excitation.phase)
         along = {"vertical": np.array([ahead, 0]), "lateral": np.array([0, ahead])}
-        force, power = one.force * along.get(one.direction, _turning(one)), 0
-    yield Shake(one.name, one.station, _order(abs(one.ratio)), force, power)
+        force, power = excitation.force * along.get(excitation.direction, _turning(excitation)), 0
+    yield Shake(excitation.name, excitation.station, _order(abs(excitation.ratio)), force, power)
 
 
-def _turning(one: Excitation) -> Array:
+def _turning(excitation: Excitation) -> Array:
     """A force of 1 that turns with a shaft: lateral at its angle 0, vertical at a quarter turn."""
-    forward = np.array([-1j, 1]) * np.exp(1j * one.phase)
-    return np.asarray(forward if one.ratio > 0 else np.conj(forward))
+    forward = np.array([-1j, 1]) * np.exp(1j * excitation.phase)
+    return np.asarray(forward if excitation.ratio > 0 else np.conj(forward))
 
 
 def _order(order: float) -> float:
@@ -81,18 +81,20 @@ def _order(order: float) -> float:
     return float(f"{order:.12g}")
 
 
-def _of_linkage(one: Excitation, machine: Machine) -> Iterable[Shake]:
+def _of_linkage(excitation: Excitation, machine: Machine) -> Iterable[Shake]:
     """The shaking force by orders: minus the rate of change of momentum, of any speed squared."""
     force = unit_shaking_force(machine)
-    backward = (one.ratio > 0) != (machine.drive.speed > 0)
+    backward = (excitation.ratio > 0) != (machine.drive.speed > 0)
     sizes = np.max(force.sizes, axis=0)
     largest = float(np.max(sizes[1:], initial=0.0))
     kept = [k for k in range(1, len(sizes)) if sizes[k] > LEAST * largest]
     for k in sorted(kept, key=lambda k: -sizes[k])[:MOST_ORDERS]:
         order = float(force.orders[k])
-        both = one.ratio**2 * force.amplitudes[:, k] * np.exp(1j * order * one.phase)
+        both = excitation.ratio**2 * force.amplitudes[:, k] * np.exp(1j * order * excitation.phase)
         both = np.conj(both) if backward else both
-        yield Shake(one.name, one.station, _order(order * abs(one.ratio)), both, 2)
+        yield Shake(
+            excitation.name, excitation.station, _order(order * abs(excitation.ratio)), both, 2
+        )
 
 
 def unit_shaking_force(machine: Machine) -> Periodic:

@@ -311,7 +311,7 @@ class Shaft(Profiled):
     def pieces(self) -> tuple[tuple[float, float, Section], ...]:
         """Start, stop and section of each part, from end to end."""
         parts, at = [], 0.0
-        for segment in sorted(self.segments, key=lambda one: one.start):
+        for segment in sorted(self.segments, key=lambda item: item.start):
             if segment.start > at:
                 parts.append((at, segment.start, self.profile.section(self.theory)))
             parts.append((segment.start, segment.stop, segment.profile.section(self.theory)))

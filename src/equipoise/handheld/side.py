@@ -29,25 +29,25 @@ def _motor(tool: Tool) -> Station | None:
     """Where what turns with the engine shakes; the heaviest such station."""
     shaking = {excitation.station for excitation in tool.excitations if abs(excitation.ratio) == 1}
     matching_stations = [station for station in tool.stations if station.name in shaking]
-    return max(matching_stations, key=lambda one: one.mass, default=None)
+    return max(matching_stations, key=lambda item: item.mass, default=None)
 
 
-def _seat(tool: Tool, one: Station, motor: Station | None) -> SeatSign:
-    acting = [cause for cause in tool.excitations if cause.station == one.name]
+def _seat(tool: Tool, station: Station, motor: Station | None) -> SeatSign:
+    acting = [cause for cause in tool.excitations if cause.station == station.name]
     part = ""
-    if one is motor:
+    if station is motor:
         part = "engine" if any(cause.linkage is not None for cause in acting) else "motor"
-    elif motor is not None and _end(tool, one) not in (0, _end(tool, motor)):
+    elif motor is not None and _end(tool, station) not in (0, _end(tool, motor)):
         part = "blade"
     return SeatSign(
-        one.name,
-        one.position,
-        one.mass,
-        0.0 if one.absorber is None else one.absorber.mass,
-        0 if one.hand is None else one.hand.hands,
-        one.harness is not None,
-        one.grounded,
-        any(one.rotational_stiffness) or any(one.rotational_damping),
+        station.name,
+        station.position,
+        station.mass,
+        0.0 if station.absorber is None else station.absorber.mass,
+        0 if station.hand is None else station.hand.hands,
+        station.harness is not None,
+        station.grounded,
+        any(station.rotational_stiffness) or any(station.rotational_damping),
         "turns" if any(map(_turns, acting)) else "force" if acting else "",
         part,
     )
@@ -57,9 +57,9 @@ def _turns(cause: Excitation) -> bool:
     return cause.force is None or cause.direction == "rotating"
 
 
-def _end(tool: Tool, one: Station) -> int:
+def _end(tool: Tool, station: Station) -> int:
     """-1 at the left end of the shaft, 1 at the right one, 0 between."""
-    share = one.position / tool.shaft.length
+    share = station.position / tool.shaft.length
     return -1 if share < AT_END else int(share > 1 - AT_END)
 
 

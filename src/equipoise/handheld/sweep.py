@@ -70,7 +70,7 @@ def _planes(
         key + ("_lateral" if plane else ""): ResultOutput(
             f"{meaning}, {side}",
             dimension,
-            read=lambda one, plane=plane: getattr(one, read)[plane],  # type: ignore[misc]
+            read=lambda item, plane=plane: getattr(item, read)[plane],  # type: ignore[misc]
             column=column and f"{column}_{side}",
             rank=plane,
             **more,
@@ -157,7 +157,7 @@ def source_of(tool: Tool) -> str:
         raise ModelError(
             "shaft.stations", Note("there is none; add what sits on the shaft and holds it")
         )
-    return min(tool.stations, key=lambda one: one.position).name
+    return min(tool.stations, key=lambda item: item.position).name
 
 
 def held(tool: Tool) -> list[Station]:
