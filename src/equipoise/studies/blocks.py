@@ -168,88 +168,98 @@ def _limits(outputs: Iterable[Output], units: Units | None) -> Iterator[Block]:
 
 
 def best_blocks(
-    found: Best, outputs: Sequence[Output] = (), units: Units | None = None
+    best: Best, outputs: Sequence[Output] = (), units: Units | None = None
 ) -> Iterator[Block]:
     """What is best of how many, within which limits, and the designs."""
-    counted = {"stored": found.stored, "computed": found.computed, "kept": found.kept}
+    counted = {"stored": best.stored, "computed": best.computed, "kept": best.kept}
     if limits(outputs, units):
         text = say("{stored} designs: {computed} have figures, {kept} keep every limit", **counted)
     else:
         text = say("{stored} designs: {computed} have figures", **counted)
     yield Text(text)
     yield from _limits(outputs, units)
-    if found.note:
-        yield Text(found.note, "broken")
-    elif len(found.by) > 1:
-        yield Text(say("{count} designs that no other beats in everything", count=found.front))
-    yield best_table(found, units)
-    labels = {name: unit_in(units, name).called for name in (*found.numbers, *found.outputs)}
+    if best.note:
+        yield Text(best.note, "broken")
+    elif len(best.by) > 1:
+        yield Text(say("{count} designs that no other beats in everything", count=best.front))
+    yield best_table(best, units)
+    labels = {name: unit_in(units, name).called for name in (*best.numbers, *best.outputs)}
     paths = tuple(f"{label}: {name}" for name, label in labels.items() if label != name)
     if paths:
         yield Facts(say("As --by takes them:"), paths)
 
 
-def best_table(found: Best, units: Units | None = None) -> Table:
+def best_table(best: Best, units: Units | None = None) -> Table:
     """The designs, the best first."""
-    columns = columns_of(found.numbers, found.values, found.outputs, found.figures)
-    labels = [str(design) for design in found.designs]
-    aims = wanted(found.by, units)
-    if found.note:
+    columns = columns_of(best.numbers, best.values, best.outputs, best.figures)
+    labels = [str(design) for design in best.designs]
+    aims = wanted(best.by, units)
+    if best.note:
         title = say("Designs nearest to the limits")
-    elif len(found.by) > 1:
+    elif len(best.by) > 1:
         title = say("Designs that no other beats; {aims}", aims=aims)
     else:
         title = say("The best designs; {aims}", aims=aims)
-    return designs_table(title, labels, columns, (*found.by, *found.outputs), units)
+    return designs_table(title, labels, columns, (*best.by, *best.outputs), units)
 
 
 # -- a search --------------------------------------------------------------------------------------
 
 
 def searched_blocks(
-    found: Searched, units: Units | None = None, own: tuple[Array, Array] | None = None
+    searched: Searched, units: Units | None = None, own: tuple[Array, Array] | None = None
 ) -> Iterator[Block]:
     """How the search went, and the front.
 
     own : values (d,) and figures (m,) of the model itself, if it can be computed.
     """
-    failed = sum(found.failures.values())
-    if found.proof is not None:
-        parts = [say("{count} designs: {proof}", count=found.computed, proof=found.proof)]
+    failed = sum(searched.failures.values())
+    if searched.proof is not None:
+        parts = [say("{count} designs: {proof}", count=searched.computed, proof=searched.proof)]
     else:
-        counted = {"count": found.computed, "generations": found.generations, "seed": found.seed}
+        counted = {
+            "count": searched.computed,
+            "generations": searched.generations,
+            "seed": searched.seed,
+        }
         parts = [say("{count} designs in {generations} generations, seed {seed}", **counted)]
     parts += [say("{count} failed", count=failed)] if failed else []
-    if found.proof is None:
+    if searched.proof is None:
         still, growing = say("the front stands still"), say("the front may still grow")
-        parts.append(still if found.stood_still else growing)
+        parts.append(still if searched.stood_still else growing)
     yield Text("; ".join(parts))
-    yield from _limits(found.study.outputs, units)
-    yield _front(found, units, own)
-    if not found.stood_still:
+    yield from _limits(searched.study.outputs, units)
+    yield _front(searched, units, own)
+    if not searched.stood_still:
         yield Notes((Note(to_say("it may get better yet; give more generations")),))
-    elif found.proof is None:
+    elif searched.proof is None:
         yield Notes((Note(UNPROVED),))
 
 
-def _front(found: Searched, units: Units | None, own: tuple[Array, Array] | None) -> Table:
-    signs = signs_of(found.objectives.values())
-    outputs = [found.study.names.index(name) for name in found.objectives]
-    shown = far_apart(signs * found.figures[:, outputs], MOST)
+def _front(searched: Searched, units: Units | None, own: tuple[Array, Array] | None) -> Table:
+    signs = signs_of(searched.objectives.values())
+    outputs = [searched.study.names.index(name) for name in searched.objectives]
+    shown = far_apart(signs * searched.figures[:, outputs], MOST)
     labels = [str(item) for item in shown]
-    values, figures = found.values[shown], found.figures[shown]
+    values, figures = searched.values[shown], searched.figures[shown]
     if own is not None:
         labels = [say("model"), *labels]
         values, figures = np.vstack([own[0], values]), np.vstack([own[1], figures])
-    columns = columns_of(found.study.paths, values, found.study.names, figures)
-    text = {"shown": len(shown), "count": found.front, "aims": wanted(found.objectives, units)}
-    if len(found.objectives) == 1:
+    columns = columns_of(searched.study.paths, values, searched.study.names, figures)
+    text = {
+        "shown": len(shown),
+        "count": searched.front,
+        "aims": wanted(searched.objectives, units),
+    }
+    if len(searched.objectives) == 1:
         title = say("The best design; {aims}", **text)
-    elif len(shown) < found.front:
+    elif len(shown) < searched.front:
         title = say("{shown} of {count} designs that no other beats; {aims}", **text)
     else:
         title = say("{count} designs that no other beats; {aims}", **text)
-    return designs_table(title, labels, columns, (*found.objectives, *found.study.names), units)
+    return designs_table(
+        title, labels, columns, (*searched.objectives, *searched.study.names), units
+    )
 
 
 # -- a store ---------------------------------------------------------------------------------------
@@ -339,16 +349,16 @@ def store_blocks(store: Store) -> Iterator[Block]:
 # -- a landscape -----------------------------------------------------------------------------------
 
 
-def landscape_blocks(found: Landscape) -> Iterator[Block]:
+def landscape_blocks(landscape: Landscape) -> Iterator[Block]:
     """Where over two numbers an objective is least, and what it is as the model stands."""
-    rows: list[tuple[Cell, ...]] = [(say("least"), *map(Value, (*found.best, found.least)))]
-    if found.start is not None:
-        rows.append((say("as it is"), *map(Value, (*found.start, found.before))))
-    objective = Column(objective_named(found.objective), unit=found.unit)
-    words = (found.words[path] for path in found.paths)
+    rows: list[tuple[Cell, ...]] = [(say("least"), *map(Value, (*landscape.best, landscape.least)))]
+    if landscape.start is not None:
+        rows.append((say("as it is"), *map(Value, (*landscape.start, landscape.before))))
+    objective = Column(objective_named(landscape.objective), unit=landscape.unit)
+    words = (landscape.words[path] for path in landscape.paths)
     said = (word.said() if isinstance(word, Note) else word for word in words)
     columns = (Column(""), *map(Column, said), objective)
     yield Table(say("Least over two numbers, SI units"), columns, tuple(rows))
-    values = found.values[np.isfinite(found.values)]
-    if isnan(found.least) or not values.size:
+    values = landscape.values[np.isfinite(landscape.values)]
+    if isnan(landscape.least) or not values.size:
         yield Text(say("Nowhere in this range can the linkage turn."))

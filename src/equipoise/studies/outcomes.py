@@ -288,7 +288,7 @@ class Tally:
             computed=self.computed,
             seconds=now - self.start,
             rate=since_then / max(now - since, 1e-9) if since_then else None,
-            failures=dict(sorted(failures(self.reasons).items(), key=lambda one: -one[1])),
+            failures=dict(sorted(failures(self.reasons).items(), key=lambda item: -item[1])),
             best=dict(self.best),
         )
 

@@ -183,12 +183,12 @@ def search(
 
 
 def _search(
-    seen: _Archive, population: int, generations: int, seed: int, progress: OnGeneration | None
+    archive: _Archive, population: int, generations: int, seed: int, progress: OnGeneration | None
 ) -> Searched:
-    problem = _StudyProblem(seen, population, generations, seed, progress or (lambda *_: None))
+    problem = _StudyProblem(archive, population, generations, seed, progress or (lambda *_: None))
     solution = solve(problem)
-    best = seen.rows(problem.values_of(solution.places))
-    result = _result(seen, problem.volumes, seen.some_of_front(best, population), seed)
+    best = archive.rows(problem.values_of(solution.places))
+    result = _result(archive, problem.volumes, archive.some_of_front(best, population), seed)
     ended = len(problem.volumes.fronts) < generations or problem.is_still
     still = ended or solution.proof is not None
     return replace(result, solver=solution.solver, proof=solution.proof, stood_still=still)
@@ -201,15 +201,15 @@ class _StudyProblem(DesignProblem):
 
     def __init__(
         self,
-        seen: _Archive,
+        archive: _Archive,
         population: int,
         generations: int,
         seed: int,
         progress: OnGeneration,
     ) -> None:
-        self.seen, self.progress, self.volumes = seen, progress, Hypervolumes()
+        self.seen, self.progress, self.volumes = archive, progress, Hypervolumes()
         self.population, self.generations, self.seed = population, generations, seed
-        self.objectives, self.limits = len(seen.makes), 1 + len(seen.limits)
+        self.objectives, self.limits = len(archive.makes), 1 + len(archive.limits)
 
     @property
     def spreads(self) -> list[Range | Choices]:
@@ -308,27 +308,27 @@ def _check(study: Study) -> None:
         raise ModelError("outputs", note)
 
 
-def _result(seen: _Archive, volumes: Hypervolumes, told: Array, seed: int) -> Searched:
-    study, counts = seen.study, seen.outcome.counts
-    if not len(seen.front):
-        good = seen.outcome.figures[seen.outcome.computed]
+def _result(archive: _Archive, volumes: Hypervolumes, told: Array, seed: int) -> Searched:
+    study, counts = archive.study, archive.outcome.counts
+    if not len(archive.front):
+        good = archive.outcome.figures[archive.outcome.computed]
         limits = np.sum(kept(study.outputs, good), axis=0)
         raise UsageError(why_none(study.outputs, counts, limits))
-    order = told[np.lexsort(seen.costs[told].T[::-1])]
+    order = told[np.lexsort(archive.costs[told].T[::-1])]
     makes = {output.name: output.make for output in study.objectives if output.make}
     return Searched(
         study=study,
-        front=len(seen.front),
+        front=len(archive.front),
         objectives=makes,
-        values=seen.values[order],
-        figures=seen.outcome.figures[order],
-        computed=len(seen.values),
+        values=archive.values[order],
+        figures=archive.outcome.figures[order],
+        computed=len(archive.values),
         failures=failures(counts),
         generations=len(volumes.fronts),
         stood_still=False,
-        volumes=volumes.all * (seen.signs[0] if len(seen.signs) == 1 else 1),
+        volumes=volumes.all * (archive.signs[0] if len(archive.signs) == 1 else 1),
         seed=seed,
-        tried=Block(seen.values, seen.outcome),
+        tried=Block(archive.values, archive.outcome),
     )
 
 

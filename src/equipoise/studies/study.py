@@ -188,12 +188,12 @@ def _numbers(model: Model, vary: Sequence[Variable]) -> list[tuple[float, str | 
     return numbers
 
 
-def _as_in(one: Variable, value: float, dimension: str | None) -> Variable:
+def _as_in(variable: Variable, value: float, dimension: str | None) -> Variable:
     """The same with what the model knows of the number."""
-    spread = one.spread
+    spread = variable.spread
     if isinstance(value, int) and isinstance(spread, Range):
         spread = replace(spread, whole=True)
-    return replace(one, spread=spread, dimension=dimension)
+    return replace(variable, spread=spread, dimension=dimension)
 
 
 def _problems(study: Study) -> Iterator[ModelError]:
@@ -219,17 +219,17 @@ def _beyond(
         yield ModelError(where, what)
 
 
-def _wrong_spread(where: str, one: Variable, study: Study) -> Iterator[ModelError]:
-    spread, method = one.spread, study.sampling.method
+def _wrong_spread(where: str, variable: Variable, study: Study) -> Iterator[ModelError]:
+    spread, method = variable.spread, study.sampling.method
     key = f"{where}.{KEYS[type(spread)]}"
-    if isinstance(study.model.number(one.path)[0], int):
+    if isinstance(study.model.number(variable.path)[0], int):
         if spread.tolerance:
             yield ModelError(
-                key, Note("{path} is a whole number; give a range or a list", path=one.path)
+                key, Note("{path} is a whole number; give a range or a list", path=variable.path)
             )
         if isinstance(spread, Choices) and not all(map(float.is_integer, spread.values)):
             yield ModelError(
-                key, Note("{path} is a whole number; give whole numbers", path=one.path)
+                key, Note("{path} is a whole number; give whole numbers", path=variable.path)
             )
     grid = method == "grid"
     if isinstance(spread, Range) and grid != (spread.steps is not None):

@@ -22,32 +22,34 @@ CHANCE, FINE = 4, 1000
 """Machines that a change has to bring within all limits not to be chance; rows for two digits."""
 
 
-def tolerances_blocks(found: Tolerances, units: Units | None = None) -> Iterator[Block]:
+def tolerances_blocks(tolerances: Tolerances, units: Units | None = None) -> Iterator[Block]:
     """Scatter, limits, causes, and a sentence on what to do."""
     drawn = say(
-        "{count} machines drawn, seed {seed}", count=found.designs, seed=found.study.sampling.seed
+        "{count} machines drawn, seed {seed}",
+        count=tolerances.designs,
+        seed=tolerances.study.sampling.seed,
     )
-    failed = say(", ").join(f"{what} {count}" for what, count in found.failures.items())
+    failed = say(", ").join(f"{what} {count}" for what, count in tolerances.failures.items())
     yield Text(f"{drawn}; {say('failed: {list}', list=failed)}" if failed else drawn)
-    if found.within is not None:
-        yield Text(say("Every limit is kept by {share} of them.", share=_share(found.within)))
-    yield _scatters(found, units)
-    if any(scatter.within is not None for scatter in found.scatters.values()):
-        yield _kept(found, units)
-    yield _causes(found, units)
-    yield _variances(found, units)
-    yield Text(advice(found, units))
-    notes: tuple[Note | str, ...] = (*_outside(found), *found.notes)
+    if tolerances.within is not None:
+        yield Text(say("Every limit is kept by {share} of them.", share=_share(tolerances.within)))
+    yield _scatters(tolerances, units)
+    if any(scatter.within is not None for scatter in tolerances.scatters.values()):
+        yield _kept(tolerances, units)
+    yield _causes(tolerances, units)
+    yield _variances(tolerances, units)
+    yield Text(advice(tolerances, units))
+    notes: tuple[Note | str, ...] = (*_outside(tolerances), *tolerances.notes)
     if notes:
         yield Notes(notes)
 
 
-def _scatters(found: Tolerances, units: Units | None) -> Table:
-    scatters = found.scatters.values()
+def _scatters(tolerances: Tolerances, units: Units | None) -> Table:
+    scatters = tolerances.scatters.values()
     every = sorted({p for scatter in scatters for p in scatter.percentiles})
     shared = [p for p in every if all(p in scatter.percentiles for scatter in scatters)]
     rows = []
-    for name, item in found.scatters.items():
+    for name, item in tolerances.scatters.items():
         unit = unit_in(units, name)
         parts = (item.base, item.mean, item.deviation, *(item.percentiles[p] for p in shared))
         rows.append((labelled(unit), *(in_unit(value, unit) for value in parts)))
@@ -56,9 +58,9 @@ def _scatters(found: Tolerances, units: Units | None) -> Table:
     return Table(title, tuple(map(Column, labels)), tuple(rows))
 
 
-def _kept(found: Tolerances, units: Units | None) -> Table:
+def _kept(tolerances: Tolerances, units: Units | None) -> Table:
     rows = []
-    for name, scatter in found.scatters.items():
+    for name, scatter in tolerances.scatters.items():
         if scatter.within is None:
             continue
         unit = unit_in(units, name)
@@ -78,29 +80,29 @@ def _share(share: IntervalEstimate) -> str:
     return f"{value} % ({say('{low} to {high}', low=low, high=high)} %)"
 
 
-def _causes(found: Tolerances, units: Units | None) -> Table:
-    digits, kept = _digits(found), found.unchanged is not None
+def _causes(tolerances: Tolerances, units: Units | None) -> Table:
+    digits, kept = _digits(tolerances), tolerances.unchanged is not None
     rows: list[tuple[Cell, ...]] = []
-    for cause in found.causes:
+    for cause in tolerances.causes:
         shares = (cause.halved, cause.removed) if kept else ()
         cells = (None if share is None else Value(100 * share, after=digits) for share in shares)
-        given = "; ".join(tolerance_told(found, path, units) for path in cause.numbers)
+        given = "; ".join(tolerance_told(tolerances, path, units) for path in cause.numbers)
         gain = Value(100 * cause.gain, after=1)
         rows.append((named_together(cause.numbers, units), given, gain, *cells))
     texts = [say("variance less by")]
     title = say("What half of a tolerance does, the most first")
-    if found.unchanged is not None:
+    if tolerances.unchanged is not None:
         texts += [say("keep limits with half"), say("keep limits without")]
-        share = percent(found.unchanged, digits)
+        share = percent(tolerances.unchanged, digits)
         title = say("{title}; with all of them {share} % keep limits", title=title, share=share)
     columns = (Column(""), Column(say("tolerance")), *(Column(item, unit="%") for item in texts))
     return Table(title, columns, tuple(rows))
 
 
-def tolerance_told(found: Tolerances, path: str, units: Units | None) -> str:
+def tolerance_told(tolerances: Tolerances, path: str, units: Units | None) -> str:
     """A tolerance as one says it: ``+- 0.1000 mm`` or ``deviation 2.000 g``."""
     unit = unit_in(units, path)
-    (spread,) = (item.spread for item in found.study.vary if item.path == path)
+    (spread,) = (item.spread for item in tolerances.study.vary if item.path == path)
     if isinstance(spread, Uniform):
         return f"+- {number(unit.of_si(spread.half_width))} {unit.name}".strip()
     assert isinstance(spread, Normal)
@@ -110,10 +112,10 @@ def tolerance_told(found: Tolerances, path: str, units: Units | None) -> str:
     return say("deviation {size}, cut at {cut}", size=size, cut=f"{spread.cut:g}")
 
 
-def _variances(found: Tolerances, units: Units | None) -> Table:
+def _variances(tolerances: Tolerances, units: Units | None) -> Table:
     """The share of each cause in the variance of each figure."""
-    names = [name for name in found.scatters if name in found.causes[0].effects]
-    causes = ((named_together(cause.numbers, units), cause) for cause in found.causes)
+    names = [name for name in tolerances.scatters if name in tolerances.causes[0].effects]
+    causes = ((named_together(cause.numbers, units), cause) for cause in tolerances.causes)
     rows = tuple((words, *_effects(cause, names)) for words, cause in causes)
     title = say("Share of the variance by cause, with what it does together with others, %")
     heads = (Column(unit_in(units, name).called) for name in names)
@@ -127,20 +129,20 @@ def _effects(cause: Cause, names: Sequence[str]) -> Iterator[str]:
         yield f"{percent(total.value, 1)} +- {percent(half, 1)}"
 
 
-def _digits(found: Tolerances) -> int:
+def _digits(tolerances: Tolerances) -> int:
     """Digits of a share of the rows that mean something."""
-    return 2 if found.rows >= FINE else 1
+    return 2 if tolerances.rows >= FINE else 1
 
 
-def advice(found: Tolerances, units: Units | None) -> str:
+def advice(tolerances: Tolerances, units: Units | None) -> str:
     """What to tighten first, and what that brings."""
-    first = found.causes[0]
+    first = tolerances.causes[0]
     if first.gain < LITTLE:
         return say(
             "No tolerance is worth tightening: half of any takes less than 1 % off the variance."
         )
-    limited = [name for name, scatter in found.scatters.items() if scatter.within is not None]
-    names = limited or [*found.scatters]
+    limited = [name for name, scatter in tolerances.scatters.items() if scatter.within is not None]
+    names = limited or [*tolerances.scatters]
     of = say("the figures with limits") if limited else say("the figures")
     what = named_together(first.numbers, units)
     text = say(
@@ -149,11 +151,13 @@ def advice(found: Tolerances, units: Units | None) -> str:
         share=f"{100 * first.gain:.0f}",
         of=unit_in(units, names[0]).called if len(names) == 1 else of,
     )
-    if first.halved is None or found.unchanged is None:
+    if first.halved is None or tolerances.unchanged is None:
         return f"{text}."
-    if (first.halved - found.unchanged) * found.rows < CHANCE:
+    if (first.halved - tolerances.unchanged) * tolerances.rows < CHANCE:
         return say("{text}; hardly more machines keep every limit then.", text=text)
-    before, after = (percent(share, _digits(found)) for share in (found.unchanged, first.halved))
+    before, after = (
+        percent(share, _digits(tolerances)) for share in (tolerances.unchanged, first.halved)
+    )
     return say(
         "{text}, and {after} % of the machines keep every limit, not {before} %.",
         text=text,
@@ -162,10 +166,10 @@ def advice(found: Tolerances, units: Units | None) -> str:
     )
 
 
-def _outside(found: Tolerances) -> Iterator[Note]:
+def _outside(tolerances: Tolerances) -> Iterator[Note]:
     """Limits that the model itself does not keep."""
     text = to_say("the model itself does not keep the limits of {name}; change its numbers first")
-    for name, scatter in found.scatters.items():
+    for name, scatter in tolerances.scatters.items():
         low, high = scatter.output.at_least, scatter.output.at_most
         if (low is not None and scatter.base < low) or (high is not None and scatter.base > high):
             yield Note(text, name=name)

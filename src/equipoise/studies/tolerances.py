@@ -175,7 +175,7 @@ def _tolerances(study: Study, evaluate: Evaluator, progress: OnProgress | None) 
             output.name: scatter_of(output, own, figures)
             for output, own, figures in zip(study.outputs, base, joined.figures.T, strict=True)
         },
-        causes=tuple(sorted(text, key=lambda one: -one.gain)),
+        causes=tuple(sorted(text, key=lambda item: -item.gain)),
         rows=rows,
         unchanged=_part(study, values[0]),
         computed=run.done,
@@ -272,10 +272,12 @@ def _part(study: Study, outcome: Outcome) -> float | None:
     return float(np.mean(_kept_all(study, outcome))) if _limited(study) else None
 
 
-def _causes(study: Study, causes: Sequence[Sequence[int]], found: Sequence[Outcome]) -> list[Cause]:
+def _causes(
+    study: Study, causes: Sequence[Sequence[int]], outcomes: Sequence[Outcome]
+) -> list[Cause]:
     by_output: dict[str, list[Effect]] = {}
     for k, output in enumerate(study.outputs):
-        of_output = effects([item.figures[:, k] for item in found], study.sampling.seed)
+        of_output = effects([item.figures[:, k] for item in outcomes], study.sampling.seed)
         if of_output is not None:
             by_output[output.name] = of_output
     counted = [study.names[k] for k in _limited(study)] or list(study.names)
@@ -288,20 +290,20 @@ def _causes(study: Study, causes: Sequence[Sequence[int]], found: Sequence[Outco
                 numbers=tuple(study.paths[k] for k in columns),
                 effects=each,
                 gain=float(np.mean(gains)) if gains else 0.0,
-                halved=_part(study, found[3 + 3 * number]),
-                removed=_part(study, found[4 + 3 * number]),
+                halved=_part(study, outcomes[3 + 3 * number]),
+                removed=_part(study, outcomes[4 + 3 * number]),
             )
         )
     return text
 
 
-def _notes(study: Study, told: Sequence[Cause], found: Sequence[Outcome]) -> Iterator[str]:
+def _notes(study: Study, causes: Sequence[Cause], outcomes: Sequence[Outcome]) -> Iterator[str]:
     for k, output in enumerate(study.outputs):
-        if output.name not in told[0].effects:
-            there = [bool(np.any(np.isfinite(item.figures[:, k]))) for item in found]
+        if output.name not in causes[0].effects:
+            there = [bool(np.any(np.isfinite(item.figures[:, k]))) for item in outcomes]
             what = "does not vary" if all(there) else "fails too often"
             yield f"{output.name} {what}, so that no tolerance is named as its cause"
-    failed = float(np.mean([np.mean(~item.computed) for item in found]))
+    failed = float(np.mean([np.mean(~item.computed) for item in outcomes]))
     if failed > 0:
         yield (
             f"{100 * failed:.2g} % of the machines cannot be computed; causes are told apart by "
