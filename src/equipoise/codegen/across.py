@@ -70,7 +70,7 @@ def _about(forces: Iterable[Any]) -> Any:
 
 def _plane(trace: Trace, link: str, point: str | None) -> Any:
     name = f"plane({link}/{point})"
-    return trace.slot(name, lambda found: found.machine.links[link].plane_of(point))
+    return trace.slot(name, lambda linkage: linkage.machine.links[link].plane_of(point))
 
 
 def bearing_force(trace: Trace, bearing: str, exerted: Callable[[str], Any]) -> Any:
@@ -94,13 +94,13 @@ def bearing_force(trace: Trace, bearing: str, exerted: Callable[[str], Any]) -> 
 
 
 def _bearing_plane(trace: Trace, name: str) -> Any:
-    return trace.slot(f"plane of {name}", lambda found: found.machine.bearings[name].plane)
+    return trace.slot(f"plane of {name}", lambda linkage: linkage.machine.bearings[name].plane)
 
 
 def _joint_plane(trace: Trace, place: int) -> Any:
-    return trace.slot(f"plane of joint {place}", lambda found: contacts(found)[place].plane)
+    return trace.slot(f"plane of joint {place}", lambda linkage: contacts(linkage)[place].plane)
 
 
 def _moment(linkage: Linkage, link: str, place: int) -> Read:
     anchor = linkage.anchors[link]
-    return lambda found: moments_across(found.machine.links[link], anchor)[place]
+    return lambda result: moments_across(result.machine.links[link], anchor)[place]

@@ -147,8 +147,8 @@ def traced_element(trace: Trace, table: str, number: int) -> tuple[Element, Trac
     """An element with terms for its numbers, and the bodies between which it acts."""
     name = f"{table}[{number}]"
 
-    def read(found: Linkage, steps: tuple[str | int, ...]) -> Any:
-        value = getattr(found.machine, table)[number]
+    def read(linkage: Linkage, steps: tuple[str | int, ...]) -> Any:
+        value = getattr(linkage.machine, table)[number]
         for step in steps:
             value = value[step] if isinstance(step, int) else getattr(value, step)
         return value
@@ -177,10 +177,10 @@ def trace_preload(trace: Trace, number: int) -> Iterator[Held]:
         return
     driver, driven = coupling_pins(trace.linkage.joints, coupling)
 
-    def rate(found: Linkage) -> Any:
-        points = found.machine.points_of(coupling.carrier)
+    def rate(linkage: Linkage) -> Any:
+        points = linkage.machine.points_of(coupling.carrier)
         distance = abs(planar(points[driven]) - planar(points[driver]))
-        return found.machine.couplings[number].preload_rate(distance)
+        return linkage.machine.couplings[number].preload_rate(distance)
 
     ends = [trace.point(coupling.carrier, pin)[0] for pin in (driver, driven)]
     force = (ends[1] - ends[0]) * trace.slot(f"preload rate({number})", rate)

@@ -76,7 +76,9 @@ def trace_coupling(trace: Trace, step: KernelCall) -> None:
     )
     start = _coupling(trace.linkage, link).start
     if trace.counted:
-        put_off = trace.slot(f"start({link})", lambda found: _coupling(found, link).start - start)
+        put_off = trace.slot(
+            f"start({link})", lambda linkage: _coupling(linkage, link).start - start
+        )
         trace.state[f"phi({link})"] = angle + put_off
     else:
         turn = trace.slot(
@@ -107,8 +109,8 @@ def trace_rolled(trace: Trace, step: KernelCall, number: int) -> None:
     trace.state[slope] = kernels.pitch_slope(ratio, bend)
 
 
-def _centres(number: int, found: Linkage) -> Any:
-    step = found.forces[number]
+def _centres(number: int, linkage: Linkage) -> Any:
+    step = linkage.forces[number]
     assert isinstance(step, KernelCall)
     return step.parameters[1]
 
@@ -121,8 +123,8 @@ def _of_law(law: Any, place: int, driver: Turning, carrier: Turning, theta: Arra
     return np.asarray(law(driver(theta)[0] - carrier(theta)[0])[place])
 
 
-def _coupling(found: Linkage, link: str) -> Coupling:
-    return next(coupling for coupling in found.machine.couplings if coupling.driven == link)
+def _coupling(linkage: Linkage, link: str) -> Coupling:
+    return next(coupling for coupling in linkage.machine.couplings if coupling.driven == link)
 
 
 def _trace_uniform(trace: Trace, step: KernelCall) -> None:
@@ -133,7 +135,7 @@ def _trace_uniform(trace: Trace, step: KernelCall) -> None:
     driver, carrier, link = links_of(step)
     order = _follows(step, trace.orders[driver], trace.orders[carrier], 0.0)
     trace.orders[link] = order
-    start = trace.slot(f"start({link})", lambda found: np.exp(1j * _start(found, link)), True)
+    start = trace.slot(f"start({link})", lambda linkage: np.exp(1j * _start(linkage, link)), True)
     trace.put(u(link), (trace.turned(order) * start, order, 0.0))
 
 
@@ -144,14 +146,14 @@ def _follows(step: KernelCall, driver: Any, carrier: Any, offset: Any) -> Any:
     return angle
 
 
-def _start(found: Linkage, link: str) -> Any:
+def _start(linkage: Linkage, link: str) -> Any:
     """Angle of a link at crank angle 0, of links that turn in proportion to the crank."""
-    for step in found.motion:
+    for step in linkage.motion:
         if isinstance(step, KernelCall) and step.kernel is kernels.in_ratio:
             driver, carrier, driven = links_of(step)
             if driven == link:
                 offset = step.parameters[1]
-                return _follows(step, _start(found, driver), _start(found, carrier), offset)
+                return _follows(step, _start(linkage, driver), _start(linkage, carrier), offset)
     return 0.0
 
 
@@ -314,8 +316,8 @@ def trace_swung(trace: Trace, step: KernelCall, number: int) -> None:
     trace.put(u(link), (trace.state[f"u({carrier})"] * rest * rotation(lean), *rates))
 
 
-def _turned(number: int, found: Linkage) -> Any:
-    step = found.motion[number]
+def _turned(number: int, linkage: Linkage) -> Any:
+    step = linkage.motion[number]
     assert isinstance(step, KernelCall)
     return np.exp(1j * np.asarray(step.parameters[0]))
 
@@ -348,7 +350,7 @@ class _Law:
             case _:
                 curve, begin = curve_of(self.law)
                 y, ratio, bend = curve_value(self.trace, curve, self.angle - begin)
-        offset = self.slot("offset", lambda found: _parameters(found, self.number)[1])
+        offset = self.slot("offset", lambda linkage: _parameters(linkage, self.number)[1])
         state[f"phi({link})"] = state[f"phi({self.carrier})"] + y + offset
         state[f"ratio({link})"], state[f"bend({link})"] = ratio, bend
         rates = [state[name] for item in (self.driver, self.carrier) for name in u(item)[1:]]
@@ -359,14 +361,16 @@ class _Law:
 
     def own(self, key: str) -> Any:
         """A number of the law."""
-        return self.slot(key, lambda found: getattr(_parameters(found, self.number)[0], key))
+        return self.slot(key, lambda linkage: getattr(_parameters(linkage, self.number)[0], key))
 
     @property
     def once(self) -> Any:
         """exp(i x), with x counted from the law's zero."""
         driver, carrier = (self.trace.state[f"u({item})"] for item in (self.driver, self.carrier))
         zero = self.slot(
-            "turned back", lambda found: np.exp(-1j * _parameters(found, self.number)[0].zero), True
+            "turned back",
+            lambda result: np.exp(-1j * _parameters(result, self.number)[0].zero),
+            True,
         )
         return driver * carrier.conjugate() * zero
 
@@ -397,8 +401,8 @@ class _Law:
         factors += [_power(twice, times)] * (abs(round(times)) // 2)
         factors += [_power(along, times)] * (round(times) % 2)
 
-        def begun(found: Linkage) -> Any:
-            return np.exp(1j * _parameters(found, self.number)[1])
+        def begun(linkage: Linkage) -> Any:
+            return np.exp(1j * _parameters(linkage, self.number)[1])
 
         self.trace.state[f"u({self.link})"] = prod(factors, start=self.slot("begun", begun, True))
         self.trace.rotated.add(self.link)
@@ -426,16 +430,16 @@ def curve_of(law: RatioTable | PitchCurve) -> tuple[PeriodicCurve, float]:
     return PeriodicCurve(curve.knots, factor * curve.powers, curve.waves), law.table.origin
 
 
-def _parameters(found: Linkage, number: int) -> tuple[Any, ...]:
+def _parameters(linkage: Linkage, number: int) -> tuple[Any, ...]:
     """Law and offset."""
-    step = found.motion[number]
+    step = linkage.motion[number]
     assert isinstance(step, KernelCall)
     return step.parameters
 
 
-def _term(number: int, k: int, place: int, found: Linkage) -> Any:
+def _term(number: int, k: int, place: int, linkage: Linkage) -> Any:
     """A cosine or sine of a series."""
-    return [*_parameters(found, number)[0].waves.terms][k][place]
+    return [*_parameters(linkage, number)[0].waves.terms][k][place]
 
 
 def _power(factor: Any, sign: float) -> Any:

@@ -81,9 +81,9 @@ class Signals:
             raise UsageError(unknown(signal, self._known(), "signal")) from None
         return PARTS[entry.part](value)
 
-    def _has(self, one: Declared) -> bool:
+    def _has(self, declared: Declared) -> bool:
         """Whether the machine has what an output tells of, as far as that depends on no member."""
-        return one.needs != "planes" or self.machine.has_planes
+        return declared.needs != "planes" or self.machine.has_planes
 
     def _known(self) -> Sequence[str]:
         named = self.linkage.named_reactions
@@ -212,7 +212,7 @@ class Signals:
             (k, coupling) for k, coupling in enumerate(couplings) if coupling.name == item
         )
         preload = coupling.preload and self.trace.slot(
-            f"preload of {item}", lambda found: found.machine.couplings[number].preload
+            f"preload of {item}", lambda result: result.machine.couplings[number].preload
         )
         at = Push(self.forces, reaction, self.linkage.joints, coupling, preload)
         return coupling.parts(at)[part]
@@ -243,11 +243,11 @@ OF_MEMBERS: dict[str, Callable[..., Any]] = {
 """Values of members of families, by the names that `declared` looks them up by."""
 
 
-def _arm_of_center(link: str, found: Linkage) -> Any:
+def _arm_of_center(link: str, linkage: Linkage) -> Any:
     """From a link's anchor to its centre of mass, in its axes, m."""
-    points = found.machine.assembled_points(link)
-    center = found.machine.links[link].center_of_mass or (0.0, 0.0)
-    return planar(center) - planar(points[found.anchors[link]])
+    points = linkage.machine.assembled_points(link)
+    center = linkage.machine.links[link].center_of_mass or (0.0, 0.0)
+    return planar(center) - planar(points[linkage.anchors[link]])
 
 
 def can_emit(linkage: Linkage) -> bool:

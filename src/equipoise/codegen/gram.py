@@ -195,14 +195,14 @@ def _scales(machine: Machine, links: int) -> Array:
     return np.tile([mass, mass * size, mass * size, mass * size**2], links)
 
 
-def _components(one: Declared, item: str, found: Found) -> Array:
+def _components(declared: Declared, item: str, found: Found) -> Array:
     """The one or two components of an output, (1 or 2, ..., N)."""
-    if item not in one.items_of(found):
+    if item not in declared.items_of(found):
         raise UsageError(
-            Note("got {named!r}; the machine has no such signal", named=one.named(item))
+            Note("got {named!r}; the machine has no such signal", named=declared.named(item))
         )
-    whole = one.component(one.vector(found, item))
-    return np.stack([whole.real, whole.imag] if one.is_vector else [whole.real])
+    whole = declared.component(declared.vector(found, item))
+    return np.stack([whole.real, whole.imag] if declared.is_vector else [whole.real])
 
 
 def _alike(one: Array, other: Array, tolerance: float) -> bool:

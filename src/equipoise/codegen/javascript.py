@@ -177,7 +177,7 @@ class _Writer:
                 parts.append(([], [], []))
             part, used, named = parts[-1]
             part.append(line)
-            used += sorted(script.used, key=lambda one: one.order)
+            used += sorted(script.used, key=lambda item: item.order)
             named += made
             script.used.clear()
 

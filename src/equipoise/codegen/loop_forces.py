@@ -38,8 +38,8 @@ class _Forces:
     def __init__(self, trace: Trace, step: LoopForces, number: int) -> None:
         self.trace, self.step, self.solved = trace, step, group_of(trace, step.group)
 
-        def read(found: Linkage) -> Any:
-            return attrgetter("loops")(found.forces[number])
+        def read(linkage: Linkage) -> Any:
+            return attrgetter("loops")(linkage.forces[number])
 
         self.loops: tuple[Loop, ...] = self.solved.slotted(step.loops, f"loops {number}", read)
         self.poses = self.solved.final

@@ -102,7 +102,7 @@ class TracedGroup:
             return self.slotted(getattr(group, key), name, lambda found: read(found.motion[number]))
 
         self.group = replace(group, tree=parts("tree"), equations=parts("equations"))
-        self.size = trace.slot("size", lambda found: size_of_bodies(found.machine))
+        self.size = trace.slot("size", lambda linkage: size_of_bodies(linkage.machine))
         self.known = {body: self.pose_of(body) for body, _ in group.known}
         self.step, self.marked, self.steady = (trace.graph.argument(item, ANGLE) for item in MARCH)
 
@@ -112,7 +112,7 @@ class TracedGroup:
         """The same with terms for its numbers."""
 
         def part(key: Any, get: Callable[[Any], Any]) -> Any:
-            return self.slotted(get(value), f"{name} {key}", lambda found: get(read(found)))
+            return self.slotted(get(value), f"{name} {key}", lambda linkage: get(read(linkage)))
 
         if isinstance(value, str) or callable(value):
             return value
@@ -247,9 +247,9 @@ class TracedGroup:
                     continue
 
                 def arm(
-                    found: Linkage, link: str = link, name: str = name, to: str = anchor
+                    linkage: Linkage, link: str = link, name: str = name, to: str = anchor
                 ) -> Any:
-                    points = found.machine.assembled_points(link)
+                    points = linkage.machine.assembled_points(link)
                     return planar(points[name]) - planar(points[to])
 
                 vector = self.trace.slot(f"arm({link}/{name})", arm, vector=True)

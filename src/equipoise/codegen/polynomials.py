@@ -52,7 +52,7 @@ SINE = (
 
 
 def _polynomial(coefficients: Iterable[float], z: Any) -> Any:
-    return reduce(lambda value, one: value * z + one, coefficients)
+    return reduce(lambda value, item: value * z + item, coefficients)
 
 
 def arc(x: Any, y: Any) -> Any:

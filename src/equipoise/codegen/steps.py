@@ -90,8 +90,8 @@ def _turned(drive: Drive | FurtherDrive, place: int, theta: Array) -> Array:
     return np.asarray(drive.turned(theta)[place] + 0.0 * theta)
 
 
-def _frame_point(name: str, found: Any) -> Any:
-    return planar(found.machine.frame[name])
+def _frame_point(name: str, result: Any) -> Any:
+    return planar(result.machine.frame[name])
 
 
 def trace_step(trace: Trace, step: Step, steps: str, number: int) -> None:
@@ -133,13 +133,13 @@ def _trace_call(trace: Trace, step: KernelCall, steps: str, number: int) -> None
     ]
     trace.put(step.outputs, step.kernel(*inputs, *numbers))
     if step.kernel is kernels.rpr:
-        size = trace.slot("size", lambda found: size_of_bodies(found.machine))
+        size = trace.slot("size", lambda linkage: size_of_bodies(linkage.machine))
         way = (inputs[0] - inputs[3]) * (1 / size)
         trace.apart[step.outputs[-1]] = kernels.dot(way, way)
 
 
 def _parameter(steps: str, number: int, place: int) -> Read:
-    return lambda found: getattr(found, steps)[number].parameters[place]
+    return lambda result: getattr(result, steps)[number].parameters[place]
 
 
 # -- forces ----------------------------------------------------------------------------------------
@@ -184,7 +184,7 @@ def trace_demands(trace: Trace) -> None:
 def _inertia(trace: Trace) -> tuple[list[Held], list[Held]]:
     """What moves every link, and what holds its weight."""
     speed, acceleration = trace.rate("speed"), trace.rate("acceleration")
-    gravity = trace.slot("gravity", lambda found: planar(found.machine.gravity), vector=True)
+    gravity = trace.slot("gravity", lambda linkage: planar(linkage.machine.gravity), vector=True)
     trace.state["gravity"] = gravity
     moving, weights = [], []
     for link in trace.machine.links:
@@ -201,7 +201,7 @@ def _inertia(trace: Trace) -> tuple[list[Held], list[Held]]:
 
 def _inertial(trace: Trace, link: str, place: int) -> Read:
     anchor = trace.linkage.anchors[link]
-    return lambda found: inertia_moved(found.machine, link, anchor)[place]
+    return lambda result: inertia_moved(result.machine, link, anchor)[place]
 
 
 def _on_frame(trace: Trace, what: str, demands: list[Held]) -> None:

@@ -141,7 +141,7 @@ class Trace:
 
     def rate(self, key: str) -> Any:
         """The crank's ``speed`` or ``acceleration``."""
-        return self.slot(key, lambda found: getattr(found.machine.drive, key))
+        return self.slot(key, lambda linkage: getattr(linkage.machine.drive, key))
 
     def carry(self, start: float | complex, watch: str = "") -> Any:
         """A value of the crank angle before; `carry_on` says what it is after this one."""
@@ -175,8 +175,8 @@ class Trace:
         if f"p({point})" not in self.state:
             anchor = self.linkage.anchors[link]
 
-            def arm(found: Linkage) -> Any:
-                points = found.machine.assembled_points(link)
+            def arm(linkage: Linkage) -> Any:
+                points = linkage.machine.assembled_points(link)
                 return planar(points[point]) - planar(points[anchor])
 
             slot = self.slot(f"arm({link}/{point})", arm, vector=True)
