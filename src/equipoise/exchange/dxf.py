@@ -121,12 +121,12 @@ def _paths(space: Any, scene: Scene) -> None:
             space.add_lwpolyline(corners, close=True, dxfattribs=_layer("path", name))
 
 
-def _parts(space: Any, found: list[Part], scene: Scene) -> None:
+def _parts(space: Any, parts: list[Part], scene: Scene) -> None:
     """Parts one below the other, right of the linkage."""
     low, high = (MM * corner for corner in scene.linkage_box)
     gap = abs(high - low) / 10
     corner = high + gap
-    for part in found:
+    for part in parts:
         lowest, highest = (MM * item for item in part.box)
         shift = corner - complex(lowest.real, highest.imag)
         layer = _layer("part", part.name)
@@ -187,7 +187,7 @@ def _measures(space: Any, part: Part, shift: complex, gap: float) -> None:
     elif not part.is_round:
         _widths(space, low, high, gap, looks)
     sides = cycle((0.25, -0.25))  # of an arc, beside its middle, where the angle stands
-    for curve in sorted(part.curves, key=lambda one: -one.radius):
+    for curve in sorted(part.curves, key=lambda item: -item.radius):
         center = MM * curve.center + shift
         place, radius = (center.real, center.imag), MM * curve.radius
         add = space.add_diameter_dim if curve.whole else space.add_radius_dim

@@ -81,25 +81,25 @@ def export(
     return tuple(job.left_out)
 
 
-def check_kind(one: Format, *, of_store: bool) -> None:
+def check_kind(file_format: Format, *, of_store: bool) -> None:
     """Refuse designs of a store in a format for machines, and the other way round."""
-    if one.of_store != of_store:
-        holds = Note("designs of a store") if one.of_store else Note("machines")
+    if file_format.of_store != of_store:
+        holds = Note("designs of a store") if file_format.of_store else Note("machines")
         wanted = ", ".join(other.name for other in FORMATS.values() if other.of_store == of_store)
         raise UsageError(
             Note(
                 "{title} is for {holds}; give one of {wanted}",
-                title=one.title,
+                title=file_format.title,
                 holds=holds,
                 wanted=wanted,
             )
         )
 
 
-def check_link_loads(one: Format, *, prefix: str = "", **options: object) -> None:
+def check_link_loads(file_format: Format, *, prefix: str = "", **options: object) -> None:
     """Refuse options of loads along a link in a format without them."""
     for name, given in options.items():
-        if given is not None and not one.of_link:
+        if given is not None and not file_format.of_link:
             formats = ", ".join(other.name for other in FORMATS.values() if other.of_link)
             raise UsageError(
                 at_place(
@@ -114,49 +114,49 @@ def check_link_loads(one: Format, *, prefix: str = "", **options: object) -> Non
 
 def made(
     what: Machine | Balanced,
-    one: Format,
+    file_format: Format,
     crank_angle: float | None = None,
     link: str | None = None,
     angles: Angles = None,
 ) -> tuple[Job, str | bytes]:
     """A file's content, and what was left out of it."""
-    if one.needs:
-        needed(one.needs, Note("a file of {title}", title=one.title))
+    if file_format.needs:
+        needed(file_format.needs, Note("a file of {title}", title=file_format.title))
     machine, changes = (what.machine, what.changes) if isinstance(what, Balanced) else (what, None)
-    if one.turns:
-        check_turning(machine, one.title)
-    _check_joints(machine, one)
-    frictionless = machine.rubs and not one.rubs
+    if file_format.turns:
+        check_turning(machine, file_format.title)
+    _check_joints(machine, file_format)
+    frictionless = machine.rubs and not file_format.rubs
     if angles is None and crank_angle is not None:
         angles = [crank_angle]
     without_friction = machine.without_friction() if frictionless else machine
     job = Job(without_friction, crank_angle or 0.0, changes, link, angles)
     if frictionless:
         job.leave_out("friction in joints: forces are those without it")
-    if one.joints == ():  # its joints bear no preload either
+    if file_format.joints == ():  # its joints bear no preload either
         for coupling in machine.couplings:
             if coupling.preload:
                 lost = f"the tension of the {coupling.noun} {coupling.name}"
                 job.leave_out(f"{lost}, which its pins bear")
     if machine.pushers:
         job.leave_out("what pushes the machine, and its stroke")
-    data: str | bytes = import_module(one.maker).made(job)
+    data: str | bytes = import_module(file_format.maker).made(job)
     return job, data
 
 
-def _check_joints(machine: Machine, one: Format) -> None:
+def _check_joints(machine: Machine, file_format: Format) -> None:
     """Refuse a machine with parts that a format lacks."""
-    if one.joints is None:
+    if file_format.joints is None:
         return
     for table in part_kinds(type(machine)):
         for where, part in numbered(table, getattr(machine, table)):
-            if part.special and part.special not in one.joints:
+            if part.special and part.special not in file_format.joints:
                 raise UsageError(
                     at_place(
                         where,
                         Note(
                             "a file of {title} has no {special}; give another format",
-                            title=one.title,
+                            title=file_format.title,
                             special=part.special,
                         ),
                     )

@@ -318,9 +318,9 @@ def _drive(root: ET.Element, tree: Tree, job: Job) -> None:
     ET.SubElement(_part(root, "sensor"), "actuatorfrc", name="drive torque", actuator="drive")
 
 
-def _shaft(root: ET.Element, drawn: Sequence[Tree]) -> None:
+def _shaft(root: ET.Element, trees: Sequence[Tree]) -> None:
     """Cranks of all rows turn together."""
-    first, *others = (f"{tree.machine.drive.link}{tree.suffix}" for tree in drawn)
+    first, *others = (f"{tree.machine.drive.link}{tree.suffix}" for tree in trees)
     for crank in others:
         _kept(root, f"shaft to {crank}", {crank: 1.0, first: -1.0})
 
@@ -343,10 +343,10 @@ def _mounts(root: ET.Element, world: ET.Element, base: ET.Element, machine: Mach
               mount.one_sided)  # fmt: skip
 
 
-def _start(root: ET.Element, drawn: Sequence[Tree], machine: Machine) -> None:
+def _start(root: ET.Element, trees: Sequence[Tree], machine: Machine) -> None:
     """Speeds of all joints where it is drawn, by the key `start`."""
     still = [] if machine.support is None else [0.0] * len(machine.support.coordinates)
-    rates = [*still, *(rate for tree in drawn for rate in _in_order(tree))]
+    rates = [*still, *(rate for tree in trees for rate in _in_order(tree))]
     pushes = [0.0] * (len(root.findall("actuator/general")))
     control = [*pushes, machine.drive.speed]
     key = ET.SubElement(root, "keyframe")

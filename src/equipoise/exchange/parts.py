@@ -103,7 +103,7 @@ class Part:
     def arcs(self) -> tuple[RoundEdge, ...]:
         """Those of a sector about its axis, the outer one first; none of other parts."""
         arcs = (curve for curve in self.curves if not curve.whole)
-        return tuple(sorted(arcs, key=lambda one: -one.radius))
+        return tuple(sorted(arcs, key=lambda item: -item.radius))
 
     @property
     def is_round(self) -> bool:
@@ -245,14 +245,14 @@ def _curves(edges: tuple[Edge, ...]) -> Iterator[RoundEdge]:
         yield RoundEdge(center, radius, phase(toward) if not whole else 0.0, angle, whole)
 
 
-def along(one: complex, other: complex, bulge: float, count: int) -> Any:
+def along(point: complex, other: complex, bulge: float, count: int) -> Any:
     """Places (count,) on an edge, from its first end to its second."""
     share = np.linspace(0.0, 1.0, count)
     if not bulge:
-        return one + (other - one) * share
+        return point + (other - point) * share
     half = 2 * np.arctan(bulge)  # of the arc's angle
-    center = (one + other) / 2 + 1j * (other - one) / 2 / np.tan(half)
-    return center + (one - center) * np.exp(2j * half * share)
+    center = (point + other) / 2 + 1j * (other - point) / 2 / np.tan(half)
+    return center + (point - center) * np.exp(2j * half * share)
 
 
 def _of_links(job: Job) -> Iterator[Part]:

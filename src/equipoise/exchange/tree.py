@@ -276,9 +276,9 @@ def _spanned(machine: Machine) -> tuple[list[TreeJoint], tuple[LoopClosure, ...]
     return held, tuple(loose)
 
 
-def _outwards(held: list[TreeJoint]) -> Iterator[tuple[str, str, TreeJoint]]:
+def _outwards(joints: list[TreeJoint]) -> Iterator[tuple[str, str, TreeJoint]]:
     """Link, parent and joint, from the frame outwards."""
-    left, known = list(held), [FRAME]
+    left, known = list(joints), [FRAME]
     for parent in known:
         for edge in [item for item in left if parent in (item.one, item.other)]:
             left.remove(edge)

@@ -134,7 +134,7 @@ def _signals(book: Any, analysis: Analysis, columns: Iterable[AnalysisOutput]) -
 
 def _charts(book: Any, sheet: Any, columns: Sequence[AnalysisOutput], count: int) -> None:
     """Signals of one group and unit in one chart; they are drawn from the sheet of signals."""
-    numbered = sorted(enumerate(columns, 1), key=lambda one: (one[1].group, one[1].unit))
+    numbered = sorted(enumerate(columns, 1), key=lambda item: (item[1].group, item[1].unit))
     kinds = groupby(numbered, key=lambda one: (one[1].group, one[1].unit))
     for place, ((group, unit), members) in enumerate(kinds):
         chart = book.add_chart({"type": "scatter", "subtype": "straight"})

@@ -60,8 +60,8 @@ class ImportFormat:
 
 
 FORMATS: Mapping[str, ImportFormat] = {
-    one.name: one
-    for one in (
+    item.name: item
+    for item in (
         ImportFormat(
             "dxf",
             "DXF drawing",
@@ -190,14 +190,15 @@ def _titled(read: Read, path: str | os.PathLike[str]) -> Read:
     return replace(read, outline=replace(read.outline, rest=rest))
 
 
-def _check(kind: ImportFormat, told: ImportOptions) -> None:
+def _check(kind: ImportFormat, options: ImportOptions) -> None:
     """Refuse what would do nothing."""
-    marks = told.marks
+    marks = options.marks
     given = {"frame": marks.frame, "guide": marks.guide, "link": marks.link,
-             "pin": told.bodies.pins, "tolerance": marks.together, "unit": told.unit}  # fmt: skip
+             "pin": options.bodies.pins, "tolerance": marks.together,
+             "unit": options.unit}  # fmt: skip
     for option, value in given.items():
         if value and option not in kind.takes:
-            known = ", ".join(f"--{one}" for one in ("crank", "speed", *kind.takes))
+            known = ", ".join(f"--{item}" for item in ("crank", "speed", *kind.takes))
             raise UsageError(
                 Note(
                     "--{option} does nothing to {title}; it takes {known}",
@@ -211,7 +212,7 @@ def _check(kind: ImportFormat, told: ImportOptions) -> None:
 def _opened(path: str | os.PathLike[str]) -> tuple[ImportFormat, Any]:
     """The kind of a file by its content and its ending, and what is in it."""
     ending = Path(os.fspath(path)).suffix.casefold()
-    by_ending = next((one for one in FORMATS.values() if ending in one.endings), None)
+    by_ending = next((format for format in FORMATS.values() if ending in format.endings), None)
     drawn = by_ending in (FORMATS["dxf"], FORMATS["svg"])
     if by_ending is FORMATS["dxf"] and not (data := read_bytes(path, LARGE)).startswith(b"<"):
         return by_ending, data
@@ -224,7 +225,7 @@ def _opened(path: str | os.PathLike[str]) -> tuple[ImportFormat, Any]:
             "", Note("it is of no kind that is read; give one of {known}", known=known)
         )
     root: Element = tree_of(text)
-    kind = next((one for one in FORMATS.values() if one.root and one.root == root.tag), None)
+    kind = next((item for item in FORMATS.values() if item.root and item.root == root.tag), None)
     if kind is None:
         known = ", ".join(f"<{one.root}>" for one in FORMATS.values() if one.root)
         raise ModelError(

@@ -105,18 +105,21 @@ class _File:
                 names[_id(item)] = fastened
         return texts
 
-    def _slot(self, one: Element, links: Mapping[str, list[str]]) -> SlotLine | None:
+    def _slot(self, element: Element, links: Mapping[str, list[str]]) -> SlotLine | None:
         """The line between two connectors on which one slides."""
-        me, limits = self.connectors.get(_id(one)), [_id(end) for end in one.findall("slidelimit")]
+        me, limits = (
+            self.connectors.get(_id(element)),
+            [_id(end) for end in element.findall("slidelimit")],
+        )
         if me is None or len(limits) < 2:
             return None
-        if number(one, "slideradius", "0"):
+        if number(element, "slideradius", "0"):
             raise ModelError(
-                called(one), Note("it slides along an arc, which is not read; give a link")
+                called(element), Note("it slides along an arc, which is not read; give a link")
             )
         if any(end not in self.connectors for end in limits[:2]):
             raise ModelError(
-                called(one), Note("it slides between connectors that the file has not")
+                called(element), Note("it slides between connectors that the file has not")
             )
         start, end = (self.connectors[end] for end in limits[:2])
         on = next((name for name, ids in links.items() if {*limits[:2]} <= {*ids}), "")
@@ -124,7 +127,7 @@ class _File:
             on = FRAME
         if not on:
             raise ModelError(
-                called(one), Note("it slides between connectors of two links; put both on one")
+                called(element), Note("it slides between connectors of two links; put both on one")
             )
         return SlotLine(me.name, on, start.name, phase(end.place - start.place))
 

@@ -44,7 +44,7 @@ LOST = {"stiffness": "springs", "damping": "damping", "frictionloss": "friction"
 """What joints may have beside, and what it is."""
 
 
-def read(root: Element, told: SpatialOptions) -> Read:
+def read(root: Element, options: SpatialOptions) -> Read:
     """The machine of a model.
 
     Raises
@@ -60,7 +60,7 @@ def read(root: Element, told: SpatialOptions) -> Read:
                     tag=element.tag,
                 ),
             )
-    return planar(_Model(root).space, told)
+    return planar(_Model(root).space, options)
 
 
 @dataclass(frozen=True)
@@ -166,19 +166,23 @@ class _Model:
             self.space.join(replace(joint, parent=parent, child=child))
             parent = child
 
-    def _joint(self, one: Element, body: Element, number: int, count: int, solid: Solid) -> Joint3:
+    def _joint(
+        self, element: Element, body: Element, number: int, count: int, solid: Solid
+    ) -> Joint3:
         suffix = f" {number}" if count > 1 else ""
-        name = one.get("name") or f"{body.get('name') or solid.name}{suffix}"
-        kind = one.get("type", "hinge")
+        name = element.get("name") or f"{body.get('name') or solid.name}{suffix}"
+        kind = element.get("type", "hinge")
         if kind not in ("hinge", "slide"):
             raise ModelError(
                 f"joint {name!r}", Note("it is of type {kind}; give hinge or slide", kind=kind)
             )
         for key, what in LOST.items():
-            if any(numbers(one, key, "0")):
+            if any(numbers(element, key, "0")):
                 self.space.note(f"{what} of joints are left out")
-        axis = solid.axes.turn @ direction(f"joint {name!r}", numbers(one, "axis", "0 0 1", (3,)))
-        place = solid.axes.out(np.array(numbers(one, "pos", "0 0 0", (3,))))
+        axis = solid.axes.turn @ direction(
+            f"joint {name!r}", numbers(element, "axis", "0 0 1", (3,))
+        )
+        place = solid.axes.out(np.array(numbers(element, "pos", "0 0 0", (3,))))
         return Joint3(name, "hinge" if kind == "hinge" else "slide", "", "", place, axis)
 
     def _inertial(self, element: Element) -> Lump:
@@ -257,22 +261,22 @@ class _Model:
                     name, Note("<{tag}> is not read; give connect, weld or joint", tag=entry.tag)
                 )
 
-    def _connect(self, one: Element, name: str) -> None:
-        if one.get("site1"):
-            ends = [self._known(self.sites, one.get(key), name) for key in ("site1", "site2")]
+    def _connect(self, element: Element, name: str) -> None:
+        if element.get("site1"):
+            ends = [self._known(self.sites, element.get(key), name) for key in ("site1", "site2")]
             (first, place), (second, other) = ends
         else:
-            first, second = self._bodies(one, name)
+            first, second = self._bodies(element, name)
             axes = self.space.solids[first].axes
-            place = other = axes.out(np.array(numbers(one, "anchor", None, (3,))))
+            place = other = axes.out(np.array(numbers(element, "anchor", None, (3,))))
         self.space.loops.append(Loop3(name, (first, second), (place, other)))
 
-    def _bodies(self, one: Element, name: str) -> tuple[str, str]:
-        if one.get("site1"):
-            first, second = (self._known(self.sites, one.get(key), name)[0]
+    def _bodies(self, element: Element, name: str) -> tuple[str, str]:
+        if element.get("site1"):
+            first, second = (self._known(self.sites, element.get(key), name)[0]
                              for key in ("site1", "site2"))  # fmt: skip
             return first, second
-        first, second = one.get("body1", ""), one.get("body2", WORLD)
+        first, second = element.get("body1", ""), element.get("body2", WORLD)
         for body in (first, second):
             self._known(self.space.solids, body, name)
         return first, second
@@ -284,18 +288,18 @@ class _Model:
             )
         return among[name]
 
-    def _sum(self, one: Element, name: str) -> None:
+    def _sum(self, element: Element, name: str) -> None:
         """Joints whose angles are tied to each other."""
-        if one.tag == "joint":
-            first, second = one.get("joint1"), one.get("joint2")
-            slope, *bent = (*numbers(one, "polycoef", "0 1 0 0 0"), 0.0, 0.0)[1:]
+        if element.tag == "joint":
+            first, second = element.get("joint1"), element.get("joint2")
+            slope, *bent = (*numbers(element, "polycoef", "0 1 0 0 0"), 0.0, 0.0)[1:]
             factors = {first: 1.0} if second is None else {first: 1.0, second: -slope}
             straight = second is not None and not any(bent)
         else:
             fixed = {tendon.get("name"): tendon for tendon in self.root.findall("tendon/fixed")}
-            tendon = self._known(fixed, one.get("tendon1"), name)
+            tendon = self._known(fixed, element.get("tendon1"), name)
             factors = {part.get("joint"): number(part, "coef") for part in tendon}
-            straight = one.get("tendon2") is None
+            straight = element.get("tendon2") is None
         hinges = {key: joint for key, joint in self.space.joints.items() if joint.kind == "hinge"}
         if not straight or not factors.keys() <= hinges.keys():
             raise ModelError(

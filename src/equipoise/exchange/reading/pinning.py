@@ -85,7 +85,7 @@ class Pinning:
         """A name for every point, those of pins first; no two have the same."""
         holders = Counter(chain.from_iterable(self.points.values()))
         taken: dict[str, int] = {}
-        for number, _ in sorted(holders.items(), key=lambda one: (-one[1], one[0])):
+        for number, _ in sorted(holders.items(), key=lambda item: (-item[1], item[0])):
             taken[next(name for name in self._names(number) if name not in taken)] = number
         return {number: name for name, number in taken.items()}
 

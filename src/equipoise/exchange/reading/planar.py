@@ -31,18 +31,18 @@ SKEW = 1e-6
 """Of the sine of an angle between axes that are to be parallel: files have six digits at least."""
 
 
-def planar(space: Space, told: SpatialOptions) -> Read:
+def planar(space: Space, options: SpatialOptions) -> Read:
     """The machine in its plane of motion.
 
     Raises
     ------
     ModelError : it does not move in one plane; the sentence names the joint.
     """
-    for body in told.still:
+    for body in options.still:
         if body not in space.solids:
             raise UsageError(at_place("--frame", unknown(body, space.solids, "body")))
         space.hold(body)
-    for pair in told.pins:
+    for pair in options.pins:
         space.loops.append(_closed(space, pair))
     space.tie_shafts()
     flat = _Flat(space)
@@ -61,7 +61,7 @@ def planar(space: Space, told: SpatialOptions) -> Read:
     meshing = gears(space, flat.link_of, flat.normal, outline, crank)
     outline = replace(outline, rest={**rest, "gears": tuple(meshing)})
     hints = [f"{body!r} moves freely in the plane; --frame {body!r} holds it still"
-             for body in space.loose if body not in told.still]  # fmt: skip
+             for body in space.loose if body not in options.still]  # fmt: skip
     if not space.loops:
         hints.append('no loop is closed; --pin "A = B" pins two of its bodies or sites together')
     return Read(outline, crank, speed, tuple(space.notes), tuple(hints))

@@ -34,7 +34,7 @@ KINDS: dict[str | None, Literal["hinge", "slide"]] = {
 }
 
 
-def read(root: Element, told: SpatialOptions) -> Read:
+def read(root: Element, options: SpatialOptions) -> Read:
     """The machine of a robot, with all joints at 0.
 
     Raises
@@ -60,7 +60,7 @@ def read(root: Element, told: SpatialOptions) -> Read:
     driven = root.find("transmission/joint")
     space.driven = "" if driven is None else driven.get("name", "")
     space.note("gravity is taken to act against z")
-    return planar(space, told)
+    return planar(space, options)
 
 
 def _named(element: Element) -> str:
