@@ -120,14 +120,14 @@ def _replaced(base: Design, plan: Balance) -> list[str]:
     return [name for name in _weighted(base) if (name, pin_of(base.own, name)) in free]
 
 
-def _taken_away(base: Design, found: Balanced) -> list[str]:
+def _taken_away(base: Design, balanced: Balanced) -> list[str]:
     """Links whose counterweights a result takes away, or replaces."""
-    return _weighted(base) if found.advice is not None else _replaced(base, found.plan)
+    return _weighted(base) if balanced.advice is not None else _replaced(base, balanced.plan)
 
 
-def _replaced_shafts(base: Design, found: Balanced) -> list[str]:
+def _replaced_shafts(base: Design, balanced: Balanced) -> list[str]:
     """Shafts of an earlier balance that a result replaces."""
-    return [] if found.advice is not None else sorted(base.shafts & base.own.links.keys())
+    return [] if balanced.advice is not None else sorted(base.shafts & base.own.links.keys())
 
 
 def _aims_of(machine: Machine, plan: Balance) -> dict[str, float]:
@@ -140,28 +140,31 @@ def _aims_of(machine: Machine, plan: Balance) -> dict[str, float]:
     return {term.objective.name: term.value_at(search.present) for term in search.cost.terms}
 
 
-def nothing_gained(found: Balanced) -> str | None:
+def nothing_gained(balanced: Balanced) -> str | None:
     """The sentence that what was to become small hardly does; None where it does."""
-    if found.advice is not None:
-        return None if found.helps else " ".join(nothing_told(found))
-    if found.gain > GAIN:
+    if balanced.advice is not None:
+        return None if balanced.helps else " ".join(nothing_told(balanced))
+    if balanced.gain > GAIN:
         return None
     share = f"{100 * GAIN:g} %"
-    return f"nothing to gain: balancing would not make {aims_told(found)} smaller by {share}"
+    return f"nothing to gain: balancing would not make {aims_told(balanced)} smaller by {share}"
 
 
 KEPT = 9
 """Digits of a place: a program finds -1e-12 m beside 40 mm for 0."""
 
 
-def balanced_design(base: Design, found: Balanced) -> Design:
+def balanced_design(base: Design, balanced: Balanced) -> Design:
     """The balanced machine, whose masses on pins of the frame can be changed further.
 
     base : what was balanced.
     """
-    weights = {**base.without(_taken_away(base, found)).counterweights, **_weights(base, found)}
+    weights = {
+        **base.without(_taken_away(base, balanced)).counterweights,
+        **_weights(base, balanced),
+    }
     links = {}
-    for name, link in found.machine.links.items():
+    for name, link in balanced.machine.links.items():
         own, weight = base.own.links.get(name), weights.get(name)
         if own is not None and weight is not None:
             own = joined(own, weight, place_of_pin(base.own, name))
@@ -171,7 +174,7 @@ def balanced_design(base: Design, found: Balanced) -> Design:
         links[name] = link if own is None else _clean(own, link)  # with its counterweight in it
         if weight is not None:
             weights[name] = replace(weight, mass=0.0)
-    machine = replace(found.machine, links=links)
+    machine = replace(balanced.machine, links=links)
     machine = machine.with_balance(_plan_after(base.own.balance, machine))
     shafts = base.shafts & machine.links.keys() | machine.links.keys() - base.own.links.keys()
     return Design(base.name, machine, MappingProxyType(weights), frozenset(shafts))
@@ -218,10 +221,10 @@ def _rounded(body: Body) -> Body:
     return replace(body, at=at, mass=clean(body.mass, "mass"))
 
 
-def _weights(base: Design, found: Balanced) -> dict[str, Counterweight]:
+def _weights(base: Design, balanced: Balanced) -> dict[str, Counterweight]:
     """Masses that were found about pins of the frame, by link."""
     weights = {}
-    for change in found.changes:
+    for change in balanced.changes:
         link, values = change.link, dict(change.values)
         # No shaft that is new, and nothing beside the link's plane: a counterweight lies in it.
         known = link in base.own.links and "plane" not in values
@@ -237,14 +240,14 @@ def _weights(base: Design, found: Balanced) -> dict[str, Counterweight]:
     return weights
 
 
-def _same(one: Link, other: Link) -> bool:
+def _same(link: Link, other: Link) -> bool:
     """Whether two links are the same but for rounding in their masses."""
     size = max(abs(complex(*place)) for place in (*other.points.values(), _center(other)))
-    numbers = ((one.mass, other.mass), (one.inertia, other.inertia))
+    numbers = ((link.mass, other.mass), (link.inertia, other.inertia))
     return (
-        one.points == other.points
+        link.points == other.points
         and all(isclose(a or 0.0, b or 0.0, rel_tol=ROUNDED) for a, b in numbers)
-        and dist(_center(one), _center(other)) <= ROUNDED * size
+        and dist(_center(link), _center(other)) <= ROUNDED * size
     )
 
 
@@ -252,28 +255,28 @@ def _center(link: Link) -> tuple[float, float]:
     return link.center_of_mass or (0.0, 0.0)
 
 
-def balanced_told(base: Computed, after: Computed, found: Balanced) -> Values:
+def balanced_told(base: Computed, after: Computed, balanced: Balanced) -> Values:
     """What to change, aims and every figure before and after, and what is proved.
 
     base, after : the design before and after, computed; what the page reads of these beside it is
         told as it is read there.
     """
-    replaced, shafts = _taken_away(base.design, found), _replaced_shafts(base.design, found)
-    old, new = found.before, found.after
+    replaced, shafts = _taken_away(base.design, balanced), _replaced_shafts(base.design, balanced)
+    old, new = balanced.before, balanced.after
     names = [name for name in old if name in new and not name.startswith("planting.")]
     figures = {name: (old[name], new[name]) for name in names} | _read(base, after)
     return {
         "changes": [
             *(_taken_off(name, base.design.counterweights[name]) for name in replaced),
             *(say("{link}: take off this shaft", link=name) for name in shafts),
-            *(line for change in found.changes for line in sentences(change)),
+            *(line for change in balanced.changes for line in sentences(change)),
         ],
-        "aims": [_aim(found, aim, figures) for aim in found.aims],
-        "figures": [_figure(found, name, *figures[name]) for name in names],
-        "worse": list(worse_told(found)),
-        "gauges_worse": any(worse.group == "gauges" for worse in found.worse),
-        "proof": " ".join(proof_told(found)),
-        "notes": list(map(said, found.notes)),
+        "aims": [_aim(balanced, aim, figures) for aim in balanced.aims],
+        "figures": [_figure(balanced, name, *figures[name]) for name in names],
+        "worse": list(worse_told(balanced)),
+        "gauges_worse": any(worse.group == "gauges" for worse in balanced.worse),
+        "proof": " ".join(proof_told(balanced)),
+        "notes": list(map(said, balanced.notes)),
     }
 
 
@@ -291,18 +294,20 @@ def _read(base: Computed, after: Computed) -> dict[str, tuple[float, float]]:
     return {name: (a, b) for name, (a, b) in pairs.items() if a is not None and b is not None}
 
 
-def _aim(found: Balanced, one: Objective, figures: Mapping[str, tuple[float, float]]) -> Values:
+def _aim(
+    balanced: Balanced, objective: Objective, figures: Mapping[str, tuple[float, float]]
+) -> Values:
     """What was to become small."""
-    rows, pair = len(found.machine.rows), found.aims[one]
-    if not (one.about or one.orders or one.speeds):
-        name = f"{one.output}.{one.measure}"
+    rows, pair = len(balanced.machine.rows), balanced.aims[objective]
+    if not (objective.about or objective.orders or objective.speeds):
+        name = f"{objective.output}.{objective.measure}"
         pair = figures.get(f"rows.{name}" if rows > 1 else name, pair)
-    unit = shown_in(si_unit(one, found.original), pair)
+    unit = shown_in(si_unit(objective, balanced.original), pair)
     before, after = (unit.factor * value for value in pair)
-    return {"label": objective_named(one, rows), "unit": unit.name, **compared(before, after)}
+    return {"label": objective_named(objective, rows), "unit": unit.name, **compared(before, after)}
 
 
-def _figure(found: Balanced, name: str, before: float, after: float) -> Values:
+def _figure(balanced: Balanced, name: str, before: float, after: float) -> Values:
     """A figure before and after; `main` where it is of a whole signal on the frame, or the mass."""
     main = True
     if name == "mass":
@@ -314,8 +319,8 @@ def _figure(found: Balanced, name: str, before: float, after: float) -> Values:
             item is not None and item.part not in ("x", "y") and item.group in ("forces", "rows")
         )
         main = whole and measure in MAIN
-        label = figure_named(name, len(found.machine.rows))
-        unit = shown_in(figure_unit(found, name), [before, after])
+        label = figure_named(name, len(balanced.machine.rows))
+        unit = shown_in(figure_unit(balanced, name), [before, after])
     values = compared(unit.factor * before, unit.factor * after)
     return {"label": label, "unit": unit.name, "main": main, **values}
 
@@ -333,7 +338,7 @@ class BalanceSession(Protocol):
     def current(self) -> Computed:
         """The design that is."""
 
-    def go_to(self, found: Computed | Incomplete, label: str) -> None:
+    def go_to(self, computed: Computed | Incomplete, label: str) -> None:
         """Make another design the one that is."""
 
     def telling(self) -> AbstractContextManager[None]:

@@ -94,9 +94,9 @@ def with_rack(sketch: Sketch, driver: str, driven: str) -> Sketch:
     )
 
 
-def _added(sketch: Sketch, one: Coupling) -> Sketch:
-    others = sketch.rest.get(one.table, ())
-    return replace(sketch, rest={**sketch.rest, one.table: (*others, one)})
+def _added(sketch: Sketch, coupling: Coupling) -> Sketch:
+    others = sketch.rest.get(coupling.table, ())
+    return replace(sketch, rest={**sketch.rest, coupling.table: (*others, coupling)})
 
 
 def _shared(sketch: Sketch, body: str, carrier: str) -> list[str]:

@@ -34,7 +34,9 @@ Replies = Callable[[str], Iterable[Reply]]
 """All that a page could be told of the design, in a language."""
 
 
-def downloaded(found: Computed, message: Message, told: Replies) -> tuple[dict[str, Any], bytes]:
+def downloaded(
+    computed: Computed, message: Message, replies: Replies
+) -> tuple[dict[str, Any], bytes]:
     """Name and type of a file that a message asks for, and its bytes.
 
     The model comes with the texts of the tables that it names, by the names of their files.
@@ -48,15 +50,15 @@ def downloaded(found: Computed, message: Message, told: Replies) -> tuple[dict[s
     if kind not in (MODEL, *FILES, PLAYED):
         raise UsageError(unknown(kind, (MODEL, *FILES, PLAYED), "download"))
     more: dict[str, Any] = {}
-    stem = FORBIDDEN.sub("-", found.design.name.removesuffix(".toml")) or "machine"
+    stem = FORBIDDEN.sub("-", computed.design.name.removesuffix(".toml")) or "machine"
     if kind == PLAYED:
         language = message.text("language", "en")
-        end, data = "-played.html", played(found, told(language), language).encode()
+        end, data = "-played.html", played(computed, replies(language), language).encode()
     elif kind == MODEL:
-        text, more["files"] = taken_along(found.design.machine, f"{stem}.toml")
+        text, more["files"] = taken_along(computed.design.machine, f"{stem}.toml")
         end, data = ".toml", text.encode()
     else:
-        end, data = FILES[kind](found, message, stem)
+        end, data = FILES[kind](computed, message, stem)
     name = f"{stem}{end}"
     return {"name": name, "mime": MIMES[name.rpartition(".")[2]], **more}, data
 
@@ -65,35 +67,37 @@ Made = tuple[str, bytes]
 """What follows the name of the machine in that of the file, and its bytes."""
 
 
-def _csv(found: Computed, message: Message, stem: str) -> Made:
-    return ".csv", to_csv(found.analysis).encode()
+def _csv(computed: Computed, message: Message, stem: str) -> Made:
+    return ".csv", to_csv(computed.analysis).encode()
 
 
-def _report(found: Computed, message: Message, stem: str) -> Made:
+def _report(computed: Computed, message: Message, stem: str) -> Made:
     from equipoise.present.composition import report_page
     from equipoise.present.findings import Findings
 
     language = message.text("language", "en")
     if language not in LANGUAGES:
         raise UsageError(unknown(language, LANGUAGES, "language of reports"))
-    file, _ = taken_along(found.design.machine, f"{stem}.toml")
-    findings = Findings(found.analysis.machine, file, f"{stem}.toml", swings=found.swings)
+    file, _ = taken_along(computed.design.machine, f"{stem}.toml")
+    findings = Findings(computed.analysis.machine, file, f"{stem}.toml", swings=computed.swings)
     with drawing:
         text = report_page(findings, language)
     return "-report.html", text.encode()
 
 
-def _film(found: Computed, message: Message, stem: str) -> Made:
-    return ".gif", film_of(found)
+def _film(computed: Computed, message: Message, stem: str) -> Made:
+    return ".gif", film_of(computed)
 
 
-def _drawing(found: Computed, message: Message, stem: str) -> Made:
-    return _rendered(linkage_at(found, message.whole("at", 0)), "drawing", message)
+def _drawing(computed: Computed, message: Message, stem: str) -> Made:
+    return _rendered(linkage_at(computed, message.whole("at", 0)), "drawing", message)
 
 
-def _chart(found: Computed, message: Message, stem: str) -> Made:
+def _chart(computed: Computed, message: Message, stem: str) -> Made:
     name, choice = message.text("chart"), message.text("choice", "")
-    return _rendered(chart_of(found, name, choice), choice if name == "output" else name, message)
+    return _rendered(
+        chart_of(computed, name, choice), choice if name == "output" else name, message
+    )
 
 
 def _rendered(picture: Any, name: str, message: Message) -> Made:
@@ -107,7 +111,7 @@ def _rendered(picture: Any, name: str, message: Message) -> Made:
     return f"-{FORBIDDEN.sub('-', name.replace('.', '-'))}.{kind}", data
 
 
-def _interactive(found: Computed, message: Message, stem: str) -> Made:
+def _interactive(computed: Computed, message: Message, stem: str) -> Made:
     from equipoise.exchange.formats import Job
     from equipoise.web.interactive import made
 
@@ -115,7 +119,7 @@ def _interactive(found: Computed, message: Message, stem: str) -> Made:
     if language not in LANGUAGES:
         raise UsageError(unknown(language, LANGUAGES, "language of pages"))
     with speaking(language):
-        return "-interactive.html", made(Job(found.analysis.machine)).encode()
+        return "-interactive.html", made(Job(computed.analysis.machine)).encode()
 
 
 FILES: dict[str, Callable[[Computed, Message, str], Made]] = {

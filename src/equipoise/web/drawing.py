@@ -134,14 +134,14 @@ def moves_of(scene: Scene, block: FloatBlock) -> None:
         block.add(f"guide.{guide.name}", guide.way)
 
 
-def ground_of(found: Computed, block: FloatBlock) -> Values:
+def ground_of(computed: Computed, block: FloatBlock) -> Values:
     """Paths of planting tips over ground, for the block, and the soil that they go into."""
-    planting, speed = found.analysis.machine.planting, found.motion.speed
+    planting, speed = computed.analysis.machine.planting, computed.motion.speed
     if planting is None or speed == 0:
         return {}
-    scene = found.scene
+    scene = computed.scene
     way = planting.forward(speed) / speed * scene.crank_angle
     tips = [arm.tip for arm in planting.every_arm]
     for tip in tips:
         block.add(f"ground.{tip}", scene.places[tip] + way)
-    return {"planting": {"tips": tips, "surface": surface_of(found.analysis.machine)}}
+    return {"planting": {"tips": tips, "surface": surface_of(computed.analysis.machine)}}

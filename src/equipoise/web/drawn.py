@@ -67,15 +67,15 @@ def drawn(sketch: Sketch) -> Computed | Incomplete:
     return Incomplete(sketch, text)
 
 
-def _stand(found: Computed, sketch: Sketch) -> float:
+def _stand(computed: Computed, sketch: Sketch) -> float:
     """Crank angle at which a machine is as it is drawn, rad; of a crank that cannot turn, the first
     at which its link, which swings, is there or next to it.
     """
-    drive = found.analysis.machine.drive
-    if found.swings is None:
+    drive = computed.analysis.machine.drive
+    if computed.swings is None:
         return sketch.crank_angle
-    off = found.motion.links[drive.link].angle - sketch.poses[drive.link].angle
-    return float(found.motion.crank_angle[np.argmin(np.abs(np.sin(off / 2)))])
+    off = computed.motion.links[drive.link].angle - sketch.poses[drive.link].angle
+    return float(computed.motion.crank_angle[np.argmin(np.abs(np.sin(off / 2)))])
 
 
 def tried(sketch: Sketch) -> Incomplete:
@@ -93,42 +93,42 @@ def computed(design: Design | Sketch) -> Computed | Incomplete:
     return solved(design) if isinstance(design, Design) else drawn(design)
 
 
-def sketch_of(found: Computed | Incomplete, at: int) -> Sketch:
+def sketch_of(computed: Computed | Incomplete, at: int) -> Sketch:
     """What is shown as a sketch that can be changed; a machine as at a sample of its crank angle.
 
     Raises
     ------
     UsageError : there is no such sample.
     """
-    if isinstance(found, Incomplete):
-        return found.design
-    count = len(found.motion.crank_angle)
+    if isinstance(computed, Incomplete):
+        return computed.design
+    count = len(computed.motion.crank_angle)
     if not 0 <= at < count:
         raise UsageError(
             Note("at: got {at}; there are the crank angles 0 to {count}", at=at, count=count - 1)
         )
-    return Sketch.of(found, at)
+    return Sketch.of(computed, at)
 
 
-def finished(found: Computed | Incomplete) -> Computed:
+def finished(computed: Computed | Incomplete) -> Computed:
     """A machine that can be computed, or why it cannot yet."""
-    if isinstance(found, Incomplete):
-        raise found.refusal
-    return found
+    if isinstance(computed, Incomplete):
+        raise computed.refusal
+    return computed
 
 
 def changed(
     base: Computed | Incomplete,
     changes: list[Change],
     commit: bool,
-    near: Computed | Incomplete | None = None,
+    previous: Computed | Incomplete | None = None,
 ) -> Computed | Incomplete:
     """What is shown with numbers set and points dragged.
 
-    commit : whether it is let go.  near : what was tried last.
+    commit : whether it is let go.  previous : what was tried last.
     """
     if isinstance(base, Computed):
-        return edited(base, changes, near if isinstance(near, Computed) else None)
+        return edited(base, changes, previous if isinstance(previous, Computed) else None)
     sketch = redrawn(base.design, changes)
     return drawn(sketch) if commit else tried(sketch)
 
@@ -145,25 +145,30 @@ def with_entry(base: Computed | Incomplete, entry: Entry) -> Computed | Incomple
     return drawn(base.design.taking(own))
 
 
-def plain_of(found: Computed | Incomplete) -> Machine:
+def plain_of(computed: Computed | Incomplete) -> Machine:
     """The machine whose file has the tables that are shown: of a sketch what is known by now.
 
     Raises
     ------
     UsageError : it has no link yet.
     """
-    if isinstance(found, Computed):
-        return found.design.own
-    if not found.design.links:
+    if isinstance(computed, Computed):
+        return computed.design.own
+    if not computed.design.links:
         raise UsageError(Note("the machine has no links yet; draw one first"))
-    return replace(found.design.machine(), position=None)
+    return replace(computed.design.machine(), position=None)
 
 
-def status_of_sketch(found: Incomplete) -> Values:
+def status_of_sketch(incomplete: Incomplete) -> Values:
     """As `status_of` tells of a finished machine."""
-    sketch = found.design
+    sketch = incomplete.design
     drive = sketch.drive.link if sketch.drive else None
-    return {"mobility": sketch.mobility, "text": found.lacks, "finished": False, "drive": drive}
+    return {
+        "mobility": sketch.mobility,
+        "text": incomplete.lacks,
+        "finished": False,
+        "drive": drive,
+    }
 
 
 # -- changed by numbers and drags ------------------------------------------------------------------
@@ -319,9 +324,9 @@ def _sense(sketch: Sketch) -> DriveSign:
     return DriveSign(drive.link, pivots[0], int(np.sign(drive.speed)))
 
 
-def state_of_sketch(found: Incomplete, scale: Scale) -> tuple[Values, bytes]:
+def state_of_sketch(incomplete: Incomplete, scale: Scale) -> tuple[Values, bytes]:
     """Everything that a page draws of an unfinished machine: its place, and no charts."""
-    sketch, block = found.design, FloatBlock()
+    sketch, block = incomplete.design, FloatBlock()
     scene = scene_of(sketch)
     moves_of(scene, block)
     length = display("length", [sketch.size])
@@ -333,7 +338,7 @@ def state_of_sketch(found: Incomplete, scale: Scale) -> tuple[Values, bytes]:
         "turns": 1,
         "speed": 0,
         "length": {"unit": length.name, "factor": length.factor},
-        "lacking": found.lacks,
+        "lacking": incomplete.lacks,
         "scene": stage_of(scene, [*sketch.places]),
         "first": "squares",
         "least": 0,
@@ -343,7 +348,7 @@ def state_of_sketch(found: Incomplete, scale: Scale) -> tuple[Values, bytes]:
         "record": None,
         "arrows_at": None,
         "arrows": [],
-        "status": status_of_sketch(found),
+        "status": status_of_sketch(incomplete),
         "fields": [scale.told(item) for item in fields_of_sketch(sketch).values()],
         **{key: [] for key in ("traced", "figures", "outputs", "charts", "orders", "notes")},
     }

@@ -77,13 +77,13 @@ class Computed:
         return Scene.of(self.motion)
 
 
-def solved(design: Design, near: Computed | None = None, stuck: bool = True) -> Computed:
+def solved(design: Design, previous: Computed | None = None, stuck: bool = True) -> Computed:
     """Compute a design; the errors are those of `analyze`.
 
-    near : one of the same build that differs by little, if one is known.
+    previous : one of the same build that differs by little, if one is known.
     stuck : whether a crank that cannot turn may swing instead.
     """
-    known = near.motion.linkage.cycle if near else None
+    known = previous.motion.linkage.cycle if previous else None
     machine, swings = design.machine, None
     try:
         turns = assemble(machine, known).cycle.turns
@@ -105,10 +105,10 @@ def movable(machine: Machine) -> list[str]:
     return list(names)
 
 
-def edited(base: Computed, changes: Iterable[Change], near: Computed | None = None) -> Computed:
+def edited(base: Computed, changes: Iterable[Change], previous: Computed | None = None) -> Computed:
     """Change a design and compute it.
 
-    near : a design that differs by less than the base does, if one is known.
+    previous : a design that differs by less than the base does, if one is known.
 
     Raises
     ------
@@ -125,27 +125,27 @@ def edited(base: Computed, changes: Iterable[Change], near: Computed | None = No
             goals[change.name] = (change.at, place)
     if design.own.constraints:
         design = design.with_machine(design.own.with_constraints_met(base.design.own))
-    if near is not None and near.along is not None:  # so this one needs something along too
+    if previous is not None and previous.along is not None:  # so this one needs something along too
         with suppress(EquipoiseError):
-            if (agreeing := _agreeing(base, design, goals, near)) is not None:
+            if (agreeing := _agreeing(base, design, goals, previous)) is not None:
                 return agreeing
-    near = near or base
+    previous = previous or base
     try:
-        return _told(_assembled(design, goals, near, base.swings is not None), goals)
+        return _told(_assembled(design, goals, previous, base.swings is not None), goals)
     except (MobilityError, ModelError):
-        if (agreeing := _agreeing(base, design, goals, near)) is None:
+        if (agreeing := _agreeing(base, design, goals, previous)) is None:
             raise
         return agreeing
 
 
-def _agreeing(base: Computed, design: Design, goals: Goals, near: Computed) -> Computed | None:
+def _agreeing(base: Computed, design: Design, goals: Goals, previous: Computed) -> Computed | None:
     """The design with what has to go along so that all joints fit, if that can be told."""
     if base.motion.linkage.shared is None:
         return None
     result = following(base.motion, design.own, goals)
     if result is None:
         return None
-    fitting = solved(design.with_machine(result.machine), near, base.swings is not None)
+    fitting = solved(design.with_machine(result.machine), previous, base.swings is not None)
     return replace(fitting, along=result.note if result.spots else None)
 
 
@@ -235,23 +235,23 @@ def _position(machine: Machine, motion: Motion, change: Drag | None = None) -> P
     return Position(clean(float(angle), "angle"), points, angles)
 
 
-def settled(found: Computed) -> Computed:
+def settled(computed: Computed) -> Computed:
     """The same, with its rough position where the machine now is, if it has one."""
-    machine = found.design.own
+    machine = computed.design.own
     if machine.position is None:
-        return found
-    placed = replace(machine, position=_position(machine, found.motion))
-    return replace(found, design=found.design.with_machine(placed), stand=None)
+        return computed
+    placed = replace(machine, position=_position(machine, computed.motion))
+    return replace(computed, design=computed.design.with_machine(placed), stand=None)
 
 
-def _assembled(design: Design, goals: Goals, near: Computed, stuck: bool) -> Computed:
+def _assembled(design: Design, goals: Goals, previous: Computed, stuck: bool) -> Computed:
     """Compute a design in which dragged points come to where they were put.
 
     One that is dragged across a line of its dyad needs that dyad on its other side.  One that comes
     there on neither side, such as a block's beside its line, comes as near as it can.
     """
     try:
-        result = solved(design, near, stuck)
+        result = solved(design, previous, stuck)
     except MotionError:
         other = _turned_over(design, goals, stuck)
         if other is None:
@@ -288,13 +288,13 @@ def _moves(machine: Machine, joint: str, points: Iterable[str]) -> bool:
     return any(point in machine.links[link].points for link in links for point in points)
 
 
-def _reaches(found: Computed, goals: Goals) -> bool:
-    return not _missed(found, goals)
+def _reaches(computed: Computed, goals: Goals) -> bool:
+    return not _missed(computed, goals)
 
 
-def _missed(found: Computed, goals: Goals) -> list[str]:
+def _missed(computed: Computed, goals: Goals) -> list[str]:
     """Points that are not where they were put."""
-    points, near = found.motion.points, THERE * extent_of(found.design.own)
+    points, near = computed.motion.points, THERE * extent_of(computed.design.own)
     return [
         name
         for name, (at, to) in goals.items()
@@ -302,12 +302,14 @@ def _missed(found: Computed, goals: Goals) -> list[str]:
     ]
 
 
-def _told(found: Computed, goals: Goals) -> Computed:
+def _told(computed: Computed, goals: Goals) -> Computed:
     """The same, with why the end of a cylinder, or a driven block, is not where it was put."""
-    machine = found.design.own
+    machine = computed.design.own
     points = {slider.name: slider.point for slider in machine.sliders}
     pushing: list[Pushing] = [machine.drive, *machine.drives]
     for drive in pushing:
-        for name in {*(drive.between or ()), points.get(drive.slider)} & {*_missed(found, goals)}:
-            return replace(found, held=Note(HELD, name=name))
-    return found
+        for name in {*(drive.between or ()), points.get(drive.slider)} & {
+            *_missed(computed, goals)
+        }:
+            return replace(computed, held=Note(HELD, name=name))
+    return computed

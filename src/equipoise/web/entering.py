@@ -28,7 +28,7 @@ class EntrySession(Protocol):
     def base(self) -> Computed | Incomplete:
         """What is, finished or not."""
 
-    def go_to(self, found: Computed | Incomplete, label: str) -> None:
+    def go_to(self, computed: Computed | Incomplete, label: str) -> None:
         """Make another design the one that is."""
 
     def telling(self) -> AbstractContextManager[None]:

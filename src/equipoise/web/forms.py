@@ -67,35 +67,35 @@ def _keys_of_linkages() -> Mapping[str, tuple[keys.Key, ...]]:
     return MappingProxyType(by_name)
 
 
-def control_of(one: keys.Key, beside: Mapping[str, keys.Key]) -> Values:
+def control_of(key: keys.Key, beside: Mapping[str, keys.Key]) -> Values:
     """What a page needs to ask for the value of a key; beside : keys of the same table."""
-    default = plain_default(one)
+    default = plain_default(key)
     return {
-        "key": one.name,
-        "word": word_of(one),
-        "text": text_of(one, beside),
-        "required": one.required,
+        "key": key.name,
+        "word": word_of(key),
+        "text": text_of(key, beside),
+        "required": key.required,
         "default": None if default in ([], {}) else default,
-        "example": one.example,
-        **_control(one.kind),
+        "example": key.example,
+        **_control(key.kind),
     }
 
 
-def word_of(one: keys.Key) -> str:
+def word_of(key: keys.Key) -> str:
     """What a key is called: as its number is, where that does not take in what is around it."""
-    return say(one.word if one.word and "{" not in one.word else plain_word(one))
+    return say(key.word if key.word and "{" not in key.word else plain_word(key))
 
 
-def text_of(one: keys.Key, beside: Mapping[str, keys.Key] = MappingProxyType({})) -> str:
+def text_of(key: keys.Key, beside: Mapping[str, keys.Key] = MappingProxyType({})) -> str:
     """What a key means; of keys beside it in what a form calls them."""
-    values = getattr(one.kind, "names", ())
+    values = getattr(key.kind, "names", ())
 
-    def shown(found: re.Match[str]) -> str:
-        name = found[1]
+    def shown(match: re.Match[str]) -> str:
+        name = match[1]
         other = beside.get(name) if name not in values else None
         return name if other is None else say("“{name}”", name=word_of(other))
 
-    return re.sub("`([^`]*)`", shown, say(one.text))
+    return re.sub("`([^`]*)`", shown, say(key.text))
 
 
 def _control(kind: keys.Kind) -> Values:

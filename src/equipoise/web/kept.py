@@ -38,7 +38,7 @@ class DesignsSession(Protocol):
     def told(self, seq: int | None, *notes: str) -> Iterator[Reply]:
         """The design that is shown."""
 
-    def open(self, design: Design, found: Computed | None = None) -> None:
+    def open(self, design: Design, computed: Computed | None = None) -> None:
         """Begin with a design."""
 
     def receive(self, message: Message) -> Iterator[Reply]:

@@ -14,9 +14,9 @@ from equipoise.web.shaken import SAMPLES
 GAUGES = "gauges."
 
 
-def gauges_of(found: Computed) -> tuple[str, ...]:
+def gauges_of(computed: Computed) -> tuple[str, ...]:
     """Names of the gauges of a machine's support."""
-    support = found.design.machine.support
+    support = computed.design.machine.support
     return () if support is None else tuple(support.gauges)
 
 
@@ -28,7 +28,7 @@ def charted(output: str) -> bool:
 
 
 def measured_told(
-    record: MeasuredSignals | None, found: Computed, block: FloatBlock
+    record: MeasuredSignals | None, computed: Computed, block: FloatBlock
 ) -> Values | None:
     """A record beside a design: its name and what is to be said; signals go to the block.
 
@@ -38,13 +38,13 @@ def measured_told(
     if record is None:
         return None
     try:
-        compared = compared_with(record, found.analysis, gauges_of(found))
+        compared = compared_with(record, computed.analysis, gauges_of(computed))
     except EquipoiseError as error:  # of a machine that has been changed meanwhile
         return {"name": record.name, "told": [str(error)], "left_out": []}
     for name, values in compared.signals.items():
         count, own = len(values), len(values)
         if name.startswith(GAUGES):
-            count = SAMPLES * found.motion.turns
+            count = SAMPLES * computed.motion.turns
         at = np.arange(count) * own / count
         block.add(f"measured.{name}", np.interp(at, np.arange(own), values, period=own))
     text = {"told": [*compared.told], "left_out": [*compared.left_out]}

@@ -31,7 +31,7 @@ SECONDS = 2.0
 """That a turn of the crank takes in a film."""
 
 
-def chart_of(found: Computed, name: str, choice: str) -> Chart:
+def chart_of(computed: Computed, name: str, choice: str) -> Chart:
     """The picture of a chart of the page.
 
     choice : what is chosen in it.
@@ -41,11 +41,11 @@ def chart_of(found: Computed, name: str, choice: str) -> Chart:
     UsageError : there is no such chart.
     EquipoiseError : it cannot be drawn of this machine.
     """
-    machine, analysis = found.analysis.machine, found.analysis
+    machine, analysis = computed.analysis.machine, computed.analysis
     if name == "response":
         from equipoise.figures.vibration import response_charts
 
-        return _named(response_charts(responded(found)), f"gauge-{choice}")
+        return _named(response_charts(responded(computed)), f"gauge-{choice}")
     if name == "sweep":
         from equipoise.figures.sweep import sweep_charts
         from equipoise.vibration.resonance import around
@@ -57,7 +57,7 @@ def chart_of(found: Computed, name: str, choice: str) -> Chart:
         from equipoise.figures.pictures import analysis_pictures
 
         return _named(analysis_pictures(analysis), SAME[name])
-    return _over_crank(found, choice)
+    return _over_crank(computed, choice)
 
 
 def _named(pictures: Mapping[str, Chart], name: str) -> Chart:
@@ -66,21 +66,21 @@ def _named(pictures: Mapping[str, Chart], name: str) -> Chart:
     return pictures[name]
 
 
-def _over_crank(found: Computed, output: str) -> Chart:
+def _over_crank(computed: Computed, output: str) -> Chart:
     """An output over the crank angle; of all rows together where it is only there."""
     from equipoise.figures.analysis import ALL
     from equipoise.figures.forces import over_crank
     from equipoise.mechanism.parts.objectives import ROWS
     from equipoise.web.figures import capital
 
-    outputs = found.analysis.outputs
+    outputs = computed.analysis.outputs
     item = outputs[f"{ROWS}{output}" if f"{ROWS}{output}" in outputs else output]
     label = item.label()
     what = [(label, item.dimension, {ALL: item.drawn})]
-    return replace(over_crank(found.analysis, "output", capital(label), what), keys=())
+    return replace(over_crank(computed.analysis, "output", capital(label), what), keys=())
 
 
-def linkage_at(found: Computed, sample: int) -> Chart:
+def linkage_at(computed: Computed, sample: int) -> Chart:
     """The drawing at a sample of the crank angle.
 
     Raises
@@ -89,7 +89,7 @@ def linkage_at(found: Computed, sample: int) -> Chart:
     """
     from equipoise.figures.linkage import linkage
 
-    angles = found.motion.crank_angle
+    angles = computed.motion.crank_angle
     if not 0 <= sample < len(angles):
         raise UsageError(
             Note(
@@ -98,10 +98,10 @@ def linkage_at(found: Computed, sample: int) -> Chart:
                 last=len(angles) - 1,
             )
         )
-    return linkage(found.analysis, [float(angles[sample])])
+    return linkage(computed.analysis, [float(angles[sample])])
 
 
-def film_of(found: Computed) -> bytes:
+def film_of(computed: Computed) -> bytes:
     """The whole cycle as a GIF, the support too where it moves."""
     from equipoise.figures.film import gif
     from equipoise.figures.points import followed
@@ -109,7 +109,7 @@ def film_of(found: Computed) -> bytes:
     from equipoise.figures.swing import moving
     from equipoise.results.analysis import analyze
 
-    analysis = analyze(found.analysis.machine, smooth(in_a_turn("gif", SECONDS)))
+    analysis = analyze(computed.analysis.machine, smooth(in_a_turn("gif", SECONDS)))
     with drawing:
         scene, _ = moving(analysis)
         return gif(scene, traced=followed(analysis.motion), seconds=SECONDS)

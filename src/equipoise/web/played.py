@@ -14,7 +14,7 @@ from equipoise.web.replies import Reply
 from equipoise.web.state import first_of
 
 
-def played(found: Computed, replies: Iterable[Reply], language: str) -> str:
+def played(computed: Computed, replies: Iterable[Reply], language: str) -> str:
     """The HTML file.
 
     replies : all that a page could be told of the machine.
@@ -26,10 +26,10 @@ def played(found: Computed, replies: Iterable[Reply], language: str) -> str:
     built = assets()
     text = {
         "replies": [_written(reply) for reply in replies],
-        "wanted": first_of(found.design.machine)[1],
+        "wanted": first_of(computed.design.machine)[1],
     }
     with speaking(language):
-        title = said(found.design.machine.title) or found.design.name
+        title = said(computed.design.machine.title) or computed.design.name
     body = (
         '<main id="equipoise-live" data-played="equipoise-played"></main>',
         data("equipoise-played", text),

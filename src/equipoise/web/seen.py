@@ -40,16 +40,16 @@ class Seen:
     ghost: Computed | None = None
     table: dict[str, Any] | None = None
 
-    def against(self, held: Computed | None) -> Computed | None:
+    def against(self, previous: Computed | None) -> Computed | None:
         """The design that figures are told against; None where they are told alone.
 
-        held : the one that a drag, which is under way, began with.
+        previous : the one that a drag, which is under way, began with.
         """
         what = self.variants.against
         if what == NOTHING:
             return None
         if what == STEP:
-            return held or self.last
+            return previous or self.last
         return self.opened if what == OPENED else self.variants.of(what.removeprefix(VARIANT))
 
     @property
@@ -57,25 +57,25 @@ class Seen:
         """The design that is drawn pale, with pale curves."""
         return None if self.variants.against == STEP else self.against(None)
 
-    def opening(self, found: Computed | None) -> Seen:
+    def opening(self, computed: Computed | None) -> Seen:
         """The same for a machine that is opened: nothing is kept but what the page knows."""
-        return Seen(opened=found, ghost=self.ghost, table=self.table)
+        return Seen(opened=computed, ghost=self.ghost, table=self.table)
 
-    def compared(self, found: Computed | None) -> Iterator[Reply]:
+    def compared(self, computed: Computed | None) -> Iterator[Reply]:
         """The pale drawing and the table of variants, where the page has others.
 
-        found : the design that is; None while something is dragged.
+        computed : the design that is; None while something is dragged.
         """
         if self.pale is not self.ghost:
             self.ghost = self.pale
             yield _ghost(self.ghost)
-        if found is None:
+        if computed is None:
             return
         bare = Variants()
-        table = None if self.variants == bare else self.variants.table(found)
+        table = None if self.variants == bare else self.variants.table(computed)
         if table != self.table:
             self.table = table
-            yield Reply({"type": "variants", "seq": None, **(table or bare.table(found))})
+            yield Reply({"type": "variants", "seq": None, **(table or bare.table(computed))})
 
 
 def _ghost(pale: Computed | None) -> Reply:
@@ -105,7 +105,7 @@ class ViewSession(Protocol):
     def current(self) -> Computed:
         """The design that is."""
 
-    def go_to(self, found: Computed, label: str) -> None:
+    def go_to(self, computed: Computed, label: str) -> None:
         """Make another design the one that is."""
 
     def told(self, seq: int | None, *notes: str) -> Iterator[Reply]:

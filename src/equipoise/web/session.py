@@ -204,22 +204,22 @@ class Session:
         with speaking(self.language):
             return [{"name": name, "title": said(title)} for name, title in found.items()]
 
-    def open(self, design: Design | Sketch, found: Computed | None = None) -> None:
+    def open(self, design: Design | Sketch, result: Computed | None = None) -> None:
         """Begin with a design, or with a sketch; what was done before is forgotten.
 
-        found : the design, if it has been computed.
+        result : the design, if it has been computed.
         """
-        seen = found or computed(design)
+        seen = result or computed(design)
         with self.lock:
             self._go(History(HistoryStep(design, "")), seen)
             self._measure(seen, True)
 
-    def _measure(self, found: Computed | Incomplete, new: bool) -> None:
+    def _measure(self, computed: Computed | Incomplete, new: bool) -> None:
         """What goes by the build of a machine: ranges of sliders, and outputs that are drawn.
 
         new : whether it has nothing to do with the one before.
         """
-        machine = found if isinstance(found, Computed) else None
+        machine = computed if isinstance(computed, Computed) else None
         self.before = None
         self.scale = Scale({}, USUAL_SIZE, 1.0) if machine is None else Scale.of(machine.design)
         if new:
@@ -227,9 +227,9 @@ class Session:
         if machine is not None and (new or not self.wanted):
             self.wanted = first_of(machine.design.machine)[1]
 
-    def go_to(self, found: Computed | Incomplete, label: str) -> None:
+    def go_to(self, computed: Computed | Incomplete, label: str) -> None:
         """Make a design that has been computed the one that is, as one step of undo."""
-        self._go(self._past.then(found.design, label), found)
+        self._go(self._past.then(computed.design, label), computed)
 
     @property
     def has_more(self) -> bool:
@@ -309,13 +309,13 @@ class Session:
         """The design that is, or a `UsageError` where it is not finished."""
         return finished(self.base())
 
-    def _go(self, history: History, found: Computed | Incomplete | None = None) -> None:
+    def _go(self, history: History, result: Computed | Incomplete | None = None) -> None:
         """Show where a history has come to; nothing has changed where that cannot be computed."""
-        found = found or computed(history.now.design)
+        result = result or computed(history.now.design)
         self.seen.last = last = self.found if isinstance(self.found, Computed) else None
-        if last is not None and last.design is not found.design:
+        if last is not None and last.design is not result.design:
             last.design.forget()
-        self.found = found
+        self.found = result
         self.history, self.preview = history, None
         if self.before is not None and self.before.design is history.now.design:
             self.before = None  # nothing differs from itself
@@ -367,10 +367,10 @@ class Session:
         text = {"undo": history.undo, "redo": history.redo, "steps": steps, "file": file}
         return Reply({"type": "state", "seq": seq, **text, **content}, data)
 
-    def _state_of(self, found: Computed) -> tuple[Values, bytes]:
+    def _state_of(self, computed: Computed) -> tuple[Values, bytes]:
         seen = self.seen
         return state_of(
-            found,
+            computed,
             seen.pale or self.before,
             self.wanted,
             against=self._against,

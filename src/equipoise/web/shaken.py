@@ -121,11 +121,11 @@ def swept(shown: Computed, progress: Callable[[int, int], None]) -> tuple[Values
     return content, block.data
 
 
-def _told(shown: Computed, found: Response, block: FloatBlock) -> Values:
+def _told(shown: Computed, response: Response, block: FloatBlock) -> Values:
     """Displacements against the crank angle, which runs as the crank does, and how to draw them."""
-    count = SAMPLES * found.turns
+    count = SAMPLES * response.turns
     choices: list[Values] = []
-    for name, gauge in found.gauges.items():
+    for name, gauge in response.gauges.items():
         array = f"response.{name}"
         block.add(array, gauge.displacement.samples(count))
         label = say("response of {gauge}", gauge=_spoken(name))
@@ -133,9 +133,9 @@ def _told(shown: Computed, found: Response, block: FloatBlock) -> Values:
     from equipoise.figures.swing import swinging
 
     charts = [chart("response", choices, chooser=say("Response of"))]
-    notes = list(map(said, found.notes))
-    swing = _swing(swinging(shown.scene, found), block)
-    modes = [*_modes(shown.scene, found)]
+    notes = list(map(said, response.notes))
+    swing = _swing(swinging(shown.scene, response), block)
+    modes = [*_modes(shown.scene, response)]
     return {"charts": charts, "notes": notes, "swing": swing, "modes": modes, "arrays": block.told}
 
 
@@ -151,16 +151,16 @@ def _swing(scene: Scene, block: FloatBlock) -> list[str] | None:
     return list(scene.swing.told)
 
 
-def _modes(scene: Scene, found: Response) -> Iterator[Values]:
+def _modes(scene: Scene, response: Response) -> Iterator[Values]:
     """Modes of the support, as large as they are drawn.
 
     shape : real and imaginary parts of its displacements along x and y (m) and of its rotation.
     """
     from equipoise.figures.swing import ModeSwing
 
-    support = found.machine.support
+    support = response.machine.support
     assert support is not None
-    for number, mode in enumerate(found.modes, 1):
+    for number, mode in enumerate(response.modes, 1):
         item = ModeSwing.of(scene, number, mode, support.coordinates)
         parts = (complex(item.amplitudes[FREEDOMS.index(name)]) for name in PLANAR)
         shape = [number for part in parts for number in (part.real, part.imag)]
@@ -176,7 +176,7 @@ class OutdatedError(Exception):
 
 
 def more(
-    found: Computed, against: Computed | None, sweep: bool, outdated: Callable[[], bool]
+    computed: Computed, against: Computed | None, sweep: bool, outdated: Callable[[], bool]
 ) -> Iterator[tuple[Values, bytes]]:
     """Planes from the side, strokes, gauges, planting figures, the response over speed; each as
     values and a block of floats.
@@ -185,21 +185,21 @@ def more(
     sweep : whether the response is wanted.
     outdated : tells when the design is no longer shown, so that the rest is not wanted.
     """
-    if found.analysis.machine.has_planes and not outdated():
+    if computed.analysis.machine.has_planes and not outdated():
         from equipoise.figures import render
         from equipoise.figures.side import side
 
-        yield {"type": "side", "svg": render(side(found.analysis)).decode()}, b""
+        yield {"type": "side", "svg": render(side(computed.analysis)).decode()}, b""
     # Where there are none any more, such as losses of friction, the page hides those that it has.
     if not outdated():
-        yield _told_against("strokes", _strokes, found, against), b""
-    if can_be_shaken(found.analysis.machine) and not outdated():
-        yield _told_against("gauges", _gauges, found, against), b""
-    if _plants(found) and not outdated():
-        planted = _told_against("planting", _planted, found, against)
+        yield _told_against("strokes", _strokes, computed, against), b""
+    if can_be_shaken(computed.analysis.machine) and not outdated():
+        yield _told_against("gauges", _gauges, computed, against), b""
+    if _plants(computed) and not outdated():
+        planted = _told_against("planting", _planted, computed, against)
         if not outdated():
             yield planted, b""
-    if not sweep or not can_be_shaken(found.analysis.machine):
+    if not sweep or not can_be_shaken(computed.analysis.machine):
         return
 
     def progress(done: int, total: int) -> None:
@@ -207,7 +207,7 @@ def more(
             raise OutdatedError
 
     try:
-        shaken = swept(found, progress)
+        shaken = swept(computed, progress)
     except OutdatedError:
         return
     if shaken is not None and not outdated():
@@ -229,11 +229,11 @@ _Figures = Mapping[str, _Told]
 
 
 def _told_against(
-    kind: str, of: Callable[[Computed], _Figures], found: Computed, against: Computed | None
+    kind: str, of: Callable[[Computed], _Figures], computed: Computed, against: Computed | None
 ) -> Values:
     """Figures of a design, each with what it is in the other one where that has it too."""
     try:
-        figures = of(found)
+        figures = of(computed)
     except EquipoiseError as error:
         return {"type": kind, "figures": [], "compared": False, "notes": [error.told()]}
     try:
@@ -241,7 +241,7 @@ def _told_against(
     except EquipoiseError:
         others = {}
     values = [_shown(name, figure, others.get(name)) for name, figure in figures.items()]
-    notes = list(map(said, planted(found).notes)) if kind == "planting" else []
+    notes = list(map(said, planted(computed).notes)) if kind == "planting" else []
     return {"type": kind, "figures": values, "compared": bool(others), "notes": notes}
 
 
@@ -262,10 +262,10 @@ READ = {"peak_to_peak": to_say("peak to peak"), "vibration_rms": to_say("RMS")}
 """What is told of a gauge's reading; RMS is about the mean."""
 
 
-def _gauges(found: Computed) -> _Figures:
+def _gauges(computed: Computed) -> _Figures:
     """Figures of what gauges read; none without a steady state, of which `response_of` tells."""
     try:
-        gauges = responded(found).gauges
+        gauges = responded(computed).gauges
     except EquipoiseError:
         return {}
     reading = DECLARED["gauges.{}"]
@@ -280,9 +280,9 @@ def _gauges(found: Computed) -> _Figures:
     }
 
 
-def _strokes(found: Computed) -> _Figures:
+def _strokes(computed: Computed) -> _Figures:
     """Figures of strokes and of parts by name, but for the crank angles at which they are."""
-    return dict(_strokes_of(found.analysis))
+    return dict(_strokes_of(computed.analysis))
 
 
 def _strokes_of(analysis: Analysis) -> Iterator[tuple[str, _Told]]:
@@ -330,9 +330,9 @@ def _declared_of(
             yield f"{path}.{kind.name}", _Told(label, value, of, unit)
 
 
-def _plants(found: Computed) -> bool:
+def _plants(computed: Computed) -> bool:
     """Whether there is a planting finger that moves."""
-    machine = found.analysis.machine
+    machine = computed.analysis.machine
     return machine.planting is not None and machine.drive.speed != 0
 
 
@@ -344,14 +344,14 @@ def planted(shown: Computed) -> PlantingFigures:
     return plant(shown.analysis.machine)
 
 
-def _planted(found: Computed) -> _Figures:
+def _planted(computed: Computed) -> _Figures:
     """Figures of the tip's path; none of a machine that has no planting finger."""
-    if not _plants(found):
+    if not _plants(computed):
         return {}
     from equipoise.planting.blocks import cell
     from equipoise.planting.names import FIGURES, figure_named, of_all_arms
 
-    figures = planted(found).figures
+    figures = planted(computed).figures
     return {
         name: _Told(figure_named(name), float(figures[name]), text.dimension, text.unit)
         for name in (*FIGURES, *(name for name in figures if of_all_arms(name) in FIGURES))

@@ -38,9 +38,9 @@ class Sketch(MachineDraft):
     counterweights: Mapping[str, Counterweight] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, found: Computed, at: int = 0) -> Sketch:
+    def of(cls, computed: Computed, at: int = 0) -> Sketch:
         """A finished machine as it stands at a sample of its crank angle."""
-        own, motion = found.design.own, found.motion
+        own, motion = computed.design.own, computed.motion
         poses = {}
         for name, link in motion.links.items():
             anchor, angle = motion.linkage.anchors[name], float(link.angle[at])
@@ -49,11 +49,11 @@ class Sketch(MachineDraft):
         rest = {key: getattr(own, key) for key in REST}
         weights = {
             name: counterweight
-            for name, counterweight in found.design.counterweights.items()
+            for name, counterweight in computed.design.counterweights.items()
             if counterweight.mass
         }
         return cls(own.frame, own.links, poses, own.drive, own.sliders, rest,
-                   float(motion.crank_angle[at]), found.design.name, weights)  # fmt: skip
+                   float(motion.crank_angle[at]), computed.design.name, weights)  # fmt: skip
 
     @property
     def units(self) -> ShownUnits | None:

@@ -31,7 +31,7 @@ MOST_ORDER = 20
 
 
 def state_of(
-    found: Computed,
+    computed: Computed,
     before: Computed | None,
     wanted: Sequence[str] = (),
     against: Computed | None = None,
@@ -46,9 +46,9 @@ def state_of(
     arrows_at : a point of which velocity, acceleration and forces are drawn.
     record : that is drawn beside its own signals.
     """
-    analysis, block = found.analysis, FloatBlock()
+    analysis, block = computed.analysis, FloatBlock()
     machine, motion = analysis.machine, analysis.motion
-    scene = found.scene
+    scene = computed.scene
     moves_of(scene, block)
     signals = signals_of(analysis)
     _add_signals(block, signals, analysis)
@@ -62,7 +62,7 @@ def state_of(
     length = display("length", [extent_of(machine)])
     lacking = forces_lack(machine)
     content: Values = {
-        "name": found.design.name,
+        "name": computed.design.name,
         "title": said(machine.title),
         "description": said(machine.description),
         "angles": len(scene.crank_angle),
@@ -80,20 +80,20 @@ def state_of(
         "least": least_of(signals),
         "orders": _orders(analysis),
         "notes": [
-            *(said(note) for note in (found.along, found.swings) if note),
+            *(said(note) for note in (computed.along, computed.swings) if note),
             *(said(note) for note in (assumed_masses(machine),) if note),
             *([lacking] if lacking else []),
         ],
-        "held": said(found.held) if found.held else None,
+        "held": said(computed.held) if computed.held else None,
         "before": before is not None,
-        "status": status_of(found),
+        "status": status_of(computed),
         "compared": against is not None,
         "beside": machine.has_planes,
         "points": points_of(analysis),
-        "record": measured_told(record, found, block),
+        "record": measured_told(record, computed, block),
         "arrows_at": arrows_at,
         "arrows": arrows_of(analysis, arrows_at, block) if arrows_at else [],
-        **ground_of(found, block),
+        **ground_of(computed, block),
     }
     content["arrays"] = block.told
     return content, block.data
@@ -119,14 +119,14 @@ def outputs_of(analysis: Analysis) -> list[Values]:
     ]
 
 
-def status_of(found: Computed) -> Values:
+def status_of(computed: Computed) -> Values:
     """What is told of the making of a machine.
 
     mobility : number of free motions.  text : a sentence: what moves, or what is missing.
     finished : whether it can be computed.  drive : the crank, if there is one that turns.
     stand : crank angle at which it was drawn, deg; None where it has not just been made.
     """
-    machine, stand = found.analysis.machine, found.stand
+    machine, stand = computed.analysis.machine, computed.stand
     return {
         "mobility": len(machine.driven),
         "text": turning(machine),

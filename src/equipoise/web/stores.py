@@ -58,12 +58,12 @@ def stores_in(folder: Path) -> list[str]:
         return []
 
 
-def _looks_so(one: os.DirEntry[str]) -> bool:
+def _looks_so(entry: os.DirEntry[str]) -> bool:
     """Whether an entry of a folder is a store by what it says of itself."""
     try:
-        if one.name.startswith(".") or not one.is_dir(follow_symlinks=False):
+        if entry.name.startswith(".") or not entry.is_dir(follow_symlinks=False):
             return False
-        return MARK in json.loads(Folder.at(one).read(ABOUT))["attributes"]
+        return MARK in json.loads(Folder.at(entry).read(ABOUT))["attributes"]
     except (OSError, ValueError, LookupError, TypeError):
         return False
 

@@ -178,9 +178,9 @@ def _is_assumed(value: Any) -> bool:
     return isinstance(value, list) and all(item.get("assumed") for item in value)
 
 
-def _said(one: Key, value: Any) -> Any:
+def _said(key: Key, value: Any) -> Any:
     """A text of several languages in the one that is spoken, all else as it is."""
-    several = isinstance(one.kind, Wording) and isinstance(value, Mapping)
+    several = isinstance(key.kind, Wording) and isinstance(value, Mapping)
     return Worded(value).said() if several else value
 
 
@@ -192,7 +192,7 @@ def _brief(value: Any) -> str:
         text = " ".join(map(_brief, value))
     else:
         text = value if isinstance(value, str) else value_text(value)
-        text = MANY_DIGITS.sub(lambda found: f"{float(found[0]):.6g}", text)
+        text = MANY_DIGITS.sub(lambda result: f"{float(result[0]):.6g}", text)
     return text if len(text) <= LONGEST_VALUE else f"{text[: LONGEST_VALUE - 1]}…"
 
 

@@ -35,7 +35,7 @@ class Variants:
     kept: Mapping[str, Computed] = field(default_factory=dict)
     against: str = STEP
 
-    def pinned(self, found: Computed) -> Variants:
+    def pinned(self, computed: Computed) -> Variants:
         """One more, which is what the design is told against from now on.
 
         Raises
@@ -48,7 +48,7 @@ class Variants:
             )
         letters = (a + b for b in ("", *"23456789") for a in ascii_uppercase)
         name = next(letter for letter in letters if letter not in self.kept)
-        return Variants(MappingProxyType({**self.kept, name: found}), VARIANT + name)
+        return Variants(MappingProxyType({**self.kept, name: computed}), VARIANT + name)
 
     def of(self, name: str) -> Computed:
         """One of them, by its name; a `UsageError` where there is none of it."""

@@ -194,12 +194,16 @@ class Foreground:
         return of_machine or message.kind not in OF_MACHINE
 
     def _begin(
-        self, message: Message | None, found: Computed | None, against: Computed | None, sweep: bool
+        self,
+        message: Message | None,
+        computed: Computed | None,
+        against: Computed | None,
+        sweep: bool,
     ) -> None:
         session = self.desk.session
-        design, other = (None if item is None else item.design for item in (found, against))
+        design, other = (None if item is None else item.design for item in (computed, against))
         task = SlowTask(design, other, message, sweep, session.wanted, session.language)
-        self._running.append((task, found))
+        self._running.append((task, computed))
         self.tasks.append(pickle.dumps(task))
 
     def _overtaken(self) -> bool:
