@@ -102,7 +102,7 @@ OF_ARM: Declarations = {
     "tip": ResultOutput("point of the finger"),
     "finger_from": ResultOutput(
         "other point of the finger; null where the tip's link has no other",
-        read=lambda found: finger_base(found.curve),
+        read=lambda result: finger_base(result.curve),
     ),
     "figures": ResultOutput(
         "figures by name, see below",
@@ -117,12 +117,12 @@ OF_ARM: Declarations = {
     "cusps": ResultOutput(
         "crank angles at which the tip stands still over ground",
         "angle",
-        read=lambda found: list(found.cusps),
+        read=lambda result: list(result.cusps),
     ),
     "tray_crossings": ResultOutput(
         "crank angles at which the tip passes the tray's edge",
         "angle",
-        read=lambda found: list(found.tray_crossings),
+        read=lambda result: list(result.tray_crossings),
     ),
 }
 
@@ -209,7 +209,7 @@ class PlantingFigures(Result):
             "the same of each further arm, without what belongs to the machine",
             of={**OF_ARM, "figures": replace(OF_ARM["figures"], read="_nested_of_arm")},
             family=True,
-            read=lambda found: {item.tip: item for item in found.further},
+            read=lambda result: {item.tip: item for item in result.further},
             present="further",
             table="plant",
         ),
@@ -218,9 +218,9 @@ class PlantingFigures(Result):
             "in the `summary` of `equipoise analyze`, but `peak_to_peak`; absent without soil or "
             "masses",
             lookup=_dimension_of_force,
-            read=lambda found: {
+            read=lambda result: {
                 name: {"in_air": _of(air), "in_soil": _of(soil)}
-                for name, (air, soil) in found.forces.compared().items()
+                for name, (air, soil) in result.forces.compared().items()
             },
             present="forces",
             slow=True,
