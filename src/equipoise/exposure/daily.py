@@ -227,7 +227,7 @@ class TaskShare:
         "duration": ResultOutput("time a day", "time", read="task.duration"),
         "partial": ResultOutput("partial exposure A_i(8)", "acceleration", read="task.partial"),
         "share": ResultOutput("share in the square of A(8)"),
-        "points": ResultOutput("exposure points", read=lambda one: points(one.task.partial)),
+        "points": ResultOutput("exposure points", read=lambda item: points(item.task.partial)),
         "times": ResultOutput(
             "of this task alone", of=WorkingTimes.declared, read="task.times", spliced=True
         ),

@@ -64,9 +64,9 @@ def _leaves(where: str, value: Any, of: Key | None) -> Iterator[tuple[str, Any, 
             yield from _leaves(place, getattr(value, declaration.field), declaration)
 
 
-def _names(one: Key) -> tuple[Any, ...]:
+def _names(key: Key) -> tuple[Any, ...]:
     """The only values that there are of a key, if they have names."""
-    names: tuple[Any, ...] = getattr(innermost(one.kind), "names", ())
+    names: tuple[Any, ...] = getattr(innermost(key.kind), "names", ())
     return names
 
 

@@ -186,7 +186,7 @@ def _line(turns: Turns) -> tuple[Array, Array]:
     tried = (
         least_squares(left, guess / unit, "3-point", x_scale="jac") for guess in _guesses(turns)
     )
-    done = min(tried, key=lambda one: one.cost)
+    done = min(tried, key=lambda item: item.cost)
     free = len(number) - 4
     scatter = max(2 * done.cost / free, LEAST_SCATTER**2) if free else 0.0
     covariance = scatter * pinv(done.jac.T @ done.jac)

@@ -40,8 +40,9 @@ def study_blocks(study: Study, units: Units, file: str) -> Iterator[Block]:
     yield Text(f"{study.size} designs, {sampling.method}{seed}")
     varied = _varied(study, units, own)
     yield Table.of("What varies", ("", "path", "model", "in the study"), varied)
-    for one in study.correlations:
-        yield Text(f"{one.first} goes with {one.second}, coefficient {one.coefficient:g}")
+    for correlation in study.correlations:
+        pair = f"{correlation.first} goes with {correlation.second}"
+        yield Text(f"{pair}, coefficient {correlation.coefficient:g}")
     heads = ("", "of", "model", "at least", "at most", "make")
     yield Table.of("What is computed", heads, _computed(study, units, outcome))
     compiled = getattr(compute, "compiled", False)
@@ -85,12 +86,12 @@ def _about(seconds: float) -> str:
 
 
 def _is_searched(study: Study) -> bool:
-    aimed = bool(study.objectives) and not any(one.spread.tolerance for one in study.vary)
+    aimed = bool(study.objectives) and not any(item.spread.tolerance for item in study.vary)
     return aimed and not lacking("a search")
 
 
 def _is_tolerance(study: Study) -> bool:
-    return all(one.spread.tolerance for one in study.vary)
+    return all(item.spread.tolerance for item in study.vary)
 
 
 def _varied(study: Study, units: Units, own: Array) -> Iterator[tuple[Cell, ...]]:
@@ -113,5 +114,5 @@ def _ready(study: Study, file: str) -> Iterator[str]:
     yield lacking("a sweep") or f"ready for: equipoise sweep {file} -o designs.zarr"
     if _is_tolerance(study):
         yield f"ready for: equipoise tolerance {file}"
-    if study.objectives and not any(one.spread.tolerance for one in study.vary):
+    if study.objectives and not any(item.spread.tolerance for item in study.vary):
         yield lacking("a search") or f"ready for: equipoise search {file}"

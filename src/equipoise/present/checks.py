@@ -153,32 +153,34 @@ def _joints(machine: Machine) -> Iterator[str]:
         yield f"{joint.joint}{radius}{_bearing(joint)}{stiff}{_friction(joint)}"
 
 
-def _bearing(one: JointProperties) -> str:
+def _bearing(properties: JointProperties) -> str:
     """The bearing in a pin, plain or rolling."""
-    plain = "" if one.width is None else f", width {_length(one.width)}"
-    if (rolling := one.bearing) is None:
+    plain = "" if properties.width is None else f", width {_length(properties.width)}"
+    if (rolling := properties.bearing) is None:
         return plain
     wanted = "" if rolling.life is None else f", for {told(rolling.life, 'time', 'h')}"
     rating = told(rolling.dynamic_rating, "force")
     return f"{plain}, {rolling.kind} bearing of {rating}{wanted}"
 
 
-def _friction(one: JointProperties) -> str:
+def _friction(properties: JointProperties) -> str:
     """What a joint resists its motion with; a coefficient that is unusual is asked about."""
     text = ""
-    if one.friction is not None:
-        asked = " (is it meant? dry steel on steel has 0.2)" if one.friction > UNUSUAL else ""
-        text += f", friction {number(one.friction)}{asked}"
-    if one.static_friction is not None and one.stribeck_speed is not None:
-        speed = told(one.stribeck_speed, "speed", "m/s")
-        text += f", {number(one.static_friction)} at rest (Stribeck speed {speed})"
-    if one.guide_length is not None:
-        text += f", guide of {_length(one.guide_length)}"
+    if properties.friction is not None:
+        asked = (
+            " (is it meant? dry steel on steel has 0.2)" if properties.friction > UNUSUAL else ""
+        )
+        text += f", friction {number(properties.friction)}{asked}"
+    if properties.static_friction is not None and properties.stribeck_speed is not None:
+        speed = told(properties.stribeck_speed, "speed", "m/s")
+        text += f", {number(properties.static_friction)} at rest (Stribeck speed {speed})"
+    if properties.guide_length is not None:
+        text += f", guide of {_length(properties.guide_length)}"
     sizes: list[tuple[str, float, Dimension]] = [
-        ("damping", one.damping, "damping"),
-        ("damping", one.torsional_damping, "torsional damping"),
-        ("drag", one.drag_force, "force"),
-        ("drag", one.drag_torque, "torque"),
+        ("damping", properties.damping, "damping"),
+        ("damping", properties.torsional_damping, "torsional damping"),
+        ("drag", properties.drag_force, "force"),
+        ("drag", properties.drag_torque, "torque"),
     ]
     return text + "".join(f", {what} {told(size, kind)}" for what, size, kind in sizes if size)
 

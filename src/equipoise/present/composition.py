@@ -76,7 +76,7 @@ BEHIND = ("sources", "settings")
 
 
 def build(
-    found: Findings | ToolFindings,
+    findings: Findings | ToolFindings,
     language: str = "en",
     command: str = "",
     together: bool = False,
@@ -90,24 +90,24 @@ def build(
     ------
     UsageError : the analysis does not cover whole turns; errors of it otherwise.
     """
-    with speaking(language), in_own_words(found.owner):
-        if isinstance(found, ToolFindings):
-            of_tool = _of_tool(found, language, command)
+    with speaking(language), in_own_words(findings.owner):
+        if isinstance(findings, ToolFindings):
+            of_tool = _of_tool(findings, language, command)
         else:
-            check_whole_cycle(found)
-            of_tool = _of_linkage(found, language, command, together)
+            check_whole_cycle(findings)
+            of_tool = _of_linkage(findings, language, command, together)
         return replace(of_tool, units=chosen_units())
 
 
-def _of_linkage(found: Findings, language: str, command: str, together: bool) -> ReportDocument:
-    machine, analysis = found.machine, found.analysis
-    drawn = drawings(found, together)
+def _of_linkage(findings: Findings, language: str, command: str, together: bool) -> ReportDocument:
+    machine, analysis = findings.machine, findings.analysis
+    drawn = drawings(findings, together)
     blocks: Parts = {"model": [*drawn.get("model", []), *model_blocks(machine)]}
     blocks["motion"] = [*drawn.get("motion", []), *_details(motion_blocks(analysis))]
     blocks["motion"] += [*cam_blocks(analysis), *elements_tables(analysis)]
-    if found.planting is not None:
-        blocks["planting"] = [*drawn.get("planting", []), *planting_blocks(found.planting)]
-    later = found.after
+    if findings.planting is not None:
+        blocks["planting"] = [*drawn.get("planting", []), *planting_blocks(findings.planting)]
+    later = findings.after
     if analysis.solved is not None:
         again = None if later is None else later.analysis
         blocks["forces"] = [
@@ -115,16 +115,16 @@ def _of_linkage(found: Findings, language: str, command: str, together: bool) ->
             *_details(_with_after(force_blocks, analysis, again)),
         ]
         blocks["joints"] = [*drawn.get("joints", []), *_with_after(_joints, analysis, again)]
-    if found.response is not None:
+    if findings.response is not None:
         response = None if later is None else later.response
         blocks["vibration"] = [*drawn.get("vibration", []), *drawn.get("modes", [])]
-        blocks["vibration"] += _with_after(response_blocks, found.response, response)
-        if found.sweep is not None and found.sweep.resonances:
-            blocks["vibration"].append(resonances_table(found.sweep))
-    if found.balanced is not None:
-        blocks["balance"] = [*balance_blocks(found), *drawn.get("balance", [])]
-    seens = {name: seen_in(name, found) for name in blocks}
-    summary = tuple(answers(found))
+        blocks["vibration"] += _with_after(response_blocks, findings.response, response)
+        if findings.sweep is not None and findings.sweep.resonances:
+            blocks["vibration"].append(resonances_table(findings.sweep))
+    if findings.balanced is not None:
+        blocks["balance"] = [*balance_blocks(findings), *drawn.get("balance", [])]
+    seens = {name: seen_in(name, findings) for name in blocks}
+    summary = tuple(answers(findings))
     if "balance" in blocks:
         blocks["balance"] = [*_not_said(blocks["balance"], summary)]
     return ReportDocument(
@@ -132,12 +132,12 @@ def _of_linkage(found: Findings, language: str, command: str, together: bool) ->
         said(machine.title),
         driven(machine, analysis.motion.speed),
         said(machine.description),
-        tuple(tiles(found)),
+        tuple(tiles(findings)),
         summary,
-        _animation(found),
-        *_sections(found, blocks, seens, _settings_of_linkage(found), command),
+        _animation(findings),
+        *_sections(findings, blocks, seens, _settings_of_linkage(findings), command),
         lead="" if later is None else say(AFTER),
-        verdict=next(_verdict(found), None),
+        verdict=next(_verdict(findings), None),
         drawing=_first_picture(blocks["model"]),
     )
 
@@ -152,10 +152,10 @@ def _not_said(
             yield block
 
 
-def _verdict(found: Findings) -> Iterator[Text]:
+def _verdict(findings: Findings) -> Iterator[Text]:
     """By what a machine is judged first: on its support by what the gauges read, too."""
-    readings = None if found.response is None else found.response.gauges
-    return verdict_blocks(found.analysis, readings)
+    readings = None if findings.response is None else findings.response.gauges
+    return verdict_blocks(findings.analysis, readings)
 
 
 def _joints(analysis: Analysis) -> Iterator[Block]:
@@ -171,39 +171,39 @@ def _with_after(
     return text if after is None else beside(text, blocks(after))
 
 
-def balance_blocks(found: Findings) -> Iterator[Block]:
+def balance_blocks(findings: Findings) -> Iterator[Block]:
     """What may be changed, what is to be changed, and every figure before and after."""
-    balanced = found.balanced
+    balanced = findings.balanced
     assert balanced is not None
-    if found.helped or balanced.advice is not None:
+    if findings.helped or balanced.advice is not None:
         yield from outcome_blocks(balanced)
     else:
         yield from map(Text, nothing_told(balanced))
 
 
-def _of_tool(found: ToolFindings, language: str, command: str) -> ReportDocument:
-    blocks: list[Block | ReportSection] = [*drawings(found).get("tool", [])]
-    if found.design is not None:
-        blocks.extend(design_blocks(found.design))
-    if found.exposure is not None:
-        blocks.extend(exposure_of_tool(found.exposure))
-    if found.modes is not None:
-        blocks.extend(_details(of_tools.modes_blocks(found.modes)))
+def _of_tool(findings: ToolFindings, language: str, command: str) -> ReportDocument:
+    blocks: list[Block | ReportSection] = [*drawings(findings).get("tool", [])]
+    if findings.design is not None:
+        blocks.extend(design_blocks(findings.design))
+    if findings.exposure is not None:
+        blocks.extend(exposure_of_tool(findings.exposure))
+    if findings.modes is not None:
+        blocks.extend(_details(of_tools.modes_blocks(findings.modes)))
     subtitle = ""
-    if found.tool.operation is not None:
-        rpm = number(found.tool.operation.speed / PER_RPM)
+    if findings.tool.operation is not None:
+        rpm = number(findings.tool.operation.speed / PER_RPM)
         subtitle = say("hand-held tool, engine at {speed} rpm", speed=rpm)
-    named: Parts = {"model": [*of_tools.model_blocks(found.tool)], "tool": blocks}
+    named: Parts = {"model": [*of_tools.model_blocks(findings.tool)], "tool": blocks}
     return ReportDocument(
         language,
-        said(found.tool.title),
+        said(findings.tool.title),
         subtitle,
-        said(found.tool.description),
-        tuple(tool_tiles(found)),
-        tuple(tool_answers(found)),
+        said(findings.tool.description),
+        tuple(tool_tiles(findings)),
+        tuple(tool_answers(findings)),
         "",
-        *_sections(found, named, {"tool": judged(found)}, (), command),
-        verdict=None if found.exposure is None else _first_text(found.exposure.headline()),
+        *_sections(findings, named, {"tool": judged(findings)}, (), command),
+        verdict=None if findings.exposure is None else _first_text(findings.exposure.headline()),
         drawing=_first_picture(blocks),
     )
 
@@ -223,7 +223,7 @@ def _first_text(blocks: Iterable[Block | ReportSection]) -> Text | None:
 
 
 def _sections(
-    found: Findings | ToolFindings,
+    findings: Findings | ToolFindings,
     blocks: Parts,
     seen: Mapping[str, str],
     settings: Iterable[str],
@@ -234,12 +234,12 @@ def _sections(
     seen : what is seen in a section, by its name.
     """
     template = to_say("Made by Equipoise {version} from {file}")
-    made = say(template, version=equipoise.__version__, file=found.file)
-    asked = (*found.notes, *questions_of(found))
+    made = say(template, version=equipoise.__version__, file=findings.file)
+    asked = (*findings.notes, *questions_of(findings))
     notes = [Notes(asked)] if asked else []
     again = [FileText(say("Command"), command)] if command else []  # as it is, to be copied
     last: Parts = {
-        "sources": [Facts("", tuple(sources(found)))],
+        "sources": [Facts("", tuple(sources(findings)))],
         "settings": [Facts("", (*settings, made)), *notes, *again],
     }
     sections, appendix = [], []
@@ -250,8 +250,8 @@ def _sections(
             sections.append(ReportSection(name, title, tuple(short), seen.get(name, "")))
         if long:
             appendix.append(ReportSection(name, title, tuple(long)))
-    if found.text:
-        listing = FileText(found.file, found.text)
+    if findings.text:
+        listing = FileText(findings.file, findings.text)
         appendix.append(ReportSection("file", say(TITLES["file"]), (listing,)))
     return tuple(sections), tuple(appendix)
 
@@ -271,45 +271,45 @@ def parted(
     return short, long
 
 
-def _animation(found: Findings) -> str:
+def _animation(findings: Findings) -> str:
     from equipoise.figures.animation import animated_svg
     from equipoise.figures.points import followed
     from equipoise.figures.stage import ForceArrow
     from equipoise.symbols.scene import Scene
 
-    analysis = found.analysis
+    analysis = findings.analysis
     scene = Scene.of(analysis.motion).with_rows(analysis.motion)
-    if found.response is not None:
+    if findings.response is not None:
         from equipoise.figures.swing import swinging
 
-        scene = swinging(scene, found.response)
+        scene = swinging(scene, findings.response)
     return animated_svg(
         scene,
-        title=found.machine.title,
+        title=findings.machine.title,
         traced=followed(analysis.motion),
         arrow=None if analysis.solved is None else ForceArrow.of(analysis),
         width=440,  # as wide as it stands on the page, so that its texts have their size
     )
 
 
-def _settings_of_linkage(found: Findings) -> Iterator[str]:
-    motion = found.analysis.motion
-    yield angles_told(found.analysis)
+def _settings_of_linkage(findings: Findings) -> Iterator[str]:
+    motion = findings.analysis.motion
+    yield angles_told(findings.analysis)
     if motion.acceleration:
         yield say("Crank acceleration {value} rad/s²", value=number(motion.acceleration))
-    gravity = coordinates(number(part) for part in found.machine.gravity)
+    gravity = coordinates(number(part) for part in findings.machine.gravity)
     yield say("Gravity ({value}) m/s²", value=gravity)
-    if found.response is not None:
-        yield model_told(found.response.model)
-    if found.balanced is not None:
-        yield say("Balanced by: {method}", method=said(found.balanced.method))
+    if findings.response is not None:
+        yield model_told(findings.response.model)
+    if findings.balanced is not None:
+        yield say("Balanced by: {method}", method=said(findings.balanced.method))
 
 
-def questions_of(found: Findings | ToolFindings) -> tuple[Note | str, ...]:
+def questions_of(findings: Findings | ToolFindings) -> tuple[Note | str, ...]:
     """What may not be meant as the file of a linkage gives it."""
-    if isinstance(found, ToolFindings):
+    if isinstance(findings, ToolFindings):
         return ()
-    blocks = question_blocks(found.analysis)
+    blocks = question_blocks(findings.analysis)
     return tuple(note for block in blocks if isinstance(block, Notes) for note in block.notes)
 
 
@@ -359,12 +359,12 @@ def report(
     write_document(build(result, language, command, together=True), outs)
 
 
-def report_page(found: Findings | ToolFindings, language: str = "en", command: str = "") -> str:
+def report_page(findings: Findings | ToolFindings, language: str = "en", command: str = "") -> str:
     """A report of findings as HTML, the same text on every run.
 
     Parameters
     ----------
-    found : from `find`.
+    findings : from `find`.
     language : code of one of `equipoise.i18n.LANGUAGES`, such as ``ja``.
     command : that makes it again, told at its end.
 
@@ -372,7 +372,7 @@ def report_page(found: Findings | ToolFindings, language: str = "en", command: s
     ------
     MobilityError, MotionError, UsageError : the linkage cannot be moved.
     """
-    return page(build(found, language, command))
+    return page(build(findings, language, command))
 
 
 def check(outs: Iterable[str | os.PathLike[str]], language: str) -> None:

@@ -22,7 +22,7 @@ Drawings = dict[str, list[SvgPicture]]
 """Pictures by section."""
 
 
-def drawings(found: Findings | ToolFindings, together: bool = False) -> Drawings:
+def drawings(findings: Findings | ToolFindings, together: bool = False) -> Drawings:
     """All pictures.
 
     together : whether a copy of this process may draw half of them, where there are two processors,
@@ -30,49 +30,49 @@ def drawings(found: Findings | ToolFindings, together: bool = False) -> Drawings
     """
     processors = len(os.sched_getaffinity(0)) if sys.platform == "linux" else 1
     may_fork = together and processors > 1 and threading.active_count() == 1
-    other = _others(found) if may_fork else ()
+    other = _others(findings) if may_fork else ()
     if not other:
-        return _draw(found, SECTIONS)
-    _ = found.notes  # everything that both need is computed once
+        return _draw(findings, SECTIONS)
+    _ = findings.notes  # everything that both need is computed once
     import multiprocessing
 
     context = multiprocessing.get_context("fork")
     here, there = context.Pipe(duplex=False)
-    helper = context.Process(target=_send, args=(there, found, other), daemon=True)
+    helper = context.Process(target=_send, args=(there, findings, other), daemon=True)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DeprecationWarning)  # threads of BLAS can be forked
         helper.start()
     there.close()
     try:
-        drawn = _draw(found, [section for section in SECTIONS if section not in other])
+        drawn = _draw(findings, [section for section in SECTIONS if section not in other])
         of_helper: Drawings = here.recv()
         return drawn | of_helper
     except EOFError:  # the helper failed, and what it failed of is to be told
-        return drawn | _draw(found, other)
+        return drawn | _draw(findings, other)
     finally:
         helper.kill()
         helper.join()
 
 
-def _others(found: Findings | ToolFindings) -> Collection[str]:
+def _others(findings: Findings | ToolFindings) -> Collection[str]:
     """Sections that hold about half of the pictures."""
-    if isinstance(found, ToolFindings):
+    if isinstance(findings, ToolFindings):
         return ()
-    if found.response is not None:
-        return ("vibration",) if found.planting is None else ("vibration", "modes", "balance")
-    return ("motion", "forces") if found.planting is None else ("motion", "planting")
+    if findings.response is not None:
+        return ("vibration",) if findings.planting is None else ("vibration", "modes", "balance")
+    return ("motion", "forces") if findings.planting is None else ("motion", "planting")
 
 
-def _send(pipe: Connection, found: Findings | ToolFindings, sections: Collection[str]) -> None:
+def _send(pipe: Connection, findings: Findings | ToolFindings, sections: Collection[str]) -> None:
     try:
-        pipe.send(_draw(found, sections))
+        pipe.send(_draw(findings, sections))
     except BaseException:  # what goes wrong here goes wrong again where it can be told
         pipe.close()
 
 
-def _draw(found: Findings | ToolFindings, sections: Collection[str]) -> Drawings:
+def _draw(findings: Findings | ToolFindings, sections: Collection[str]) -> Drawings:
     drawn: Drawings = {}
-    for picture in each(found, sections=sections):
+    for picture in each(findings, sections=sections):
         chart = picture.draw()
         text = say("; ").join((chart.what, *chart.words))
         svg, wide = svg_of(chart)

@@ -109,12 +109,12 @@ def kinematic(analysis: Analysis, name: str) -> str:
 # -- planting --------------------------------------------------------------------------------------
 
 
-def planted(found: PlantingFigures | None) -> str:
+def planted(figures: PlantingFigures | None) -> str:
     """How deep the finger goes; of several arms the deepest."""
-    if found is None:
+    if figures is None:
         return ""
-    depth = told(max(arm["soil.depth"] for arm in found.arms), "length", digits=3)
-    if found.further:
+    depth = told(max(arm["soil.depth"] for arm in figures.arms), "length", digits=3)
+    if figures.further:
         return say("The tips go up to {depth} into the soil", depth=depth)
     return say("The tip goes {depth} into the soil", depth=depth)
 
@@ -128,10 +128,10 @@ def geared(analysis: Analysis, link: str) -> str:
     )
 
 
-def resisted(found: PlantingFigures) -> str:
+def resisted(figures: PlantingFigures) -> str:
     """What the soil adds to the drive torque."""
-    assert found.forces is not None
-    air, soil = found.forces.compared()["drive_torque"]
+    assert figures.forces is not None
+    air, soil = figures.forces.compared()["drive_torque"]
     before, after = (told(item.peak, "torque", digits=3) for item in (air, soil))
     text = to_say("Drive torque: up to {before} in the air, {after} in the soil")
     return say(text, before=before, after=after)
@@ -140,19 +140,19 @@ def resisted(found: PlantingFigures) -> str:
 # -- forces ----------------------------------------------------------------------------------------
 
 
-def shaken(found: Findings) -> str:
+def shaken(findings: Findings) -> str:
     """How much shakes the frame."""
-    size = Shaking.of(found).size
+    size = Shaking.of(findings).size
     if not size.peak:
         return say("No force shakes the frame")
-    unit = display_of_totals(found.analysis, "force")
+    unit = display_of_totals(findings.analysis, "force")
     peak = unit.with_unit(unit.text(size.peak, digits=3))
     return say("Up to {peak} shakes the frame", peak=peak)
 
 
-def pushed(found: Findings) -> str:
+def pushed(findings: Findings) -> str:
     """In which way the shaking force of all rows acts."""
-    force = Shaking.of(found).force
+    force = Shaking.of(findings).force
     return acting(force) if np.any(force) else ""
 
 
@@ -165,13 +165,13 @@ def peaked(analysis: Analysis, name: str, dimension: Dimension) -> str:
     return topped(what, item, display_of_totals(analysis, dimension))
 
 
-def topped(what: str, found: Figures, unit: Display) -> str:
+def topped(what: str, figures: Figures, unit: Display) -> str:
     """The value of something whose absolute value is largest, and at which crank angle."""
     return say(
         "{what}: up to {peak}, at crank angle {angle}",
         what=capital(what),
-        peak=unit.with_unit(unit.text(found.signed_peak, digits=3)),
-        angle=angle(found.peak_at),
+        peak=unit.with_unit(unit.text(figures.signed_peak, digits=3)),
+        angle=angle(figures.peak_at),
     )
 
 
@@ -196,9 +196,9 @@ def caused(analysis: Analysis, number: int = 1) -> str:
     return say(of_force if drive.pushes else of_row if several else of_torque, **values)
 
 
-def ordered(found: Findings) -> str:
+def ordered(findings: Findings) -> str:
     """The loudest order of the shaking force."""
-    order, share = Shaking.of(found).loudest
+    order, share = Shaking.of(findings).loudest
     if not share:
         return ""
     text = to_say("{share} % of the shaking force is order {order}")
@@ -233,20 +233,20 @@ def joint_acting(analysis: Analysis) -> str:
 # -- balancing -------------------------------------------------------------------------------------
 
 
-def aimed(found: Findings) -> str:
+def aimed(findings: Findings) -> str:
     """What balancing does to the first of what was to become small."""
-    balanced = found.balanced
+    balanced = findings.balanced
     assert balanced is not None
     item, pair = next(iter(balanced.aims.items()))
-    what = capital(objective_named(item, len(found.machine.rows)))
-    if not found.helped:
+    what = capital(objective_named(item, len(findings.machine.rows)))
+    if not findings.helped:
         return f"{what}: {good_already(balanced)}"
     return say("{what}: {change}", what=what, change=change(*pair) or percent(0))
 
 
-def added(found: Findings) -> str:
+def added(findings: Findings) -> str:
     """What the changes do to the mass of the links."""
-    balanced = found.balanced
+    balanced = findings.balanced
     assert balanced is not None
     more = told(balanced.added_mass, "mass", digits=3)
     return say("{mass} of mass is added", mass=more) if balanced.added_mass > 0 else ""
@@ -261,16 +261,16 @@ COMPARED = {
 """Picture of before and after -> the figure that its line tells."""
 
 
-def compared(found: Findings, picture: str) -> str:
+def compared(findings: Findings, picture: str) -> str:
     """A figure before and after."""
-    balanced, name = found.balanced, COMPARED.get(picture, "")
+    balanced, name = findings.balanced, COMPARED.get(picture, "")
     if picture == "torque":
-        name = f"{found.machine.drive.effort}.rms"
+        name = f"{findings.machine.drive.effort}.rms"
     assert balanced is not None
     if name not in balanced.before:
         return ""
     pair = balanced.before[name], balanced.after[name]
-    what = figure_named(name, len(found.machine.rows))
+    what = figure_named(name, len(findings.machine.rows))
     return _changed(what, pair, figure_unit(balanced, name))
 
 
@@ -297,16 +297,16 @@ def _changed(what: str, pair: tuple[float, float], si_unit: str) -> str:
 # -- parts -----------------------------------------------------------------------------------------
 
 
-def seen_in(part: str, found: Findings) -> str:
+def seen_in(part: str, findings: Findings) -> str:
     """The line of a part of the report, by its name."""
-    analysis = found.analysis
+    analysis = findings.analysis
     lines: dict[str, Callable[[], str]] = {
         "model": lambda: counted(analysis),
         "motion": lambda: stroked(analysis),
-        "planting": lambda: planted(found.planting),
-        "forces": lambda: shaken(found),
+        "planting": lambda: planted(findings.planting),
+        "forces": lambda: shaken(findings),
         "joints": lambda: carried(analysis),
-        "vibration": lambda: first_gauge(found.response),
-        "balance": lambda: aimed(found),
+        "vibration": lambda: first_gauge(findings.response),
+        "balance": lambda: aimed(findings),
     }
     return lines[part]()

@@ -172,9 +172,9 @@ class _Column:
         return f"{shown}{blank}{end}" if self.words else f"{blank}{shown}{end}"
 
 
-def _columns(told: Grid, room: int, looks: Looks) -> Iterator[_Column]:
-    for place, head in enumerate(told.heads):
-        cells, words = [row[place] for row in told.rows], told.is_words(place)
+def _columns(grid: Grid, room: int, looks: Looks) -> Iterator[_Column]:
+    for place, head in enumerate(grid.heads):
+        cells, words = [row[place] for row in grid.rows], grid.is_words(place)
         tails = [looks.word(cell.emphasis, cell.limit) for cell in cells]
         texts = [*_aligned(cells)]
         if words:
@@ -201,36 +201,36 @@ def _aligned(cells: Sequence[CellText]) -> Iterator[str]:
 # -- tables ----------------------------------------------------------------------------------------
 
 
-def table_lines(told: Grid, room: int, looks: Looks) -> list[list[str]]:
+def table_lines(grid: Grid, room: int, looks: Looks) -> list[list[str]]:
     """Lines of a table, in as few parts as the places of a line ask for; one that is longer than
     high is rather turned.
     """
-    parts = _laid_out(told, room, looks)
-    if len(parts) > 1 and len(told.rows) < len(told.heads):
-        turned = _laid_out(_turned(told), room, looks)
+    parts = _laid_out(grid, room, looks)
+    if len(parts) > 1 and len(grid.rows) < len(grid.heads):
+        turned = _laid_out(_turned(grid), room, looks)
         return turned if len(turned) == 1 else parts
     return parts
 
 
-def _turned(told: Grid) -> Grid:
+def _turned(grid: Grid) -> Grid:
     """A table whose rows are columns."""
-    first, comma = told.leading, say(", ")
-    names = (comma.join(cell.text for cell in row[:first] if cell.text) for row in told.rows)
-    labels = [comma.join(filter(None, (head.label, _units(head)))) for head in told.heads]
+    first, comma = grid.leading, say(", ")
+    names = (comma.join(cell.text for cell in row[:first] if cell.text) for row in grid.rows)
+    labels = [comma.join(filter(None, (head.label, _units(head)))) for head in grid.heads]
     rows = tuple(
-        (CellText(label), *(row[place] for row in told.rows))
+        (CellText(label), *(row[place] for row in grid.rows))
         for place, label in enumerate(labels)
         if place >= first
     )
     corner = comma.join(filter(None, labels[:first]))
-    return Grid(told.title, (Head(corner), *map(Head, names)), rows)
+    return Grid(grid.title, (Head(corner), *map(Head, names)), rows)
 
 
-def _laid_out(told: Grid, room: int, looks: Looks) -> list[list[str]]:
+def _laid_out(grid: Grid, room: int, looks: Looks) -> list[list[str]]:
     """Lines of a table's parts, each of which begins with what tells the rows."""
-    columns = [*_columns(told, room, looks)]
-    parts = _parts(columns, told.leading, room)
-    return [[*_lines(part, len(told.rows), looks)] for part in parts]
+    columns = [*_columns(grid, room, looks)]
+    parts = _parts(columns, grid.leading, room)
+    return [[*_lines(part, len(grid.rows), looks)] for part in parts]
 
 
 def _parts(columns: Sequence[_Column], first: int, room: int) -> list[list[_Column]]:

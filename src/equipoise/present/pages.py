@@ -138,7 +138,7 @@ def inlined(svg: str, name: str, title: str) -> str:
     body = body.replace("xlink:href", "href")
     body = _FAMILY.sub("", body)
     used = set(_USED.findall(body))
-    body = _NAME.sub(lambda found: f' id="{name}-{found[1]}"' if found[1] in used else "", body)
+    body = _NAME.sub(lambda result: f' id="{name}-{result[1]}"' if result[1] in used else "", body)
     body = body.replace("url(#", f"url(#{name}-").replace('href="#', f'href="#{name}-')
     body = _COLOR.sub(lambda found: colored(found[0]), body)
     width, height = re.findall(r'viewBox="0 0 ([0-9.]+) ([0-9.]+)"', head)[0]
@@ -222,13 +222,13 @@ def _runs(
         yield kind, list(members)
 
 
-def paired(drawn: Iterable[SvgPicture]) -> list[list[SvgPicture]]:
+def paired(pictures: Iterable[SvgPicture]) -> list[list[SvgPicture]]:
     """Pictures in rows: two of half a page's width each, or a wide one; in their order but for
     wide ones, which do not part two that stand side by side.
     """
     rows: list[list[SvgPicture]] = []
     waiting: list[SvgPicture] = []
-    for item in drawn:
+    for item in pictures:
         row = [item] if item.wide else [*waiting, item]
         if item.wide or len(row) == 2:
             rows.append(row)

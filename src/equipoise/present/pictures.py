@@ -43,17 +43,17 @@ class LazyPicture:
 
 
 def pictures(
-    found: Findings | ToolFindings, at: Sequence[float] | None = None
+    findings: Findings | ToolFindings, at: Sequence[float] | None = None
 ) -> list[LazyPicture]:
     """All of them, in the order of `SECTIONS`.
 
     at : crank angles at which the linkage is drawn, rad; usual ones if None.
     """
-    return list(each(found, at))
+    return list(each(findings, at))
 
 
 def each(
-    found: Findings | ToolFindings,
+    findings: Findings | ToolFindings,
     at: Sequence[float] | None = None,
     sections: Collection[str] = SECTIONS,
 ) -> Iterator[LazyPicture]:
@@ -61,11 +61,11 @@ def each(
     from equipoise.figures.style import free_name
 
     parts: dict[str, Callable[[Any], Iterator[PictureEntry]]] = {"tool": of_tool}
-    if isinstance(found, Findings):
+    if isinstance(findings, Findings):
         parts = {"model": partial(_model, at=at), **OF_LINKAGE}
     taken: dict[str, None] = {}
     for section in (name for name in parts if name in sections):
-        for entry in parts[section](found):
+        for entry in parts[section](findings):
             own = free_name(entry.name, taken)
             taken[own] = None
             yield LazyPicture(own, section, *entry[1:])
@@ -74,25 +74,25 @@ def each(
 # -- of a linkage; nothing of what it does not have ------------------------------------------------
 
 
-def _model(found: Findings, at: Sequence[float] | None) -> Iterator[PictureEntry]:
+def _model(findings: Findings, at: Sequence[float] | None) -> Iterator[PictureEntry]:
     from equipoise.figures.linkage import linkage
     from equipoise.figures.side import side
 
     caption = to_say("The linkage to scale, with its joints, links and centres of mass.")
-    draw = partial(linkage, found.analysis, at)
-    value = partial(seen.heaviest, found.analysis)
+    draw = partial(linkage, findings.analysis, at)
+    value = partial(seen.heaviest, findings.analysis)
     yield PictureEntry("linkage", caption, draw, value, True)
-    if found.analysis.machine.has_planes:
+    if findings.analysis.machine.has_planes:
         caption = to_say("The planes of links, masses and bearings, from the side and to scale.")
-        yield PictureEntry("side", caption, partial(side, found.analysis, at))
+        yield PictureEntry("side", caption, partial(side, findings.analysis, at))
 
 
-def _motion(found: Findings) -> Iterator[PictureEntry]:
+def _motion(findings: Findings) -> Iterator[PictureEntry]:
     from equipoise.figures.couplings import ratios
     from equipoise.figures.linkage import centrodes, rolling
     from equipoise.figures.points import curves, hodograph, main_kinematics
 
-    analysis = found.analysis
+    analysis = findings.analysis
     caption = to_say("Paths of the points of the moving links, with marks at equal times.")
     yield PictureEntry(
         "curves", caption, partial(curves, analysis), partial(seen.longest, analysis)
@@ -114,8 +114,8 @@ def _motion(found: Findings) -> Iterator[PictureEntry]:
         yield PictureEntry(chart.name, caption, partial(made, chart), detail=True)
 
 
-def _planting(found: Findings) -> Iterator[PictureEntry]:
-    figures = found.planting
+def _planting(findings: Findings) -> Iterator[PictureEntry]:
+    figures = findings.planting
     if figures is None:
         return
     from equipoise.figures.path import path
@@ -130,7 +130,7 @@ def _planting(found: Findings) -> Iterator[PictureEntry]:
                 f"ratio-{link}",
                 caption,
                 partial(ratio, figures, link),
-                partial(seen.geared, found.analysis, link),
+                partial(seen.geared, findings.analysis, link),
                 detail=True,
             )
     caption = to_say("Velocity and acceleration of the finger's tip relative to the machine.")
@@ -145,15 +145,15 @@ def _planting(found: Findings) -> Iterator[PictureEntry]:
         yield PictureEntry("soil-joints", caption, partial(joints, figures), detail=True)
 
 
-def _forces(found: Findings) -> Iterator[PictureEntry]:
-    analysis = found.analysis
+def _forces(findings: Findings) -> Iterator[PictureEntry]:
+    analysis = findings.analysis
     if analysis.solved is None:
         return
     from equipoise.figures import forces
 
     caption = to_say("Shaking force as a polar diagram: the end of its arrow over the cycle.")
     yield PictureEntry(
-        "polar", caption, partial(forces.polar, analysis), partial(seen.pushed, found), True
+        "polar", caption, partial(forces.polar, analysis), partial(seen.pushed, findings), True
     )
     caption = to_say("Shaking force over crank angle.")
     yield PictureEntry(
@@ -191,42 +191,42 @@ def _forces(found: Findings) -> Iterator[PictureEntry]:
             "spectrum",
             caption,
             partial(forces.spectrum, analysis),
-            partial(seen.ordered, found),
+            partial(seen.ordered, findings),
             detail=True,
         )
 
 
-def _joints(found: Findings) -> Iterator[PictureEntry]:
-    if found.analysis.solved is None or not found.analysis.forces.joints:
+def _joints(findings: Findings) -> Iterator[PictureEntry]:
+    if findings.analysis.solved is None or not findings.analysis.forces.joints:
         return
     from equipoise.figures.analysis import joint_polars, joints
     from equipoise.figures.couplings import strands
 
     caption = to_say("Tension of the strands of belts over crank angle.")
-    for chart in strands(found.analysis):
+    for chart in strands(findings.analysis):
         yield PictureEntry(chart.name, caption, partial(made, chart), detail=True)
     caption = to_say("Forces in the joints over crank angle.")
     yield from pages(
         "joints",
         caption,
-        partial(joints, found.analysis),
-        partial(seen.joint_peaked, found.analysis),
+        partial(joints, findings.analysis),
+        partial(seen.joint_peaked, findings.analysis),
         detail=True,
     )
     caption = to_say("Forces in the joints as polar diagrams: the ends of their arrows.")
     yield from pages(
         "joint-polars",
         caption,
-        partial(joint_polars, found.analysis),
-        partial(seen.joint_acting, found.analysis),
+        partial(joint_polars, findings.analysis),
+        partial(seen.joint_acting, findings.analysis),
         detail=True,
     )
 
 
-def _vibration(found: Findings) -> Iterator[PictureEntry]:
+def _vibration(findings: Findings) -> Iterator[PictureEntry]:
     from equipoise.figures import sweep, vibration
 
-    if (response := found.response) is not None:
+    if (response := findings.response) is not None:
         caption = to_say("Vibration at a gauge of the support over a cycle.")
         for number, name in enumerate(response.gauges):
             yield PictureEntry(
@@ -260,7 +260,7 @@ def _vibration(found: Findings) -> Iterator[PictureEntry]:
             partial(gauged.driven, response),
             detail=True,
         )
-    if (over_speed := found.sweep) is not None:
+    if (over_speed := findings.sweep) is not None:
         caption = to_say("Vibration at the gauges against speed.")
         for quantity in ("displacement", "velocity", "acceleration"):
             yield PictureEntry(
@@ -275,7 +275,7 @@ def _vibration(found: Findings) -> Iterator[PictureEntry]:
             "resonance-map",
             caption,
             partial(sweep.resonance_map, over_speed),
-            partial(gauged.met, over_speed, found.machine.drive.speed),
+            partial(gauged.met, over_speed, findings.machine.drive.speed),
             detail=True,
         )
         if over_speed.mounts:
@@ -284,24 +284,24 @@ def _vibration(found: Findings) -> Iterator[PictureEntry]:
             yield PictureEntry("mounts-speed", caption, draw, detail=True)
 
 
-def _modes(found: Findings) -> Iterator[PictureEntry]:
+def _modes(findings: Findings) -> Iterator[PictureEntry]:
     from equipoise.figures.modes import mode_chart
 
-    if found.modes is not None:
+    if findings.modes is not None:
         caption = to_say("Shape of a natural vibration of the machine on its support.")
-        for number in range(1, len(found.modes.modes) + 1):
+        for number in range(1, len(findings.modes.modes) + 1):
             yield PictureEntry(
                 f"mode-{number}",
                 caption,
-                partial(mode_chart, found.modes, number),
-                partial(gauged.swung, found.modes, number),
+                partial(mode_chart, findings.modes, number),
+                partial(gauged.swung, findings.modes, number),
                 detail=True,
             )
 
 
-def _balance(found: Findings) -> Iterator[PictureEntry]:
-    balanced = found.balanced
-    if balanced is None or not found.helped:
+def _balance(findings: Findings) -> Iterator[PictureEntry]:
+    balanced = findings.balanced
+    if balanced is None or not findings.helped:
         return
     from equipoise.figures.aims import aims
     from equipoise.figures.balancing import phases, signals, together
@@ -310,7 +310,7 @@ def _balance(found: Findings) -> Iterator[PictureEntry]:
     of_linkage = any(change.kind != "phases" for change in balanced.changes)
     if of_linkage:
         caption, draw = to_say("What to change, to scale."), partial(changes, balanced)
-        yield PictureEntry("changes", caption, draw, partial(seen.added, found))
+        yield PictureEntry("changes", caption, draw, partial(seen.added, findings))
     caption = to_say("What was made small or limited, before and after, by crank angle and order.")
     yield from pages("aims", caption, partial(aims, balanced), partial(seen.reached, balanced))
     if of_linkage:
@@ -327,7 +327,7 @@ def _balance(found: Findings) -> Iterator[PictureEntry]:
                 f"balanced-{name}",
                 captions[name],
                 partial(made, chart),
-                partial(seen.compared, found, name),
+                partial(seen.compared, findings, name),
                 detail=True,
             )
     if balanced.phasing is not None:
@@ -335,7 +335,11 @@ def _balance(found: Findings) -> Iterator[PictureEntry]:
         yield PictureEntry("phases", to_say("Phases of the rows."), partial(phases, *both))
         caption = to_say("Shaking force of all rows together, before and after.")
         yield PictureEntry(
-            "rows", caption, partial(together, *both), partial(seen.compared, found, "rows"), True
+            "rows",
+            caption,
+            partial(together, *both),
+            partial(seen.compared, findings, "rows"),
+            True,
         )
 
 

@@ -37,16 +37,16 @@ class Shaking:
     force: Array
 
     @classmethod
-    def of(cls, found: Findings) -> Shaking:
+    def of(cls, findings: Findings) -> Shaking:
         """From the analysis; what is rounding is 0."""
-        analysis = found.analysis.resolved
+        analysis = findings.analysis.resolved
         force = analysis.together.get("shaking_force", analysis.forces.shaking_force.value)
         parts = analysis.forces.split.by_link("shaking_force").values()
         beside = max(float(np.max(np.abs(part))) for part in parts)
         beside = max(beside, analysis.summary["frame_force"].peak)
         if np.max(np.abs(force)) <= NOTHING * beside:
             force = np.zeros_like(force)
-        return cls(found.machine, analysis.motion, force)
+        return cls(findings.machine, analysis.motion, force)
 
     @cached_property
     def size(self) -> Figures:

@@ -38,15 +38,15 @@ USED = {
 }
 
 
-def sources(found: Findings | ToolFindings) -> Iterator[str]:
+def sources(findings: Findings | ToolFindings) -> Iterator[str]:
     """What was used, a line each."""
-    if isinstance(found, ToolFindings):
+    if isinstance(findings, ToolFindings):
         yield say(USED["shaft"], source=NAGAMINE_IRIE)
-        if found.exposure is not None:
+        if findings.exposure is not None:
             yield say(USED["hands"], source=f"{ISO_5349}; {DIRECTIVE}; {ISO_22867}")
         return
-    if found.analysis.solved is not None:
+    if findings.analysis.solved is not None:
         yield say(USED["force"], source=YAMASHITA)
         yield say(USED["moment"], source=LEE_KIM)
-    if found.planting is not None:
+    if findings.planting is not None:
         yield say(USED["planting"], source=KIM_CHUNG)

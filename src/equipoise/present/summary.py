@@ -38,38 +38,38 @@ LEADING = 0.5
 """Share of the mean square from which one order is told as the whole."""
 
 
-def answers(found: Findings) -> Iterator[SummaryAnswer]:
+def answers(findings: Findings) -> Iterator[SummaryAnswer]:
     """The summary, a question at a time; what the file does not tell is left out."""
-    if found.analysis.solved is None:
+    if findings.analysis.solved is None:
         missing = say("Forces are not computed, because masses of links are missing.")
         yield SummaryAnswer(say("What shakes"), (missing,))
     else:
-        shaking = Shaking.of(found)
-        yield SummaryAnswer(say("What shakes, and how much"), tuple(_shaken(found, shaking)))
-        yield SummaryAnswer(say("Why"), tuple(_why(found)))
-        if found.balanced is not None:
-            worse = tuple(worse_told(found.balanced)) if found.helped else ()
-            yield SummaryAnswer(say("What helps most"), tuple(helps_told(found.balanced)), worse)
-    if vibration := tuple(vibration_told(found)):
+        shaking = Shaking.of(findings)
+        yield SummaryAnswer(say("What shakes, and how much"), tuple(_shaken(findings, shaking)))
+        yield SummaryAnswer(say("Why"), tuple(_why(findings)))
+        if findings.balanced is not None:
+            worse = tuple(worse_told(findings.balanced)) if findings.helped else ()
+            yield SummaryAnswer(say("What helps most"), tuple(helps_told(findings.balanced)), worse)
+    if vibration := tuple(vibration_told(findings)):
         yield SummaryAnswer(say("What that does to the support"), vibration)
-    if planting := tuple(planting_told(found)):
+    if planting := tuple(planting_told(findings)):
         yield SummaryAnswer(say("Planting"), planting)
 
 
-def tiles(found: Findings) -> Iterator[Tile]:
+def tiles(findings: Findings) -> Iterator[Tile]:
     """The figures that are seen at once, before and after the change that helps most."""
-    analysis, later = found.analysis, found.after
-    yield _pace(found)
+    analysis, later = findings.analysis, findings.after
+    yield _pace(findings)
     if analysis.solved is None:
         return
-    size = Shaking.of(found).size
+    size = Shaking.of(findings).size
     after = None if later is None else Shaking.of(later).size.peak
     note = _at(size.peak_at) if size.peak else ""
     force = display_of_totals(analysis, "force")
-    template = to_say("all rows: {what}") if len(found.machine.rows) > 1 else "{what}"
+    template = to_say("all rows: {what}") if len(findings.machine.rows) > 1 else "{what}"
     label = say(template, what=say("shaking force, peak"))
     yield _tile(label, size.peak, force, note, after=after)
-    drive = found.machine.drive
+    drive = findings.machine.drive
     effort = say("drive force, peak") if drive.pushes else say("drive torque, peak")
     kinds: dict[str, tuple[str, Dimension]] = {
         "shaking_moment": (say("shaking moment, peak"), "torque"),
@@ -88,19 +88,19 @@ def tiles(found: Findings) -> Iterator[Tile]:
         note = say("joint {name}", name=joint_named(name))
         unit = display_of_joints(analysis)
         yield _tile(say("largest joint force"), largest.peak, unit, note, after=after)
-    if found.balanced is not None:
-        first, pair = next(iter(found.balanced.aims.items()))
-        removesuffix = change(*pair).removesuffix(" %") if found.helped else ""
-        what = objective_named(first, len(found.machine.rows))
-        note = what if found.helped else good_already(found.balanced)
+    if findings.balanced is not None:
+        first, pair = next(iter(findings.balanced.aims.items()))
+        removesuffix = change(*pair).removesuffix(" %") if findings.helped else ""
+        what = objective_named(first, len(findings.machine.rows))
+        note = what if findings.helped else good_already(findings.balanced)
         yield Tile(say("by balancing"), removesuffix or percent(0), "%", note)
 
 
-def _pace(found: Findings) -> Tile:
+def _pace(findings: Findings) -> Tile:
     """Speed of the crank, or how often a drive without one comes back."""
-    motion, drive = found.analysis.motion, found.machine.drive
+    motion, drive = findings.analysis.motion, findings.machine.drive
     rpm = abs(motion.speed) / PER_RPM
-    if found.machine.crank_turns:
+    if findings.machine.crank_turns:
         return Tile(say("crank speed"), brief(rpm), "rpm", drive.link)
     what = pushed_named(drive) if drive.pushes else drive.link
     return Tile(say("cycles"), brief(rpm / motion.turns), say("a minute"), what)
@@ -128,10 +128,10 @@ def _at(crank_angle: float) -> str:
 # -- what shakes, and why --------------------------------------------------------------------------
 
 
-def _shaken(found: Findings, shaking: Shaking) -> Iterator[str]:
-    size, rows = shaking.size, len(found.machine.rows)
-    analysis, unit = found.analysis, display_of_totals(found.analysis, "force")
-    speed = brief(abs(found.analysis.motion.speed) / PER_RPM)
+def _shaken(findings: Findings, shaking: Shaking) -> Iterator[str]:
+    size, rows = shaking.size, len(findings.machine.rows)
+    analysis, unit = findings.analysis, display_of_totals(findings.analysis, "force")
+    speed = brief(abs(findings.analysis.motion.speed) / PER_RPM)
     if not size.peak:
         yield say("At {speed} rpm the linkage does not shake its frame by any force.", speed=speed)
     else:
@@ -155,7 +155,7 @@ def _shaken(found: Findings, shaking: Shaking) -> Iterator[str]:
             ratio = brief(shaking.over_weight)
             yield say("That is {ratio} times the weight of its links.", ratio=ratio)
         yield say("{sentence}.", sentence=acting(shaking.force))
-        yield _ordered(found, shaking)
+        yield _ordered(findings, shaking)
     moment = analysis.summary[analysis.whole("shaking_moment")]
     if brief(moment.peak, scale_of(analysis, "torque")) == "0":
         yield say("There is no shaking moment about the drive pivot.")
@@ -169,12 +169,12 @@ def _shaken(found: Findings, shaking: Shaking) -> Iterator[str]:
     yield say(template, peak=peak, rms=rms)
 
 
-def _ordered(found: Findings, shaking: Shaking) -> str:
+def _ordered(findings: Findings, shaking: Shaking) -> str:
     order, share = shaking.loudest
-    motion = found.analysis.motion
+    motion = findings.analysis.motion
     frequency = brief(order * abs(motion.speed) / (2 * pi))
     text = {"share": percent(share), "frequency": frequency}
-    if not found.machine.crank_turns:
+    if not findings.machine.crank_turns:
         return say(
             "Its largest part, {share} % of the mean square, comes {order} times a cycle, at "
             "{frequency} Hz.",
@@ -191,15 +191,15 @@ def _ordered(found: Findings, shaking: Shaking) -> str:
     )
 
 
-def _why(found: Findings) -> Iterator[str]:
-    analysis, motion = found.analysis, found.analysis.resolved.motion
+def _why(findings: Findings) -> Iterator[str]:
+    analysis, motion = findings.analysis, findings.analysis.resolved.motion
     split = analysis.resolved.forces.split
     by_link = shares(split.by_link("shaking_force"), motion)
     if any(by_link.values()):
         yield say("The shaking force comes from: {parts}.", parts=_parts(by_link))
         if -CANCELLING < min(by_link.values()) <= -SMALL:
             yield say("A minus means that the link works against the others.")
-    drive = found.machine.drive
+    drive = findings.machine.drive
     effort = analysis.summary[analysis.whole(drive.effort)]
     scale = scale_of(analysis, drive.effort_in)
     by_cause = shares(
@@ -223,7 +223,7 @@ def _why(found: Findings) -> Iterator[str]:
         unit = display_of_totals(analysis, drive.effort_in)
         low, high = (unit.text(end, effort.peak, 3) for end in (effort.min, effort.max))
         yield say(
-            of_force if drive.pushes else of_rows if len(found.machine.rows) > 1 else of_one,
+            of_force if drive.pushes else of_rows if len(findings.machine.rows) > 1 else of_one,
             low=low,
             high=unit.with_unit(high),
             parts=_parts(by_cause),
@@ -248,20 +248,20 @@ def _parts(shares: Mapping[str, float]) -> str:
     )
 
 
-def check_whole_cycle(found: Findings) -> None:
+def check_whole_cycle(findings: Findings) -> None:
     """A report shows whole turns."""
-    if not found.analysis.motion.whole_cycle:
+    if not findings.analysis.motion.whole_cycle:
         raise UsageError(
             Note("a report needs crank angles over the whole cycle; give a number of them")
         )
 
 
-def vibration_told(found: Findings) -> Iterator[str]:
+def vibration_told(findings: Findings) -> Iterator[str]:
     """What the gauges read, and the nearest loud resonance."""
-    response = found.response
+    response = findings.response
     if response is None:
         return
-    later = None if found.after is None else found.after.response
+    later = None if findings.after is None else findings.after.response
     for name, gauge in response.gauges.items():
         moved = float(gauge.displacement.peak_to_peak)
         unit = shown_in("rad" if gauge.rotation else "m", [moved])
@@ -282,18 +282,18 @@ def vibration_told(found: Findings) -> Iterator[str]:
                 "{after} {unit} after that change."
             )
         yield say(template, **words)
-    if found.sweep is None or not found.sweep.resonances:
+    if findings.sweep is None or not findings.sweep.resonances:
         return
-    met = found.sweep.resonances
+    met = findings.sweep.resonances
     for note in (resonance_note(met, response.speed), *within(met, response.speed)):
         yield say("{sentence}.", sentence=capital(note.said()))
 
 
-def planting_told(found: Findings) -> Iterator[str]:
+def planting_told(findings: Findings) -> Iterator[str]:
     """Depth, entry and exit of each arm, hills, speed of the fastest tip."""
-    if found.planting is None:
+    if findings.planting is None:
         return
-    arms = found.planting.arms
+    arms = findings.planting.arms
     several = len(arms) > 1
     of_one = to_say(
         "The tip of the finger goes {depth} into the soil; it enters at a crank angle of "
@@ -311,8 +311,8 @@ def planting_told(found: Findings) -> Iterator[str]:
             entry=angle(arm["entry.crank_angle"]),
             exit=angle(arm["exit.crank_angle"]),
         )
-    if found.planting["hill_spacing"]:
-        yield from _hills(found.planting)
+    if findings.planting["hill_spacing"]:
+        yield from _hills(findings.planting)
     fastest = told(max(arm["max_speed.value"] for arm in arms), "speed", digits=3)
     of_one = to_say("The tip moves at up to {speed} relative to the machine.")
     of_several = to_say("The tips move at up to {speed} relative to the machine.")

@@ -35,9 +35,9 @@ def lowest(modes: ToolModes, plane: int) -> str:
     return say("The lowest natural frequency is {value} Hz", value=brief(float(swinging[0])))
 
 
-def passed(found: Transmissions, plane: int) -> str:
+def passed(transmissions: Transmissions, plane: int) -> str:
     """Which holder gets the largest share of a force in a plane, 0 or 1, and at which speed."""
-    sizes = {name: station.size[plane] for name, station in found.stations.items()}
+    sizes = {name: station.size[plane] for name, station in transmissions.stations.items()}
     if not sizes:
         return ""
     name = max(sizes, key=lambda name: float(np.max(sizes[name])))
@@ -46,32 +46,32 @@ def passed(found: Transmissions, plane: int) -> str:
         "{name} gets up to {ratio} times the force, at {speed} rpm",
         name=named(name),
         ratio=brief(float(sizes[name][k])),
-        speed=brief(float(found.speed[k]) / PER_RPM),
+        speed=brief(float(transmissions.speed[k]) / PER_RPM),
     )
 
 
-def worst(found: ToolFindings) -> str:
+def worst(findings: ToolFindings) -> str:
     """Which hand gets most at the working speed."""
-    if found.exposure is None or WORKING not in found.exposure.named:
+    if findings.exposure is None or WORKING not in findings.exposure.named:
         return ""
-    name, value = worst_at_work(found.exposure)
+    name, value = worst_at_work(findings.exposure)
     text = to_say("The hand at {hand} gets most: {value} m/s² at the working speed")
     return say(text, hand=named(name), value=brief(value))
 
 
-def judged(found: ToolFindings) -> str:
+def judged(findings: ToolFindings) -> str:
     """What the day's work amounts to."""
-    exposure = found.exposure
+    exposure = findings.exposure
     if exposure is None or exposure.worst is None:
-        return worst(found)
+        return worst(findings)
     day = exposure.days[exposure.worst]
     verdict = say(VERDICTS[day.verdict])
     return say("A day of work: A(8) = {a8} m/s², {verdict}", a8=brief(day.a8), verdict=verdict)
 
 
-def improved(found: ToolFindings) -> str:
+def improved(findings: ToolFindings) -> str:
     """What the design does to the hand that gets most."""
-    assert found.design is not None
-    best = found.design.figures[0]
+    assert findings.design is not None
+    best = findings.design.figures[0]
     text = change(best.before, best.after) or percent(0)
     return say("Vibration of the hand that gets most: {change}", change=text)

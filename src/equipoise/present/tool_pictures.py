@@ -11,14 +11,14 @@ from equipoise.present.entries import PictureEntry, pages
 from equipoise.present.findings import ToolFindings
 
 
-def of_tool(found: ToolFindings) -> Iterator[PictureEntry]:
+def of_tool(findings: ToolFindings) -> Iterator[PictureEntry]:
     """The tool itself, modes, transmission, what the hands get, and the design."""
     from equipoise.figures import tool_designs, tool_shaft, tool_side, tool_speeds
 
-    modes, transmission = found.modes, found.transmission
-    planes = ("", "-lateral")[: 1 if found.tool.alike else 2]
+    modes, transmission = findings.modes, findings.transmission
+    planes = ("", "-lateral")[: 1 if findings.tool.alike else 2]
     caption = to_say("The tool from the side, at rest and as it is deflected at work.")
-    yield PictureEntry("side", caption, partial(tool_side.side, found.tool))
+    yield PictureEntry("side", caption, partial(tool_side.side, findings.tool))
     if modes is not None:
         caption = to_say("The tool from the side in its lowest natural vibrations.")
         draw = partial(tool_side.side_modes, modes)
@@ -34,35 +34,35 @@ def of_tool(found: ToolFindings) -> Iterator[PictureEntry]:
             draw = partial(tool_speeds.transmission, transmission, plane, modes)
             value = partial(seen.passed, transmission, plane)
             yield PictureEntry(f"transmission{name}", caption, draw, value, plane > 0)
-    if found.sweep is not None and found.sweep.response is not None:
+    if findings.sweep is not None and findings.sweep.response is not None:
         caption = to_say("Bending moment and displacement along the shaft.")
-        draw = partial(tool_shaft.moment, found.sweep.response, None)
+        draw = partial(tool_shaft.moment, findings.sweep.response, None)
         yield PictureEntry("moment", caption, draw, detail=True)
-    if found.exposure is not None:
+    if findings.exposure is not None:
         caption = to_say("Acceleration of the hands against speed of the engine.")
         yield PictureEntry(
             "acceleration",
             caption,
-            partial(tool_speeds.acceleration, found.exposure),
-            partial(seen.worst, found),
+            partial(tool_speeds.acceleration, findings.exposure),
+            partial(seen.worst, findings),
             detail=True,
         )
         caption = to_say("Daily exposure of the hands, with what is allowed.")
         yield PictureEntry(
             "exposure",
             caption,
-            partial(tool_speeds.weighted, found.exposure),
-            partial(seen.judged, found),
+            partial(tool_speeds.weighted, findings.exposure),
+            partial(seen.judged, findings),
         )
-    if found.design is not None:
+    if findings.design is not None:
         caption = to_say("The tool from the side before and after what is changed.")
-        yield PictureEntry("side-design", caption, partial(tool_side.side_design, found.design))
+        yield PictureEntry("side-design", caption, partial(tool_side.side_design, findings.design))
         caption = to_say(
             "What the hand that gets most gets over the band of speeds, before and after."
         )
         yield PictureEntry(
             "design",
             caption,
-            partial(tool_designs.design, found.design),
-            partial(seen.improved, found),
+            partial(tool_designs.design, findings.design),
+            partial(seen.improved, findings),
         )

@@ -36,9 +36,9 @@ NEAR = 0.1
 """Distance of a natural frequency from what shakes, over the latter, below which it is told."""
 
 
-def tool_tiles(found: ToolFindings) -> Iterator[Tile]:
+def tool_tiles(findings: ToolFindings) -> Iterator[Tile]:
     """The figures that are seen at once."""
-    tool, exposure = found.tool, found.exposure
+    tool, exposure = findings.tool, findings.exposure
     yield Tile(say("mass"), brief(tool.mass), "kg", say("whole tool"))
     if tool.operation is not None:
         yield Tile(
@@ -50,27 +50,27 @@ def tool_tiles(found: ToolFindings) -> Iterator[Tile]:
     if exposure is not None and exposure.a8 is not None:
         label, verdict = say("daily exposure A(8)"), VERDICTS[verdict_of(exposure.a8)]
         stands_out = limit_broken(exposure.a8)
-        later = found.exposure_after
+        later = findings.exposure_after
         after = "" if later is None or later.a8 is None else brief(later.a8)
         yield Tile(label, brief(exposure.a8), "m/s²", say(verdict), after, stands_out)
-    if found.design is not None:
-        best = found.design.figures[0]
+    if findings.design is not None:
+        best = findings.design.figures[0]
         removesuffix = change(best.before, best.after).removesuffix(" %")
         yield Tile(say("by the changes below"), removesuffix, "%", say("vibration of the hand"))
 
 
-def tool_answers(found: ToolFindings) -> Iterator[SummaryAnswer]:
+def tool_answers(findings: ToolFindings) -> Iterator[SummaryAnswer]:
     """The summary, a question at a time."""
-    if found.exposure is not None:
-        yield SummaryAnswer(say("What the hands get"), tuple(_felt(found.exposure)))
-        if why := tuple(_why(found.tool)):
+    if findings.exposure is not None:
+        yield SummaryAnswer(say("What the hands get"), tuple(_felt(findings.exposure)))
+        if why := tuple(_why(findings.tool)):
             yield SummaryAnswer(say("Why"), why)
-    elif found.transmission is not None:
-        yield SummaryAnswer(say("What comes to the hands"), tuple(_transmitted(found)))
-    if found.modes is not None:
-        yield SummaryAnswer(say("Natural frequencies"), tuple(_near(found, found.modes)))
-    if found.design is not None:
-        yield SummaryAnswer(say("What helps most"), tuple(_helps(found.design, found)))
+    elif findings.transmission is not None:
+        yield SummaryAnswer(say("What comes to the hands"), tuple(_transmitted(findings)))
+    if findings.modes is not None:
+        yield SummaryAnswer(say("Natural frequencies"), tuple(_near(findings, findings.modes)))
+    if findings.design is not None:
+        yield SummaryAnswer(say("What helps most"), tuple(_helps(findings.design, findings)))
 
 
 def _felt(exposure: ToolExposure) -> Iterator[str]:
@@ -127,8 +127,8 @@ def _why(tool: Tool) -> Iterator[str]:
     )
 
 
-def _transmitted(found: ToolFindings) -> Iterator[str]:
-    transmission = found.transmission
+def _transmitted(findings: ToolFindings) -> Iterator[str]:
+    transmission = findings.transmission
     assert transmission is not None
     for name, station in transmission.stations.items():
         size = np.max(station.size, axis=0)
@@ -142,14 +142,14 @@ def _transmitted(found: ToolFindings) -> Iterator[str]:
         )
 
 
-def _near(found: ToolFindings, modes: ToolModes) -> Iterator[str]:
+def _near(findings: ToolFindings, modes: ToolModes) -> Iterator[str]:
     """The natural frequency nearest to what shakes once a turn."""
     plane = modes.planes[0]
     swinging = plane.cycles_per_second[len(plane.rigid) :]
     text = number_list(brief(float(value)) for value in swinging[:4])
     if text:
         yield say("The lowest are {list} Hz.", list=text)
-    operation = found.tool.operation
+    operation = findings.tool.operation
     if operation is None or not len(swinging):
         return
     firing = operation.speed / (2 * pi)
@@ -163,7 +163,7 @@ def _near(found: ToolFindings, modes: ToolModes) -> Iterator[str]:
         )
 
 
-def _helps(design: ToolDesign, found: ToolFindings) -> Iterator[str]:
+def _helps(design: ToolDesign, findings: ToolFindings) -> Iterator[str]:
     for variable in design.variables:
         kind: Dimension = variable.dimension  # type: ignore[assignment]
         unit = display(kind, [variable.before, variable.after], UNITS.get(kind))
@@ -184,7 +184,7 @@ def _helps(design: ToolDesign, found: ToolFindings) -> Iterator[str]:
         after=brief(best.after),
         change=change(best.before, best.after),
     )
-    if (later := found.exposure_after) is not None and later.worst is not None:
+    if (later := findings.exposure_after) is not None and later.worst is not None:
         day = later.days[later.worst]
         yield say(
             "A(8) then amounts to {a8} m/s² at {hand}, {verdict}.",

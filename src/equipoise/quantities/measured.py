@@ -48,7 +48,7 @@ class Measured:
 def with_measured(sentence: Note, change: Callable[[Measured], Any]) -> Note:
     """A sentence with other values for the quantities in it."""
 
-    return sentence.with_values(lambda one: change(one) if isinstance(one, Measured) else one)
+    return sentence.with_values(lambda item: change(item) if isinstance(item, Measured) else item)
 
 
 def as_written(sentence: Note, texts: Iterable[str]) -> Note:

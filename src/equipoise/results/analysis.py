@@ -215,7 +215,7 @@ class Analysis(Result):
         """
         return f"rows.{name}" if f"rows.{name}" in self.outputs else name
 
-    def _of_each_row(self, found: Forces) -> Iterator[Array]:
+    def _of_each_row(self, result: Forces) -> Iterator[Array]:
         """Shaking force x and y, shaking moment, what drives, roll and yaw moment (6, N) of each
         row, at its own crank angles; without jumps orders are shifted, which is as exact.
         """
@@ -226,11 +226,11 @@ class Analysis(Result):
                 if phase not in of_phase:
                     theta = self.crank_angle + phase
                     turned = move_again(self.machine, theta, motion.speed, motion.acceleration)
-                    own = forces(turned, found.about) if phase else found
+                    own = forces(turned, result.about) if phase else result
                     of_phase[phase] = _of_one_row(own)
                 yield of_phase[phase]
             return
-        item = Periodic.of(_of_one_row(found), motion.turns)
+        item = Periodic.of(_of_one_row(result), motion.turns)
         for row in rows:
             yield item.shifted(row.phase).samples(len(self.crank_angle))
 
@@ -377,15 +377,15 @@ class Analysis(Result):
         return pandas.DataFrame(columns, index=index)
 
 
-def _of_one_row(found: Forces) -> Array:
+def _of_one_row(forces: Forces) -> Array:
     """Shaking force x and y, shaking moment, what drives, roll and yaw moment, (6, N)."""
-    machine, force = found.motion.machine, found.shaking_force
-    exerted = getattr(found, machine.drive.effort)
+    machine, force = forces.motion.machine, forces.shaking_force
+    exerted = getattr(forces, machine.drive.effort)
     rocking = np.zeros(len(exerted))
     if machine.has_planes:
-        rocking = found.across.rocking_moment.value
+        rocking = forces.across.rocking_moment.value
     rocked = np.real(rocking), np.imag(rocking)
-    return np.array([force.x, force.y, found.shaking_moment, exerted, *rocked])
+    return np.array([force.x, force.y, forces.shaking_moment, exerted, *rocked])
 
 
 HEADING: Declarations = {
@@ -428,8 +428,8 @@ BESIDE_OUTPUTS: Declarations = {
 """What an analysis has that is no output of the machine."""
 BY_ORDER: Declarations = {
     "orders": ResultOutput("events in one turn of the crank"),
-    "a": ResultOutput("amplitudes of the cosines", OWN, read=lambda one: one.amplitudes.real),
-    "b": ResultOutput("amplitudes of the sines", OWN, read=lambda one: -one.amplitudes.imag),
+    "a": ResultOutput("amplitudes of the cosines", OWN, read=lambda item: item.amplitudes.real),
+    "b": ResultOutput("amplitudes of the sines", OWN, read=lambda item: -item.amplitudes.imag),
     "harmonics": ResultOutput("amplitudes", OWN, read="sizes"),
     "phases": ResultOutput("crank angles of the first top", "angle"),
 }
@@ -449,18 +449,18 @@ def order_values(analysis: Analysis, orders: int, zero: float) -> Values:
     return result
 
 
-def _split(found: Forces) -> Values:
+def _split(forces: Forces) -> Values:
     """Every force by cause, and by link: output -> cause or link -> array, or x and y.
 
     Raises
     ------
     UsageError : they take more memory than may be used.
     """
-    motion = found.motion
+    motion = forces.motion
     count, links = len(motion.crank_angle), len(motion.machine.links)
     split_of = to_say("forces by cause and link at {count} crank angles, of {turns} turns")
     check_memory(SPLIT * links**2 * count, Note(split_of, count=count, turns=motion.turns))
-    read = Found(found.motion, found.split)
+    read = Found(forces.motion, forces.split)
     result: Values = {key: {"joints": {}} for key in ("by_cause", "by_link")}
     for entry in DECLARED.values():
         if entry.part in ("x", "y") or not entry.is_split:
@@ -468,8 +468,8 @@ def _split(found: Forces) -> Values:
         for item in entry.items_of(read):
             whole = entry.vector(read, item)
             for key, names, axis in (
-                ("by_cause", found.split.causes, 1),
-                ("by_link", found.split.links, 0),
+                ("by_cause", forces.split.causes, 1),
+                ("by_link", forces.split.links, 0),
             ):
                 parts = zip(names, whole.sum(axis=axis), strict=True)
                 values = result[key]

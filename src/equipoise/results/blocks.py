@@ -278,9 +278,9 @@ def _named_after(row: tuple[Cell, ...]) -> tuple[Cell, ...]:
     return (say("{what}, after", what=words[0]), *("" for _ in words[1:]), *row[len(words) :])
 
 
-def _alike(one: Cell, other: Cell) -> bool:
+def _alike(cell: Cell, other: Cell) -> bool:
     """Whether two cells tell the same, but for rounding."""
-    if isinstance(one, Value) and isinstance(other, Value):
-        least = ROUNDING * max(one.scale, other.scale)
-        return isclose(one.value, other.value, rel_tol=SAME, abs_tol=least)
-    return one == other
+    if isinstance(cell, Value) and isinstance(other, Value):
+        least = ROUNDING * max(cell.scale, other.scale)
+        return isclose(cell.value, other.value, rel_tol=SAME, abs_tol=least)
+    return cell == other

@@ -233,9 +233,9 @@ def _matching(
                 yield ALONG[item.along]
 
 
-def _members(one: ResultOutput, rest: str, model: Any) -> Iterator[tuple[str, bool]]:
+def _members(output: ResultOutput, rest: str, model: Any) -> Iterator[tuple[str, bool]]:
     """What may stand behind the name of a member, and whether that turns; names may hold dots."""
-    known = None if one.members is None else one.members(model)
+    known = None if output.members is None else output.members(model)
     words = rest.split(".")
     for count in range(len(words), 0, -1):
         name = ".".join(words[:count])
@@ -304,7 +304,7 @@ def _rows(declared: Declarations, before: str) -> Iterator[str]:
             yield from _rows(item.of, before if item.spliced else f"{path}.")
 
 
-def unit_shown(one: ResultOutput) -> str:
+def unit_shown(output: ResultOutput) -> str:
     """SI unit of an output for the documentation."""
-    kinds: Iterable[Any] = dict.fromkeys(filter(None, (one.dimension, one.turned)))
+    kinds: Iterable[Any] = dict.fromkeys(filter(None, (output.dimension, output.turned)))
     return " or ".join("that of the signal" if kind == OWN else SI[kind] for kind in kinds)

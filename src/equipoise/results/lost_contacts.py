@@ -13,7 +13,7 @@ from equipoise.mechanism.parts.machine import Machine
 from equipoise.quantities import PER_RPM, angle, told
 
 
-def lost_told(one: LetGo, sprung: bool) -> Note:
+def lost_told(let_go: LetGo, sprung: bool) -> Note:
     """Where nothing keeps a cam's follower there, at the speed analysed.
 
     sprung : whether the file has springs at all, which may then be too weak.
@@ -22,16 +22,16 @@ def lost_told(one: LetGo, sprung: bool) -> Note:
         Note("at every crank angle")
         if b - a >= 2 * pi
         else Note("at crank angles from {low} to {high}", low=angle(a), high=angle(b))
-        for a, b in one.ranges
+        for a, b in let_go.ranges
     ]
     return Note(
         "{follower} lifts off {cam} {ranges}, where it would have to be held by up to {force}; "
         "{limit}",
-        follower=one.cam.driven,
-        cam=body_named(one.cam.driver),
+        follower=let_go.cam.driven,
+        cam=body_named(let_go.cam.driver),
         ranges=all_of(ranges),
-        force=told(-one.least[0], "force"),
-        limit=_limit(one.speed, sprung),
+        force=told(-let_go.least[0], "force"),
+        limit=_limit(let_go.speed, sprung),
     )
 
 
@@ -53,7 +53,7 @@ def where_lost(machine: Machine) -> tuple[Note, ...]:
     return lost_contacts(forces(move(machine)))
 
 
-def lost_contacts(found: Forces) -> tuple[Note, ...]:
+def lost_contacts(forces: Forces) -> tuple[Note, ...]:
     """Where springs do not keep followers on their cams, at the speed analysed."""
-    sprung = any(found.motion.machine.force_elements)
-    return tuple(lost_told(item, sprung) for item in let_go(found) if item.ranges)
+    sprung = any(forces.motion.machine.force_elements)
+    return tuple(lost_told(item, sprung) for item in let_go(forces) if item.ranges)

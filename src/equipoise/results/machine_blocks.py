@@ -59,18 +59,18 @@ APART = {
 # -- figures as cells ------------------------------------------------------------------------------
 
 
-def largest(found: Figures, scale: float = 0.0, dimension: Dimension | None = None) -> Value:
+def largest(figures: Figures, scale: float = 0.0, dimension: Dimension | None = None) -> Value:
     """Largest value and its crank angle; no angle where the value hardly changes."""
-    return Value(found.max, scale, _at(found, found.max_at, scale), dimension=dimension)
+    return Value(figures.max, scale, _at(figures, figures.max_at, scale), dimension=dimension)
 
 
-def smallest(found: Figures, scale: float = 0.0, dimension: Dimension | None = None) -> Value:
+def smallest(figures: Figures, scale: float = 0.0, dimension: Dimension | None = None) -> Value:
     """Smallest value and its crank angle; no angle where the value hardly changes."""
-    return Value(found.min, scale, _at(found, found.min_at, scale), dimension=dimension)
+    return Value(figures.min, scale, _at(figures, figures.min_at, scale), dimension=dimension)
 
 
-def _at(found: Figures, crank_angle: float, scale: float) -> float | None:
-    steady = found.peak_to_peak <= 1e-10 * max(found.peak, scale)
+def _at(figures: Figures, crank_angle: float, scale: float) -> float | None:
+    steady = figures.peak_to_peak <= 1e-10 * max(figures.peak, scale)
     return None if steady else crank_angle
 
 
@@ -284,39 +284,39 @@ def points_table(analysis: Analysis) -> Iterator[Table]:
         yield Table.of(title, columns, rows)
 
 
-def four_bar_table(found: FourBar) -> Table:
+def four_bar_table(four_bar: FourBar) -> Table:
     """Which links a four-bar is made of, with the pins at their ends."""
     parts = (say("ground (fixed link)"), say("crank"), say("coupler"), say("rocker"))
-    links = (say("frame"), found.crank, found.coupler, found.rocker)
-    first, inner, outer, last = found.pins
+    links = (say("frame"), four_bar.crank, four_bar.coupler, four_bar.rocker)
+    first, inner, outer, last = four_bar.pins
     ends = ((first, last), (first, inner), (inner, outer), (last, outer))
     rows = (
         (part, link, say(", ").join(pins), Value(length))
         for part, link, pins, length in zip(
-            parts, links, ends, (found.a, found.b, found.c, found.d), strict=True
+            parts, links, ends, (four_bar.a, four_bar.b, four_bar.c, four_bar.d), strict=True
         )
     )
     title = say(
         "Four-bar linkage at the crank: {kind}, {grashof}",
-        kind=say(found.type),
-        grashof=say(found.grashof),
+        kind=say(four_bar.type),
+        grashof=say(four_bar.grashof),
     )
     return Table.of(title, ("", say("link"), say("between"), Column(say("length"), "length")), rows)
 
 
-def four_bar_facts(found: FourBar) -> Iterator[str]:
+def four_bar_facts(four_bar: FourBar) -> Iterator[str]:
     """What else there is to say of it."""
-    if found.transmission_min is not None and found.transmission_max is not None:
+    if four_bar.transmission_min is not None and four_bar.transmission_max is not None:
         yield say(
             "Transmission angle from {low} to {high}",
-            low=angle(found.transmission_min),
-            high=angle(found.transmission_max),
+            low=angle(four_bar.transmission_min),
+            high=angle(four_bar.transmission_max),
         )
-    if found.swing is not None and found.time_ratio is not None:
+    if four_bar.swing is not None and four_bar.time_ratio is not None:
         yield say(
             "The rocker swings by {swing}, time ratio {ratio}",
-            swing=angle(found.swing),
-            ratio=f"{found.time_ratio:.3f}",
+            swing=angle(four_bar.swing),
+            ratio=f"{four_bar.time_ratio:.3f}",
         )
-    yield say(TURNS[found.condition_5])
-    yield say(APART[found.condition_6])
+    yield say(TURNS[four_bar.condition_5])
+    yield say(APART[four_bar.condition_6])

@@ -157,7 +157,7 @@ class AnalysisOutputs:
         for name in names:
             parts = [f"{name}.{axis}" for axis in "xy" if name not in self]
             every = [part for part in parts if part in self] or [name]
-            found |= {one: self[one] for one in every}
+            found |= {item: self[item] for item in every}
         return list(found.values())
 
     @property
@@ -168,28 +168,28 @@ class AnalysisOutputs:
     @property
     def arrays(self) -> list[AnalysisOutput]:
         """Those that stand among the arrays; the size of a vector is told by its components."""
-        return [one for one in self if one.declared.array]
+        return [item for item in self if item.declared.array]
 
     @property
     def summed(self) -> list[AnalysisOutput]:
         """Those of which the summary tells figures."""
-        return [one for one in self if one.declared.summed]
+        return [item for item in self if item.declared.summed]
 
     @property
     def ordered(self) -> list[AnalysisOutput]:
         """Those that are told by orders."""
-        return [one for one in self if one.declared.ordered]
+        return [item for item in self if item.declared.ordered]
 
     def grouped(self) -> dict[str, list[AnalysisOutput]]:
         """Those of each group of `GROUPS` that has any."""
-        found = {group: [one for one in self if one.group == group] for group in GROUPS}
+        found = {group: [item for item in self if item.group == group] for group in GROUPS}
         return {group: ones for group, ones in found.items() if ones}
 
 
-def _can_be_had(one: Declared, analysis: Any) -> bool:
-    if one.needs == "motion":
+def _can_be_had(declared: Declared, analysis: Any) -> bool:
+    if declared.needs == "motion":
         return True
-    return analysis.solved is not None and (one.is_of_row or analysis.has_together)
+    return analysis.solved is not None and (declared.is_of_row or analysis.has_together)
 
 
 def unit_of(name: str) -> str:
@@ -208,17 +208,19 @@ def documented() -> str:
     return head + "".join(map(_documented, DECLARED.values()))
 
 
-def _documented(one: Declared) -> str:
+def _documented(declared: Declared) -> str:
     places = {
-        "arrays": one.array and one.read is not None,
-        "summary": one.summed and one.read is not None,
-        "orders": one.ordered,
-        "balance": not one.reason,
-        "compiled studies": one.loop is not None,
+        "arrays": declared.array and declared.read is not None,
+        "summary": declared.summed and declared.read is not None,
+        "orders": declared.ordered,
+        "balance": not declared.reason,
+        "compiled studies": declared.loop is not None,
     }
     stands = ", ".join(place for place, stands in places.items() if stands)
-    what = str(one.note("NAME"))
-    return f"| `{one.named('NAME')}` | {one.unit} | {what} | {one.needs} | {stands} |\n"
+    what = str(declared.note("NAME"))
+    return (
+        f"| `{declared.named('NAME')}` | {declared.unit} | {what} | {declared.needs} | {stands} |\n"
+    )
 
 
 def documented_strokes() -> str:
@@ -234,9 +236,9 @@ def documented_figures(of: type) -> str:
 def _documented_figures(classes: Mapping[str, type]) -> str:
     head = "| figure | unit | meaning |\n|---|---|---|\n"
     return head + "".join(
-        f"| `{before}{one.name}` | {_unit_of_figure(one)} | {one.metadata['label']} |\n"
+        f"| `{before}{item.name}` | {_unit_of_figure(item)} | {item.metadata['label']} |\n"
         for before, of in classes.items()
-        for one in declared_figures(of)
+        for item in declared_figures(of)
     )
 
 
@@ -292,17 +294,19 @@ def figure_named(path: str) -> Note | str:
     return Note("{what}, {part}", what=found[0].note(found[1]), part=Note(FIGURES[figure]))
 
 
-def objective_named(one: Objective, rows: int = 1, measured: bool = True) -> str:
+def objective_named(objective: Objective, rows: int = 1, measured: bool = True) -> str:
     """What is to become small, in words; measured : with its measure."""
-    of_joint = one.output.startswith(("joints.", "gauges."))
-    output = one.output if rows < 2 or of_joint else f"rows.{one.output}"
-    words = [output_named(output), *([say(MEASURES[one.measure])] if measured else [])]
-    if one.about:
-        words.append(say("about {point}", point=one.about))
-    if one.orders:
-        words.append(say("order {orders}", orders=", ".join(f"{order:g}" for order in one.orders)))
-    if one.speeds:
-        speeds = ", ".join(f"{speed * RPM:.4g}" for speed in one.speeds)
+    of_joint = objective.output.startswith(("joints.", "gauges."))
+    output = objective.output if rows < 2 or of_joint else f"rows.{objective.output}"
+    words = [output_named(output), *([say(MEASURES[objective.measure])] if measured else [])]
+    if objective.about:
+        words.append(say("about {point}", point=objective.about))
+    if objective.orders:
+        words.append(
+            say("order {orders}", orders=", ".join(f"{order:g}" for order in objective.orders))
+        )
+    if objective.speeds:
+        speeds = ", ".join(f"{speed * RPM:.4g}" for speed in objective.speeds)
         words.append(say("at {speeds} rpm", speeds=speeds))
     return say(", ").join(words)
 

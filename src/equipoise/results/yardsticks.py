@@ -234,7 +234,10 @@ def assess_parts(analysis: Analysis) -> tuple[FigureAssessment, ...]:
         for output in analysis.outputs
         if _yardstick_of_whole(output) == "weight" and not _is_of_one_row_or_drive(output)
     ]
-    entries = [*filter(None, components), *(one for one in _of_outputs(analysis) if one.item)]
+    entries = [
+        *filter(None, components),
+        *(of_output for of_output in _of_outputs(analysis) if of_output.item),
+    ]
     return tuple(sorted(entries, key=lambda entry: -entry.ratio))
 
 
@@ -431,7 +434,9 @@ class _Scales:
         feet = [] if support is None else [m.point for m in support.mounts.values() if m.point]
         pins = [machine.frame[point] for point in self.analysis.motion.linkage.joints.pins
                 if point in machine.frame]  # fmt: skip
-        pins += [machine.frame[one.through] for one in machine.sliders if one.on == "frame"]
+        pins += [
+            machine.frame[slider.through] for slider in machine.sliders if slider.on == "frame"
+        ]
         sizes = (_extent([place[:2] for place in places]) for places in (feet, pins))
         return next((size for size in sizes if size > 0), size_of_links(machine))
 
@@ -441,7 +446,7 @@ class _Scales:
         machine = self.machine
         rows = [row.lateral for row in machine.rows]
         bearings = [bearing.plane for bearing in machine.bearings.values()]
-        planes = [z for one in machine.links.values() for z in (one.plane, *one.planes.values())]
+        planes = [z for link in machine.links.values() for z in (link.plane, *link.planes.values())]
         extents = (max(zs) - min(zs) for zs in (rows, bearings, planes) if zs)
         return next((extent for extent in extents if extent > 0), self.span)
 
@@ -514,7 +519,7 @@ def _entry(
 
 def pusher_of(machine: Machine, output: str) -> Drive | FurtherDrive | None:
     """The drive whose force an output is: a cylinder, which pushes and turns nothing."""
-    each = {f"drives.{one.link}.force": one for one in machine.driven if one.pushes}
+    each = {f"drives.{item.link}.force": item for item in machine.driven if item.pushes}
     first = {machine.drive.effort: machine.drive} if machine.drive.pushes else {}
     return (each | first).get(output)
 
@@ -550,7 +555,7 @@ def _acting(scales: _Scales, output: AnalysisOutput) -> FigureAssessment | None:
 
 
 def _pressure(scales: _Scales, output: AnalysisOutput) -> FigureAssessment | None:
-    (cam,) = (one for one in scales.machine.cams if one.name == output.item)
+    (cam,) = (item for item in scales.machine.cams if item.name == output.item)
     most = PRESSURE if cam.swing is None else SWINGING_PRESSURE
     return _entry(output, "peak", most, Note("the usual limit"))
 
@@ -604,8 +609,8 @@ def _of_gauge(machine: Machine, name: str, reading: GaugeReading) -> Iterator[Fi
     dimension: Dimension = "angle" if reading.rotation else "length"
     limits = machine.balance.limits if machine.balance else ()
     read = {"peak_to_peak": "peak_to_peak", "ripple": "vibration_rms"}
-    known = [one for one in limits if one.objective.output == output and one.at_most is not None
-             and one.objective.measure in read and not one.objective.orders]  # fmt: skip
+    known = [item for item in limits if item.objective.output == output and item.at_most is not None
+             and item.objective.measure in read and not item.objective.orders]  # fmt: skip
     for limit in known:
         measure, most = limit.objective.measure, limit.at_most or 0.0
         value = float(getattr(reading.displacement, read[measure]))

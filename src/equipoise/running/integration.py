@@ -510,7 +510,7 @@ class Integration:
         if self.driver.controlled and (limit := self._limit_in(start, solution[1])) is not None:
             pairs.append((limit, "limit"))
         # of what happens at the edge itself the others come first
-        return min([*pairs, (far, "edge")], key=lambda one: one[0] * far)
+        return min([*pairs, (far, "edge")], key=lambda item: item[0] * far)
 
     def _limit_in(self, start: float, within: Callable[[Array], Array]) -> float | None:
         """Place in a piece, beyond its start, at which a servo motor comes to its limit of torque,

@@ -359,12 +359,12 @@ def run(
     return _result(equation, integration, flywheel)
 
 
-def _result(equation: CrankEquation, found: Integration, flywheel: Flywheel | None) -> Run:
+def _result(equation: CrankEquation, integration: Integration, flywheel: Flywheel | None) -> Run:
     """The run that an integration has followed."""
     machine = equation.machine
-    time, crank_angle, crank_speed, *work = np.vstack(found.track).T
+    time, crank_angle, crank_speed, *work = np.vstack(integration.track).T
     electric, work = np.array(work[:ELECTRIC]), work[ELECTRIC:]
-    switched = next((event.time for event in found.events if event.kind == "off"), inf)
+    switched = next((event.time for event in integration.events if event.kind == "off"), inf)
     driver = Driver(machine)
     driver.begins(float(crank_angle[0]), float(crank_speed[0]))
     driving = driver.torque_at(crank_speed, crank_angle, time)
@@ -380,8 +380,8 @@ def _result(equation: CrankEquation, found: Integration, flywheel: Flywheel | No
         crank_speed,
         torque,
         dict(zip(names, work, strict=True)),
-        tuple(found.events),
-        tuple(found.begins),
+        tuple(integration.events),
+        tuple(integration.begins),
         flywheel,
         None if driver.circuit is None else Electric(*electric),
     )

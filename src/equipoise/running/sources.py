@@ -132,7 +132,7 @@ class OfDampers(Source):
         ways = iter(columns.reshape(-1, 2, *columns.shape[1:]))
         each = [element for *_, element in self.elements]
         total = np.zeros(np.shape(speed))
-        for element in each * (len(columns) // (2 * sum(one.freedoms for one in each))):
+        for element in each * (len(columns) // (2 * sum(item.freedoms for item in each))):
             own = [next(ways) for _ in range(element.freedoms)]
             efforts = element.efforts([(way, slope * speed) for way, slope in own])
             parts = zip(efforts, own, strict=True)

@@ -151,12 +151,12 @@ def kind_at(of: type[Frozen], place: KeyPath) -> KeyTable:
 # -- inside ----------------------------------------------------------------------------------------
 
 
-def _fixed(one: Key) -> bool:
-    return isinstance(one.kind, Whole) and len(one.kind.names) == 1
+def _fixed(key: Key) -> bool:
+    return isinstance(key.kind, Whole) and len(key.kind.names) == 1
 
 
-def _below(one: Key) -> bool:
-    return isinstance(innermost(one.kind), KeyTable | Tables)
+def _below(key: Key) -> bool:
+    return isinstance(innermost(key.kind), KeyTable | Tables)
 
 
 def _held(above: Any, step: str | int) -> bool:

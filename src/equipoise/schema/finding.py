@@ -225,15 +225,15 @@ def replaced(content: Content, given: Iterable[Given]) -> dict[str, Any]:
 
 
 def _check_company(
-    path: str, found: NumberLocation, beside: Mapping[str, float], taken: bool
+    path: str, location: NumberLocation, beside: Mapping[str, float], taken: bool
 ) -> None:
     """Refuse a number that others have changed already."""
-    if taken or found.part in beside or (beside and not found.part):
+    if taken or location.part in beside or (beside and not location.part):
         raise ModelError(
             path, Note("{path} is a number that varies already; leave one of them out", path=path)
         )
-    forms = {key in POLAR for key in (found.part, *beside)}
-    if isinstance(found.whole, Vector) and len(forms) == 2:
+    forms = {key in POLAR for key in (location.part, *beside)}
+    if isinstance(location.whole, Vector) and len(forms) == 2:
         above = path.rpartition(".")[0]
         raise ModelError(
             path,
@@ -252,7 +252,7 @@ SHARE = "%"
 _QUANTITY = re.compile(rf"{NUMBER} +(\S.*)")
 
 
-def unit_in(content: Mapping[str, Any], found: NumberLocation) -> str:
+def unit_in(content: Mapping[str, Any], location: NumberLocation) -> str:
     """Unit in which a model file gives a number; one that is usual where it has none.
 
     Returns
@@ -260,12 +260,12 @@ def unit_in(content: Mapping[str, Any], found: NumberLocation) -> str:
     str
         ``mm``, ``%`` of a share, nothing of a plain number.
     """
-    number = found.number
+    number = location.number
     if number is None or number.share:
         return SHARE if number is not None else ""
     if number.dimension is None:
         return ""
-    for given in _given(content, found):
+    for given in _given(content, location):
         read = read_number(given)
         if read is not None and read.dimension == number.dimension:
             return unit_of(given)
@@ -283,16 +283,16 @@ def handy(dimension: Dimension) -> str:
     return KINDS[dimension].printed[0]
 
 
-def _given(content: Mapping[str, Any], found: NumberLocation) -> Iterator[Any]:
+def _given(content: Mapping[str, Any], location: NumberLocation) -> Iterator[Any]:
     """What stands in the file where a number does: first its own text, then those beside it."""
     try:
-        here = found.place.read(content)
+        here = location.place.read(content)
     except KeyError:
         return  # left out, so that a default stands for it
     if isinstance(here, dict):
-        yield from (here[key] for key in sorted(here, key=lambda key: key != found.part))
+        yield from (here[key] for key in sorted(here, key=lambda key: key != location.part))
     elif isinstance(here, list):
-        yield from here[XYZ.index(found.part) :] if found.part in XYZ else ()
+        yield from here[XYZ.index(location.part) :] if location.part in XYZ else ()
         yield from here
     else:
         yield here

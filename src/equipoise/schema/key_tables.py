@@ -41,10 +41,10 @@ def _holds_tables(kind: keys.Kind) -> bool:
     return isinstance(keys.innermost(kind), keys.KeyTable | keys.Tables)
 
 
-def _default(one: keys.Key) -> str:
-    if one.required:
+def _default(key: keys.Key) -> str:
+    if key.required:
         return "required"
-    default = plain_default(one)
+    default = plain_default(key)
     if default in (None, [], {}):
         return ""
     return f"`{value_text(default)}`"

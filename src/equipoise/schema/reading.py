@@ -123,9 +123,9 @@ def _values(
     return values
 
 
-def _example(one: keys.Key) -> str:
+def _example(key: keys.Key) -> str:
     """Return a key and its value as they would stand in the file."""
-    name, example = one.name, one.example
+    name, example = key.name, key.example
     if example is None:
         return Note("the table [{name}]", name=name)
     if isinstance(example, dict):
@@ -176,12 +176,12 @@ def made(value: Any, context: Context) -> Any:
         raise within(value.place, error) from error
 
 
-def _given(found: Values, context: Context) -> dict[str, Any]:
+def _given(values: Values, context: Context) -> dict[str, Any]:
     """What an object is made of, by its fields."""
-    given = {name: made(value, context) for name, value in found.given.items()}
-    for name, key in keys.keys_of(found.of).items():
+    given = {name: made(value, context) for name, value in values.given.items()}
+    for name, key in keys.keys_of(values.of).items():
         if isinstance(key.kind, keys.File) and key.kind.named and name in given:
-            given[key.kind.named] = found.given[name].file
+            given[key.kind.named] = values.given[name].file
     return given
 
 

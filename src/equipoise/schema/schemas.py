@@ -48,19 +48,19 @@ def _object(of: type[keys.Frozen], definitions: Definitions) -> Schema:
     }
 
 
-def _property(one: keys.Key, definitions: Definitions) -> Schema:
-    schema = dict(_schema(one.kind, definitions))
-    if one.text:
-        schema["description"] = one.text.replace("`", "")
-    if one.example is not None:
-        schema["examples"] = [one.example]
-    default = plain_default(one)
+def _property(key: keys.Key, definitions: Definitions) -> Schema:
+    schema = dict(_schema(key.kind, definitions))
+    if key.text:
+        schema["description"] = key.text.replace("`", "")
+    if key.example is not None:
+        schema["examples"] = [key.example]
+    default = plain_default(key)
     if default not in (None, [], {}):
         schema["default"] = default
-    if type(keys.innermost(one.kind)) is keys.Number:
-        limits = {"minimum": one.at_least, "exclusiveMinimum": one.above,
-                  "exclusiveMaximum": one.below}  # fmt: skip
-        at = schema if type(one.kind) is keys.Number else schema.get("items", {})
+    if type(keys.innermost(key.kind)) is keys.Number:
+        limits = {"minimum": key.at_least, "exclusiveMinimum": key.above,
+                  "exclusiveMaximum": key.below}  # fmt: skip
+        at = schema if type(key.kind) is keys.Number else schema.get("items", {})
         at |= {name: limit for name, limit in limits.items() if limit is not None}
     return schema
 

@@ -268,27 +268,27 @@ def _written(value: float | None, dimension: str | None) -> Any:
     return format_exact(value, dimension)
 
 
-def _vary_table(one: Variable) -> VaryTable:
-    spread, dimension = one.spread, one.dimension
+def _vary_table(variable: Variable) -> VaryTable:
+    spread, dimension = variable.spread, variable.dimension
     if isinstance(spread, Range):
         limits = tuple(_written(limit, dimension) for limit in (spread.low, spread.high))
-        return VaryTable(one.path, range=limits, steps=spread.steps)
+        return VaryTable(variable.path, range=limits, steps=spread.steps)
     if isinstance(spread, Choices):
-        return VaryTable(one.path, list=tuple(_written(v, dimension) for v in spread.values))
+        return VaryTable(variable.path, list=tuple(_written(v, dimension) for v in spread.values))
     if isinstance(spread, Normal):
         mean, deviation = (_written(v, dimension) for v in (spread.mean, spread.deviation))
-        return VaryTable(one.path, normal=NormalTable(deviation, mean, spread.cut))
+        return VaryTable(variable.path, normal=NormalTable(deviation, mean, spread.cut))
     centre, half = (_written(v, dimension) for v in (spread.centre, spread.half_width))
-    return VaryTable(one.path, uniform=UniformTable(half, centre))
+    return VaryTable(variable.path, uniform=UniformTable(half, centre))
 
 
-def _output_table(one: Output) -> OutputTable:
+def _output_table(output: Output) -> OutputTable:
     asks = {
-        key: value if REQUIREMENT_KINDS[key].choices else _written(value, one.dimension)
-        for key, value in one.asks
+        key: value if REQUIREMENT_KINDS[key].choices else _written(value, output.dimension)
+        for key, value in output.asks
     }
-    name = None if one.name == one.value else one.name
-    return OutputTable(one.value, name, one.of, asks)
+    name = None if output.name == output.value else output.name
+    return OutputTable(output.value, name, output.of, asks)
 
 
 def _sampling_table(given: Sampling) -> SamplingTable:

@@ -153,12 +153,12 @@ def units_in(store: Store) -> dict[str, Unit]:
     return {name: Unit(store.units.get(name, "")) for name in (*store.numbers, *store.outputs)}
 
 
-def _of_number(study: Study, one: Variable) -> str:
-    if one.dimension in KINDS and (chosen := chosen_unit(one.dimension)):
+def _of_number(study: Study, variable: Variable) -> str:
+    if variable.dimension in KINDS and (chosen := chosen_unit(variable.dimension)):
         return chosen
     if isinstance(study.model, Template):
-        return study.model.unit(one.path)
-    return handy(one.dimension) if one.dimension in KINDS else ""
+        return study.model.unit(variable.path)
+    return handy(variable.dimension) if variable.dimension in KINDS else ""
 
 
 def _of_output(output: Output, given: Mapping[str, Any]) -> str:

@@ -78,7 +78,7 @@ def plain_word(key: Key) -> str:
 def words_of(
     content: Content,
     kind: Kind,
-    found: NumberLocation,
+    location: NumberLocation,
     others: Collection[str] = (),
     known: int = 0,
 ) -> Note | None:
@@ -91,13 +91,13 @@ def words_of(
     known : how many tables on the way to it, from the top, are named by a heading, so that the
         words leave them out.
     """
-    layers = _layers(content, kind, found.place)
+    layers = _layers(content, kind, location.place)
     if not layers:
         return None
     *around, last = layers
     around = around[known:]
-    other = found.place / "y"
-    length = None if other in map(KeyPath.parse, others) else _length(content, found)
+    other = location.place / "y"
+    length = None if other in map(KeyPath.parse, others) else _length(content, location)
     what = length or Note(last.word, **last.names)
     for above, layer in enumerate(reversed(around)):
         alone = isinstance(layer.key.kind, KeyTable)
@@ -105,7 +105,7 @@ def words_of(
             return None
         if not (alone and above):  # a table tells what stands in it, not what is further down
             what = Note(layer.called, **layer.names, what=what)
-    for part in () if length else (_number(last), found.part or last.names.get("part")):
+    for part in () if length else (_number(last), location.part or last.names.get("part")):
         if part:
             named = Note(PARTS[part]) if part in PARTS else part
             what = Note("{what}, {part}", what=what, part=named)
@@ -151,18 +151,18 @@ def _below(here: Any, step: str | int) -> Any:
     return here[step] if isinstance(here, list) and isinstance(step, int) else None
 
 
-def _length(content: Content, found: NumberLocation) -> Note | None:
+def _length(content: Content, location: NumberLocation) -> Note | None:
     """The length of a body from the point in its origin to one whose distance from there it is."""
-    if found.place[-2:-1] != ("points",) or found.part not in ("x", "distance"):
+    if location.place[-2:-1] != ("points",) or location.part not in ("x", "distance"):
         return None
-    points = found.place.parent.read(content)
+    points = location.place.parent.read(content)
     if not isinstance(points, dict):  # a list of points has no origin among them
         return None
     places = {name: vector_of(point) for name, point in points.items()}
-    name = str(found.place[-1])
+    name = str(location.place[-1])
     own = places.pop(name)
     origins = [other for other, place in places.items() if place and not any(place.components)]
     along = own is not None and own.components[0] > 0 and not any(own.components[1:])
-    if not origins or not (along or found.part == "distance"):
+    if not origins or not (along or location.part == "distance"):
         return None
     return Note("length {first}–{second}", first=origins[0], second=name)

@@ -88,13 +88,13 @@ def _given(to_table: Callable[[Any], dict[str, Any]], value: Any, place: KeyPath
         raise within(place, error) from error
 
 
-def plain_default(one: keys.Key) -> Any:
+def plain_default(key: keys.Key) -> Any:
     """What a key that is left out stands for, as it would be written; None for nothing."""
-    if one.shown is not None or one.required or one.default is None or one.endless:
-        return one.shown
-    if isinstance(one.kind, keys.KeyTable | keys.Tables | keys.File):
+    if key.shown is not None or key.required or key.default is None or key.endless:
+        return key.shown
+    if isinstance(key.kind, keys.KeyTable | keys.Tables | keys.File):
         return None
-    default = Writer({}).plain(one.kind, one.default, KeyPath())
+    default = Writer({}).plain(key.kind, key.default, KeyPath())
     return None if isinstance(default, list | dict) and not default else default
 
 

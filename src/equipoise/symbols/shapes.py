@@ -77,7 +77,7 @@ class BodyMark:
 
 def runs(shapes: Iterable[Shape]) -> Iterator[list[Shape]]:
     """Neighbours that are drawn alike."""
-    for _, run in groupby(shapes, lambda one: (one.role, one.radius + one.grown > 0)):
+    for _, run in groupby(shapes, lambda item: (item.role, item.radius + item.grown > 0)):
         yield list(run)
 
 

@@ -44,13 +44,13 @@ def _stacks(scene: Scene, k: int) -> list[list[str]]:
     return [*by_name.values()]
 
 
-def _covers(scene: Scene, one: LinkOutline, other: LinkOutline, k: int) -> bool:
+def _covers(scene: Scene, outline: LinkOutline, other: LinkOutline, k: int) -> bool:
     """Whether links of one shape that turn alike cover each other."""
-    turned = scene.angles[one.name] - scene.angles[other.name]
-    if len(one.outline) != len(other.outline) or np.ptp(turned) > ALIKE:
+    turned = scene.angles[outline.name] - scene.angles[other.name]
+    if len(outline.outline) != len(other.outline) or np.ptp(turned) > ALIKE:
         return False
     outlines = [np.array([complex(scene.places[name][k]) for name in body.outline])
-                for body in (one, other)]  # fmt: skip
+                for body in (outline, other)]  # fmt: skip
     shift = outlines[1] - outlines[0]
     if np.ptp(shift.real) + np.ptp(shift.imag) > scene.unit:
         return False
