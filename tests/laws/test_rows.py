@@ -12,7 +12,7 @@ import pytest
 import equipoise as eq
 from equipoise.balancing.multi_row import PhasedRows, PhaseObjective
 from equipoise.balancing.phase_grid import PhaseGrid
-from equipoise.balancing.phase_polish import Tops, square_with_slopes
+from equipoise.balancing.phase_polish import ActivePeaks, square_with_slopes
 from equipoise.balancing.phase_search import PhaseSearch
 from equipoise.balancing.phasing import choose_phases
 from equipoise.mechanism.parts.balance import MEASURES, Objective, Phases
@@ -141,7 +141,7 @@ def test_slopes_by_phase(measure: str, seed: int) -> None:
     wish = Objective("shaking_moment", measure)  # type: ignore[arg-type]
     term = PhaseObjective(wish, PhasedRows(machine).signals(wish))
     phases = np.array([row.phase for row in machine.rows])
-    values, slopes = Tops.of(term, phases).pieces(phases)
+    values, slopes = ActivePeaks.of(term, phases).pieces(phases)
     best = int(np.argmax(values))
     assert values[best] == pytest.approx(float(term.values(phases)), rel=1e-12)
     step = 1e-5

@@ -21,7 +21,7 @@ from equipoise.cli.worker import ToolCall, reply_to
 from equipoise.design.spreads import Range
 from equipoise.design.variables import Variable
 from equipoise.limits import memory_limit, out_of_memory
-from equipoise.mechanism.assembly.shared import least
+from equipoise.mechanism.assembly.shared import min_norm
 from equipoise.mechanism.parts.balance import Measure, Objective
 from equipoise.schema.template import Template
 from equipoise.signals import Array, Periodic
@@ -127,7 +127,7 @@ def test_an_analysis_of_many_crank_angles_is_given_back_at_once() -> None:
 def test_joint_forces_that_statics_leaves_open_at_many_crank_angles() -> None:
     random = np.random.default_rng(7)
     matrix, right = random.normal(size=(30_000, 12, 15)), random.normal(size=(30_000, 12, 1))
-    assert peak_of(lambda: least(matrix, right)) < 30
+    assert peak_of(lambda: min_norm(matrix, right)) < 30
 
 
 def test_a_small_array_that_finds_no_room_is_said_to_come_on_top() -> None:

@@ -17,12 +17,12 @@ from equipoise.balancing.design_variables import DesignVariables, FreeSpring, Li
 from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
 from equipoise.mechanism.checks import unknown
-from equipoise.mechanism.dynamics.across import Across, exerted_in
-from equipoise.mechanism.dynamics.exerted import Exerted
+from equipoise.mechanism.dynamics.across import OutOfPlaneMoments, exerted_in
+from equipoise.mechanism.dynamics.exerted import ForceReadings
 from equipoise.mechanism.dynamics.forces import Forces, demand_of_inertia, forces
 from equipoise.mechanism.dynamics.reactions import (
     Demand,
-    Pass,
+    JointReactions,
     VectorSignal,
     demands_of,
     reactions,
@@ -174,7 +174,7 @@ class Effects:
         pole = in_frame(self.machine.frame, self.motion.linkage.pivot if about is None else about)
         start, columns = (
             declared.component(declared.vector(Found(self.motion, forces_of(self, pole)), item))
-            for forces_of in (Present, UnitResponse)
+            for forces_of in (Baseline, UnitResponse)
         )
         return Signal(start, self.full(columns), self.motion.turns, self.motion.sampling)
 
@@ -234,7 +234,7 @@ class Effects:
         return about[0], about[1], about[2]
 
     @cached_property
-    def solved(self) -> Pass:
+    def solved(self) -> JointReactions:
         """The run over the joints for each number."""
         force, moment = self.inertia
         links = self.machine.links
@@ -253,12 +253,12 @@ class Effects:
         return reactions(self.motion, demands, self.flanks)
 
     @cached_property
-    def present(self) -> Pass:
+    def present(self) -> JointReactions:
         """The run over the joints as they are, with teeth on the flanks that count."""
         return self.start.solved_like(self.flanks)
 
     @cached_property
-    def flanks(self) -> Pass:
+    def flanks(self) -> JointReactions:
         """A run whose couplings are in contact on the flanks that count."""
         if self.like is None or not self.machine.couplings:
             return self.start.solved
@@ -273,7 +273,7 @@ class Effects:
         return np.broadcast_to(columns, (self.count, len(self.motion.crank_angle)))
 
     @cached_property
-    def across(self) -> Across:
+    def across(self) -> OutOfPlaneMoments:
         """What a unit of each number does across the plane."""
         links, count = self.machine.links, (self.count, len(self.motion.crank_angle))
         inertia, weights, springs = (
@@ -286,7 +286,9 @@ class Effects:
         for spring, rows in self.springs:
             plane = links[spring.link].plane_of(spring.choice.point)
             springs[spring.link][rows] = -plane * spring.pulls(self.motion)
-        return Across(self.motion, inertia, weights, {}, springs, exerted_in(self.solved))
+        return OutOfPlaneMoments(
+            self.motion, inertia, weights, {}, springs, exerted_in(self.solved)
+        )
 
     def moment(self, demands: Demand, about: complex) -> Array:
         """Moment on the frame (K, N) of demands."""
@@ -298,7 +300,7 @@ class Effects:
 
 
 @dataclass(frozen=True)
-class SolvedOutputs(Exerted):
+class SolvedOutputs(ForceReadings):
     """Outputs of a machine, or of what is added to it.
 
     about : point about which moments are taken, m.
@@ -310,13 +312,13 @@ class SolvedOutputs(Exerted):
     preloads: ClassVar[bool] = False
 
 
-class Present(SolvedOutputs):
+class Baseline(SolvedOutputs):
     """Of the machine from which the numbers count."""
 
     preloads: ClassVar[bool] = True
 
     @property
-    def solved(self) -> Pass:
+    def solved(self) -> JointReactions:
         return self.effects.present
 
     @property
@@ -338,7 +340,7 @@ class Present(SolvedOutputs):
         return np.asarray(start.frame_moment + shift)
 
     @property
-    def across(self) -> Across:
+    def across(self) -> OutOfPlaneMoments:
         return replace(self.effects.start.across, exerted=exerted_in(self.solved))
 
 
@@ -346,7 +348,7 @@ class UnitResponse(SolvedOutputs):
     """Of a unit of each number; arrays (K, N)."""
 
     @property
-    def solved(self) -> Pass:
+    def solved(self) -> JointReactions:
         return self.effects.solved
 
     @property
@@ -367,5 +369,5 @@ class UnitResponse(SolvedOutputs):
         return np.asarray(self.shaking_moment + weight)
 
     @property
-    def across(self) -> Across:
+    def across(self) -> OutOfPlaneMoments:
         return self.effects.across

@@ -40,7 +40,7 @@ difference's step, over the link's mass; and what of a difference is rounding.""
 
 
 @dataclass(frozen=True, eq=False)
-class Near:
+class LinearizationPoint:
     """A machine near the solution, and its numbers (K,); None where they are not known."""
 
     machine: Machine
@@ -52,7 +52,7 @@ class Near:
         return Linear.of(self.machine)
 
 
-def signals_of(effects: Effects, objective: Objective, point: Near) -> list[Signal]:
+def signals_of(effects: Effects, objective: Objective, point: LinearizationPoint) -> list[Signal]:
     """Signals whose largest measure an objective is: one for each speed at which it is read."""
     output, machine = objective.output, effects.machine
     if output.startswith(GAUGES):
@@ -106,14 +106,16 @@ def of_rows_alone(effects: Effects, output: str, about: str | None = None) -> li
 # -- gauges of the support -------------------------------------------------------------------------
 
 
-def _gauge_signals(effects: Effects, objective: Objective, point: Near) -> list[Signal]:
+def _gauge_signals(
+    effects: Effects, objective: Objective, point: LinearizationPoint
+) -> list[Signal]:
     """A gauge's displacement (m or rad, without its mean) at each of the objective's speeds."""
     linear, row = reading_of(objective, point)
     speeds, rows = objective.speeds or (effects.machine.drive.speed,), rows_of(point.machine)
     return [read(effects, linear, row, speed, point.numbers, rows) for speed in speeds]
 
 
-def reading_of(objective: Objective, point: Near) -> tuple[Linear, Array]:
+def reading_of(objective: Objective, point: LinearizationPoint) -> tuple[Linear, Array]:
     """The support near the solution, and a row (D,) that reads a gauge off its coordinates."""
     if point.machine.support is None:
         raise ModelError("support", Note("missing; a gauge needs a support that it stands on"))
@@ -154,7 +156,9 @@ def read(
 
 def supports_more(effects: Effects, machine: Machine) -> bool:
     """Whether what the support has to carry depends on the numbers."""
-    return any(np.any(by_number) for by_number in _by_numbers(effects, Near(machine).linear))
+    return any(
+        np.any(by_number) for by_number in _by_numbers(effects, LinearizationPoint(machine).linear)
+    )
 
 
 @lru_cache(maxsize=2)  # all gauges and speeds ask for the same

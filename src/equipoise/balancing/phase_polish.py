@@ -209,7 +209,7 @@ def _step(cost: Cost, phases: Array, region: float) -> tuple[Array, float]:
     """
     from scipy.optimize import linprog
 
-    items = [Tops.of(term, phases).pieces(phases) for term in cost.measured]
+    items = [ActivePeaks.of(term, phases).pieces(phases) for term in cost.measured]
     now = np.array([np.max(values) for values, _ in items])
     weights, unit = _weights(cost, now), np.where(now > 0, now, 1.0)
     free = len(phases) - 1
@@ -240,7 +240,7 @@ def _curved(cost: Cost, phases: Array, after: Step) -> Array:
     """
     from scipy.optimize import minimize
 
-    tops = [Tops.of(term, phases) for term in cost.measured]
+    tops = [ActivePeaks.of(term, phases) for term in cost.measured]
     now = np.array([np.max(each.pieces(phases)[0]) for each in tops])
     unit, free = np.where(now > 0, now, 1.0), len(phases) - 1
 
@@ -277,7 +277,9 @@ def _curved(cost: Cost, phases: Array, after: Step) -> Array:
     return np.concatenate([phases[:1], phases[1:] + result.x[:free]])
 
 
-def _pieces_at(tops: list[Tops], known: dict[bytes, list[Pieces]], phases: Array) -> list[Pieces]:
+def _pieces_at(
+    tops: list[ActivePeaks], known: dict[bytes, list[Pieces]], phases: Array
+) -> list[Pieces]:
     """Pieces of all tops at phases (m,); those of the last phases are `known`."""
     key = phases.tobytes()
     if key not in known:
@@ -306,7 +308,7 @@ def _kept(cost: Cost, unit: Array) -> list[tuple[float, None]]:
 
 
 @dataclass(frozen=True, eq=False)
-class Tops:
+class ActivePeaks:
     """Tops of a term's signals, to be followed while the phases change a little.
 
     places : speed -> crank angles (P,), rad, of tops and of bottoms, as far as the measure has use
@@ -317,7 +319,7 @@ class Tops:
     places: tuple[tuple[Any, Any], ...]
 
     @classmethod
-    def of(cls, term: PhaseObjective, phases: Array) -> Tops:
+    def of(cls, term: PhaseObjective, phases: Array) -> ActivePeaks:
         """All tops at phases (m,), rad."""
         if (jumping := term.jumping) is not None:
             return cls(term, ((jumping.anchors(phases, 1.0), jumping.anchors(phases, -1.0)),))

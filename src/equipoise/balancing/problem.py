@@ -16,7 +16,13 @@ from equipoise.balancing.design_variables import (
     with_numbers,
 )
 from equipoise.balancing.effects import Effects, Signal
-from equipoise.balancing.objectives import Near, bound_measure, measured, signals_of, supports_more
+from equipoise.balancing.objectives import (
+    LinearizationPoint,
+    bound_measure,
+    measured,
+    signals_of,
+    supports_more,
+)
 from equipoise.balancing.program import Affine, Program
 from equipoise.balancing.weights import AddedWeight
 from equipoise.dataclass import dataclass
@@ -52,7 +58,7 @@ class Problem:
     plan: Balance
     start: Machine
     parts: tuple[DesignVariables, ...]
-    close: Near
+    close: LinearizationPoint
     counts: Mapping[str, float] | None = None
     known: Effects | None = None
 
@@ -73,7 +79,7 @@ class Problem:
         start = base
         for move in plan.moves:
             start = start.with_link(move.link, center_of_mass=(0.0, 0.0))
-        return cls(machine, plan, start, tuple(parts), Near(machine))
+        return cls(machine, plan, start, tuple(parts), LinearizationPoint(machine))
 
     def with_numbers(self, numbers: list[Array]) -> Iterator[tuple[DesignVariables, Array]]:
         """Each part, and its numbers."""
@@ -81,7 +87,10 @@ class Problem:
 
     def near(self, numbers: list[Array]) -> Problem:
         """The same, with gauges read as they are near the machine of some numbers."""
-        close, effects = Near(self.machine_with(numbers), np.concatenate(numbers)), self.effects
+        close, effects = (
+            LinearizationPoint(self.machine_with(numbers), np.concatenate(numbers)),
+            self.effects,
+        )
         if self.flips:
             effects = Effects(self.start, self.parts, effects.motion, close.machine)
         return replace(self, close=close, counts=self.before, known=effects)
@@ -132,7 +141,7 @@ class Problem:
     @staticmethod
     def values_of(machine: Machine, objectives: Sequence[Objective]) -> list[float]:
         """The same of several, in their order."""
-        effects, near = Effects(machine, ()), Near(machine)
+        effects, near = Effects(machine, ()), LinearizationPoint(machine)
         return [
             max(
                 measured(found.start, objective.measure, found.sampling)
@@ -243,7 +252,7 @@ class Problem:
         return max(float(np.max(np.abs(signal.columns), initial=0.0)) for signal in signals)
 
     @cached_property
-    def built(self) -> Built:
+    def built(self) -> AssembledProgram:
         """The program of everything that is asked."""
         program, plan = Program(), self.plan
         places = [program.numbers(part.count) for part in self.parts]
@@ -261,7 +270,9 @@ class Problem:
                 bound_measure(program, numbers, signal, measure, bound, limit.name)
         self._cost(program, terms)
         matter = dict(zip(numbers.tolist(), self._matters, strict=True))
-        return Built(program, places, [square for square in squares if matter[square.lift]])
+        return AssembledProgram(
+            program, places, [square for square in squares if matter[square.lift]]
+        )
 
     def keep_added_mass(self, program: Program, places: list[Array]) -> None:
         """Keep the most that may be added in all."""
@@ -340,7 +351,7 @@ class Problem:
 
 
 @dataclass(frozen=True, eq=False)
-class Built:
+class AssembledProgram:
     """A program, the places of each part's numbers in it, and the squares that matter."""
 
     program: Program

@@ -20,7 +20,7 @@ from equipoise.balancing.branch_and_bound import finite
 from equipoise.balancing.effects import Effects
 from equipoise.balancing.jumping_rows import JumpingDesigns
 from equipoise.balancing.multi_row import Cost, PhaseObjective, RowSignals
-from equipoise.balancing.objectives import Near, of_rows_alone, read, reading_of
+from equipoise.balancing.objectives import LinearizationPoint, of_rows_alone, read, reading_of
 from equipoise.balancing.phase_bound import PhaseProof, prove
 from equipoise.balancing.phase_grid import distinct
 from equipoise.balancing.phase_polish import Step, most_steps, polished
@@ -205,7 +205,9 @@ class JointPhaseMassOptimizer:
             for item in (self.problem.start, self.problem.machine)
         )
         counts = self.problem.before
-        return replace(self.problem, start=start, close=Near(like), counts=counts, known=None)
+        return replace(
+            self.problem, start=start, close=LinearizationPoint(like), counts=counts, known=None
+        )
 
     def _offer(self, phases: Array, solution: Solution) -> float:
         """Cost of masses with phases, infinite where a limit is passed; kept if it is the best."""
@@ -238,7 +240,10 @@ class JointPhaseMassOptimizer:
         """
         if not self._bent:
             return self._of_any
-        return [of_each_row(self.problem.effects, item, Near(near)) for item in self._measured]
+        return [
+            of_each_row(self.problem.effects, item, LinearizationPoint(near))
+            for item in self._measured
+        ]
 
     @cached_property
     def _jumping(self) -> list[JumpingDesigns | None]:
@@ -346,7 +351,7 @@ def jumping_designs(effects: Effects, objective: Objective) -> JumpingDesigns | 
     return JumpingDesigns.of(at, jumps, turns, bends_of(effects.machine, turns))
 
 
-def of_each_row(effects: Effects, objective: Objective, point: Near) -> Array:
+def of_each_row(effects: Effects, objective: Objective, point: LinearizationPoint) -> Array:
     """Amplitudes (1 + K, V, m, C, N) of what an objective reads: of every row as it is, and by a
     unit of each number, in phase 0.
 

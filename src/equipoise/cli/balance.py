@@ -17,8 +17,8 @@ from equipoise.cli.options import (
     NewFile,
     Out,
     Speed,
-    blaming,
     count,
+    error_in_option,
     size,
 )
 from equipoise.cli.outputs import Length, Outputs, Printed, check_new, write_model, wrote
@@ -116,7 +116,7 @@ DRAWINGS = ("pdf", "dxf", "svg")
 def _check_drawing(path: str) -> None:
     from equipoise.exchange.export import format_of
 
-    with blaming("--drawing"):
+    with error_in_option("--drawing"):
         if format_of(path).name not in DRAWINGS:
             what = Note("got {path!r}; give a name that ends in .pdf, .dxf or .svg", path=path)
             raise UsageError(what)
@@ -126,7 +126,7 @@ def _drawn(found: Balanced, path: str) -> tuple[Job, str | bytes]:
     """A drawing's content, before anything is written, since there may be nothing to draw."""
     from equipoise.exchange.export import format_of, made
 
-    with blaming("--drawing"):
+    with error_in_option("--drawing"):
         return made(found, format_of(path))
 
 
@@ -232,7 +232,7 @@ def sensitivities(
 
     machine = at_speed(machine, speed)
     check_moving(machine)
-    with blaming("OUTPUT"):
+    with error_in_option("OUTPUT"):
         result = sensitivity.sensitivities(machine, output)
     return CommandResult.of(result, zero=crank_zero or 0.0)
 

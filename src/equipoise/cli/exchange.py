@@ -13,8 +13,8 @@ from equipoise.cli.options import (
     Angle,
     Language,
     Out,
-    blaming,
     crank_angles,
+    error_in_option,
     read_by,
     refuse_idle,
     wants,
@@ -78,7 +78,7 @@ def export(
 
     if out is None:
         raise UsageError(at_place("--out", Note("missing; give the name of a file")))
-    with blaming("--out" if format is None else "--format"):
+    with error_in_option("--out" if format is None else "--format"):
         item = format_of(out, format, of_store=os.path.isdir(file) or file.endswith(STORE))
         if os.path.exists(file) or file in bundled():
             check_kind(item, of_store=os.path.isdir(file))

@@ -10,7 +10,7 @@ from typing import Annotated, Literal
 from cyclopts import Parameter
 
 from equipoise.cli.models import AnyFile
-from equipoise.cli.options import count, naming
+from equipoise.cli.options import count, error_in_file
 from equipoise.cli.outputs import Shown, check_model_name, wrote
 from equipoise.cli.runner import CommandResult, command
 from equipoise.errors import UsageError
@@ -156,7 +156,7 @@ def serve(
     from equipoise.web import server
     from equipoise.web.desk import begun
 
-    with naming(file or ""):  # what is wrong with a file is told before a page is opened
+    with error_in_file(file or ""):  # what is wrong with a file is told before a page is opened
         begin = begun(file)
 
     def tell(address: str) -> None:

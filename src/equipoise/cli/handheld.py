@@ -14,10 +14,10 @@ from cyclopts import App, Parameter
 from equipoise.cli.models import DesignFile, ToolFile
 from equipoise.cli.options import (
     Out,
-    blaming,
     check_belonging,
     count,
     ends_of_range,
+    error_in_option,
     quantity,
     read_by,
     sizes,
@@ -290,7 +290,7 @@ def vary(
             )
         )
     station, key = match["station"], match["key"]
-    with blaming("CHANGE"):
+    with error_in_option("CHANGE"):
         check_key(tool.station(station), key)
     if key.endswith("damping"):
         raise UsageError(
@@ -311,7 +311,7 @@ def vary(
                 Note("got {change!r}; give a range, the smaller value first", change=change),
             )
         )
-    with blaming("CHANGE"):
+    with error_in_option("CHANGE"):
         values = np.linspace(low, high, VALUES)
         variation = vary_tool(tool, station, key, values, number or MODES)
     return _result(tool, [variation], variation.charts, "variation")

@@ -21,10 +21,10 @@ from equipoise.cli.options import (
     Out,
     Speed,
     WorkerCount,
-    blaming,
     count,
     crank_angles,
     ends_of_range,
+    error_in_option,
     place_in,
     quantity,
     read_by,
@@ -109,7 +109,7 @@ def analyze(
     further |= (
         {} if dwells is None else {"dwells": {name: vars(item) for name, item in dwells.items()}}
     )
-    with blaming("--output"):
+    with error_in_option("--output"):
         chosen = [item.name for item in analysis.outputs.chosen(output or ())]
     answer = CommandResult.of(analysis, orders=orders, zero=zero, outputs=chosen, dwells=dwells)
     return replace(
@@ -376,7 +376,7 @@ def fit(
     new = out or ""  # FILE-fit.toml where none is given
     check_new(machine, new)
     given = read_targets(targets, figure_names(machine))
-    with generations() as progress, blaming(printable(targets)):
+    with generations() as progress, error_in_option(printable(targets)):
         fitted = fit_planting(
             machine,
             given.goals,

@@ -14,8 +14,8 @@ from equipoise.cli.options import (
     SIGNED,
     Many,
     Names,
-    blaming,
     check_belonging,
+    error_in_option,
     quantity,
     read_by,
     size,
@@ -102,7 +102,7 @@ def decay(
     if stiffness is not None:
         value, torsional, text = stiffness
         _check_stiffness(text, torsional, record.kind == "angle" or arm is not None, spring_arm)
-    with blaming(printable(csv)):
+    with error_in_option(printable(csv)):
         result = identify_decay(
             record, value, arm=arm, spring_arm=spring_arm, confidence=confidence
         )
@@ -315,7 +315,7 @@ def _weighted(path: str, found: Accelerations, options: Mapping[str, bool]) -> W
 
     single = options["single_axis"] and len(found.axes) < 3
     shared: Any = {"axes": found.axes, "single_axis": single, "weighted": options["weighted"]}
-    with blaming(printable(path)):
+    with error_in_option(printable(path)):
         if found.kind == "time":
             periodic = found.periodic or options["periodic"]
             return weigh_signal(found.at, found.values, periodic=periodic, **shared)
@@ -392,6 +392,6 @@ def _day(told: list[TaskInput]) -> Exposure | None:
             )
     tasks = []
     for each in known:
-        with blaming(each.name):
+        with error_in_option(each.name):
             tasks.append(Task(each.name, each.a_hv, each.duration or 0.0))
     return daily_exposure(tasks)

@@ -113,7 +113,7 @@ def quantity(option: str, text: str, dimension: str) -> float:
     """A size in SI units."""
     from equipoise.quantities.reading import parse
 
-    with blaming(option):
+    with error_in_option(option):
         return parse(text, dimension)  # type: ignore[arg-type]
 
 
@@ -170,7 +170,7 @@ def tolerance(option: str, text: str) -> tuple[float, str]:
 def _units(option: str, text: str) -> Units:
     from equipoise.mechanism.parts.shown_units import read_units
 
-    with blaming(option):
+    with error_in_option(option):
         return read_units(text)
 
 
@@ -275,7 +275,7 @@ ShownIn = Annotated[
 
 
 @contextmanager
-def naming(file: str) -> Iterator[None]:
+def error_in_file(file: str) -> Iterator[None]:
     """Put the file's name in front of what turns out wrong with its machine."""
     try:
         yield
@@ -289,7 +289,7 @@ def naming(file: str) -> Iterator[None]:
 
 
 @contextmanager
-def blaming(option: str) -> Iterator[None]:
+def error_in_option(option: str) -> Iterator[None]:
     """Put an option, or a file that it named, in front of what turns out wrong with it."""
     try:
         yield

@@ -16,9 +16,9 @@ from equipoise.cli.options import (
     Many,
     Names,
     Speed,
-    blaming,
     count,
     ends_of_range,
+    error_in_option,
     quantities,
     quantity,
     read_by,
@@ -123,7 +123,7 @@ def _outputs(found: Any, names: Sequence[str]) -> list[LazyPicture]:
     from equipoise.present.pictures import LazyPicture
 
     names = list(dict.fromkeys(names))
-    with blaming("--output"):
+    with error_in_option("--output"):
         caption = ", ".join(item.label() for item in found.analysis.outputs.chosen(names))
     return [
         LazyPicture("outputs", "motion", caption, partial(outputs_chart, found.analysis, names))

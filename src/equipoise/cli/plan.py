@@ -11,9 +11,9 @@ from cyclopts import Parameter
 
 from equipoise.cli.options import (
     Many,
-    blaming,
     blaming_by_place,
     check_belonging,
+    error_in_option,
     quantity,
     read_by,
     size,
@@ -258,7 +258,7 @@ def read_objective(option: str, text: str) -> Objective:
                 )
             )
         values |= read
-    with blaming(option):
+    with error_in_option(option):
         return Objective(words[0], measure, **values).of_all_rows  # type: ignore[arg-type]
 
 
@@ -307,7 +307,7 @@ def _limited(machine: Machine, plan: Balance, text: str) -> Balance:
     if head == "added_mass":
         return replace(plan, added_mass=quantity("--limit", tail, "mass"))
     asked = read_objective("--limit", head)
-    with blaming("--limit"):
+    with error_in_option("--limit"):
         share = parse_share(tail)
         dimension = None if share is not None else quantity_of(asked, machine)
     if share is not None:

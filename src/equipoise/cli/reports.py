@@ -15,8 +15,8 @@ from equipoise.cli.options import (
     Out,
     Rate,
     SpeedText,
-    blaming,
     check_belonging,
+    error_in_option,
     quantity,
     refuse_idle,
     wants,
@@ -200,7 +200,7 @@ def _tool_in_mode(file: str, mode: int | None, seconds: float, width: int) -> st
     from equipoise.schema.models import load_tool
 
     modes = vibrate_tool(load_tool(file), MODES)
-    with blaming("--mode"):
+    with error_in_option("--mode"):
         return flipped(in_mode(modes, 1 if mode is None else mode, TOOL_FRAMES), seconds, width)
 
 
@@ -220,7 +220,7 @@ def _in_mode(machine: Machine, number: int, count: int) -> Scene:
     from equipoise.vibration.free import modes
 
     free = modes(machine)
-    with blaming("--mode"):
+    with error_in_option("--mode"):
         return in_mode(free, number, count)
 
 
@@ -305,7 +305,7 @@ def _paths(file: str, out: str | None, pdf: bool) -> list[str]:
 
     if out is None:
         out = default_name(file, "-report.html")
-    with blaming("--out"):
+    with error_in_option("--out"):
         kind = kind_of(out)
     also = [f"{os.path.splitext(out)[0]}.pdf"] if pdf and kind == "html" else []
     for path in (out, *also):

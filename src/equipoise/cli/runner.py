@@ -30,7 +30,7 @@ from equipoise.cli.options import (
     ResultFile,
     Spoken,
     check_belonging,
-    naming,
+    error_in_file,
 )
 from equipoise.cli.outputs import (
     BRIEF,
@@ -164,7 +164,7 @@ class FinishedCommand:
             return block_text(title, self._blocks(), most=BRIEF if brief else None)
 
     def _naming(self) -> AbstractContextManager[None]:
-        return naming(self.file) if self.file else nullcontext()
+        return error_in_file(self.file) if self.file else nullcontext()
 
     @contextmanager
     def _showing(self) -> Iterator[None]:
@@ -252,7 +252,11 @@ class Command:
         for name in {*map(_name, self.groups)} - self._own.keys():
             del given[name]
         language = next((given[option] for option, _ in _marked(marks, Spoken)), "en")
-        with naming(file) if file else nullcontext(), speaking(language), outputs.showing(owner):
+        with (
+            error_in_file(file) if file else nullcontext(),
+            speaking(language),
+            outputs.showing(owner),
+        ):
             returned = self.function(*bound.args, **bound.kwargs)
         answer = returned if isinstance(returned, CommandResult) else CommandResult.of(returned)
         owner = owner if answer.owner is None else answer.owner

@@ -41,7 +41,7 @@ from equipoise.mechanism.assembly import cycle, full_turn
 from equipoise.mechanism.assembly.family import linkage_of, with_columns
 from equipoise.mechanism.assembly.linkage import Linkage, assemble
 from equipoise.mechanism.assembly.newton import LoopGroup
-from equipoise.mechanism.assembly.refusing import wrong
+from equipoise.mechanism.assembly.refusing import invalid_designs
 from equipoise.mechanism.assembly.steps import size_of_bodies
 from equipoise.mechanism.kinematics.jumps import (
     bends_of_rows,
@@ -153,7 +153,7 @@ def designs_of(
     """Designs of a base by the numbers (P, d) that vary, SI units, and their paths."""
     columns = {path: values[:, k, None] for k, path in enumerate(paths)}
     machine = with_columns(base.machine, columns)
-    refused = np.zeros(len(values), dtype=bool) | wrong(machine, base, columns)
+    refused = np.zeros(len(values), dtype=bool) | invalid_designs(machine, base, columns)
     linkage = linkage_of(machine, base)
     table = np.empty((len(values), source.width))
     for slot in source.slots:

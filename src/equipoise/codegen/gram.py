@@ -21,7 +21,7 @@ from equipoise.i18n import Note
 from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.assembly.family import can_vary, massive_link, with_columns
 from equipoise.mechanism.assembly.linkage import assemble
-from equipoise.mechanism.assembly.refusing import wrong
+from equipoise.mechanism.assembly.refusing import invalid_designs
 from equipoise.mechanism.dynamics.forces import forces
 from equipoise.mechanism.dynamics.parameters import (
     parameter_names,
@@ -123,7 +123,7 @@ class MassBatch:
                     else:
                         figures[some, k] = np.sqrt(np.einsum("ij,ij->j", part, part))
             if self.anew or not self._all_usual(columns[:, :count]):
-                reason[some][wrong(machine, self.base, named)[:count]] = NO_MACHINE
+                reason[some][invalid_designs(machine, self.base, named)[:count]] = NO_MACHINE
         figures[reason != COMPUTED] = np.nan
         return figures, reason
 

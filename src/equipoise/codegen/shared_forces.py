@@ -15,7 +15,7 @@ from equipoise.codegen.trace import Trace
 from equipoise.errors import UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism.assembly.loops import CouplingLoop, Pose, Poses
-from equipoise.mechanism.assembly.shared import Shared
+from equipoise.mechanism.assembly.shared import RedundantReactions
 from equipoise.mechanism.checks import FRAME
 
 STRONG = 1e-3
@@ -55,7 +55,7 @@ def trace_shared(trace: Trace, number: int) -> None:
     linkage's ``forces``.
     """
     shared = trace.linkage.forces[number]
-    assert isinstance(shared, Shared)
+    assert isinstance(shared, RedundantReactions)
     poses = _poses(trace, shared)
     size = float(shared.group.size)
     columns, units = [], []
@@ -88,7 +88,7 @@ def trace_shared(trace: Trace, number: int) -> None:
         state[f"F({drive})"], state[f"M({drive})"] = state[pin.force], next(strengths)
 
 
-def _poses(trace: Trace, shared: Shared) -> Poses:
+def _poses(trace: Trace, shared: RedundantReactions) -> Poses:
     """Where the links are, from their anchors, and the frame from the pivot of the first drive."""
     poses = {FRAME: Pose((trace.state[f"p({shared.pivot})"], 0j, 0j), (1 + 0j, 0.0, 0.0))}
     for link in shared.group.links:

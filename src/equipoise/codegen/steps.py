@@ -33,7 +33,7 @@ from equipoise.mechanism.assembly.cam_groups import Displacement
 from equipoise.mechanism.assembly.flanks import rolled
 from equipoise.mechanism.assembly.loopgroup import LoopForces
 from equipoise.mechanism.assembly.newton import LoopGroup
-from equipoise.mechanism.assembly.shared import Shared
+from equipoise.mechanism.assembly.shared import RedundantReactions
 from equipoise.mechanism.assembly.steps import (
     KernelCall,
     Rotation,
@@ -117,7 +117,7 @@ def trace_step(trace: Trace, step: Step, steps: str, number: int) -> None:
     elif isinstance(step, LoopGroup):
         trace_loops(trace, number)
     elif isinstance(step, LoopForces):
-        (trace_shared if isinstance(step, Shared) else trace_loop_forces)(trace, number)
+        (trace_shared if isinstance(step, RedundantReactions) else trace_loop_forces)(trace, number)
 
 
 def _trace_call(trace: Trace, step: KernelCall, steps: str, number: int) -> None:

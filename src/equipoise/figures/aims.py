@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from equipoise.balancing.effects import Effects, Signal
-from equipoise.balancing.objectives import Near, measured, signals_of, unit_of
+from equipoise.balancing.objectives import LinearizationPoint, measured, signals_of, unit_of
 from equipoise.dataclass import dataclass
 from equipoise.figures.analysis import rounding
 from equipoise.figures.forces import Read, last_order, order_panel
@@ -139,7 +139,8 @@ def aims_of(balanced: Balanced) -> Iterator[Aim]:
     effects = [Effects(machine, ()) for machine in (balanced.original, balanced.machine)]
     for signal, of_it in asked.items():
         before, after = (
-            signals_of(each, signal, Near(each.machine))[0].on_grid for each in effects
+            signals_of(each, signal, LinearizationPoint(each.machine))[0].on_grid
+            for each in effects
         )
         dimension = str(output_of(signal.output, balanced.original).dimension)
         yield Aim(balanced.original, tuple(of_it), before, after, least.get(dimension, 0.0))

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.figures.sheet import MIDDLE, Array, Box, CanvasStroke, Labels, Sheet, Signs, Words
+from equipoise.figures.sheet import MIDDLE, Array, Box, Canvas, CanvasStroke, Labels, Markers, Words
 from equipoise.figures.style import INK, SMALL, DrawingStyle, look_of, mixed
 from equipoise.figures.view import AxisScale, View, corners_of, ends_of, ticks_of
 from equipoise.results.charts import Area, Bars, Cells, Curve, Panel, Rule
@@ -83,10 +83,10 @@ def _spaced(places: Array, number: int, box: Box) -> Array:
     return np.asarray(nearest[np.all(inside, axis=1)])
 
 
-def signs_at(places: Array, look: DrawingStyle, clip: Box | None = None) -> Signs:
+def signs_at(places: Array, look: DrawingStyle, clip: Box | None = None) -> Markers:
     """Signs at places (N, 2) of the sheet."""
     width = max(look.width, 1.0)
-    return Signs(places, look.sign, look.size, look.color, look.inside, width, clip)
+    return Markers(places, look.sign, look.size, look.color, look.inside, width, clip)
 
 
 def draw_area(view: View, area: Area) -> None:
@@ -131,7 +131,7 @@ def _dots(view: View, bars: Bars) -> None:
         look = look_of(role)
         chosen = shown & (roles == role)
         places = view.places(pair[0][chosen], pair[1][chosen])
-        signs = Signs(places, "o", DOT, look.ink, look.inside, 0.0, view.box)
+        signs = Markers(places, "o", DOT, look.ink, look.inside, 0.0, view.box)
         view.sheet.add(signs, look.order)
 
 
@@ -225,7 +225,7 @@ WEIGHTS |= {"room": 1.0, "surface": 1.0, "rest": 1.0, "swing": 1.0, "other-swing
 """What names keep clear of, and how much it matters."""
 
 
-def draw_machine(sheet: Sheet, labels: Labels, panel: Panel, places: Any, box: Box) -> None:
+def draw_machine(sheet: Canvas, labels: Labels, panel: Panel, places: Any, box: Box) -> None:
     """The signs in a panel; places : of x and y in SI units on the sheet, (n, 2)."""
 
     def at(corners: Array) -> Array:
@@ -238,7 +238,7 @@ def draw_machine(sheet: Sheet, labels: Labels, panel: Panel, places: Any, box: B
 
 
 def draw_shapes(
-    sheet: Sheet,
+    sheet: Canvas,
     shapes: Iterable[Shape],
     at: Placing,
     size: float,
@@ -258,7 +258,7 @@ def draw_shapes(
         if run[0].grown:
             middles = np.concatenate([_corners(item, at, size) for item in run])
             wide = 2 * run[0].grown * UNIT * size
-            sheet.add(Signs(middles, "o", wide, color or fill, fill, width or 0.1, clip), above)
+            sheet.add(Markers(middles, "o", wide, color or fill, fill, width or 0.1, clip), above)
             continue
         lines = tuple(
             at(item.places[0] + item.radius * AROUND) if to_scale else _corners(item, at, size)

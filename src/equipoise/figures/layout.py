@@ -11,7 +11,7 @@ import numpy as np
 from equipoise.figures.cells import Cell, cell_of, make_room, share
 from equipoise.figures.legend import APART, KEY, LegendKey, draw_legend, keys_of, kind_of, rows_of
 from equipoise.figures.panel import LEAD, draw, flag_height, frame
-from equipoise.figures.sheet import Sheet, Words, lines_of, width_of
+from equipoise.figures.sheet import Canvas, Words, lines_of, width_of
 from equipoise.figures.style import INK, LARGE, LINES, NORMAL, SMALL
 from equipoise.figures.view import AxisScale, View, ticks_of
 from equipoise.i18n import said
@@ -34,12 +34,12 @@ LEAST, MOST, MOST_OF_HALF, ROOM, SMALL_ROOM = 110.0, 345.0, 140.0, 26.0, 0.13
 or, in small ones, a share."""
 
 
-def lay_out(chart: Chart, wide: float = WIDE, headed: bool = True) -> Sheet:
+def lay_out(chart: Chart, wide: float = WIDE, headed: bool = True) -> Canvas:
     """A chart on a sheet.
 
     wide : of the sheet, points.  headed : whether the chart's heading stands on it.
     """
-    sheet = Sheet(wide, 0.0, said(chart.title))
+    sheet = Canvas(wide, 0.0, said(chart.title))
     top = _heading(sheet, chart) if headed else TOP
     keys = [LegendKey(role, name, kind_of(role)) for role, name in chart.keys]
     keys += [key for panel in chart.panels for key in keys_of(panel, chart_level=True)]
@@ -55,7 +55,7 @@ def lay_out(chart: Chart, wide: float = WIDE, headed: bool = True) -> Sheet:
     return sheet
 
 
-def _heading(sheet: Sheet, chart: Chart) -> float:
+def _heading(sheet: Canvas, chart: Chart) -> float:
     """The machine, what is shown, and further words; where they end."""
     room, top = sheet.width - 2 * EDGE, 3.0
     for line in lines_of(said(chart.title), room, LARGE, bold=True):
@@ -69,7 +69,7 @@ def _heading(sheet: Sheet, chart: Chart) -> float:
     return top + 5
 
 
-def _panels(sheet: Sheet, chart: Chart, top: float) -> float:
+def _panels(sheet: Canvas, chart: Chart, top: float) -> float:
     columns = min(chart.columns, len(chart.panels))
     if sheet.width == HALF and not all(panel.equal for panel in chart.panels):
         columns = 1  # words along the axes need the width
@@ -184,7 +184,7 @@ def _above(cell: Cell, width: float) -> None:
         cell.below += LINE * (len(cell.x_label) - 1)
 
 
-def _draw(sheet: Sheet, cell: Cell, left: float, top: float, inner: float) -> None:
+def _draw(sheet: Canvas, cell: Cell, left: float, top: float, inner: float) -> None:
     """A panel whose axes begin at some height, in its room from the left."""
     panel = cell.panel
     start, end = left + cell.left, left + inner - cell.right
@@ -211,7 +211,7 @@ def _draw(sheet: Sheet, cell: Cell, left: float, top: float, inner: float) -> No
     _name_axes(sheet, cell, view, left)
 
 
-def _titles(sheet: Sheet, cell: Cell, start: float, end: float, foot: float) -> None:
+def _titles(sheet: Canvas, cell: Cell, start: float, end: float, foot: float) -> None:
     for line in reversed(cell.remarks):
         sheet.add(Words(end, foot - 4, line, SMALL, LINES, "end"), 7)
         foot -= LINE
@@ -228,7 +228,7 @@ def _name_of(axis: Axis, room: float) -> tuple[str, ...]:
     return tuple(line.replace(TIED, " ") for line in lines_of(whole, room, NORMAL))
 
 
-def _name_axes(sheet: Sheet, cell: Cell, view: View, left: float) -> None:
+def _name_axes(sheet: Canvas, cell: Cell, view: View, left: float) -> None:
     panel = cell.panel
     start, top, end, bottom = view.box
     for number, line in enumerate(cell.y_label):

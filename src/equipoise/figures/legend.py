@@ -10,7 +10,7 @@ import numpy as np
 
 from equipoise.dataclass import dataclass
 from equipoise.figures.curves import draw_shapes, sample_of, signs_at
-from equipoise.figures.sheet import MIDDLE, CanvasStroke, Sheet, Words, set_in, width_of
+from equipoise.figures.sheet import MIDDLE, Canvas, CanvasStroke, Words, set_in, width_of
 from equipoise.figures.style import INK, NORMAL, look_of
 from equipoise.figures.view import corners_of
 from equipoise.results.charts import Panel
@@ -75,7 +75,7 @@ def rows_of(keys: list[LegendKey], room: float) -> list[list[LegendKey]]:
 
 
 def draw_legend(
-    sheet: Sheet, keys: list[LegendKey], left: float, right: float, top: float
+    sheet: Canvas, keys: list[LegendKey], left: float, right: float, top: float
 ) -> float:
     """Draw entries below each other in rows; where they end."""
     for row in rows_of(keys, right - left):
@@ -90,7 +90,7 @@ def draw_legend(
     return top
 
 
-def _sample(sheet: Sheet, key: LegendKey, x: float, y: float) -> None:
+def _sample(sheet: Canvas, key: LegendKey, x: float, y: float) -> None:
     if key.role in LOOKS:
         draw_shapes(sheet, sample_of(key.role), lambda z: np.array([x + SAMPLE / 2, y]), 1.0, 6.0)
         return

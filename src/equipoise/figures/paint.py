@@ -21,7 +21,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import PathPatch, Rectangle
 from matplotlib.path import Path
 
-from equipoise.figures.sheet import CanvasStroke, Item, Sheet, Signs, Words, box_of
+from equipoise.figures.sheet import Canvas, CanvasStroke, Item, Markers, Words, box_of
 from equipoise.figures.style import PAPER
 from equipoise.figures.vector import BACK, SHAPES
 
@@ -111,17 +111,17 @@ def fonts_for(signs: frozenset[str]) -> tuple[tuple[str, ...], str]:
     return tuple(more), "".join(sorted(map(chr, left)))
 
 
-def unwritten(sheet: Sheet) -> str:
+def unwritten(sheet: Canvas) -> str:
     """Signs of a sheet's texts that no installed font has."""
     return fonts_for(_signs(sheet))[1]
 
 
-def _signs(sheet: Sheet) -> frozenset[str]:
+def _signs(sheet: Canvas) -> frozenset[str]:
     return frozenset("".join(words.text for words in sheet.words))
 
 
 @contextmanager
-def settings(sheet: Sheet | None = None, texts: str = "") -> Iterator[None]:
+def settings(sheet: Canvas | None = None, texts: str = "") -> Iterator[None]:
     """Everything inside looks the same whatever the user's Matplotlib is set to, with fonts for the
     texts of a sheet, or others.
 
@@ -143,7 +143,7 @@ class ShownFigure(Figure):
         return _saved(self, "png")
 
 
-def figure_of(sheet: Sheet) -> Figure:
+def figure_of(sheet: Canvas) -> Figure:
     """A sheet as a figure, one unit of whose axes is a point."""
     with settings(sheet):
         figure = ShownFigure(figsize=(sheet.width / 72, sheet.height / 72), facecolor=PAPER)
@@ -152,7 +152,7 @@ def figure_of(sheet: Sheet) -> Figure:
     return figure
 
 
-def paint_in(axes: Axes, sheet: Sheet) -> Figure:
+def paint_in(axes: Axes, sheet: Canvas) -> Figure:
     """A sheet in axes that are there, as large as fits; the figure that these belong to."""
     figure = axes.get_figure(root=True)
     assert isinstance(figure, Figure)
@@ -165,7 +165,7 @@ def paint_in(axes: Axes, sheet: Sheet) -> Figure:
     return figure
 
 
-def _paint_all(axes: Axes, sheet: Sheet, scale: float) -> None:
+def _paint_all(axes: Axes, sheet: Canvas, scale: float) -> None:
     """All of a sheet in axes whose unit is a point of it.
 
     scale : points of the figure in one of the sheet.
@@ -177,12 +177,12 @@ def _paint_all(axes: Axes, sheet: Sheet, scale: float) -> None:
         _paint(axes, item, order, scale)
 
 
-def painted(sheet: Sheet, kind: Kind) -> bytes:
+def painted(sheet: Canvas, kind: Kind) -> bytes:
     """A sheet as a file of Matplotlib."""
     return _saved(figure_of(sheet), kind, sheet)
 
 
-def _saved(figure: Figure, kind: Kind, sheet: Sheet | None = None) -> bytes:
+def _saved(figure: Figure, kind: Kind, sheet: Canvas | None = None) -> bytes:
     file = BytesIO()
     with settings(sheet):
         figure.savefig(file, format=kind, metadata=METADATA[kind])
@@ -195,12 +195,12 @@ def _paint(axes: Axes, item: Item, order: int, scale: float) -> None:
     if isinstance(item, Words):
         _write(axes, item, order, scale)
         return
-    if isinstance(item, Signs) and item.shape in SHAPES:
+    if isinstance(item, Markers) and item.shape in SHAPES:
         outlines = tuple(place + item.size * np.array(SHAPES[item.shape]) for place in item.places)
         item = CanvasStroke(
             outlines, item.edge, item.width, fill=item.face, closed=True, clip=item.clip
         )
-    if isinstance(item, Signs):
+    if isinstance(item, Markers):
         artist = Line2D(*item.places.T, linestyle="none", marker=item.shape, zorder=order)
         wide = 2 * item.size if item.shape == "." else item.size
         artist.set(markersize=scale * wide, markeredgecolor=item.edge, markerfacecolor=item.face)

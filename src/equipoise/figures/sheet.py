@@ -42,7 +42,7 @@ class CanvasStroke:
 
 
 @dataclass(frozen=True, eq=False)
-class Signs:
+class Markers:
     """The same marker at some places (N, 2).
 
     shape : as Matplotlib calls it.  size : of its width, points.
@@ -75,11 +75,11 @@ class Words:
     backed: bool = False
 
 
-Item = CanvasStroke | Signs | Words
+Item = CanvasStroke | Markers | Words
 
 
 @dataclass
-class Sheet:
+class Canvas:
     """A picture: its size, and what is drawn on it, what is of a higher order later."""
 
     width: float
@@ -226,7 +226,7 @@ class CanvasText:
 class Labels:
     """Texts inside a box of a sheet."""
 
-    def __init__(self, sheet: Sheet, frame: Box) -> None:
+    def __init__(self, sheet: Canvas, frame: Box) -> None:
         self.sheet = sheet
         self.frame = np.array(frame)
         self.boxes = np.empty((0, 4))

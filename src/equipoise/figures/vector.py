@@ -9,7 +9,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from equipoise.figures.sheet import Array, Box, CanvasStroke, Sheet, Signs, Words, box_of
+from equipoise.figures.sheet import Array, Box, Canvas, CanvasStroke, Markers, Words, box_of
 from equipoise.figures.style import PAPER
 
 FONTS = "DejaVu Sans, Verdana, sans-serif"
@@ -31,7 +31,7 @@ SHAPES: dict[str, tuple[tuple[float, float], ...]] = {
 """Markers of width 1 around 0."""
 
 
-def svg_of(sheet: Sheet) -> str:
+def svg_of(sheet: Canvas) -> str:
     """The whole document."""
     width, height = _number(sheet.width), _number(sheet.height)
     clips: dict[Box, str] = {}
@@ -40,7 +40,7 @@ def svg_of(sheet: Sheet) -> str:
         if isinstance(item, Words):
             parts += _words(item)
             continue
-        text = _signs(item) if isinstance(item, Signs) else _stroke(item)
+        text = _signs(item) if isinstance(item, Markers) else _stroke(item)
         if item.clip is not None:
             name = clips.setdefault(item.clip, f"c{len(clips) + 1}")
             text = text.replace(" ", f' clip-path="url(#{name})" ', 1)
@@ -109,7 +109,7 @@ def _tenths(count: int) -> str:
     return f"{count / 10:g}"
 
 
-def _signs(signs: Signs) -> str:
+def _signs(signs: Markers) -> str:
     places, size = signs.places, signs.size
     if signs.shape == ".":
         path = "".join(f"M{_number(x)},{_number(y)}h0" for x, y in places.tolist())

@@ -14,9 +14,9 @@ from equipoise.figures.sheet import (
     MIDDLE,
     Anchor,
     Box,
+    Canvas,
     CanvasStroke,
     Labels,
-    Sheet,
     Words,
     width_of,
 )
@@ -205,7 +205,7 @@ class View:
     panel: Panel
     x: AxisScale
     y: AxisScale
-    sheet: Sheet
+    sheet: Canvas
 
     @property
     def box(self) -> Box:

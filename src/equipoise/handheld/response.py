@@ -27,7 +27,7 @@ LEAST, MOST_ORDERS = 1e-6, 60
 
 
 @dataclass(frozen=True, eq=False)
-class Shake:
+class HarmonicForce:
     """One order of an excitation: the force Re (force * speed^power * exp(i order speed t)).
 
     order : events in a turn of the engine.
@@ -46,7 +46,7 @@ class Shake:
         return np.asarray(self.force[:, None] * speed**self.power)
 
 
-def shakes(tool: Tool) -> tuple[Shake, ...]:
+def shakes(tool: Tool) -> tuple[HarmonicForce, ...]:
     """All orders of all excitations.
 
     Raises
@@ -56,7 +56,7 @@ def shakes(tool: Tool) -> tuple[Shake, ...]:
     return tuple(shake for excitation in tool.excitations for shake in _shakes(excitation))
 
 
-def _shakes(excitation: Excitation) -> Iterable[Shake]:
+def _shakes(excitation: Excitation) -> Iterable[HarmonicForce]:
     if excitation.linkage is not None:
         yield from _of_linkage(excitation, excitation.linkage)
         return
@@ -67,7 +67,9 @@ def _shakes(excitation: Excitation) -> Iterable[Shake]:
         ahead = np.exp(1j * excitation.phase)
         along = {"vertical": np.array([ahead, 0]), "lateral": np.array([0, ahead])}
         force, power = excitation.force * along.get(excitation.direction, _turning(excitation)), 0
-    yield Shake(excitation.name, excitation.station, _order(abs(excitation.ratio)), force, power)
+    yield HarmonicForce(
+        excitation.name, excitation.station, _order(abs(excitation.ratio)), force, power
+    )
 
 
 def _turning(excitation: Excitation) -> Array:
@@ -81,7 +83,7 @@ def _order(order: float) -> float:
     return float(f"{order:.12g}")
 
 
-def _of_linkage(excitation: Excitation, machine: Machine) -> Iterable[Shake]:
+def _of_linkage(excitation: Excitation, machine: Machine) -> Iterable[HarmonicForce]:
     """The shaking force by orders: minus the rate of change of momentum, of any speed squared."""
     force = unit_shaking_force(machine)
     backward = (excitation.ratio > 0) != (machine.drive.speed > 0)
@@ -92,7 +94,7 @@ def _of_linkage(excitation: Excitation, machine: Machine) -> Iterable[Shake]:
         order = float(force.orders[k])
         both = excitation.ratio**2 * force.amplitudes[:, k] * np.exp(1j * order * excitation.phase)
         both = np.conj(both) if backward else both
-        yield Shake(
+        yield HarmonicForce(
             excitation.name, excitation.station, _order(order * abs(excitation.ratio)), both, 2
         )
 
@@ -107,12 +109,14 @@ def unit_shaking_force(machine: Machine) -> Periodic:
     return Periodic.of(np.array([force.y, force.x]), assemble(machine).cycle.turns)
 
 
-def orders_of(all_shakes: Iterable[Shake]) -> Array:
+def orders_of(all_shakes: Iterable[HarmonicForce]) -> Array:
     """Orders (K,) of what shakes, each once, rising."""
     return np.array(sorted({shake.order for shake in all_shakes}))
 
 
-def loud(all_shakes: Sequence[Shake], speed: float, least: float) -> tuple[Shake, ...]:
+def loud(
+    all_shakes: Sequence[HarmonicForce], speed: float, least: float
+) -> tuple[HarmonicForce, ...]:
     """Orders whose force at a speed, rad/s, is at least a share of the largest."""
     if not all_shakes:
         return ()
@@ -138,7 +142,7 @@ class ToolResponse(Result):
     tool: Tool
     speed: Array
     orders: Array
-    shakes: tuple[Shake, ...]
+    shakes: tuple[HarmonicForce, ...]
     field: HarmonicField
 
     blocks_in = "handheld.blocks.response_blocks"
@@ -308,7 +312,7 @@ def checked_speeds(speed: float | Iterable[float] | Array) -> Array:
 
 
 def shaken(
-    layout: Layout, all_shakes: Sequence[Shake], orders: Array, speeds: Array
+    layout: Layout, all_shakes: Sequence[HarmonicForce], orders: Array, speeds: Array
 ) -> HarmonicField:
     """The field of a layout under what shakes, at all orders and speeds."""
     s = 1j * np.multiply.outer(orders, speeds).reshape(1, -1)
@@ -317,7 +321,7 @@ def shaken(
 
 
 def loads_on(
-    layout: Layout, all_shakes: Sequence[Shake], orders: Array, speeds: Array
+    layout: Layout, all_shakes: Sequence[HarmonicForce], orders: Array, speeds: Array
 ) -> list[NodePair | None]:
     """What shakes, on the nodes of a layout: forces (2, K S)."""
     loads: list[Any] = [None] * len(layout.nodes)

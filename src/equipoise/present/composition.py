@@ -39,7 +39,7 @@ from equipoise.results.blocks import (
     SvgPicture,
     Table,
     Text,
-    beside,
+    interleave_changes,
 )
 from equipoise.results.cam_blocks import cam_blocks
 from equipoise.results.drive_blocks import driven
@@ -168,7 +168,7 @@ def _with_after(
 ) -> Iterable[Block]:
     """What a result shows, beside the same after the change that helps most, where there is one."""
     text = blocks(before)
-    return text if after is None else beside(text, blocks(after))
+    return text if after is None else interleave_changes(text, blocks(after))
 
 
 def balance_blocks(findings: Findings) -> Iterator[Block]:

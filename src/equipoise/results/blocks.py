@@ -237,7 +237,7 @@ SAME, ROUNDING = 1e-6, 1e-9
 """Share of a figure, and of what it is told beside, by which it has to change to be told again."""
 
 
-def beside(before: Iterable[Block], after: Iterable[Block]) -> Iterator[Block]:
+def interleave_changes(before: Iterable[Block], after: Iterable[Block]) -> Iterator[Block]:
     """Blocks of something, in whose tables each row is followed by that of it changed, where that
     differs; rows are those that begin with the same words, of tables of the same title.
 

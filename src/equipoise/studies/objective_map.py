@@ -19,7 +19,7 @@ import numpy as np
 from equipoise.balancing.design_variables import LinkParameters, with_parameters
 from equipoise.balancing.effects import Effects, Signal
 from equipoise.balancing.objectives import (
-    Near,
+    LinearizationPoint,
     mean_square_rows,
     measured_each,
     signals_of,
@@ -34,7 +34,7 @@ from equipoise.errors import EquipoiseError, MassError, ModelError, UsageError, 
 from equipoise.i18n import Note, to_say
 from equipoise.mechanism.assembly.family import with_columns
 from equipoise.mechanism.assembly.linkage import assemble
-from equipoise.mechanism.assembly.refusing import wrong
+from equipoise.mechanism.assembly.refusing import invalid_designs
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.dynamics.forces import massless
 from equipoise.mechanism.dynamics.parameters import parameters_of
@@ -203,7 +203,7 @@ class LinearValues:
             for link, values in start.items():
                 machine = with_parameters(machine, link, values)
             effects = Effects(machine, [LinkParameters(link) for link in base.links])
-            (signal,) = signals_of(effects, of, Near(machine))
+            (signal,) = signals_of(effects, of, LinearizationPoint(machine))
         except EquipoiseError:
             return None
         return cls(maker, paths, base, start, signal, of.measure)
@@ -241,7 +241,7 @@ class LinearValues:
         for k, (link, start) in enumerate(self.start.items()):
             change[:, 4 * k : 4 * k + 4] = arrays[link].reshape(-1, 4) - start
         if own:
-            change[wrong(machine, assemble(self.machine), own)] = nan
+            change[invalid_designs(machine, assemble(self.machine), own)] = nan
         return change
 
     def _change(self, point: Array) -> Array:

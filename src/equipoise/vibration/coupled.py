@@ -33,7 +33,7 @@ from equipoise.mechanism.parts.machine import Machine
 from equipoise.signals import Array, within_period
 from equipoise.vibration.body import IN_PLANE, PITCH, MountContact, Rest, SupportBody, contacts_of
 from equipoise.vibration.collocation import Rates
-from equipoise.vibration.linkages import Sums, sums
+from equipoise.vibration.linkages import ReducedInertia, sums
 
 
 class StallError(ResponseError):
@@ -127,7 +127,7 @@ class Coupled:
         """1 for a crank that turns counterclockwise, -1 for clockwise."""
         return copysign(1.0, self.speed)
 
-    def sums(self, theta: Array) -> Sums:
+    def sums(self, theta: Array) -> ReducedInertia:
         """The linkages at crank angles (P,), rad."""
         return sums(self.machine, theta, self.reference, self.speed)
 
@@ -145,7 +145,7 @@ class Coupled:
         place[free], rate[free] = states[:d], states[d : 2 * d]
         return place, rate
 
-    def accelerations(self, table: Sums, states: Array) -> Array:
+    def accelerations(self, table: ReducedInertia, states: Array) -> Array:
         """Second derivatives by time of the free coordinates, and with a motor of the crank."""
         matrix, right = self._equations(table, states)
         keep = [*self.free, 3] if self.torque is not None else list(self.free)
@@ -153,7 +153,7 @@ class Coupled:
         solved = np.linalg.solve(inner, np.moveaxis(right[keep], 0, -1)[..., None])[..., 0]
         return np.moveaxis(solved, -1, 0)
 
-    def drive_torque(self, table: Sums, states: Array) -> Array:
+    def drive_torque(self, table: ReducedInertia, states: Array) -> Array:
         """Torque (...) that the drive exerts on the cranks at states (n, ...), N m."""
         if self.torque is not None:
             d = 2 * len(self.free)
@@ -165,18 +165,18 @@ class Coupled:
             needed = needed + matrix[3, number] * accelerations[k]
         return needed
 
-    def needed_torque(self, table: Sums, states: Array) -> Array:
+    def needed_torque(self, table: ReducedInertia, states: Array) -> Array:
         """Torque (...) that weight, loads and motion ask of the drive, N m, at states (n, ...) of a
         crank that neither speeds up nor slows down.
         """
         _, right = self._equations(table, states)
         return np.asarray(self.drive_torque(table, states) - right[3])
 
-    def load_torque(self, table: Sums, speed: Array) -> Array:
+    def load_torque(self, table: ReducedInertia, speed: Array) -> Array:
         """Torque (...) of loads and force elements on the crank, N m, at its speed (...)."""
         return np.asarray(table.load_torque - table.damping * (speed - self.speed))
 
-    def _equations(self, table: Sums, states: Array) -> tuple[Array, Array]:
+    def _equations(self, table: ReducedInertia, states: Array) -> tuple[Array, Array]:
         """Matrix (4, 4, ...) and right-hand side (4, ...) for surge, heave, pitch and crank."""
         place, rate = self.place_and_rate(states)
         speed = self.crank_speed(states)
@@ -254,7 +254,7 @@ class CouplingTable:
         self.mass = result.mass
         columns: list[Array] = []
         self.complex: list[bool] = []
-        for item in fields(Sums)[1:]:
+        for item in fields(ReducedInertia)[1:]:
             values = np.broadcast_to(getattr(result, item.name), s.shape)
             self.complex.append(np.iscomplexobj(values))
             columns += [values.real, values.imag] if self.complex[-1] else [values]
@@ -262,13 +262,13 @@ class CouplingTable:
         table[-1] = table[0]
         self._spline = CubicSpline(s, table, bc_type="periodic")
 
-    def at(self, theta: float) -> Sums:
+    def at(self, theta: float) -> ReducedInertia:
         values = iter(self._spline(theta).tolist())
         items = [
             np.array(complex(next(values), next(values)) if two else next(values))
             for two in self.complex
         ]
-        return Sums(self.mass, *items)
+        return ReducedInertia(self.mass, *items)
 
 
 def follow(
@@ -330,7 +330,7 @@ def follow(
     return np.asarray(done.y)
 
 
-def _stalled(system: Coupled, table: Sums, states: Array, angle: float) -> Note:
+def _stalled(system: Coupled, table: ReducedInertia, states: Array, angle: float) -> Note:
     """Say where a motor stalls, and by how much it is too weak there."""
     needed, given = (
         float(system.sense * torque)

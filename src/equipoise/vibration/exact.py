@@ -16,7 +16,7 @@ import numpy as np
 from equipoise.dataclass import dataclass
 from equipoise.errors import ResponseError
 from equipoise.i18n import Note, to_say
-from equipoise.mechanism.dynamics.reactions import Pass
+from equipoise.mechanism.dynamics.reactions import JointReactions
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.support import FREEDOMS
 from equipoise.results.analysis import analyze
@@ -24,7 +24,7 @@ from equipoise.signals import GAUSS_POINTS, Array, JumpSampling, Periodic, mean
 from equipoise.vibration.body import IN_PLANE, PITCH, Reading, SupportBody
 from equipoise.vibration.coupled import TO_SETTLE, Coupled, StallError, follow, settled
 from equipoise.vibration.linear import Linear, gauges_of
-from equipoise.vibration.linkages import BaseMotion, Sums, joint_forces, rows_of
+from equipoise.vibration.linkages import BaseMotion, ReducedInertia, joint_forces, rows_of
 from equipoise.vibration.response import (
     NEUTRAL,
     DriveSignals,
@@ -208,7 +208,7 @@ class ExactSolution:
         return np.asarray(self.found.orbit.at(self.turned))
 
     @cached_property
-    def sums(self) -> Sums:
+    def sums(self) -> ReducedInertia:
         return self.system.sums(self.crank_angle)
 
     @cached_property
@@ -224,7 +224,7 @@ class ExactSolution:
         return BaseMotion(place, rate, change, self.crank_angle, speed, spin_up, system.reference)
 
     @cached_property
-    def passes(self) -> tuple[Pass, ...]:
+    def passes(self) -> tuple[JointReactions, ...]:
         """Joint forces of every row, in the support's axes."""
         return tuple(
             joint_forces(self.machine, self.ride, row.phase, complex(*row.offset))

@@ -34,7 +34,7 @@ from equipoise.mechanism.dynamics.acting import (
     spring_demands,
 )
 from equipoise.mechanism.dynamics.forces import massless
-from equipoise.mechanism.dynamics.reactions import Demand, Pass, demands_of, reactions
+from equipoise.mechanism.dynamics.reactions import Demand, JointReactions, demands_of, reactions
 from equipoise.mechanism.dynamics.reduced import generalized_force, reduced_inertia
 from equipoise.mechanism.formulas.kernels import cross, dot
 from equipoise.mechanism.kinematics.motion import Motion, move
@@ -46,7 +46,7 @@ from equipoise.vibration.body import PITCH
 
 
 @dataclass(frozen=True, eq=False)
-class Sums:
+class ReducedInertia:
     """Sums over all links at crank angles (N,), as told above.
 
     mass : kg.  first, first_1, first_2 : complex, kg m.
@@ -71,10 +71,12 @@ class Sums:
     load_torque: Array
     damping: Array
 
-    def __add__(self, other: Sums) -> Sums:
-        return Sums(*(getattr(self, f.name) + getattr(other, f.name) for f in fields(Sums)))
+    def __add__(self, other: ReducedInertia) -> ReducedInertia:
+        return ReducedInertia(
+            *(getattr(self, f.name) + getattr(other, f.name) for f in fields(ReducedInertia))
+        )
 
-    def with_shaft(self, inertia: float, ratio: float) -> Sums:
+    def with_shaft(self, inertia: float, ratio: float) -> ReducedInertia:
         """With a rotor that turns `ratio` times as fast as the crank, relative to the support.
 
         Its mass, and its moment of inertia as far as it turns with the support, are the support's.
@@ -89,7 +91,7 @@ def rows_of(machine: Machine) -> tuple[Row, ...]:
     return machine.rows or (Row(),)
 
 
-def sums(machine: Machine, theta: Array, reference: complex, speed: float) -> Sums:
+def sums(machine: Machine, theta: Array, reference: complex, speed: float) -> ReducedInertia:
     """Sums over the links of all rows, and over what else turns with the crank.
 
     Parameters
@@ -115,12 +117,12 @@ def sums(machine: Machine, theta: Array, reference: complex, speed: float) -> Su
     return total if motor is None else total.with_shaft(motor.inertia, motor.ratio)
 
 
-def _of_row(motion: Motion, shift: complex) -> Sums:
+def _of_row(motion: Motion, shift: complex) -> ReducedInertia:
     zero = np.zeros(len(motion.crank_angle))
     reduced, loads = reduced_inertia(motion), _loads(motion, shift)
-    total = Sums(0.0, *(zero + 0j,) * 3, *(zero,) * 4, *reduced, *loads, _damping(motion))
+    total = ReducedInertia(0.0, *(zero + 0j,) * 3, *(zero,) * 4, *reduced, *loads, _damping(motion))
     for mass, own, place, first, second, w, a in _bodies(motion, shift):
-        total += Sums(
+        total += ReducedInertia(
             mass,
             mass * place,
             mass * first,
@@ -224,7 +226,9 @@ class BaseMotion:
     reference: complex
 
 
-def joint_forces(machine: Machine, ride: BaseMotion, phase: float, offset: complex) -> Pass:
+def joint_forces(
+    machine: Machine, ride: BaseMotion, phase: float, offset: complex
+) -> JointReactions:
     """Forces in the joints of one linkage on a moving support, in the support's axes.
 
     phase, offset : of its row, rad and m.

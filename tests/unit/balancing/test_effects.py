@@ -15,7 +15,7 @@ from scipy.optimize import minimize
 import equipoise as eq
 from equipoise.balancing.effects import ANGLES, Effects, Signal
 from equipoise.balancing.objectives import (
-    Near,
+    LinearizationPoint,
     _by_numbers,
     bound_measure,
     mean_square_rows,
@@ -212,7 +212,7 @@ def read(machine: eq.Machine, name: str, measure: str) -> float:
 )
 def test_a_signal_is_what_the_gauge_reads(machine: eq.Machine, name: str, measure: str) -> None:
     objective = Objective(f"gauges.{name}", measure)  # type: ignore[arg-type]
-    (signal,) = signals_of(Effects(machine, ()), objective, Near(machine))
+    (signal,) = signals_of(Effects(machine, ()), objective, LinearizationPoint(machine))
     within = EXACT if measure == "ripple" else BETWEEN
     assert measured(signal.start, objective.measure) == pytest.approx(
         read(machine, name, measure), rel=within
@@ -243,7 +243,7 @@ def test_numbers_near_a_machine(machine: eq.Machine) -> None:
     assert measured(signal.at(x), "ripple") == pytest.approx(
         read(changed, name, "ripple"), rel=EXACT
     )
-    (wanted,) = signals_of(Effects(changed, ()), wish, Near(changed))
+    (wanted,) = signals_of(Effects(changed, ()), wish, LinearizationPoint(changed))
     assert signal.at(x) == pytest.approx(wanted.start, abs=EXACT * np.max(np.abs(wanted.start)))
     step = 1e-4
     for k in range(len(x)):
@@ -252,7 +252,7 @@ def test_numbers_near_a_machine(machine: eq.Machine) -> None:
             moved = x.copy()
             moved[k] += sign * step
             one = problem.machine_with(np.split(moved, [4, 8]))
-            there.append(signals_of(Effects(one, ()), wish, Near(one))[0].start)
+            there.append(signals_of(Effects(one, ()), wish, LinearizationPoint(one))[0].start)
         slope = (there[0] - there[1]) / (2 * step)
         scale = np.max(np.abs(slope)) + 1e-4 * np.max(np.abs(wanted.start))
         assert np.max(np.abs(signal.columns[k] - slope)) < 1e-6 * scale
@@ -263,7 +263,7 @@ def test_mass_and_stiffness_by_numbers_are_differences(machine: eq.Machine) -> N
     link = "crank"
     plan = Balance(masses=(AddedMass(link, "A", Weight("any", 0.1, at_most=1.0)),))
     problem = Problem.of(machine, plan)
-    mass, stiffness = _by_numbers(problem.effects, Near(machine).linear)
+    mass, stiffness = _by_numbers(problem.effects, LinearizationPoint(machine).linear)
     assert np.any(mass)
     start = np.array([0.5, 0.1, 0.1, 0.5])
     for k in range(4):
@@ -370,9 +370,9 @@ def test_shafts_for_a_gauge() -> None:
 def test_gauges_need_a_support() -> None:
     machine = eq.load("yamashita-1")
     with pytest.raises(ModelError, match="support"):
-        signals_of(Effects(machine, ()), RIPPLE, Near(machine))
+        signals_of(Effects(machine, ()), RIPPLE, LinearizationPoint(machine))
     with pytest.raises(ModelError, match="gauge"):
-        signals_of(Effects(RIG, ()), Objective("gauges.other"), Near(RIG))
+        signals_of(Effects(RIG, ()), Objective("gauges.other"), LinearizationPoint(RIG))
 
 
 N = 96

@@ -12,7 +12,7 @@ import pytest
 
 from equipoise.figures import layout
 from equipoise.figures.layout import lay_out
-from equipoise.figures.sheet import CanvasStroke, Item, Sheet, Words, box_of
+from equipoise.figures.sheet import Canvas, CanvasStroke, Item, Words, box_of
 from equipoise.figures.style import PAPER, DrawingStyle, look_of
 from equipoise.figures.vector import svg_of
 from equipoise.figures.view import View
@@ -33,7 +33,7 @@ class Laid:
     """A chart on its sheet; panels : each with what is drawn in it."""
 
     chart: Chart
-    sheet: Sheet
+    sheet: Canvas
     panels: tuple[tuple[View, tuple[Item, ...]], ...]
 
     @classmethod

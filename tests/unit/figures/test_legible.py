@@ -17,7 +17,7 @@ from equipoise.figures.layout import HALF, lay_out
 from equipoise.figures.linkage import linkage
 from equipoise.figures.modes import mode_chart
 from equipoise.figures.points import main_kinematics
-from equipoise.figures.sheet import Signs, Words, box_of
+from equipoise.figures.sheet import Markers, Words, box_of
 from equipoise.figures.tool_shaft import mode_charts
 from equipoise.figures.vibration import spectra
 from equipoise.figures.view import View
@@ -137,7 +137,7 @@ def test_sizes_on_a_logarithmic_axis_are_dots_and_no_bars() -> None:
     assert panel.y.scale == "log" and panel.bars
     laid = Laid.of(chart)
     assert not [*bars_afloat(laid)]
-    (dots,) = (one for _, items in laid.panels for one in items if isinstance(one, Signs))
+    (dots,) = (one for _, items in laid.panels for one in items if isinstance(one, Markers))
     assert len(dots.places) == len(panel.bars[0].at)
 
 

@@ -12,7 +12,7 @@ import pytest
 import equipoise as eq
 from equipoise.cli import run
 from equipoise.figures.planting import charts as planting_charts
-from equipoise.figures.sheet import CanvasText, Labels, Sheet, spread
+from equipoise.figures.sheet import Canvas, CanvasText, Labels, spread
 from equipoise.figures.vector import svg_of
 from equipoise.i18n import speaking
 from equipoise.planting.summary import plant
@@ -106,7 +106,7 @@ def test_texts_side_by_side() -> None:
 def test_texts_without_room() -> None:
     crowd = spread([0, 0, 0], [5, 5, 5], 0, 10)
     assert np.all((crowd >= 2.5) & (crowd <= 7.5))
-    sheet = Sheet(72.0, 72.0)
+    sheet = Canvas(72.0, 72.0)
     labels = Labels(sheet, (0.0, 0.0, 72.0, 72.0))
     labels.reserve(36.0, 36.0, half=100)
     assert not labels.put(36.0, 36.0, CanvasText("no room", "#000000", optional=True))

@@ -12,7 +12,7 @@ import pytest
 import equipoise as eq
 from equipoise.errors import MassError, MotionError
 from equipoise.handheld.model import Excitation, Station, Tool
-from equipoise.handheld.response import Shake, respond_tool, shakes
+from equipoise.handheld.response import HarmonicForce, respond_tool, shakes
 from equipoise.handheld.shaft import Shaft
 from support.machines import make
 from unit.handheld.samples import SECTION, both
@@ -26,12 +26,12 @@ def tool(*excitations: Excitation) -> Tool:
     return Tool("shaken", Shaft(1.5, SECTION), stations, excitations)
 
 
-def of(**values: Any) -> tuple[Shake, ...]:
+def of(**values: Any) -> tuple[HarmonicForce, ...]:
     """Shakes of one excitation."""
     return shakes(tool(Excitation("e", "a", **values)))
 
 
-def in_time(found: tuple[Shake, ...], speed: float, time: Array) -> Array:
+def in_time(found: tuple[HarmonicForce, ...], speed: float, time: Array) -> Array:
     """The force (2, T), N, vertical and lateral."""
     total = np.zeros((2, time.size))
     for shake in found:

@@ -22,7 +22,7 @@ from equipoise.codegen.gram import MassBatch, can_use
 from equipoise.errors import ModelError, UsageError
 from equipoise.mechanism.assembly.family import can_vary, linkage_of, with_columns
 from equipoise.mechanism.assembly.linkage import Linkage, assemble
-from equipoise.mechanism.assembly.refusing import wrong
+from equipoise.mechanism.assembly.refusing import invalid_designs
 from equipoise.mechanism.dynamics.parameters import parameters_of
 from equipoise.mechanism.parts.bodies import Body, Hole, inertia_of, polygon
 from equipoise.mechanism.parts.machine import Link, Machine
@@ -613,7 +613,7 @@ def test_columns_are_designs_of_their_own(paths: list[str]) -> None:
     base = assemble(machine)
     columns = {path: np.array(COLUMNS[path])[:, None] for path in paths}
     columned = with_columns(machine, columns)
-    assert not wrong(columned, base, columns).any()
+    assert not invalid_designs(columned, base, columns).any()
     found = parameters(linkage_of(columned, base))
     for k in range(2):
         alone = machine
@@ -642,13 +642,17 @@ def test_columns_of_sides_and_what_no_machine_can_have() -> None:
     machine = loads(FOUR_BAR.replace(OLD, SIDES).replace("\n[assembly]", f"{BODIES}\n[assembly]"))
     base = assemble(machine)
     columns = {"links.coupler.sides.C-P": np.array([[0.05], [0.5], [-1.0]])}
-    assert wrong(with_columns(machine, columns), base, columns).tolist() == [False, True, True]
+    assert invalid_designs(with_columns(machine, columns), base, columns).tolist() == [
+        False,
+        True,
+        True,
+    ]
     alone = machine.with_number("links.coupler.sides.C-P", 0.05).links["coupler"]
     told = with_columns(machine, columns).links["coupler"].points["P"]
     assert [float(part[0, 0]) for part in told] == pytest.approx(alone.points["P"])
     columns = {f"{ROCKER}[3].radius": np.array([[0.05], [0.0], [-1.0]])}
     with np.errstate(all="ignore"):
-        found = wrong(with_columns(machine, columns), base, columns)
+        found = invalid_designs(with_columns(machine, columns), base, columns)
     assert found.tolist() == [False, True, True]
 
 
@@ -690,10 +694,10 @@ def test_plates_of_columns() -> None:
     values = [0.03, 0.04, -0.005, 0.012]
     columns = {path: np.array(values)[:, None]}
     columned = with_columns(machine, columns)
-    assert wrong(columned, base, columns).tolist() == [False, False, False, False]
+    assert invalid_designs(columned, base, columns).tolist() == [False, False, False, False]
     crossing = {"links.crank.points.B.y": np.array([[0.0], [0.05]])}
     made = with_columns(machine.with_number(path, 0.002), crossing)
-    assert wrong(made, base, crossing).tolist() == [False, True]
+    assert invalid_designs(made, base, crossing).tolist() == [False, True]
     for k, value in enumerate(values):
         alone = machine.with_number(path, value).links["crank"]
         link = columned.links["crank"]

@@ -14,7 +14,7 @@ import equipoise as eq
 from equipoise.errors import UsageError
 from equipoise.mechanism.assembly.family import Family, _beside, can_vary, linkage_of, with_columns
 from equipoise.mechanism.assembly.linkage import Linkage, assemble
-from equipoise.mechanism.assembly.refusing import wrong
+from equipoise.mechanism.assembly.refusing import invalid_designs
 from equipoise.mechanism.parts.gear_shapes import GearShape
 from equipoise.mechanism.parts.machine import Gear, Machine
 from equipoise.mechanism.parts.pitch_curves import law_of
@@ -180,7 +180,7 @@ def same_steps(base: Machine, numbers: Sequence[Number], values: Array) -> None:
     """Compare all numbers of all steps, and of the links, with those of each design's machine."""
     linkage = assemble(base)
     columned = with_columns(base, columns_of(numbers, values))
-    assert not wrong(columned, linkage, columns_of(numbers, values)).any()
+    assert not invalid_designs(columned, linkage, columns_of(numbers, values)).any()
     found = list(parameters(linkage_of(columned, linkage)))
     for k, row in enumerate(values):
         own = design(base, numbers, row)
@@ -330,7 +330,7 @@ def refusals(paths: Sequence[str], values: Any) -> list[bool]:
     numbers = named(GEARED, *paths)
     values = np.array(values, float)
     columned = with_columns(GEARED, columns_of(numbers, values))
-    found = wrong(columned, assemble(GEARED), columns_of(numbers, values))
+    found = invalid_designs(columned, assemble(GEARED), columns_of(numbers, values))
     assert list(found) == [reason_of(GEARED, numbers, row) == 4 for row in values]
     return list(found)
 

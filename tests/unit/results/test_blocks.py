@@ -6,7 +6,7 @@ import pytest
 
 from equipoise.present.composition import build
 from equipoise.present.pages import page
-from equipoise.results.blocks import Column, Table, Text, Value, beside
+from equipoise.results.blocks import Column, Table, Text, Value, interleave_changes
 from support.found import found
 
 
@@ -17,7 +17,7 @@ def table(label: str, *rows: tuple[str, float]) -> Table:
 
 def test_each_row_is_followed_by_that_after_a_change() -> None:
     before = [Text("words"), table("RMS", ("x", 1.0), ("y", 2.0))]
-    words, both = beside(before, [table("RMS", ("x", 1.0), ("y", 3.0), ("z", 4.0))])
+    words, both = interleave_changes(before, [table("RMS", ("x", 1.0), ("y", 3.0), ("z", 4.0))])
     assert words is before[0]
     assert isinstance(both, Table)
     assert [row[0] for row in both.rows] == ["x", "y", "y, after", "z, after"]
@@ -25,7 +25,7 @@ def test_each_row_is_followed_by_that_after_a_change() -> None:
 
 def test_a_table_of_other_columns_follows_whole() -> None:
     before, after = table("RMS", ("x", 1.0)), table("peak", ("x", 2.0))
-    first, second = beside([before], [after])
+    first, second = interleave_changes([before], [after])
     assert first is before
     assert isinstance(second, Table)
     assert (second.title, second.rows) == ("Forces, after", after.rows)

@@ -9,12 +9,19 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import MassError
-from equipoise.mechanism.dynamics.reactions import Pass
+from equipoise.mechanism.dynamics.reactions import JointReactions
 from equipoise.mechanism.parts.force_elements import Motor
 from equipoise.mechanism.parts.machine import Load
 from equipoise.mechanism.parts.support import Row
 from equipoise.vibration.exact import ExactSolution, solve_exact
-from equipoise.vibration.linkages import BaseMotion, Sums, joint_forces, rows_of, spread, sums
+from equipoise.vibration.linkages import (
+    BaseMotion,
+    ReducedInertia,
+    joint_forces,
+    rows_of,
+    spread,
+    sums,
+)
 from support.machines import make
 from unit.vibration.build import SPEED, Array, close, rig, springs
 
@@ -60,7 +67,7 @@ class Bodies:
 THETA = np.linspace(0.1, 6.2, 9)
 
 
-def at(machine: eq.Machine, theta: Array = THETA) -> Sums:
+def at(machine: eq.Machine, theta: Array = THETA) -> ReducedInertia:
     return sums(machine, theta, REFERENCE, 10.0)
 
 
@@ -261,7 +268,7 @@ def ride(
     return BaseMotion(place, rate, change, CARRIED_THETA, 20 * one, spin_up * one, 0.3 - 0.2j)
 
 
-def same(found: Pass, wanted: Pass | eq.mechanism.Forces) -> None:
+def same(found: JointReactions, wanted: JointReactions | eq.mechanism.Forces) -> None:
     """Compare all joint forces and the torque to 1e-12 of the largest force and torque."""
     size = max(float(np.max(joint.size)) for joint in wanted.joints.values())
     for name, joint in wanted.joints.items():

@@ -214,7 +214,7 @@ def sharpest(fit: CamFit) -> tuple[float, float]:
 
 
 @dataclass(frozen=True)
-class Demand:
+class RequiredWrench:
     """Something (N,) that has to be above 0 all over a cam.
 
     told : what is said where it is not, of its least value and the cam angle of that, deg.
@@ -310,9 +310,9 @@ def _spread(knots: Array) -> Array:
     return np.concatenate([np.linspace(*pair) for pair in pairs])
 
 
-def _demands(cam: Cam) -> Iterator[Demand]:
+def _demands(cam: Cam) -> Iterator[RequiredWrench]:
     if cam.rides == "flat":
-        yield Demand(
+        yield RequiredWrench(
             lambda one: 1 - STEEPEST - one.ride.turn_1,
             lambda _, angle: Note(
                 "at cam angle {angle:.4g} deg the follower turns as fast as the cam, which no flat "
@@ -321,7 +321,7 @@ def _demands(cam: Cam) -> Iterator[Demand]:
             ),
             mended=False,
         )
-    yield Demand(
+    yield RequiredWrench(
         lambda item: np.cos(item.pressure_angle) - STEEPEST,
         lambda _, angle: Note(
             "the follower jams at cam angle {angle:.4g} deg, where the pressure angle is 90 "
@@ -331,11 +331,11 @@ def _demands(cam: Cam) -> Iterator[Demand]:
         ),
     )
     if cam.rides == "flat":
-        yield Demand(lambda one: one.radius_of_curvature, _undercut_flat, cam.base_radius)
+        yield RequiredWrench(lambda one: one.radius_of_curvature, _undercut_flat, cam.base_radius)
         return
     # the curve of a roller's centre bends less than the roller, outward and in a groove inward
     for sign in (1.0, -1.0) if cam.closed_by == "groove" else (1.0,):
-        yield Demand(
+        yield RequiredWrench(
             partial(_blunt, sign),
             partial(_undercut_round, cam.roller_radius),
         )

@@ -36,7 +36,7 @@ from equipoise.mechanism.assembly.named_joints import given_properties, pin_radi
 from equipoise.mechanism.assembly.newton import BranchError
 from equipoise.mechanism.assembly.ordering import held, next_group
 from equipoise.mechanism.assembly.parallels import surplus_cranks
-from equipoise.mechanism.assembly.shared import Shared, shared
+from equipoise.mechanism.assembly.shared import RedundantReactions, shared
 from equipoise.mechanism.assembly.steps import (
     Reaction,
     State,
@@ -81,7 +81,7 @@ class Linkage(Brief):
     anchors: Mapping[str, str]
     groups: tuple[Group, ...]
     near: Cycle | None = None
-    shared: Shared | None = None
+    shared: RedundantReactions | None = None
     memory: dict[str, Any] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     @cached_property

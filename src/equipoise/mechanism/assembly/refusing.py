@@ -20,7 +20,7 @@ from equipoise.mechanism.parts.planes import demands_across
 from equipoise.quantities.units import HUGE, TINY
 
 
-def wrong(machine: Machine, base: Linkage, columns: Columns) -> Array:
+def invalid_designs(machine: Machine, base: Linkage, columns: Columns) -> Array:
     """Which of the designs (P,) no machine can have."""
     count = max((len(column) for column in columns.values()), default=1)
     values = np.zeros((count, 1), dtype=bool)

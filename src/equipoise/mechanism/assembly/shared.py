@@ -90,7 +90,7 @@ SHARE = to_say(
 LINED_UP = Note("parallel linkages go on through their change points with one drive only")
 
 
-def least(matrix: Array, right: Array) -> Array:
+def min_norm(matrix: Array, right: Array) -> Array:
     """Least solutions (N, m, k) of equations (N, n, m) with right sides (N, n, k)."""
     values = np.empty((matrix.shape[0], matrix.shape[2], right.shape[2]))
     for some in in_blocks(matrix):
@@ -145,7 +145,7 @@ def parts_of(matrix: Array) -> tuple[Array, Array]:
     return right[..., :rank] * over[:, None] @ np.swapaxes(left, -1, -2), right[..., rank:]
 
 
-def agreeing(pushes: Callable[[Array, Array], Array], senses: Array) -> tuple[Array, Array]:
+def flank_iteration(pushes: Callable[[Array, Array], Array], senses: Array) -> tuple[Array, Array]:
     """Senses (G, N) that agree with the pushes that follow, and which of these are idle (G, N).
 
     pushes : those (G, N) of given senses, of which some are idle.  senses : to begin with.
@@ -249,7 +249,7 @@ def too_short(groups: Sequence[Group], state: State, size: float) -> Note | str:
 
 
 @dataclass(frozen=True)
-class Shared(LoopForces):
+class RedundantReactions(LoopForces):
     """The free bodies of links whose joints share what statics leaves open.
 
     group : these links and their joints.  pivot : of the first drive.
@@ -331,7 +331,7 @@ class Shared(LoopForces):
             result = self.solve(state, poses, senses)
             return np.array([result[k][0] for k, _ in pairs])
 
-        agreeing(pushes, np.array([senses[k] for k, _ in pairs]))
+        flank_iteration(pushes, np.array([senses[k] for k, _ in pairs]))
         return senses
 
     def idle(self, state: State) -> Array:
@@ -355,7 +355,7 @@ class Shared(LoopForces):
                 ]
             )
         else:
-            values = least(matrix, right)
+            values = min_norm(matrix, right)
         values *= ~idle[..., None]  # of rounding
         values *= units[:, None]
         result = np.moveaxis(values, (-1, 1), (1, 0)).reshape(len(units), *demand.shape[:-1])
@@ -501,7 +501,7 @@ def _span_of_joints(machine: Machine, joints: Structure, apart: set[str]) -> flo
 
 def shared(
     builder: Builder, joints: Structure, pivot: str, groups: tuple[Group, ...]
-) -> Shared | None:
+) -> RedundantReactions | None:
     """The free bodies of a machine whose groups cannot tell the forces one after the other."""
     count = no_motion(joints) if joints.surplus else ""
     if not count and not any(group.through for group in groups):
@@ -530,7 +530,7 @@ def shared(
     starts = {coupling.name: coupling.start for coupling in joints.couplings}
     fit = FitCondition(whole.equations, groups, size, starts)
     drives = tuple(drive.link for drive in builder.machine.driven if drive.link in links)
-    return Shared(
+    return RedundantReactions(
         whole, whole.equations, reactions, pivot, drives, count, named, compliance, fit, decided
     )
 

@@ -21,7 +21,7 @@ from equipoise.mechanism.dynamics.reactions import (
     PUSH,
     Acting,
     JointForce,
-    Pass,
+    JointReactions,
     VectorSignal,
     full,
 )
@@ -36,11 +36,11 @@ Needed = Mapping[str, Any]
 """Link -> sum of planes times the forces that it needs, N m, complex (..., N)."""
 
 OF_FRAME = ("rocking_moment", "frame_rocking_moment")
-"""Outputs of `Across` that the frame feels."""
+"""Outputs of `OutOfPlaneMoments` that the frame feels."""
 
 
 @dataclass(frozen=True, eq=False)
-class Across:
+class OutOfPlaneMoments:
     """Moments and forces of links beside each other, arrays (..., N).
 
     inertia, weights, loads, springs : what each link needs, by what makes it.
@@ -112,7 +112,7 @@ class Across:
         return NamedItems("bearing", result.items())
 
 
-def exerted_in(solved: Pass) -> dict[str, JointForce]:
+def exerted_in(solved: JointReactions) -> dict[str, JointForce]:
     """Force in each joint, and whatever else bodies push each other with, by name."""
     motion, by_name = solved.motion, dict(solved.joints)
 
@@ -166,7 +166,9 @@ def springs_across(motion: Motion) -> dict[str, Any]:
     return values
 
 
-def apart(whole: Across, exerted: Mapping[str, JointForce], shape: tuple[int, ...]) -> Across:
+def apart(
+    whole: OutOfPlaneMoments, exerted: Mapping[str, JointForce], shape: tuple[int, ...]
+) -> OutOfPlaneMoments:
     """What links do across the plane, by cause and link: arrays of a shape (C, L, N)."""
 
     def by(cause: int, needed: Needed) -> Needed:
@@ -178,4 +180,4 @@ def apart(whole: Across, exerted: Mapping[str, JointForce], shape: tuple[int, ..
 
     parts = (whole.inertia, whole.weights, whole.loads, whole.springs, whole.outer)
     inertia, weights, loads, springs, outer = map(by, (0, 2, 3, 4, 3), parts)
-    return Across(whole.motion, inertia, weights, loads, springs, exerted, outer)
+    return OutOfPlaneMoments(whole.motion, inertia, weights, loads, springs, exerted, outer)

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from functools import cached_property
 from typing import Any, ClassVar
 
-from equipoise.mechanism.dynamics.reactions import CouplingForces, JointForce, Pass
+from equipoise.mechanism.dynamics.reactions import CouplingForces, JointForce, JointReactions
 from equipoise.mechanism.parts.couplings import coupling_kinds
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.signals import Array
@@ -24,7 +24,7 @@ class HasCouplings:
         raise AttributeError(f"{type(self).__name__} has no {name!r}")
 
 
-class Exerted(HasCouplings, ABC):
+class ForceReadings(HasCouplings, ABC):
     """What is read of a run over the joints, `solved`.
 
     preloads : whether it has the preloads of couplings.
@@ -34,7 +34,7 @@ class Exerted(HasCouplings, ABC):
 
     @property
     @abstractmethod
-    def solved(self) -> Pass: ...
+    def solved(self) -> JointReactions: ...
 
     @property
     def drive_torque(self) -> Array:

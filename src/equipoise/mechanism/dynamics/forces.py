@@ -22,20 +22,20 @@ from equipoise.i18n import Note, key_names
 from equipoise.mechanism.assembly.steps import Array, p, planar, u
 from equipoise.mechanism.dynamics import acting
 from equipoise.mechanism.dynamics.across import (
-    Across,
+    OutOfPlaneMoments,
     apart,
     exerted_in,
     masses_across,
     pushes_across,
     springs_across,
 )
-from equipoise.mechanism.dynamics.exerted import Exerted
+from equipoise.mechanism.dynamics.exerted import ForceReadings
 from equipoise.mechanism.dynamics.friction import unit_demands, with_friction
 from equipoise.mechanism.dynamics.pin_bearings import PlainBearing, plain_bearings
 from equipoise.mechanism.dynamics.reactions import (
     Demand,
     JointFriction,
-    Pass,
+    JointReactions,
     VectorSignal,
     demands_of,
     full,
@@ -53,7 +53,7 @@ from equipoise.mechanism.parts.places import in_frame
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Forces(Exerted, Displayed):
+class Forces(ForceReadings, Displayed):
     """Forces of a machine in motion; arrays (N,), one value for each crank angle.
 
     motion : what they belong to.
@@ -104,11 +104,11 @@ class Forces(Exerted, Displayed):
         return full(self.motion, -self.moment(self.weights, self.about), float)
 
     @cached_property
-    def solved(self) -> Pass:
+    def solved(self) -> JointReactions:
         """The run over the joints that belongs to all demands together."""
         return self.solved_like(None)
 
-    def solved_like(self, other: Pass | None) -> Pass:
+    def solved_like(self, other: JointReactions | None) -> JointReactions:
         """The same with the flanks of couplings in contact that are so in another run."""
         total = dict(self.inertia)
         for more in (self.weights, self.loads, self.springs):
@@ -202,13 +202,13 @@ class Forces(Exerted, Displayed):
         return {link: drive * self.motion.way(link) for link, drive in self.drives.items()}
 
     @cached_property
-    def across(self) -> Across:
+    def across(self) -> OutOfPlaneMoments:
         """What links beside each other do across the plane."""
         motion = self.motion
         loads = pushes_across(motion, acting.acting_loads(motion))
         springs = springs_across(motion)
         outer = pushes_across(motion, acting.outer_loads(motion))
-        return Across(
+        return OutOfPlaneMoments(
             motion, *masses_across(motion), loads, springs, exerted_in(self.solved), outer
         )
 

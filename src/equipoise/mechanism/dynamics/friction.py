@@ -38,7 +38,7 @@ from equipoise.mechanism.dynamics.reactions import (
     Acting,
     Demand,
     JointFriction,
-    Pass,
+    JointReactions,
     demands_of,
     full,
     reactions,
@@ -371,7 +371,9 @@ def direction(motion: Motion, joint: RubbingJoint) -> Array:
     return full(motion, motion.state[f"u({joint.slider.on})"] * line, complex)
 
 
-def pressing_parts(solved: Pass, joints: Sequence[RubbingJoint], shape: tuple[int, ...]) -> Array:
+def pressing_parts(
+    solved: JointReactions, joints: Sequence[RubbingJoint], shape: tuple[int, ...]
+) -> Array:
     """Parts (J, 2, ..., N) of what presses in joints, of a pass whose values have a shape."""
     motion, values = solved.motion, []
     for joint in joints:
@@ -390,7 +392,9 @@ def pressing_parts(solved: Pass, joints: Sequence[RubbingJoint], shape: tuple[in
     return np.array(values)
 
 
-def with_friction(motion: Motion, demands: Demands, like: Pass | None = None) -> Pass:
+def with_friction(
+    motion: Motion, demands: Demands, like: JointReactions | None = None
+) -> JointReactions:
     """Joint forces that meet the demands of all links, and friction as it follows from them.
 
     like : as of `reactions`.
@@ -429,7 +433,7 @@ def with_friction(motion: Motion, demands: Demands, like: Pass | None = None) ->
         for k, joint in enumerate(law.joints)
     ]
     names = [joint.name for joint in law.joints]
-    return Pass(motion, solved.state, dict(zip(names, frictions, strict=True)))
+    return JointReactions(motion, solved.state, dict(zip(names, frictions, strict=True)))
 
 
 def press_of(
@@ -437,7 +441,7 @@ def press_of(
     demands: Demands,
     joints: Sequence[RubbingJoint],
     units: Sequence[Demands],
-    like: Pass | None,
+    like: JointReactions | None,
 ) -> Press:
     """What presses in joints: of the demands, and of each unit."""
     if like is None:
@@ -449,7 +453,10 @@ def press_of(
 
 
 def pressing_rows(
-    motion: Motion, rows: Sequence[Demands], joints: Sequence[RubbingJoint], like: Pass | None
+    motion: Motion,
+    rows: Sequence[Demands],
+    joints: Sequence[RubbingJoint],
+    like: JointReactions | None,
 ) -> Array:
     """Parts (J, 2, R, N) of what presses in joints with each of R demands, by one stack of passes.
 
@@ -476,7 +483,7 @@ def added(demands: Demands, units: Sequence[Demands], efforts: Array) -> dict[st
     return total
 
 
-def _same_flanks(reactions: Pass, other: Pass) -> bool:
+def _same_flanks(reactions: JointReactions, other: JointReactions) -> bool:
     flanks = other.flanks
     return all(np.array_equal(value, flanks[name]) for name, value in reactions.flanks.items())
 

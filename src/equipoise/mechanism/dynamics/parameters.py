@@ -25,14 +25,14 @@ from equipoise.displays import Brief
 from equipoise.errors import MassError, UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism.assembly.steps import Array, planar
-from equipoise.mechanism.dynamics.across import Across, exerted_in, needed_by_inertia
+from equipoise.mechanism.dynamics.across import OutOfPlaneMoments, exerted_in, needed_by_inertia
 from equipoise.mechanism.dynamics.acting import spring_direction, spring_vector
 from equipoise.mechanism.dynamics.forces import (
     demand_of_inertia,
     forces,
     massless,
 )
-from equipoise.mechanism.dynamics.reactions import Pass, pushed, reactions
+from equipoise.mechanism.dynamics.reactions import JointReactions, pushed, reactions
 from equipoise.mechanism.dynamics.shares import Shares
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.kinematics.motion import Motion, move
@@ -131,7 +131,7 @@ def regressor(motion: Motion, about: str | Vector | complex | None = None) -> Re
     )
 
 
-def _across(motion: Motion, solved: Pass) -> Across:
+def _across(motion: Motion, solved: JointReactions) -> OutOfPlaneMoments:
     """What a unit of each parameter does across the plane, and then of each link's sums of mass
     times plane (kg m) and of that times x and y (kg m2, about its origin).
     """
@@ -159,7 +159,7 @@ def _across(motion: Motion, solved: Pass) -> Across:
         )
         for name, joint_force in exerted_in(solved).items()
     }
-    return Across(motion, inertia, weights, {}, {}, exerted)
+    return OutOfPlaneMoments(motion, inertia, weights, {}, {}, exerted)
 
 
 def values_across(machine: Machine) -> Array:

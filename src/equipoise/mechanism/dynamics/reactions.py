@@ -175,7 +175,7 @@ class Push:
 
 
 @dataclass(frozen=True, eq=False)
-class Pass:
+class JointReactions:
     """Joint forces of one run over the groups, for one demand or a stack of them.
 
     state : every value, by the names told in `mechanism.assembly.steps`; shapes (..., N).
@@ -295,7 +295,9 @@ class Pass:
         return CouplingForce(force, reaction.on, reaction.by, parts)
 
 
-def reactions(motion: Motion, demands: Mapping[str, Demand], like: Pass | None = None) -> Pass:
+def reactions(
+    motion: Motion, demands: Mapping[str, Demand], like: JointReactions | None = None
+) -> JointReactions:
     """Joint forces that meet the demands of all links.
 
     demands : link -> force and moment about its anchor, of shapes (..., N).
@@ -306,7 +308,9 @@ def reactions(motion: Motion, demands: Mapping[str, Demand], like: Pass | None =
     return _passed(motion, demands, like)
 
 
-def _pushed(motion: Motion, demands: Mapping[str, Demand], like: Pass | None) -> Pass:
+def _pushed(
+    motion: Motion, demands: Mapping[str, Demand], like: JointReactions | None
+) -> JointReactions:
     """The same where forces drive: as large as it takes for their links to need no torque."""
     pushers = motion.machine.pushers
     torques = [TORQUE.format(pusher.link) for pusher in pushers]
@@ -335,7 +339,9 @@ def _pushed(motion: Motion, demands: Mapping[str, Demand], like: Pass | None) ->
     return passed
 
 
-def _passed(motion: Motion, demands: Mapping[str, Demand], like: Pass | None) -> Pass:
+def _passed(
+    motion: Motion, demands: Mapping[str, Demand], like: JointReactions | None
+) -> JointReactions:
     """The run over the joints, which ends at a torque on the drive's link."""
     state = dict(motion.state)
     of_links = dict.fromkeys(motion.linkage.joints.riders, (0j, 0.0)) | dict(demands)
@@ -350,10 +356,10 @@ def _passed(motion: Motion, demands: Mapping[str, Demand], like: Pass | None) ->
         state[name] = state[name] + more
     for drive in motion.machine.driven:
         state[f"R({motion.linkage.anchors[drive.link]}/{drive.link})"] = state[f"F({drive.link})"]
-    return Pass(motion, state)
+    return JointReactions(motion, state)
 
 
-def pushed(reactions: Pass) -> Array | None:
+def pushed(reactions: JointReactions) -> Array | None:
     """Force of a drive that pushes, None of any other."""
     return reactions.drive_force if reactions.motion.machine.drive.pushes else None
 

@@ -20,7 +20,7 @@ from equipoise.dataclass import dataclass
 from equipoise.mechanism.assembly.steps import Array, p, planar
 from equipoise.mechanism.dynamics import acting
 from equipoise.mechanism.dynamics.friction import direction
-from equipoise.mechanism.dynamics.reactions import PUSH, TORQUE, Acting, Pass, full
+from equipoise.mechanism.dynamics.reactions import PUSH, TORQUE, Acting, JointReactions, full
 from equipoise.mechanism.formulas.kernels import cross
 from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.kinematics.pushing import pushes
@@ -210,7 +210,7 @@ class SectionLoads:
         return np.stack(values, axis=1)
 
 
-def section_loads(motion: Motion, solved: Pass, link: str) -> SectionLoads:
+def section_loads(motion: Motion, solved: JointReactions, link: str) -> SectionLoads:
     """Loads along a link with a section.
 
     solved : forces in all joints, by which the link moves as it does.
@@ -281,7 +281,7 @@ def _loads(
     return Loads(-force.real, -force.imag, -moment)
 
 
-def _acting_on(motion: Motion, solved: Pass, link: str) -> Iterator[tuple[Any, Any, Any]]:
+def _acting_on(motion: Motion, solved: JointReactions, link: str) -> Iterator[tuple[Any, Any, Any]]:
     """Place, force and torque of all that acts on a link but for its weight."""
     state = solved.state
     for reaction in motion.linkage.reactions:
@@ -304,7 +304,7 @@ def _acting_on(motion: Motion, solved: Pass, link: str) -> Iterator[tuple[Any, A
             yield place, force, torque
 
 
-def _driving(motion: Motion, solved: Pass) -> Iterator[Acting]:
+def _driving(motion: Motion, solved: JointReactions) -> Iterator[Acting]:
     """What drives and the flywheel exert."""
     machine, state = motion.machine, solved.state
     for drive in machine.driven:
@@ -319,7 +319,7 @@ def _driving(motion: Motion, solved: Pass) -> Iterator[Acting]:
         yield first.link, None, NO_FORCE, -first.flywheel * spinning
 
 
-def _rubbing(motion: Motion, solved: Pass) -> Iterator[Acting]:
+def _rubbing(motion: Motion, solved: JointReactions) -> Iterator[Acting]:
     """What friction in joints exerts on both bodies of each."""
     for joint in rubbing_joints(motion.linkage):
         if joint.name not in solved.friction:

@@ -12,7 +12,7 @@ from equipoise.displays import Brief
 from equipoise.errors import UsageError
 from equipoise.mechanism.assembly.steps import Array
 from equipoise.mechanism.checks import unknown
-from equipoise.mechanism.dynamics.across import OF_FRAME, Across
+from equipoise.mechanism.dynamics.across import OF_FRAME, OutOfPlaneMoments
 from equipoise.mechanism.dynamics.exerted import HasCouplings
 from equipoise.mechanism.dynamics.reactions import (
     CouplingForces,
@@ -44,7 +44,7 @@ class Shares(HasCouplings, Brief):
     drives: Mapping[str, Array]
     joints: Mapping[str, JointForce]
     couplings: CouplingForces
-    across: Across | None
+    across: OutOfPlaneMoments | None
     drive_force: Array | None = field(default=None, kw_only=True)
 
     @property

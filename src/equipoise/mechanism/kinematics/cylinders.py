@@ -49,7 +49,7 @@ DEAD = 1e-9
 
 
 @dataclass(frozen=True)
-class Shifted:
+class CrankOffset:
     """A crank that stands at another angle than 0 at crank angle 0."""
 
     link: str
@@ -87,7 +87,7 @@ class Branch:
 
 
 @dataclass(frozen=True, eq=False)
-class Commanded:
+class StrokeInverse:
     """Angle of the drive's link, rad, that follows from the stroke."""
 
     bare: Followed
@@ -141,7 +141,7 @@ class Commanded:
         return np.asarray(at)
 
 
-def commanded(machine: Machine) -> Commanded:
+def commanded(machine: Machine) -> StrokeInverse:
     """The angle of the drive's link that follows from its stroke.
 
     Raises
@@ -204,7 +204,7 @@ def _shift(machine: Machine) -> float:
     return float(np.angle((ends[1][1] - ends[0][1]) / (ends[1][0] - ends[0][0])))
 
 
-def _commanded(machine: Machine, shift: float) -> Commanded:
+def _commanded(machine: Machine, shift: float) -> StrokeInverse:
     drive, law = machine.drive, machine.drive.stroke
     assert law is not None
     bare = _turned(machine, shift)
@@ -214,7 +214,7 @@ def _commanded(machine: Machine, shift: float) -> Commanded:
     far = high if result is not None else high + 2 * pi  # a turn may begin anywhere
     followed = Followed.over(linkage, low, far, STEP, ends_of(bare, drive))
     branches = _branches(lambda at: _lengths(followed, at, drive), low, high, result is None)
-    return Commanded(followed, drive, law, shift, _chosen(drive, law, branches, shift))
+    return StrokeInverse(followed, drive, law, shift, _chosen(drive, law, branches, shift))
 
 
 def _turned(machine: Machine, shift: float) -> Machine:
@@ -223,7 +223,7 @@ def _turned(machine: Machine, shift: float) -> Machine:
     position = machine.position and replace(machine.position, crank_angle=0.0)
     bare = replace(machine, drive=drive, position=position, loads=(), planting=None, balance=None,
                    support=None, rows=())  # fmt: skip
-    return with_fields(bare, turning=Shifted(drive.link, shift))
+    return with_fields(bare, turning=CrankOffset(drive.link, shift))
 
 
 def _lengths(bare: Followed, theta: Array, drive: Drive) -> Levels:

@@ -86,7 +86,7 @@ from equipoise.mechanism.parts.stops import Stop
 from equipoise.mechanism.parts.support import Row, Support
 from equipoise.mechanism.parts.torsion_dampers import TorsionDamper
 from equipoise.mechanism.parts.torsion_springs import TorsionSpring
-from equipoise.mechanism.parts.whole import problems_of
+from equipoise.mechanism.parts.whole import validate_machine
 from equipoise.quantities import display
 
 if TYPE_CHECKING:
@@ -246,7 +246,7 @@ class Machine(Driven, Displayed, Frozen):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        for problem in problems_of(self):
+        for problem in validate_machine(self):
             raise problem
 
     def __repr__(self) -> str:  # its own, so that dataclass makes none

@@ -32,7 +32,7 @@ LISTS: Mapping[str, Callable[[str, Any, Bodies], Iterator[ModelError]]] = {
 """What is wrong with each of the lists; couplings and elements say it themselves."""
 
 
-def problems_of(machine: Any) -> Iterator[ModelError]:
+def validate_machine(machine: Any) -> Iterator[ModelError]:
     """Everything that is wrong with the values of a machine, the first things first."""
     bodies = machine.bodies
     yield from _too_much(machine)
