@@ -491,6 +491,12 @@ def _bearings(chance: random.Random, document: Document) -> None:
 LAID = "crank_angle [deg],force_x [N],force_y [N]", "crank_angle [deg],torque [N m]"
 
 
+def _axes(chance: random.Random, document: Document, link: str) -> str:
+    """Those of a slider, of which some links have none."""
+    slides = any(slider["link"] == link for slider in document.get("sliders", ()))
+    return chance.choice(("link", "slider")) if slides or chance.random() < 0.05 else "link"
+
+
 def _forces(chance: random.Random, document: Document) -> Files:
     loads, tables = document.setdefault("loads", []), Files()
     if chance.random() < 0.25:
@@ -500,8 +506,8 @@ def _forces(chance: random.Random, document: Document) -> Files:
             ["zero", "hold", "wrap"])}  # fmt: skip
         header = chance.choice(LAID)
         load |= {"point": point} if "force" in header else {}
-        if chance.random() < 0.3:
-            load["axes"] = chance.choice(("link", "slider"))
+        if "force" in header and chance.random() < 0.4:
+            load["axes"] = _axes(chance, document, link)
         loads.append(load)
         end = 360.0 * chance.choice((1, 1, 2, 3, 12))
         tables["load.csv"] = columns(
@@ -519,7 +525,7 @@ def _forces(chance: random.Random, document: Document) -> Files:
             start = chance.uniform(-360, 720)
             load |= {"from": f"{start:.5g} deg", "to": f"{start + chance.uniform(1, 359):.5g} deg"}
         if chance.random() < (0.4 if "force" in load else 0.03):
-            load["axes"] = chance.choice(("link", "link", "slider"))
+            load["axes"] = _axes(chance, document, link)
         loads.append(load)
     springs = document.setdefault("springs", [])
     fixed = {*document["frame"]["points"]}
@@ -596,6 +602,17 @@ def _damped(chance: random.Random, document: Document) -> None:
         law: Document = {"stiffness": "20 N/mm", "direction": deg(chance.uniform(-pi, pi))}
         law |= chance.choice([{}, {"restitution": 0.6, "speed": "0.5 m/s"}])
         document["stops"] = [held | law]
+    if chance.random() < 0.5:
+        law = chance.choice(
+            [
+                {"force": "80 N", "speed": "10 mm/s"},
+                {"damping": "30 N s/m"},
+                {"force": "50 N", "damping": "9 N s/m", "speed": "2 mm/s", "direction": "20 deg"},
+                {"positions": ["-20 mm", "5 mm", "30 mm"], "forces": ["0 N", "400 N", "20 N"],
+                 "speed": "5 mm/s", "direction": deg(chance.uniform(-pi, pi)), "one_way": True},
+            ]
+        )  # fmt: skip
+        document["resistances"] = [held | law]
 
 
 def _rubbing(chance: random.Random, document: Document) -> None:

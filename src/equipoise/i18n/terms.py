@@ -128,6 +128,11 @@ MEANINGS = {
         "Distance of a point from the line of its stop; below 0 it presses the stop in."
     ),
     "loss of stop {name}": to_say("Power that a stop turns into heat while it is pressed."),
+    "force of resistance {name}": to_say("Force with which a resistance holds a point back."),
+    "speed of resistance {name}": to_say(
+        "Speed of a point that a resistance holds back, along its direction where it has one."
+    ),
+    "loss of resistance {name}": to_say("Power that a resistance takes from the machine."),
     "loss of damper {name}": to_say("Power that a damper turns into heat."),
     "loss of torsion damper {name}": to_say("Power that a torsion damper turns into heat."),
     "pull of damper {name}": to_say(

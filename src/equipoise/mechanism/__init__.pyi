@@ -35,6 +35,7 @@ from .parts.machine import Machine as Machine
 from .parts.machine import Position as Position
 from .parts.machine import Slider as Slider
 from .parts.racks import Rack as Rack
+from .parts.resistances import Resistance as Resistance
 from .parts.rolling_bearings import RollingBearing as RollingBearing
 from .parts.run_plans import RunPlan as RunPlan
 from .parts.sections import LinkSection as LinkSection

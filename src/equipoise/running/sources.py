@@ -106,11 +106,11 @@ def _of_springs(motion: Motion) -> Array:
 
 @dataclass(frozen=True)
 class OfDampers(Source):
-    """Force elements whose forces depend on velocities: dampers and stops."""
+    """Force elements whose forces depend on velocities: dampers, stops and resistances."""
 
     elements: tuple[tuple[str, int, RatedElement], ...]
     key: str = "dampers"
-    label: str = to_say("dampers and stops")
+    label: str = to_say("dampers, stops and resistances")
 
     def columns(self, motions: Motions) -> list[Array]:
         """Of each row and element its ways, m or rad, each followed by its derivative by the crank

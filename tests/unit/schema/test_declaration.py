@@ -44,6 +44,7 @@ from equipoise.mechanism.parts.duty_states import DutyState
 from equipoise.mechanism.parts.induction_motors import InductionMotor
 from equipoise.mechanism.parts.machine import Frame, Machine, Position
 from equipoise.mechanism.parts.racks import Rack
+from equipoise.mechanism.parts.resistances import Resistance
 from equipoise.mechanism.parts.rolling_bearings import RollingBearing
 from equipoise.mechanism.parts.run_plans import RunPlan
 from equipoise.mechanism.parts.sections import LinkSection
@@ -78,8 +79,8 @@ DOCUMENTED: dict[str, type[Frozen]] = {
         joint_properties.JointProperties, RollingBearing,
         gear_shapes.GearShape, Belt, Rack, cams.Cam,
         CircularSlot, CurvedSlot,
-        force_elements.Load, Spring, TorsionSpring, Damper, TorsionDamper, Stop, Position,
-        field.Planting,
+        force_elements.Load, Spring, TorsionSpring, Damper, TorsionDamper, Stop, Resistance,
+        Position, field.Planting,
         field.PlantingArm,
         field.Soil, support.Support,
         mounts.Mount, support.Row, DutyState, RunPlan, balance.Balance, weights.CenterMove,

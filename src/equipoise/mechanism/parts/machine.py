@@ -78,6 +78,7 @@ from equipoise.mechanism.parts.links import (
 from equipoise.mechanism.parts.parameters import PARAMETERS
 from equipoise.mechanism.parts.places import Frame, Position
 from equipoise.mechanism.parts.racks import Rack
+from equipoise.mechanism.parts.resistances import Resistance
 from equipoise.mechanism.parts.run_plans import RunPlan
 from equipoise.mechanism.parts.shown_units import ShownUnits
 from equipoise.mechanism.parts.sliders import Bearing, Slider
@@ -129,6 +130,7 @@ class Machine(Driven, Displayed, Frozen):
                   "drives", "frame", "links", "constraints", "bearings", "assembly", "sliders",
                   "circular_slots", "curved_slots", "gears", "belts", "racks", "cams", "loads",
                   "springs", "torsion_springs", "dampers", "torsion_dampers", "stops",
+                  "resistances",
                   "joints", "position", "planting", "support", "rows",
                   "duty", "run", "balance")  # fmt: skip
 
@@ -201,6 +203,9 @@ class Machine(Driven, Displayed, Frozen):
     )
     stops: tuple[Stop, ...] = key(
         Tables(KeyTable(Stop)), "one-sided stops with stiffness and restitution", default=()
+    )
+    resistances: tuple[Resistance, ...] = key(
+        Tables(KeyTable(Resistance)), "resistances against the motion of points", default=()
     )
     torsion_dampers: tuple[TorsionDamper, ...] = key(
         Tables(KeyTable(TorsionDamper)), "dampers of links that turn against each other", default=()

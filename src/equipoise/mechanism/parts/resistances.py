@@ -1,0 +1,244 @@
+"""Resistances against the motion of a point: dry, viscous, or by the way, as of a cut."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import pairwise
+from typing import Any, ClassVar
+
+from equipoise.errors import ModelError
+from equipoise.i18n import Note, to_say
+from equipoise.keys import Conditions, Flag, Listing, Quantity, TextKind, declared, key
+from equipoise.mechanism.checks import FRAME, Bodies, unknown, unknown_body, unknown_link
+from equipoise.mechanism.formulas.kernels import cross, dot, positive
+from equipoise.mechanism.parts.between import BetweenPoints
+from equipoise.mechanism.parts.element_kinds import Placed
+from equipoise.mechanism.parts.force_kinds import Action, RatedElement
+from equipoise.mechanism.parts.ramps import ramp_value, ramps_of, wrong_rows
+from equipoise.quantities import Dimension, told
+
+
+@declared
+class Resistance(BetweenPoints, RatedElement):
+    """A force against the motion of `point` of `link` over the body `on`, which bears its opposite.
+
+    Dry and viscous parts, and one by the way, add up.  With a direction it acts along that alone.
+    """
+
+    called = to_say("{what} of resistance {number}")
+    file_order = ("link", "point", "to", "on", "direction", "one_way", "force", "damping",
+                  "positions", "forces", "speed")  # fmt: skip
+    conditions: ClassVar[Conditions] = {
+        "anyOf": [{"required": [name]} for name in ("force", "damping", "positions")],
+        "dependentRequired": {
+            "force": ["speed"],
+            "positions": ["forces", "direction", "speed"],
+            "forces": ["positions"],
+        },
+    }
+    freedoms = 2
+
+    special = to_say("resistance")
+    legend = ("resistance", to_say("resistance"))
+    sign = "equipoise.symbols.resistances:resistance_sign"
+    title = to_say("Resistances, each with its crank angle")
+    group = to_say("resistances")
+    outputs: ClassVar[Mapping[str, tuple[Dimension, str]]] = {
+        "force": ("force", to_say("force of resistance {name}")),
+        "speed": ("speed", to_say("speed of resistance {name}")),
+        "loss": ("power", to_say("loss of resistance {name}")),
+    }
+    headings: ClassVar[Mapping[str, tuple[str, str]]] = {
+        "speed": (to_say("lowest speed"), to_say("highest")),
+        "force": (to_say("smallest force"), to_say("largest")),
+    }
+
+    link: str = key(TextKind(of="link"), "the link whose motion it resists", example="ram")
+    point: str = key(TextKind(of="point", on="link"), "where it acts", example="F")
+    to: str = key(
+        TextKind(of="point", on="on"),
+        "point of the frame, or of `on`, from which the way is counted",
+        example="S",
+        word=to_say("other point"),
+    )
+    on: str = key(
+        TextKind(of="body"),
+        "the body over which the point moves, and which bears the opposite force",
+        default=FRAME,
+        word=to_say("other body"),
+    )
+    direction: float | None = key(
+        "angle",
+        "from the x axis of `on`, along which alone it acts; against the motion, whatever its "
+        "direction, where left out",
+        default=None,
+        example="0 deg",
+    )
+    one_way: bool = key(
+        Flag(), "it resists motion in `direction` only, as a cut does, and none back", default=False
+    )
+    force: float | None = key(
+        "force", "dry part, the same at every speed", default=None, example="350 N", at_least=0
+    )
+    damping: float | None = key(
+        "damping", "viscous part, force over speed", default=None, example="40 N s/m", at_least=0
+    )
+    positions: tuple[float, ...] = key(
+        Listing(Quantity("length"), right=Note('a list such as ["0 mm", "5 mm", "20 mm"]')),
+        "of the point from `to` along `direction`, rising, for a dry part by the way",
+        default=(),
+        example=["0 mm", "2 mm", "6 mm"],
+    )
+    forces: tuple[float, ...] = key(
+        Listing(Quantity("force"), right=Note('a list such as ["-40 N", "0 N", "90 N"]')),
+        "dry part at these positions, 0 or more; linear between them, and as in the first and last "
+        "beyond them",
+        default=(),
+        example=["0 N", "900 N", "0 N"],
+    )
+    speed: float | None = key(
+        "speed",
+        "at which a dry part has 71 % of its size, as it changes its sense smoothly: small against "
+        "the speeds of the point",
+        default=None,
+        example="5 mm/s",
+        above=0,
+    )
+
+    @property
+    def axed(self) -> tuple[str, ...]:
+        return () if self.direction is None else (self.on,)
+
+    @property
+    def linear(self) -> bool:
+        return self.force is None and not self.positions and not self.one_way
+
+    def _moving(self, at: Placed) -> tuple[Any, Any, tuple[tuple[Any, Any], ...]]:
+        """Way from the other point, m, unit vector of its direction, and the ways along and across
+        that in the axes of the other body, m, with their speeds, m/s.
+        """
+        arm = at.point(self.link, self.point) - at.point(self.on, self.to)
+        velocity = at.velocity(self.link, self.point) - at.velocity(self.on, self.to)
+        along = at.turned(self.on, self.direction or 0.0)
+        across, rate = 1j * along, at.rate(self.on)
+        ways = tuple(
+            (dot(way, arm), dot(way, velocity) + cross(way, arm) * rate) for way in (along, across)
+        )
+        return arm, along, ways
+
+    def ways(self, at: Placed) -> tuple[tuple[Any, Any], ...]:
+        """The ways along and across its direction, m, with their speeds, m/s."""
+        return self._moving(at)[2]
+
+    def _dry(self, position: Any) -> Any:
+        """Size of the dry part at a position along its direction, N."""
+        size = 0.0 if self.force is None else self.force
+        if self.positions:
+            first, last = self.positions[0], self.positions[-1]
+            within = first + positive(position - first) - positive(position - last)
+            size = size + ramp_value(ramps_of(self.positions, self.forces), within)
+        return size
+
+    def efforts(self, ways: Sequence[tuple[Any, Any]]) -> tuple[Any, ...]:
+        """Force along and across its direction, N, against the speeds there."""
+        (position, along), (_, across) = ways
+        if self.one_way:
+            along = positive(along)
+        squared = along * along if self.direction is not None else along * along + across * across
+        factor = 0.0 if self.damping is None else self.damping
+        if self.speed is not None:
+            factor = factor + self._dry(position) / (squared + self.speed * self.speed) ** 0.5
+        return -factor * along, (0.0 if self.direction is not None else -factor * across)
+
+    def actions(self, at: Placed) -> Iterator[Action]:
+        """Force on the point of the link, N, and its opposite there on the other body."""
+        arm, direction, ways = self._moving(at)
+        along, across = self.efforts(ways)
+        force = direction * along + 1j * direction * across
+        yield self.link, self.point, force, 0.0
+        yield self.on, self.to, -force, -cross(arm, force)
+
+    def values(self, at: Placed) -> Mapping[str, Any]:
+        """Its size, N, the speed that it resists, m/s, along its direction where it has one, and
+        the power that it takes, W.
+        """
+        ways = self.ways(at)
+        (_, along), (_, across) = ways
+        first, second = self.efforts(ways)
+        directed = self.direction is not None
+        size = abs(first) if directed else (first * first + second * second) ** 0.5
+        speed = along if directed else (along * along + across * across) ** 0.5
+        return {"force": size, "speed": speed, "loss": -(first * along + second * across)}
+
+    def problems(self, where: str, bodies: Bodies) -> Iterator[ModelError]:
+        """Everything that is wrong with it in a machine of these bodies."""
+        wrong = [
+            *unknown_link(f"{where}.link", self.link, bodies),
+            *unknown_body(f"{where}.on", self.on, bodies),
+        ]
+        yield from wrong
+        if wrong:
+            return
+        if self.link == self.on:
+            yield ModelError(f"{where}.on", Note("{link!r} cannot resist itself", link=self.link))
+        if self.point not in bodies[self.link]:
+            of = Note("point of {body}", body=self.link)
+            yield ModelError(f"{where}.point", unknown(self.point, bodies[self.link], of))
+        if self.to not in bodies[self.on]:
+            kind: Note | str = "point of the frame"
+            if self.on != FRAME:
+                kind = Note("point of {body}", body=self.on)
+            yield ModelError(f"{where}.to", unknown(self.to, bodies[self.on], kind))
+        yield from self._wrong_law(where)
+
+    def _wrong_law(self, where: str) -> Iterator[ModelError]:
+        listed = bool(self.positions or self.forces)
+        if self.force is None and self.damping is None and not listed:
+            wrong = Note("give at least one of force, damping, and positions with forces")
+            yield ModelError(where, wrong)
+        if (self.force is not None or listed) and self.speed is None:
+            wrong = Note("missing; a dry part goes with the speed near which it changes its sense")
+            yield ModelError(f"{where}.speed", wrong)
+        if self.direction is None and (listed or self.one_way):
+            wrong = Note("missing; what acts by the way or one way needs a direction")
+            yield ModelError(f"{where}.direction", wrong)
+        if listed:
+            uneven = Note(
+                "got {positions} positions and {forces} forces; give as many of both",
+                positions=len(self.positions),
+                forces=len(self.forces),
+            )
+            falling = Note("the positions must rise from row to row")
+            yield from wrong_rows(
+                f"{where}.positions", self.positions, self.forces, uneven, falling
+            )
+            if any(force < 0 for force in self.forces):
+                wrong = Note("a resistance does not push; give forces of 0 or more")
+                yield ModelError(f"{where}.forces", wrong)
+
+    def demands(self) -> Iterator[Any]:
+        """What has to be true of its numbers, or of columns of them."""
+        for size in (self.force, self.damping, *self.forces):
+            if size is not None:
+                yield size >= 0
+        if self.speed is not None:
+            yield self.speed > 0
+        yield from (after > before for before, after in pairwise(self.positions))
+
+    def sentence(self) -> Note:
+        """What it resists, for a report."""
+        ends = {"point": self.point, "link": self.link, "on": self.on}
+        if self.direction is None:
+            return Note("Resistance: against the motion of {point} of {link} over {on}", **ends)
+        return Note("Resistance: along a line of {on}, to {point} of {link}", **ends)
+
+    def summary(self) -> str:
+        """All its numbers, in a line of `check`."""
+        parts = [f"resistance: to {self.point} of {self.link} over {self.on}"]
+        if self.force is not None:
+            parts.append(told(self.force, "force", "N"))
+        if self.damping is not None:
+            parts.append(told(self.damping, "damping", "N s/m"))
+        if self.positions:
+            parts.append(f"{len(self.positions)} rows")
+        return ", ".join(parts)

@@ -1,0 +1,188 @@
+"""Resistances: what they do against the motion, in analyses, loops, scripts and runs."""
+
+from __future__ import annotations
+
+import shutil
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.errors import ModelError, UsageError
+from equipoise.exchange.export import export
+from equipoise.mechanism import Machine, Resistance
+from support.own_kinds import designs_by_numbers, drawn, on_the_page, read_back, scripted
+
+ANY_WAY = Resistance("coupler", "Q", "S", force=25.0, damping=8.0, speed=0.05)
+ON_LINK = Resistance(
+    "rocker", "F", "Q", on="coupler", direction=0.5, one_way=True,
+    positions=(-0.03, 0.0, 0.04), forces=(0.0, 60.0, 10.0), damping=3.0, speed=0.03,
+)  # fmt: skip
+
+
+def resisted(*resistances: Resistance) -> Machine:
+    """A crank-rocker whose links are resisted."""
+    machine = eq.load("spring-balanced-crank")
+    coupler = machine.links["coupler"]
+    points = {**coupler.points, "Q": (0.098, -0.032)}
+    return replace(
+        machine,
+        springs=(),
+        frame={**machine.frame, "S": (0.1006, 0.0013)},
+        links={**machine.links, "coupler": replace(coupler, points=points)},
+        resistances=resistances,
+    )
+
+
+MACHINE = resisted(ANY_WAY, ON_LINK)
+
+
+def test_its_law_by_places_and_their_differences() -> None:
+    """Places in the axes of the other body, velocities by differences of these."""
+    found = eq.analyze(MACHINE, 360)
+    theta, step = found.motion.crank_angle, 1e-6
+
+    def place(at: Any, one: Resistance) -> Any:
+        motion = eq.move(MACHINE, at)
+        turned = 0.0 if one.on == "frame" else motion.links[one.on].angle
+        apart = motion.point(one.point).place - motion.point(one.to).place
+        return apart * np.exp(-1j * (turned + (one.direction or 0.0)))
+
+    speeds = [
+        (place(theta + step, one) - place(theta - step, one)) / (2 * step) * found.motion.speed
+        for one in MACHINE.resistances
+    ]
+    free = np.abs(speeds[0])
+    sizes = [25.0 * free / np.hypot(free, 0.05) + 8.0 * free]
+    x, forward = place(theta, ON_LINK).real, np.maximum(speeds[1].real, 0.0)
+    rows = np.interp(x, ON_LINK.positions, ON_LINK.forces)
+    sizes.append(rows * forward / np.hypot(forward, 0.03) + 3.0 * forward)
+    assert 0 < np.sum(forward > 0) < 360
+    for number, wanted in enumerate(sizes):
+        values = found.motion.element_values("resistances", number)
+        size = np.max(wanted)
+        np.testing.assert_allclose(values["force"], wanted, atol=1e-6 * size)
+        way = free if number == 0 else speeds[1].real
+        np.testing.assert_allclose(values["speed"], way, atol=1e-6 * np.max(free))
+        loss = wanted * (free if number == 0 else forward)
+        np.testing.assert_allclose(values["loss"], loss, atol=1e-6 * size * np.max(np.abs(way)))
+
+
+def test_the_drive_gives_what_they_take_and_the_frame_bears_nothing_more() -> None:
+    """Moments on a turning body included: power is balanced at every instant."""
+    found, bare = (eq.analyze(one, 360) for one in (MACHINE, resisted()))
+    loss = sum(found.motion.element_values("resistances", number)["loss"] for number in range(2))
+    power = found.forces.power - bare.forces.power
+    assert np.max(loss) > 1.0 and np.min(loss) >= 0.0
+    np.testing.assert_allclose(power, loss, atol=1e-11 * np.max(loss))
+    frame, wanted = (one.forces.frame_force.value for one in (found, bare))
+    np.testing.assert_allclose(frame, wanted, atol=1e-8)
+
+
+def shear(*resistances: Resistance) -> Machine:
+    """A slider-crank with a crank of 60 mm: a blade with a stroke of 120 mm."""
+    crank = eq.Link({"A": (0.0, 0.0), "B": (0.06, 0.0)}, 4.0, (0.0, 0.0), 0.9)
+    rod = eq.Link({"B": (0.0, 0.0), "C": (0.25, 0.0)}, 1.2, (0.1, 0.0), 0.01)
+    blade = eq.Link({"C": (0.0, 0.0)}, 6.0, (0.0, 0.0), 0.05)
+    return eq.Machine(
+        "shear", eq.Drive("crank", 8.0), {"A": (0.0, 0.0), "S": (0.27, 0.0)},
+        {"crank": crank, "rod": rod, "blade": blade}, assembly={"C": "forward"},
+        sliders=(eq.mechanism.Slider("blade", "C", "frame", "A", 0.0),),
+        gravity=(0.0, 0.0), resistances=resistances,
+    )  # fmt: skip
+
+
+CUT = Resistance("blade", "C", "S", direction=0.0, one_way=True, positions=(0.0, 0.004, 0.02),
+                 forces=(0.0, 3000.0, 0.0), speed=1e-4)  # fmt: skip
+RUBBED = Resistance("blade", "C", "S", direction=0.0, force=40.0, speed=1e-4)
+
+
+def test_a_cut_takes_the_area_below_its_force_and_dry_friction_twice_the_stroke() -> None:
+    """Known answers as the speed at which the sense changes vanishes beside that of the blade."""
+    works = []
+    for machine in (shear(), shear(CUT), shear(RUBBED)):
+        found = eq.analyze(machine, 7200)
+        works.append(2 * np.pi * found.motion.mean(found.forces.drive_torque))
+    # rows are kinks and turning back is steep: to some 1e-5 by a sum over 7200 angles
+    assert works[1] - works[0] == pytest.approx(0.5 * 3000.0 * 0.02, rel=1e-4)
+    assert works[2] - works[0] == pytest.approx(2 * 0.12 * 40.0, rel=1e-4)
+
+
+def test_a_run_loses_the_work_of_cuts() -> None:
+    """A crank that coasts through one cut: its energy falls by the area below the force."""
+    found = eq.run(shear(replace(CUT, speed=1e-3)), "0.6 s", speed=12.0)
+    turns = (found.crank_angle[-1] - found.crank_angle[0]) / (2 * np.pi)
+    assert 0.9 < turns < 1.5  # it cuts in the last quarter of a turn
+    assert found.work["dampers"][-1] == pytest.approx(-30.0, rel=1e-4)
+    assert found.energy_error < 1e-9
+
+
+def test_a_run_against_a_dry_force_alone_slows_as_by_constant_torque() -> None:
+    """A wheel whose rim is rubbed: speed falls by force times radius over inertia."""
+    link = eq.Link({"A": (0.0, 0.0), "B": (0.3, 0.0)}, 2.0, (0.0, 0.0), 0.05)
+    rim = Resistance("wheel", "B", "A", force=4.0, speed=1e-6)
+    machine = eq.Machine("wheel", eq.Drive("wheel", 20.0), {"A": (0.0, 0.0)}, {"wheel": link},
+                         gravity=(0.0, 0.0), resistances=(rim,))  # fmt: skip
+    found = eq.run(machine, "0.5 s", speed=20.0)
+    assert found.crank_speed[-1] == pytest.approx(20.0 - 4.0 * 0.3 / 0.05 * 0.5, rel=1e-8)
+    assert found.energy_error < 1e-9
+
+
+def test_it_is_read_written_and_refused() -> None:
+    rows = '[[resistances]]\nlink = "coupler"\npoint = "Q"\nto = "S"\n'
+    read_back(MACHINE, "resistances", rows, ("coupler", "couplr"),
+              r"^resistances\[1\]\.link: .* 'coupler'")  # fmt: skip
+
+
+def test_loops_and_scripts_have_them(tmp_path: Path) -> None:
+    def alone(force: float, damping: float, first: float) -> Machine | None:
+        moved = replace(ON_LINK, positions=(first, *ON_LINK.positions[1:]))
+        if force < 0 or first > 0:
+            return None
+        return resisted(replace(ANY_WAY, force=force, damping=damping), moved)
+
+    names = ("drive_torque", "joints.C", "resistances.1.force", "resistances.2.loss")
+    paths = ["resistances[1].force", "resistances[1].damping", "resistances[2].positions[1]"]
+    sizes = [(25.0, 8.0, -0.03), (60.0, 0.0, -0.01), (-1.0, 1.0, -0.03), (5.0, 1.0, 0.01)]
+    designs_by_numbers(MACHINE, paths, names, sizes, alone)
+    if shutil.which("node") is not None:
+        wanted = ["drive_torque", "resistances.1.force", "resistances.2.loss"]
+        scripted(MACHINE, wanted, tmp_path)
+
+
+def test_drawings_and_the_page_have_them() -> None:
+    assert len(drawn(MACHINE, "resistance")[1]) == 5
+    one = replace(ON_LINK, on="frame", to="S")
+    keys = ["link", "point", "to", "on", "direction", "one_way", "force", "damping", "positions",
+            "forces", "speed"]  # fmt: skip
+    on_the_page(resisted(replace(one, force=3.0)), "resistances", keys, ["force", "direction"])
+
+
+@pytest.mark.parametrize("file_format", ["mjcf", "exudyn", "urdf", "modelica"])
+def test_formats_without_them_refuse_them(file_format: str, tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match=r"^resistances\[1\]: a file of .* has no resistance"):
+        export(MACHINE, tmp_path / "mine", file_format)
+
+
+WRONG: list[tuple[dict[str, Any], str]] = [
+    ({"on": "rocker"}, "[1].on: 'rocker' cannot resist itself"),
+    ({"point": "Q"}, "[1].point: no point of rocker is called 'Q'"),
+    ({"to": "X"}, "[1].to: no point of coupler is called 'X'"),
+    ({"force": -1.0}, "[1].force: got -1 N"),
+    ({"speed": None}, "[1].speed: missing; a dry part goes with the speed"),
+    ({"direction": None}, "[1].direction: missing; what acts by the way"),
+    ({"positions": (), "forces": (), "damping": None}, "[1]: give at least one of force"),
+    ({"forces": (1.0, 2.0)}, "[1].positions: got 3 positions and 2 forces"),
+    ({"positions": (0.0, -0.1, 0.2)}, "[1].positions: the positions must rise"),
+    ({"forces": (0.0, -5.0, 1.0)}, "[1].forces: a resistance does not push"),
+]
+
+
+@pytest.mark.parametrize(("changes", "sentence"), WRONG)
+def test_what_is_wrong_is_said(changes: dict[str, Any], sentence: str) -> None:
+    with pytest.raises(ModelError) as caught:
+        resisted(replace(ON_LINK, **changes))
+    assert str(caught.value).startswith(f"resistances{sentence}")
