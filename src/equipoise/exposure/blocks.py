@@ -125,9 +125,29 @@ def told_blocks(
     yield from times_blocks(tools) if day is None else exposure_blocks(day)
 
 
-def exposure_blocks(day: Exposure) -> Iterator[Block]:
-    """A day's exposure, and what it means in plain words."""
+def exposure_blocks(day: Exposure, judged: bool = True) -> Iterator[Block]:
+    """A day's exposure, and what it means in plain words.
+
+    judged : whether to say what the day amounts to and when values are reached, which a report says
+        in its verdict and summary.
+    """
     yield _tasks(day)
+    if judged:
+        yield from _judgement(day)
+        yield from map(Text, _reached(day))
+    yield from map(Text, _helps(day))
+    if day.a8 > 0:
+        yield Text(_white_fingers(day))
+    longest = limit_time(day.a_hv)
+    most = clock(day.times.japanese)
+    text = say("Japan, guideline of 2009: such work for at most {most} a day", most=most)
+    if longest > LONGEST:
+        text += say(" (200/a^2 alone: {longest})", longest=clock(longest))
+    yield Text(text)
+
+
+def _judgement(day: Exposure) -> Iterator[Text]:
+    """A(8) beside its values, and what that means."""
     above = broken_if(day.verdict != "below the action value")
     yield Text(
         say(
@@ -140,15 +160,6 @@ def exposure_blocks(day: Exposure) -> Iterator[Block]:
         emphasis=above,
     )
     yield Text(say(MEANING[day.verdict]), above)
-    yield from map(Text, _helps(day))
-    if day.a8 > 0:
-        yield Text(_white_fingers(day))
-    longest = limit_time(day.a_hv)
-    most = clock(day.times.japanese)
-    text = say("Japan, guideline of 2009: such work for at most {most} a day", most=most)
-    if longest > LONGEST:
-        text += say(" (200/a^2 alone: {longest})", longest=clock(longest))
-    yield Text(text)
 
 
 def _acceleration(label: str) -> Column:
@@ -201,8 +212,8 @@ def _tasks(day: Exposure) -> Table:
     return Table(title, columns, tuple(rows))
 
 
-def _helps(day: Exposure) -> Iterator[str]:
-    """How long this work may take, and how weak the vibration would have to be."""
+def _reached(day: Exposure) -> Iterator[str]:
+    """How long this work may take."""
     times = day.times
     if times.to_action > DAY:
         return
@@ -215,7 +226,11 @@ def _helps(day: Exposure) -> Iterator[str]:
             "{limit}."
         )
     yield say(template, action=clock(times.to_action), limit=clock(times.to_limit))
-    if day.verdict != "below the action value":
+
+
+def _helps(day: Exposure) -> Iterator[str]:
+    """How weak the vibration would have to be."""
+    if day.times.to_action <= DAY and day.verdict != "below the action value":
         yield say(
             "In the same {time} a vibration of {enough} m/s² instead of {now} m/s² would stay at "
             "the action value.",

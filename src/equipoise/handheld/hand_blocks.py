@@ -70,8 +70,13 @@ def varied_named(name: str) -> str:
 # -- hands -----------------------------------------------------------------------------------------
 
 
-def exposure_of_tool(exposure: ToolExposure) -> Iterator[Block | ReportSection]:
-    """Weighted acceleration of every hand, and the day of the one that gets most."""
+def exposure_of_tool(
+    exposure: ToolExposure, judged: bool = True
+) -> Iterator[Block | ReportSection]:
+    """Weighted acceleration of every hand, and the day of the one that gets most.
+
+    judged : whether to say what the day amounts to, as of `exposure_blocks`.
+    """
     yield _hands(exposure)
     least, most = (
         say(
@@ -96,7 +101,7 @@ def exposure_of_tool(exposure: ToolExposure) -> Iterator[Block | ReportSection]:
         yield Text(say("There is no daily exposure without work; the file tells none."))
         return
     title = say("A day at {hand}, the hand that gets most", hand=exposure.worst)
-    yield ReportSection("day", title, tuple(exposure_blocks(exposure.days[exposure.worst])))
+    yield ReportSection("day", title, tuple(exposure_blocks(exposure.days[exposure.worst], judged)))
 
 
 def _hands(exposure: ToolExposure) -> Table:
@@ -127,9 +132,13 @@ def _hands(exposure: ToolExposure) -> Table:
 # -- what to change --------------------------------------------------------------------------------
 
 
-def design_blocks(design: ToolDesign) -> Iterator[Block]:
-    """What a day of work amounts to then; what to change, and what that brings."""
-    yield from _verdict(design)
+def design_blocks(design: ToolDesign, judged: bool = True) -> Iterator[Block]:
+    """What to change, and what that brings.
+
+    judged : whether to say first what a day of work amounts to then.
+    """
+    if judged:
+        yield from _verdict(design)
     rows: list[tuple[Cell, ...]] = []
     for variable, edge in zip(design.variables, design.edges, strict=True):
         text = say(EDGES[edge]) if edge in EDGES else ""

@@ -24,7 +24,7 @@ from equipoise.present.headlines import seen_in
 from equipoise.present.pages import ReportDocument, SummaryAnswer, page, pdf
 from equipoise.present.sources import sources
 from equipoise.present.summary import answers, check_whole_cycle, tiles
-from equipoise.present.tool_headlines import judged
+from equipoise.present.tool_headlines import outstanding
 from equipoise.present.tool_summary import tool_answers, tool_tiles
 from equipoise.quantities import PER_RPM, chosen_units, number
 from equipoise.results.analysis import Analysis
@@ -184,16 +184,16 @@ def balance_blocks(findings: Findings) -> Iterator[Block]:
 def _of_tool(findings: ToolFindings, language: str, command: str) -> ReportDocument:
     blocks: list[Block | ReportSection] = [*drawings(findings).get("tool", [])]
     if findings.design is not None:
-        blocks.extend(design_blocks(findings.design))
+        blocks.extend(design_blocks(findings.design, judged=False))  # which the summary says
     if findings.exposure is not None:
-        blocks.extend(exposure_of_tool(findings.exposure))
+        blocks.extend(exposure_of_tool(findings.exposure, judged=False))
     if findings.modes is not None:
         blocks.extend(_details(of_tools.modes_blocks(findings.modes)))
     subtitle = ""
     if findings.tool.operation is not None:
         rpm = number(findings.tool.operation.speed / PER_RPM)
         subtitle = say("hand-held tool, engine at {speed} rpm", speed=rpm)
-    named: Parts = {"model": [*of_tools.model_blocks(findings.tool)], "tool": blocks}
+    named: Parts = {"model": [*_details(of_tools.model_blocks(findings.tool))], "tool": blocks}
     return ReportDocument(
         language,
         said(findings.tool.title),
@@ -202,7 +202,7 @@ def _of_tool(findings: ToolFindings, language: str, command: str) -> ReportDocum
         tuple(tool_tiles(findings)),
         tuple(tool_answers(findings)),
         "",
-        *_sections(findings, named, {"tool": judged(findings)}, (), command),
+        *_sections(findings, named, {"tool": outstanding(findings)}, (), command),
         verdict=None if findings.exposure is None else _first_text(findings.exposure.headline()),
         drawing=_first_picture(blocks),
     )
@@ -275,10 +275,13 @@ def _animation(findings: Findings) -> str:
     from equipoise.figures.animation import animated_svg
     from equipoise.figures.points import followed
     from equipoise.figures.stage import ForceArrow
+    from equipoise.symbols.clear import clear_angle
     from equipoise.symbols.scene import Scene
+    from equipoise.symbols.stacks import in_turn
 
     analysis = findings.analysis
     scene = Scene.of(analysis.motion).with_rows(analysis.motion)
+    alone = len(in_turn(scene, clear_angle(scene))) == 1
     if findings.response is not None:
         from equipoise.figures.swing import swinging
 
@@ -287,7 +290,7 @@ def _animation(findings: Findings) -> str:
         scene,
         title=findings.machine.title,
         traced=followed(analysis.motion),
-        arrow=None if analysis.solved is None else ForceArrow.of(analysis),
+        arrow=ForceArrow.of(analysis) if analysis.solved is not None and alone else None,
         width=440,  # as wide as it stands on the page, so that its texts have their size
     )
 

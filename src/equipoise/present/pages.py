@@ -237,23 +237,28 @@ def paired(pictures: Iterable[SvgPicture]) -> list[list[SvgPicture]]:
 
 
 def flowed(blocks: Iterable[Block | ReportSection]) -> Iterator[tuple[str, list[Any]]]:
-    """Blocks of a kind together, pictures in rows; one without a neighbour before tables is packed
-    with these.
+    """Blocks of a kind together: a wide picture, or several of half a page's width each; one of
+    these without a neighbour before tables is packed with them.
     """
-    lone: list[SvgPicture] = []
+    halves: list[SvgPicture] = []
     for kind, members in _runs(blocks):
         if kind == "drawn":
-            *rows, last = paired(members)  # type: ignore[arg-type]
-            lone = last if len(last) == 1 and not last[0].wide else []
-            yield from (("row", row) for row in (rows if lone else [*rows, last]))
+            for wide, rows in groupby(paired(members), key=lambda row: row[0].wide):  # type: ignore[arg-type]
+                if halves:
+                    yield "row", halves
+                    halves = []
+                if wide:
+                    yield from (("row", row) for row in rows)
+                else:
+                    halves = [picture for row in rows for picture in row]
             continue
-        if lone and kind != "table":
-            yield "row", lone
-            lone = []
+        lone = [halves.pop()] if kind == "table" and len(halves) % 2 else []
+        if halves:
+            yield "row", halves
+            halves = []
         yield kind, [*lone, *members]
-        lone = []
-    if lone:
-        yield "row", lone
+    if halves:
+        yield "row", halves
 
 
 NARROW = 3

@@ -69,6 +69,11 @@ def judged(findings: ToolFindings) -> str:
     return say("A day of work: A(8) = {a8} m/s², {verdict}", a8=brief(day.a8), verdict=verdict)
 
 
+def outstanding(findings: ToolFindings) -> str:
+    """What stands above the pictures: what a change brings, or which hand gets most."""
+    return worst(findings) if findings.design is None else improved(findings)
+
+
 def improved(findings: ToolFindings) -> str:
     """What the design does to the hand that gets most."""
     assert findings.design is not None
