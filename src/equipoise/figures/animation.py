@@ -7,6 +7,7 @@ their computer for less motion, and while the pointer is on it.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection, Iterator
 from hashlib import sha256
 from html import escape
@@ -19,6 +20,7 @@ from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
 from equipoise.figures.captions import Label, captions, ruler_ends
 from equipoise.figures.stage import (
+    RULER,
     ForceArrow,
     Moves,
     Stage,
@@ -28,10 +30,12 @@ from equipoise.figures.stage import (
 )
 from equipoise.i18n import Note, said, say
 from equipoise.mechanism.parts.machine import unknown
+from equipoise.symbols.clear import clear_angle
 from equipoise.symbols.looks import DARK, LIGHT, LOOKS, Colors, pixels
 from equipoise.symbols.pieces import pieces
 from equipoise.symbols.scene import Scene
 from equipoise.symbols.shapes import Array, Shape, arrow
+from equipoise.symbols.stacks import in_turn
 from equipoise.symbols.tracks import PieceTrack
 
 HEAD = 13.0
@@ -159,8 +163,8 @@ def _ruler(stage: Stage) -> PixelPath:
 
 MOST_STEPS = 1500
 """Frames in a cycle, so that the text stays small."""
-NARROW, SHRUNK = 560, 18 / 640
-"""Pixels of a page so narrow that the picture shrinks; size of its texts there, in widths of it."""
+NARROW = 560
+"""Pixels of a page so narrow that the picture shrinks."""
 
 
 def animated_svg(
@@ -194,6 +198,10 @@ def animated_svg(
     """
     check_seconds(seconds)
     check_width(width)
+    parts = in_turn(scene, clear_angle(scene))
+    if len(parts) > 1:
+        options = {"seconds": seconds, "frames": frames, "width": width, "arrow": arrow}
+        return _one_below_another(parts, title, traced, options)
     moving = laid_out(scene, traced, frames, width, arrow)
     if moving.stage.turns * frames > MOST_STEPS:
         frames = max(1, int(MOST_STEPS / moving.stage.turns))
@@ -229,6 +237,36 @@ viewBox="0 0 {stage.width} {stage.height}" width="{stage.width}" height="{stage.
 <rect class="paper" width="{stage.width}" height="{stage.height}" rx="4"/>
 {shapes}
 </svg>
+"""
+
+
+def _one_below_another(
+    scenes: list[tuple[tuple[str, ...], Scene]],
+    title: str,
+    traced: Collection[str],
+    options: dict[str, Any],
+) -> str:
+    """Pictures of links that would cover each other, each scene with their names, in one."""
+    parts = [
+        animated_svg(
+            part,
+            title=", ".join(names),
+            traced=[name for name in traced if name in part.places],
+            **options,
+        )
+        for names, part in scenes
+    ]
+    width = max(int(re.findall(r'width="(\d+)"', part)[0]) for part in parts)
+    pieces, top = [], 0
+    for part in parts:
+        pieces.append(part.replace("<svg ", f'<svg y="{top}" ', 1))
+        top += int(re.findall(r'height="(\d+)"', part)[0])
+    inner = "".join(pieces)
+    return f"""\
+<svg xmlns="http://www.w3.org/2000/svg" class="linkages" role="img" \
+viewBox="0 0 {width} {top}" width="{width}" height="{top}" style="max-width:100%;height:auto">
+<title>{escape(said(title))}</title>
+{inner}</svg>
 """
 
 
@@ -296,10 +334,12 @@ def _sizes_where_narrow(stage: Stage) -> tuple[float, float]:
     """Of letters where the picture is shown small, pixels: beside the machine, and in the strip
     below, whose lines neither touch nor run out of the picture.
     """
-    larger = max(stage.size_of_type, SHRUNK * stage.width)
-    room = stage.width - 24 * stage.unit
+    larger, room = stage.size_where_narrow, stage.width - 24 * stage.unit
     longest = max((width_of(words, 1.0) for words, _ in stage.lines), default=0.0)
     fitting = min(larger, stage.row / 1.05, room / max(longest, 1e-9))
+    if stage.lines and stage.lines[0][0]:  # which stands beside the ruler and its length
+        beside = (1 - RULER) * stage.width - 36 * stage.unit
+        fitting = min(fitting, beside / width_of(stage.lines[0][0] + "500 mm ", 1.0))
     return larger, max(stage.size_of_type, fitting) if len(stage.lines) > 1 else larger
 
 

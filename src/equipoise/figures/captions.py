@@ -20,8 +20,8 @@ class Label:
     """A text that stands still.
 
     place : of its beginning, middle or end, as anchor says; the middle of its height.
-    color : name in `symbols.looks.LIGHT`.  in_strip : whether it is one of several
-    lines of the strip below.
+    color : name in `symbols.looks.LIGHT`.  in_strip : whether it stands in the strip below, where
+    that has several lines.
     """
 
     text: str
@@ -42,7 +42,10 @@ def captions(stage: Stage, traced: tuple[str, ...]) -> tuple[Label, ...]:
     labels: list[Label] = []
     places = (*_of_pivots(stage), *_of_gauges(stage), *_of_paths(stage, traced))
     for choices in (*_strip(stage), *places):
-        free = [choice for choice in choices if _fits(choice, labels, stage)]
+        for size in (stage.size_where_narrow, stage.size_of_type):
+            free = [choice for choice in choices if _fits(choice, labels, stage, size)]
+            if free:
+                break
         if free:
             labels.append(min(free, key=lambda item: _covered(item, stage)))
     return tuple(labels)
@@ -55,12 +58,12 @@ def _covered(label: Label, stage: Stage) -> int:
     return int(np.sum((left < x) & (x < right) & (top < y) & (y < bottom)))
 
 
-def _fits(label: Label, others: list[Label], stage: Stage) -> bool:
-    """Whether a text lies in the picture and on no other text."""
-    left, top, right, bottom = label.box(stage.size_of_type)
+def _fits(label: Label, others: list[Label], stage: Stage, size: float) -> bool:
+    """Whether a text of so many pixels lies in the picture and on no other text."""
+    left, top, right, bottom = label.box(size)
     if left < 0 or top < 0 or right > stage.width or bottom > stage.height:
         return False
-    boxes = (other.box(stage.size_of_type) for other in others)
+    boxes = (other.box(size) for other in others)
     return not any(left < b[2] and b[0] < right and top < b[3] and b[1] < bottom for b in boxes)
 
 
@@ -68,11 +71,12 @@ def _strip(stage: Stage) -> Iterator[list[Label]]:
     """A length by which one can measure, and what is told, one above the other from the right."""
     right, length = ruler_ends(stage)[1], _ruler_length(stage)
     words = decimals(f"{1000 * length:g} mm" if length < 10 else f"{length:g} m")
-    yield [Label(words, right + 8 * stage.unit - 2j, "start")]
+    several = len(stage.lines) > 1
+    yield [Label(words, right + 8 * stage.unit - 2j, "start", in_strip=several)]
     corner = complex(stage.width - 12 * stage.unit, right.imag - 2)
     for row, (words, color) in enumerate(stage.lines):
         place = corner - 1j * stage.row * row
-        yield [Label(words, place, "end", color, len(stage.lines) > 1)] if words else []
+        yield [Label(words, place, "end", color, several)] if words else []
 
 
 def ruler_ends(stage: Stage) -> tuple[complex, complex]:

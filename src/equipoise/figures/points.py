@@ -228,6 +228,10 @@ def _ends(
 
 # -- any output ------------------------------------------------------------------------------------
 
+STEADY = 1e-6
+"""Swing of a motion over its largest value, below which it is rounding: an angle from its cosine
+near a right angle is known to the root of the digits of a number, 2e-8.
+"""
 MOST_LINKS = 3
 """Links whose motion stands in a report."""
 FORBIDDEN = str.maketrans(dict.fromkeys(' /\\:*?"<>|', "-"))
@@ -249,12 +253,18 @@ def outputs_chart(
     x = angle_axis(analysis)
     panels = []
     for entry in ones:
-        drawn = {ALL: over(analysis, entry.drawn)}
+        drawn = {ALL: over(analysis, _steady(entry.drawn))}
         beside = np.ravel([other.drawn for other in ones if other.dimension == entry.dimension])
         panel = compared(x, "", entry.dimension, drawn, beside=beside)
         panels.append(replace(panel, title=replace(panel.y, label=entry.label()).text))
     text = what or say(", ").join(item.label() for item in ones)
     return Chart(name, analysis.machine.title, title(analysis, text), tuple(panels))
+
+
+def _steady(values: Array) -> Array:
+    """Values (N,), or their mean where they swing by rounding alone."""
+    swing, most = float(np.ptp(values)), float(np.max(np.abs(values)))
+    return np.full_like(values, np.mean(values)) if swing <= STEADY * most else values
 
 
 def kinematics(analysis: Analysis) -> Iterator[Chart]:

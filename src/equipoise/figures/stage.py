@@ -34,6 +34,8 @@ RULER = 0.22
 """Most length of the ruler, in widths of the picture."""
 SOME = 24
 """Instants, and places on an edge of a link, at which texts are kept free."""
+SHRUNK = 18 / 640
+"""Size of type where the picture is shown on a narrow page, in widths of the picture."""
 RATES = {"gif": 25, "mp4": 30}
 """Frames a second of films.  Delays of a GIF are whole hundredths of a second."""
 MOST_SECONDS = 600
@@ -163,6 +165,11 @@ class Stage:
         """Pixels."""
         return max(SIZE * self.unit, LEAST)
 
+    @property
+    def size_where_narrow(self) -> float:
+        """Of type where the picture is shown small, pixels of the whole picture."""
+        return max(self.size_of_type, SHRUNK * self.width)
+
     @cached_property
     def told(self) -> list[tuple[str, str]]:
         """What is to be said of the support, its movement and the force, and its colour."""
@@ -185,8 +192,9 @@ class Stage:
             size = width_of(words, self.size_of_type) / len(words)
             parts = wrap(words, max(1, int((self.width - 24 * self.unit) / size)))
             result += [(part, color) for part in parts]
-        beside = (1 - RULER) * self.width - 36 * self.unit - width_of("500 mm ", self.size_of_type)
-        if result and width_of(result[-1][0], self.size_of_type) > beside:
+        size = self.size_of_type if len(result) > 1 else self.size_where_narrow
+        beside = (1 - RULER) * self.width - 36 * self.unit - width_of("500 mm ", size)
+        if result and width_of(result[-1][0], size) > beside:
             result.append(("", "ink"))
         return result[::-1]
 

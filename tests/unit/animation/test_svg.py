@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from itertools import pairwise
+from itertools import combinations, pairwise
 from xml.etree import ElementTree
 
 import numpy as np
@@ -12,8 +12,8 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import UsageError
-from equipoise.figures.animation import animated_svg
-from equipoise.figures.stage import width_of
+from equipoise.figures.animation import _sizes_where_narrow, animated_svg, laid_out
+from equipoise.figures.stage import ForceArrow, width_of
 from equipoise.figures.swing import swinging
 from equipoise.i18n import speaking
 from equipoise.symbols.scene import Scene
@@ -230,6 +230,40 @@ def test_what_is_said_of_a_support_fits_where_the_picture_is_narrow() -> None:
     size = float(re.findall(r"text\.strip\{font-size:([\d.]+)px\}", narrow)[0])
     strip = [one for one in picture.root.iter(f"{NAME}text") if "strip" in one.get("class", "")]
     assert len(strip) > 1 and size >= 12
-    places = sorted(float(one.get("y", "")) for one in strip)
+    places = sorted({float(one.get("y", "")) for one in strip})  # the lowest beside the ruler
     assert min(b - a for a, b in pairwise(places)) > size
     assert all(width_of(one.text or "", size) <= float(one.get("x", "")) for one in strip)
+
+
+def test_texts_lie_apart_and_inside_where_the_picture_is_narrow() -> None:
+    """Names beside the machine, the ruler's length, and lines of the strip: none on another."""
+    for name in ("sieve", "yamashita-rig", "riding-transplanter"):
+        machine = eq.load(name)
+        analysis, response = eq.analyze(machine), eq.respond(machine)
+        scene = swinging(Scene.of(analysis.motion).with_rows(analysis.motion), response)
+        moving = laid_out(scene, (), width=440, arrow=ForceArrow.of(analysis))
+        larger, strip = _sizes_where_narrow(moving.stage)
+        boxes = [one.box(strip if one.in_strip else larger) for one in moving.labels]
+        assert all(left >= 0 and right <= moving.stage.width for left, _, right, _ in boxes)
+        for a, b in combinations(boxes, 2):
+            beside = a[2] <= b[0] or b[2] <= a[0]
+            above = min(a[3], b[3]) - max(a[1], b[1]) <= 0.25 * strip  # of letters without tails
+            assert beside or above, name
+
+
+def test_links_that_cover_each_other_move_in_turn() -> None:
+    """Each walker by itself, below the one before, and what is not a walker in each."""
+    scene = Scene.of(eq.move(eq.load("straw-walker"), 90))
+    root = ElementTree.fromstring(animated_svg(scene, title="walkers", traced=("T1", "T2")))
+    parts = root.findall(f"{NAME}svg")
+    assert [part.findtext(f"{NAME}title") for part in parts] == [
+        f"walker-{number}" for number in (1, 2, 3, 4)
+    ]
+    tops = [float(part.get("y", "nan")) for part in parts]
+    heights = [float(part.get("height", "nan")) for part in parts]
+    assert tops == [sum(heights[:number]) for number in range(4)]
+    assert float(root.get("height", "nan")) == sum(heights)
+    texts = [{text.text for text in part.iter(f"{NAME}text")} for part in parts]
+    assert [sorted(each & {"T1", "T2"}) for each in texts] == [["T1"], ["T2"], [], []]
+    styles = [part.findtext(f"{NAME}style") for part in parts]
+    assert len({re.findall(r"@keyframes (e\w+)-1", str(style))[0] for style in styles}) == 4

@@ -54,7 +54,15 @@ class Laid:
     @property
     def faults(self) -> list[Fault]:
         """All that is not kept."""
-        checks = (texts_cut, texts_covered, axes, bars_afloat, panels_left, alike_in_grey)
+        checks = (
+            texts_cut,
+            texts_covered,
+            axes,
+            runs_back,
+            bars_afloat,
+            panels_left,
+            alike_in_grey,
+        )
         return [fault for check in checks for fault in check(self)]
 
 
@@ -116,6 +124,14 @@ def axes(laid: Laid) -> Iterator[Fault]:
             numbers = [text for _, text in ticks if _is_number(text)]
             if len(numbers) < NUMBERS and (axis.ticks is None or numbers):
                 yield "few numbers on an axis", f"{axis.text}: {numbers}"
+
+
+def runs_back(laid: Laid) -> Iterator[Fault]:
+    """Over the crank angle lines go on from left to right."""
+    for view, _ in laid.panels:
+        for curve in view.panel.curves if view.panel.x.scale == "crank" else ():
+            if np.any(np.diff(curve.x) < 0):
+                yield "line that runs back", view.panel.y.text
 
 
 def bars_afloat(laid: Laid) -> Iterator[Fault]:

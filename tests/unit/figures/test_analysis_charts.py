@@ -373,3 +373,25 @@ def test_paths_that_coincide_are_drawn_once_with_all_their_names() -> None:
     assert {"F1, F2, F3, F4", "R1, R2, R3, R4"} <= {mark.text for mark in panel.marks}
     apart = points.curves(eq.analyze(eq.load("yamashita-1"), 360)).panels[0]
     assert all("," not in curve.label for curve in apart.curves)
+
+
+def test_what_swings_by_rounding_alone_is_a_level_line() -> None:
+    """A block stands at right angles to its slot; the angle of it was drawn millions of times as
+    large.
+    """
+    (chart,) = (
+        one
+        for one in points.main_kinematics(analysis_of("quick-return"))
+        if one.name == "kinematics-transmission"
+    )
+    block, link = chart.panels
+    assert np.ptp(block.curves[0].y) == 0
+    assert block.curves[0].y[0] == pytest.approx(tau / 4, abs=1e-7)
+    assert np.ptp(link.curves[0].y) > 0.1
+
+
+def test_a_jump_at_the_beginning_of_a_cycle_stands_at_both_ends() -> None:
+    """Drawn at 0, the side before it made lines run back over the picture."""
+    for panel in charts_of("plunger-pump")["joints"].panels:
+        for curve in panel.curves:
+            assert np.all(np.diff(curve.x) >= 0) and curve.x[-1] == pytest.approx(tau)

@@ -102,7 +102,11 @@ class Motion(Displayed):
         """
         if self.sampling is None:
             return self.crank_angle, values
-        return self.sampling.at[self.sampling.shown], values[self.sampling.shown]
+        places = self.sampling.shown
+        at, taken = self.sampling.at[places], self.sampling.crank_angle[places]
+        period = 2 * np.pi * self.turns
+        at = np.where(taken - at > period / 2, at + period, at)  # just before a jump at 0
+        return at, values[places]
 
     def periodic(self, values: Array) -> Periodic:
         """Values (..., N) over a whole cycle by order."""
