@@ -107,6 +107,25 @@ def test_the_frame_bears_the_opposite_where_it_is_the_reaction() -> None:
     np.testing.assert_allclose(found.forces.drive_torque, outer.forces.drive_torque, rtol=1e-12)
 
 
+def test_gas_over_two_turns_drives_the_crank_and_does_not_shake_the_frame() -> None:
+    """An indicator diagram by the crank angle, whose reaction the cylinder's head bears: the mean
+    power is its work in two turns, the pins bear it, and the frame as a whole bears nothing of it.
+    """
+    machine = replace(eq.load("four-stroke-engine"), balance=None)
+    found = eq.analyze(machine)
+    assert found.motion.turns == 2
+    bare = eq.analyze(replace(machine, loads=()), found.motion.crank_angle)
+    work = work_in_cycle(machine, machine.loads[0]).net
+    mean = found.motion.mean(found.forces.drive_torque)
+    # to what a sum over 360 angles a turn makes of the bends of its table
+    assert 4 * np.pi * mean == pytest.approx(-work, rel=1e-4)
+    force, moment = bare.forces.frame_force.value, bare.forces.frame_moment
+    size = np.max(np.abs(found.forces.joints["A"].value))
+    assert size > 10 * np.max(np.abs(force))
+    np.testing.assert_allclose(found.forces.frame_force.value, force, atol=1e-12 * size)
+    np.testing.assert_allclose(found.forces.frame_moment, moment, atol=1e-12 * size)
+
+
 def test_loops_and_scripts_have_them(tmp_path: Path) -> None:
     """Of designs whose guides have other directions, too."""
     names = ("drive_torque", "joints.E", "frame_force")
