@@ -16,10 +16,11 @@ from operator import attrgetter
 from reprlib import recursive_repr
 from typing import TYPE_CHECKING, Any
 
-__all__ = ["Constructor", "dataclass"]
+__all__ = ["Constructor", "dataclass", "remembered"]
 
 if TYPE_CHECKING:
     from dataclasses import dataclass
+    from functools import cached_property as remembered
 else:
 
     def dataclass(
@@ -55,6 +56,19 @@ else:
             return cls
 
         return made if cls is None else made(cls)
+
+    class remembered(property):
+        """A property that is computed once, and kept by its name in the object's ``memory``: a dict
+        that copies of a frozen object may be given where its values hold for them too.
+        """
+
+        def __get__(self, instance: Any, owner: type | None = None) -> Any:
+            if instance is None or self.fget is None:
+                return self
+            memory, name = instance.memory, self.fget.__name__
+            if name not in memory:
+                memory[name] = self.fget(instance)
+            return memory[name]
 
 
 class Constructor:

@@ -12,7 +12,7 @@ from typing import Any, get_type_hints
 
 import pytest
 
-from equipoise.dataclass import Constructor, dataclass
+from equipoise.dataclass import Constructor, dataclass, remembered
 
 
 def made_by(decorator: Callable[..., Any]) -> Any:
@@ -123,3 +123,26 @@ def test_an_object_that_holds_itself_is_printed():
     one = Kept(1.0)
     object.__setattr__(one, "value", one)
     assert repr(one) == "Kept(value=...)"
+
+
+def test_what_is_remembered_is_computed_once_and_can_be_handed_on() -> None:
+    calls = []
+
+    @dataclass(frozen=True)
+    class Square:
+        side: float
+        memory: dict[str, Any] = field(default_factory=dict, init=False, compare=False)
+
+        @remembered
+        def area(self) -> float:
+            """In m2."""
+            calls.append(self.side)
+            return self.side**2
+
+    one = Square(3.0)
+    assert (one.area, one.area, calls) == (9.0, 9.0, [3.0])
+    other = replace(one)
+    assert other == one
+    other.memory.update(one.memory)
+    assert (other.area, calls) == (9.0, [3.0])
+    assert Square.area.__doc__ == "In m2."

@@ -166,3 +166,11 @@ def test_decompositions_are_asked_for_in_one_place() -> None:
     printing = re.compile(r"linalg\.(lstsq|svd|svdvals|pinv|cond|matrix_rank)\(|\bpolyfit\(")
     printing_files = {file.name for file in FILES if printing.search(text_of(file))}
     assert printing_files == {"decompositions.py"}
+
+
+def test_nothing_is_written_into_objects_past_their_fields() -> None:
+    """What is kept of a frozen value stands in its `memory`; fields of a new one are set by
+    ``object.__setattr__``.
+    """
+    written = re.compile(r"__dict__(\[[^]]*\] *=[^=]|\.(update|pop|setdefault|clear)\()")
+    assert {named(file) for file in FILES if written.search(text_of(file))} == set()

@@ -153,7 +153,7 @@ class _Search:
     def run(self, progress: Progress | None, above: float) -> ProvedSolution:
         self.nodes += 1
         intervals = tuple((square.low, square.high) for square in self.squares)
-        root = _Node(intervals, self.program.solve())  # which keeps to these intervals already
+        root = _Node(intervals, self._solved(self.program))  # which keeps to the intervals already
         exact = all(square.missed(root.solved.x) < MISSED for square in self.squares)
         if exact or root.solved.bound > above:
             return self._as_best(root.solved, self.program, root.solved.bound)
@@ -196,7 +196,15 @@ class _Search:
         program = self.program.copy()
         for square, (low, high) in zip(self.squares, intervals, strict=True):
             square.keep_between(program, low, high)
-        return _Node(intervals, program.solve())
+        return _Node(intervals, self._solved(program))
+
+    def _solved(self, program: Program) -> ProgramSolution:
+        """Solve a program made of the common one; both keep what cut off impossible solutions."""
+        solved = program.solve()
+        program.add_cuts(solved.cuts)
+        if program is not self.program:
+            self.program.add_cuts(solved.cuts)
+        return solved
 
     def _as_best(self, solved: ProgramSolution, program: Program, bound: float) -> ProvedSolution:
         return ProvedSolution(solved.x, solved.value, bound, solved.prices, program, self.nodes)
@@ -207,7 +215,7 @@ class _Search:
         self._hold(ratios)
         for width in TANGENT_WIDTHS:
             try:
-                moved = self._ratios(self._tangent(ratios, width).solve().x)
+                moved = self._ratios(self._solved(self._tangent(ratios, width)).x)
             except NoSolutionError:
                 return
             if self._hold(moved):
@@ -222,7 +230,7 @@ class _Search:
         for square, ratio in zip(self.squares, ratios, strict=True):
             square.keep_at(program, ratio)
         try:
-            solved = program.solve()
+            solved = self._solved(program)
         except NoSolutionError:
             return False
         if self.best is not None and solved.value >= self.best.value:

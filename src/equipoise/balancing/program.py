@@ -8,7 +8,7 @@ tell the price of every constant: the value falls by z for a unit more of it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import field, replace
 from functools import cached_property
 from typing import Any, ClassVar, Literal
@@ -139,12 +139,17 @@ class ConeRows:
 
 @dataclass(frozen=True, eq=False)
 class ProgramSolution:
-    """Solution: x (n,), its value, a lower bound of it, and the price of each named limit."""
+    """Solution: x (n,), its value, a lower bound of it, and the price of each named limit.
+
+    cuts : blocks that cut off earlier solutions which were not possible, a tuple a round; they hold
+        for all programs whose cutters and waiting blocks are the same.
+    """
 
     x: Array
     value: float
     bound: float
     prices: dict[str, float]
+    cuts: tuple[tuple[ConeRows, ...], ...] = ()
 
 
 @dataclass
@@ -154,7 +159,6 @@ class Program:
     waiting : blocks whose rows are taken in only where a solution breaks them.
     cutters : each tells blocks that cut off a solution which is not possible.
     tolerances : asked of the solver in turn, until it comes so near.
-    parent : of which this is a copy; what cuts off impossible solutions here does so there too.
     """
 
     count: int = 0
@@ -162,7 +166,6 @@ class Program:
     cost: dict[int, float] = field(default_factory=dict)
     waiting: list[ConeRows] = field(default_factory=list)
     cutters: list[Cutter] = field(default_factory=list)
-    parent: Program | None = None
     tolerances: tuple[float, ...] = TOLERANCES
 
     def numbers(self, count: int) -> Array:
@@ -200,7 +203,6 @@ class Program:
             cost=dict(self.cost),
             waiting=list(self.waiting),
             cutters=list(self.cutters),
-            parent=self,
         )
 
     def without(self, names: set[str]) -> Program:
@@ -209,7 +211,7 @@ class Program:
             [block for block in blocks if block.name not in names]
             for blocks in (self.blocks, self.waiting)
         )
-        return replace(self, blocks=kept, waiting=waiting, cost=dict(self.cost), parent=None)
+        return replace(self, blocks=kept, waiting=waiting, cost=dict(self.cost))
 
     def without_squares(self, lifts: set[int]) -> Program:
         """A copy in which some lifts are not kept above their squares."""
@@ -223,27 +225,31 @@ class Program:
         return list(dict.fromkeys(block.name for block in self.blocks if block.name))
 
     def solve(self) -> ProgramSolution:
-        """Solve; raises `NoSolutionError` where there is none."""
-        program_solution = self._solve()
+        """Solve; raises `NoSolutionError` where there is none.  The program stays as it is."""
+        program, rounds = self.copy(), []
+        solution = program._solve()
         for _ in range(MOST_ROUNDS):
-            cuts = [*self._broken(program_solution.x)]
-            cuts += [block for cutter in self.cutters for block in cutter(program_solution.x)]
+            cuts = [*self._broken(solution.x)]
+            cuts += [block for cutter in self.cutters for block in cutter(solution.x)]
             if not cuts:
                 break
-            self._cut(cuts)
+            rounds.append(tuple(cuts))
+            program.add_cuts(rounds[-1:])
             try:
-                again = self._solve()  # of less freedom, so that the bound before still holds
+                again = program._solve()  # of less freedom, so that the bound before still holds
             except StalledError:  # constraints that hardly differ; what is broken is little
                 break
-            program_solution = replace(again, bound=max(program_solution.bound, again.bound))
-        return program_solution
+            solution = replace(again, bound=max(solution.bound, again.bound))
+        return replace(solution, cuts=tuple(rounds))
 
-    def _cut(self, cuts: list[ConeRows]) -> None:
-        """Add blocks; those that belong to a place take the place of the last of the same name."""
-        local = {block.local for block in cuts if block.local}
-        self.blocks = [block for block in self.blocks if block.local not in local] + cuts
-        if self.parent is not None:
-            self.parent._cut(cuts)
+    def add_cuts(self, rounds: Iterable[tuple[ConeRows, ...]]) -> None:
+        """Add cuts of a solution, so that the next one need not find them again; those that belong
+        to a place take the place of the last of the same name.
+        """
+        for cuts in rounds:
+            local = {block.local for block in cuts if block.local}
+            self.blocks = [block for block in self.blocks if block.local not in local]
+            self.blocks += cuts
 
     def _broken(self, x: Array) -> Iterator[ConeRows]:
         """Rows of the waiting blocks that a solution breaks most, each among its neighbours."""

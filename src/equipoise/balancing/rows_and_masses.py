@@ -311,6 +311,7 @@ class JointPhaseMassOptimizer:
             asked = program.copy()
             asked.cost = dict(zip(wanted, direction.tolist(), strict=True))
             result = asked.solve()
+            program.add_cuts(result.cuts)
             return result.bound - ROUNDING * (1 + abs(result.bound))
 
         ends = np.eye(len(used))

@@ -12,7 +12,7 @@ from equipoise.codegen.terms import VectorTerm, angle_of, rotation
 from equipoise.codegen.trace import FAR, Array, Trace
 from equipoise.codegen.tracks import TracedCurve
 from equipoise.dataclass import dataclass
-from equipoise.keys import Frozen, with_fields
+from equipoise.keys import MEMORY, Frozen, with_fields
 from equipoise.mechanism.assembly.joints import coupling_pins
 from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.assembly.steps import along, planar, u
@@ -158,7 +158,7 @@ def traced_element(trace: Trace, table: str, number: int) -> tuple[Element, Trac
         if isinstance(value, Frozen):
             still = value.still if isinstance(value, Element) else ()
             traceds = {key: traced(var, *steps, key) for key, var in vars(value).items()
-                    if key not in still}  # fmt: skip
+                    if key not in still and key != MEMORY}  # fmt: skip
             return with_fields(value, **traceds)
         if isinstance(value, tuple):
             return tuple(traced(item, *steps, k) for k, item in enumerate(value))

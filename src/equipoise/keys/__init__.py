@@ -19,6 +19,7 @@ from equipoise.keys.conditions import lacks as lacks
 from equipoise.keys.conditions import needs as needs
 from equipoise.keys.conditions import not_both as not_both
 from equipoise.keys.conditions import told_by as told_by
+from equipoise.keys.declaring import MEMORY as MEMORY
 from equipoise.keys.declaring import REQUIRED as REQUIRED
 from equipoise.keys.declaring import ROW as ROW
 from equipoise.keys.declaring import SCHEMA_VERSION as SCHEMA_VERSION

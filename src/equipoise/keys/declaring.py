@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import field, fields, replace
-from functools import cache
+from functools import cache, cached_property
 from types import MappingProxyType
 from typing import Any, ClassVar, Self, TypeVar, dataclass_transform
 
@@ -35,6 +35,8 @@ XYZ = ("x", "y", "z")
 REQUIRED = object()
 """Default of a key that has to be given."""
 _KEY = "equipoise key"
+MEMORY = "memory"
+"""Of `Frozen`, which copies do not share."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,6 +150,7 @@ class Frozen(TableRecord):
     text that a file has, such as ``"300 rpm"``.
 
     beside : keys of the file that are no fields, by name; `from_table` and `to_table` translate.
+    handed_on : names in `memory` that hold for copies with other numbers too.
     file_order : names of keys in the order of the file, where it is not that of the fields.
     conditions : what the JSON Schema says of keys that go together.
     called : what a number of such an object is called, around the word of its key in ``{what}``,
@@ -155,6 +158,7 @@ class Frozen(TableRecord):
     """
 
     beside: ClassVar[Keys] = {}
+    handed_on: ClassVar[frozenset[str]] = frozenset()
     file_order: ClassVar[tuple[str, ...]] = ()
     conditions: ClassVar[Conditions] = {}
     called: ClassVar[str] = ""
@@ -202,8 +206,14 @@ class Frozen(TableRecord):
         """Changes of fields, with what they do to other fields that follow from them."""
         return changes
 
-    def follow(self) -> None:
-        """Set what follows from other fields, of which columns may be some; nothing is checked."""
+    def dependent_fields(self) -> dict[str, Any]:
+        """Fields that follow from others, of which columns may be some; nothing is checked."""
+        return {}
+
+    @cached_property
+    def memory(self) -> dict[str, Any]:
+        """What was computed of the value elsewhere and takes time, by name; no part of it."""
+        return {}
 
     def altered(self, **changes: Any) -> Self:
         """The same with other fields, and with what follows from them."""
@@ -213,12 +223,13 @@ class Frozen(TableRecord):
         return {
             key: dict(value) if isinstance(value, MappingProxyType) else value
             for key, value in self.__dict__.items()
-            if not key.startswith("_")
+            if not key.startswith("_") and key != MEMORY
         }
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         for key, value in state.items():
-            self.__dict__[key] = MappingProxyType(value) if isinstance(value, dict) else value
+            held = MappingProxyType(value) if isinstance(value, dict) else value
+            object.__setattr__(self, key, held)
 
 
 ROW = Listing(Number())
@@ -340,8 +351,16 @@ def _coordinate(step: str) -> int:
 def with_fields(value: Given, **changes: Any) -> Given:
     """A frozen value with fields changed, unchecked; what was kept with it is left behind."""
     result = object.__new__(type(value))
-    kept = {key: item for key, item in vars(value).items() if not key.startswith("_")}
-    result.__dict__.update(kept, **changes)
-    if isinstance(result, Frozen):
-        result.follow()
+    kept = {k: v for k, v in vars(value).items() if not k.startswith("_") and k != MEMORY}
+    _set(result, kept | changes)
+    if isinstance(value, Frozen) and isinstance(result, Frozen):
+        _set(result, result.dependent_fields())
+        if shared := value.handed_on & vars(value).get(MEMORY, {}).keys():
+            result.memory.update((name, value.memory[name]) for name in shared)
     return result
+
+
+def _set(new: Any, values: Mapping[str, Any]) -> None:
+    """Give a new frozen value its fields."""
+    for name, value in values.items():
+        object.__setattr__(new, name, value)

@@ -8,7 +8,7 @@ from typing import Any
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note
-from equipoise.keys.declaring import Frozen, Key, declarations, once
+from equipoise.keys.declaring import MEMORY, Frozen, Key, declarations, once
 from equipoise.keys.kinds import PLANES, KeyTable, OneOr, Planes, choice, innermost
 from equipoise.quantities import HUGE, TINY, Measured
 
@@ -102,9 +102,9 @@ def _is_usual(value: float, of: Key | None) -> bool:
 def _parts_are_sound(value: Any, finished: bool) -> bool:
     """Whether an object's fields are; one that is finished is looked at once, whoever has it."""
     kept = vars(value)
-    if "_sound" in kept:
-        return bool(kept["_sound"])
+    if "sound" in kept.get(MEMORY, {}):
+        return bool(value.memory["sound"])
     sound = all(_is_sound(kept[name], item, names) for name, item, names in _limits(type(value)))
     if finished:
-        kept["_sound"] = sound
+        value.memory["sound"] = sound
     return sound

@@ -46,6 +46,34 @@ def test_linear_program() -> None:
     assert found.prices == pytest.approx({"first": 0.0, "second": 1.5, "third": 1.0}, abs=1e-7)
 
 
+def test_a_solution_tells_its_cuts_and_leaves_the_program_as_it_is() -> None:
+    """Least -x - y in the unit circle, of which the program knows no more than tangents: each round
+    adds that where the ray through the last solution leaves the circle.
+    """
+    program = Program()
+    x, y = map(int, program.numbers(2))
+    program.nonnegative(Affine.of([x, y], [[-1.0, 0.0], [0.0, -1.0]], 1.0))
+    program.cost = {x: -1.0, y: -1.0}
+
+    def tangent(at: np.ndarray) -> list[ConeRows]:
+        size = float(np.hypot(*at))
+        if size <= 1 + CLOSE:
+            return []
+        return [ConeRows("nonnegative", row([x, y], (-at / size).tolist(), 1.0))]
+
+    program.cutters.append(tangent)
+    copy, own = program.copy(), len(program.blocks)
+    solution = copy.solve()
+    assert solution.value == pytest.approx(-np.sqrt(2), abs=1e-7)
+    assert len(copy.blocks) == len(program.blocks) == own
+    assert [len(cuts) for cuts in solution.cuts] == [1]
+    program.add_cuts(solution.cuts)
+    assert len(program.blocks) == own + 1
+    again = program.solve()
+    assert again.cuts == ()
+    assert again.value == pytest.approx(solution.value, abs=CLOSE)
+
+
 def test_limits_can_be_left_out() -> None:
     """Without 3 x + 2 y <= 18 the other two are met with equality."""
     program = factory()
@@ -194,18 +222,21 @@ def test_rows_that_are_taken_in_one_by_one() -> None:
     assert found.x == pytest.approx(whole.x, abs=1e-5)
     assert found.bound <= whole.value + 1e-9
     assert found.prices["radius"] == pytest.approx(np.sqrt(5), rel=1e-5)
-    assert sum(block.groups for block in program.blocks) < 400
+    taken_in = (*program.blocks, *(block for cuts in found.cuts for block in cuts))
+    assert sum(block.groups for block in taken_in) < 400
     assert program.waiting[0].slack(found.x).min() > -1e-8
     assert program.without({"radius"}).waiting == []
 
 
-def test_what_is_taken_in_serves_the_parent_too() -> None:
+def test_what_is_taken_in_serves_other_programs_that_are_given_it() -> None:
     program = round_about(True)
     start = len(program.blocks)
-    copy = program.copy()
-    copy.solve()
-    assert len(program.blocks) > start
-    assert len(program.blocks) == len(copy.blocks)
+    solution = program.copy().solve()
+    assert len(program.blocks) == start
+    assert solution.cuts
+    program.add_cuts(solution.cuts)
+    assert len(program.blocks) == start + sum(map(len, solution.cuts))
+    assert program.solve().cuts == ()
 
 
 def test_lifts_let_go_of_their_squares() -> None:

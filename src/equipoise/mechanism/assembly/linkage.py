@@ -16,16 +16,15 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from copy import copy
 from dataclasses import field, replace
-from functools import cached_property, partial
+from functools import partial
 from typing import Any
 
 import numpy as np
 
-from equipoise.dataclass import dataclass
+from equipoise.dataclass import dataclass, remembered
 from equipoise.displays import Brief
 from equipoise.errors import ChangePointError, ModelError, RangeError
 from equipoise.i18n import Note, series
-from equipoise.keys import with_fields
 from equipoise.keys.kinds import choice
 from equipoise.mechanism.assembly import sides
 from equipoise.mechanism.assembly.builder import Builder, Group
@@ -49,7 +48,7 @@ from equipoise.mechanism.assembly.steps import (
 )
 from equipoise.mechanism.assembly.stuck import with_cures
 from equipoise.mechanism.checks import MODE, MODES, meant
-from equipoise.mechanism.parts.machine import FRAME, Machine
+from equipoise.mechanism.parts.machine import FRAME, LINKAGE, Machine
 
 NO_PARALLELS = Note(
     "no two links of this linkage close a four-bar of equal opposite sides with known ones, so "
@@ -84,22 +83,22 @@ class Linkage(Brief):
     shared: RedundantReactions | None = None
     memory: dict[str, Any] = field(default_factory=dict, init=False, repr=False, compare=False)
 
-    @cached_property
+    @remembered
     def grounded(self) -> tuple[str, ...]:
         """Driven links that turn about points of the frame."""
         hung = {link for group in self.groups if group.kind == "hung" for link in group.links}
         return tuple(item.link for item in self.machine.driven if item.link not in hung)
 
-    @cached_property
+    @remembered
     def motion(self) -> tuple[Step, ...]:
         """Steps from the drive's rotation to that of every link."""
         return tuple(step for group in self.groups for step in group.motion)
 
-    @cached_property
+    @remembered
     def needed_references(self) -> list[str]:
         return needed_references(self.motion)
 
-    @cached_property
+    @remembered
     def forces(self) -> tuple[Step, ...]:
         """Steps from what each link needs to every joint force; the drive link comes last."""
         if self.shared is not None:
@@ -107,12 +106,12 @@ class Linkage(Brief):
             return (*(step for group in decided for step in group.forces), self.shared)
         return tuple(step for group in reversed(self.groups) for step in group.forces)
 
-    @cached_property
+    @remembered
     def forces_on_flanks(self) -> tuple[Step, ...]:
         """The same without the steps that tell which flanks, or strands, are loaded."""
         return tuple(step for step in self.forces if not tells_flanks(step))
 
-    @cached_property
+    @remembered
     def reactions(self) -> tuple[Reaction, ...]:
         """Every joint, the pins of the drives first."""
         if self.shared is not None:
@@ -124,7 +123,7 @@ class Linkage(Brief):
         drives = (pin_reaction(self.anchors[link], link, FRAME) for link in self.grounded)
         return (*drives, *(reaction for group in self.groups for reaction in group.reactions))
 
-    @cached_property
+    @remembered
     def named_reactions(self) -> tuple[tuple[str, Reaction], ...]:
         """Joints by their names in outputs."""
         return tuple(
@@ -133,12 +132,12 @@ class Linkage(Brief):
             if not self.joints.hides(reaction.name, reaction.on, reaction.by)
         )
 
-    @cached_property
+    @remembered
     def pin_radii(self) -> Mapping[str, float]:
         """Radii of pins that the file gives, by point, m."""
         return pin_radii(self.joints, self.machine.joints)
 
-    @cached_property
+    @remembered
     def cycle(self) -> Cycle:
         """The closed motion.
 
@@ -164,7 +163,6 @@ class Linkage(Brief):
     def of(self, machine: Machine) -> Linkage:
         """The same linkage for a machine that differs in nothing but masses, speed or gravity."""
         same = replace(self, machine=machine)
-        same.__dict__.update({k: v for k, v in self.__dict__.items() if k not in same.__dict__})
         same.memory.update(self.memory)
         return same
 
@@ -192,7 +190,7 @@ def assemble(machine: Machine, near: Cycle | None = None) -> Linkage:
     ModelError : an assembly side is missing or idle, two pins coincide, a property is given of
         what is no such joint.
     """
-    linkage = machine.__dict__.get("_linkage")
+    linkage: Linkage | None = machine.memory.get(LINKAGE)
     if linkage is None:
         linkage = replace(ordered(machine, structure(machine)), near=near)
         names = [name for name, _ in linkage.named_reactions]
@@ -214,7 +212,7 @@ def assemble(machine: Machine, near: Cycle | None = None) -> Linkage:
                 raise ModelError(f"{where}.radius", wrong)
             if decided and item.stiffness is not None:
                 raise ModelError(f"{where}.stiffness", DECIDED)
-        machine.__dict__["_linkage"] = linkage
+        machine.memory[LINKAGE] = linkage
     return linkage
 
 
@@ -307,7 +305,7 @@ def sides_at_position(machine: Machine, turning: Any = None) -> dict[str, str]:
     """
     bare = replace(machine, assembly={})
     if turning is not None:
-        bare = with_fields(bare, turning=turning)
+        bare = bare.with_turning(turning)
     joints = structure(bare)
     choices = _grouped(bare, joints).choices
     return {choice.group.joint: choice.words[choice.side] for choice in choices}

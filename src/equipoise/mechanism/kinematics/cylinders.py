@@ -19,7 +19,6 @@ import numpy as np
 from equipoise.dataclass import dataclass
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, all_of
-from equipoise.keys import with_fields
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.assembly.reach import reach
 from equipoise.mechanism.assembly.steps import Array
@@ -223,7 +222,7 @@ def _turned(machine: Machine, shift: float) -> Machine:
     position = machine.position and replace(machine.position, crank_angle=0.0)
     bare = replace(machine, drive=drive, position=position, loads=(), planting=None, balance=None,
                    support=None, rows=())  # fmt: skip
-    return with_fields(bare, turning=CrankOffset(drive.link, shift))
+    return bare.with_turning(CrankOffset(drive.link, shift))
 
 
 def _lengths(bare: Followed, theta: Array, drive: Drive) -> Levels:

@@ -18,7 +18,6 @@ import numpy as np
 from equipoise.dataclass import dataclass
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, all_of
-from equipoise.keys import with_fields
 from equipoise.mechanism.assembly.linkage import Linkage, assemble
 from equipoise.mechanism.assembly.steps import Array, run, u
 from equipoise.mechanism.kinematics.motion import Motion
@@ -175,7 +174,7 @@ def commanded(machine: Machine) -> FollowedLinks:
     pushers = machine.pushers
     start = {pusher.link: pusher.start or 0.0 for pusher in pushers}
     bare = replace(machine, loads=(), planting=None, balance=None, support=None, rows=())
-    bare = with_fields(bare, turning=RestingLinks(start))
+    bare = bare.with_turning(RestingLinks(start))
     linkage = assemble(bare)
     moved = {end for coupling in machine.couplings for end in (coupling.driver, coupling.carrier)}
     if linkage.needed_references or moved & start.keys():

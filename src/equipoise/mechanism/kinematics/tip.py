@@ -320,7 +320,7 @@ def surface_of(machine: Machine) -> float:
     planting = planting_of(machine)
     if planting.surface is not None:
         return planting.surface
-    kept = machine.__dict__.get("_surface")
-    if kept is None:
-        kept = machine.__dict__["_surface"] = float(TipCurve([machine]).surface[0])
-    return kept
+    if "surface" not in machine.memory:
+        machine.memory["surface"] = float(TipCurve([machine]).surface[0])
+    surface: float = machine.memory["surface"]
+    return surface

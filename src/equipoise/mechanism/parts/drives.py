@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from functools import cached_property
 from math import copysign
 from typing import Any, ClassVar, Literal
 
+from equipoise.dataclass import remembered
 from equipoise.i18n import Note, to_say
 from equipoise.keys import (
     NO_INERTIA,
@@ -231,13 +231,19 @@ class FurtherDrive(Pushing, Frozen):
         return 1 if exact is None else exact.denominator
 
 
+TURNING = "turning"
+"""In the memory of a machine."""
+
+
 class Driven:
     """What is driven of a machine."""
 
     drive: Drive
     drives: tuple[FurtherDrive, ...]
 
-    @cached_property
+    memory: dict[str, Any]
+
+    @remembered
     def turning(self) -> Any:
         """What tells the angles of links that are pushed; None where none is."""
         return commanded.finders[0](self) if self.pushers else None

@@ -172,12 +172,12 @@ class Link(Frozen):
             values |= dict.fromkeys(MASS_FIELDS)
         return values
 
-    def follow(self) -> None:
-        """Set places and masses anew, of which columns may be some; nothing is checked."""
+    def dependent_fields(self) -> dict[str, Any]:
+        """Points that follow from lengths, and masses that follow from bodies."""
+        points, values = self.points, {}
         if self.length is not None or self.sides:
-            self.__dict__["points"] = placed(tuple(self.points), self.length, self.sides)
-        if self.bodies:
-            self.__dict__.update(weighed(self.bodies, self.points))
+            values["points"] = points = placed(tuple(points), self.length, self.sides)
+        return values | weighed(self.bodies, points) if self.bodies else values
 
     def with_added(
         self, mass: float, place: Vector, inertia: float = 0.0, plane: float | None = None

@@ -31,6 +31,7 @@ from equipoise.keys import (
     declared,
     inside,
     key,
+    with_fields,
 )
 from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.checks import (
@@ -49,6 +50,7 @@ from equipoise.mechanism.parts.couplings import Coupling, coupling_kinds
 from equipoise.mechanism.parts.curved_slots import CurvedSlot
 from equipoise.mechanism.parts.dampers import Damper
 from equipoise.mechanism.parts.drives import (
+    TURNING,
     Drive,
     Driven,
     FurtherDrive,
@@ -118,6 +120,8 @@ BESIDE = ("bodies", "plane", "planes")
 """Keys of a link that change nothing about the motion, beside its mass."""
 STILL = {"planting", "support", "rows", "bearings", "run", "duty"}
 """Keys, beside those of force elements, under which no number changes the motion."""
+LINKAGE = "linkage"
+"""In the memory of a machine: itself in the order in which it is computed."""
 STANDARD_GRAVITY: Vector = (0.0, -9.80665)
 
 
@@ -126,6 +130,7 @@ class Machine(Driven, Displayed, Frozen):
     """A planar linkage with its drive, loads, springs and gravity."""
 
     beside: ClassVar[Keys] = {"schema": VERSION}
+    handed_on = frozenset({TURNING})
     file_order = ("schema", "title", "description", "units", "parameters", "gravity", "drive",
                   "drives", "frame", "links", "constraints", "bearings", "assembly", "sliders",
                   "circular_slots", "curved_slots", "gears", "belts", "racks", "cams", "loads",
@@ -488,16 +493,21 @@ class Machine(Driven, Displayed, Frozen):
 
     def _same_motion(self, changed: Machine, same: bool = True) -> Machine:
         """Hand on how the linkage is solved, where neither lengths nor joints have changed."""
-        if same and "_linkage" in self.__dict__:
-            changed.__dict__["_linkage"] = self.__dict__["_linkage"].of(changed)
-            if "turning" in self.__dict__:
-                changed.__dict__["turning"] = self.__dict__["turning"]
+        if same and LINKAGE in self.memory:
+            changed.memory[LINKAGE] = self.memory[LINKAGE].of(changed)
+            if TURNING in self.memory:
+                changed.memory[TURNING] = self.memory[TURNING]
         return changed
+
+    def with_turning(self, turning: Any) -> Machine:
+        """Return the machine whose pushed links have their angles from elsewhere; see `turning`."""
+        machine = with_fields(self)
+        machine.memory[TURNING] = turning
+        return machine
 
     def forget(self) -> None:
         """Let go of what was computed of it and is kept, such as its motion."""
-        for name in self.__dict__.keys() - self.__dataclass_fields__.keys():
-            self.__dict__.pop(name, None)
+        self.memory.clear()
 
     def points_of(self, body: str) -> Mapping[str, Vector]:
         """Points of a link, or of the frame."""
