@@ -7,6 +7,7 @@ nothing, and fails if the file is out of date.
 from __future__ import annotations
 
 import inspect
+import json
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -26,8 +27,15 @@ from typing import (
 TARGET = Path(__file__).resolve().parent / "src" / "messages.ts"
 HEAD = """\
 /** Written by page/messages.py from src/equipoise/web/protocol.py; do not edit. */
+
+/** A value as it stands in a model file. */
+export type Plain = string | number | boolean | Plain[] | { [key: string]: Plain };
+export type Values = Record<string, Plain>;
 """
-PLAIN = {str: "string", bool: "boolean", int: "number", float: "number", NoneType: "null"}
+PLAIN: dict[Any, str] = {
+    str: "string", bool: "boolean", int: "number", float: "number", NoneType: "null",
+    Any: "Plain",
+}  # fmt: skip
 COMPOSED: dict[Any, Callable[[list[str]], str]] = {
     Union: " | ".join,
     UnionType: " | ".join,
@@ -53,13 +61,20 @@ def fields(of: type) -> Iterator[tuple[str, Any, str, bool]]:
         yield name, hint, comment, required
 
 
-def typescript(hint: Any) -> str:
+def typescript(hint: Any, named: bool = True) -> str:
     """Return a type in TypeScript.
+
+    named : whether it may be one of `protocol.ALIASES`, by its name.
 
     Raises
     ------
     TypeError : JSON has no such type, or it is not known here.
     """
+    from equipoise.web.protocol import ALIASES
+
+    for name, alias in ALIASES.items() if named else ():
+        if hint == alias:
+            return name
     if hint in PLAIN:
         return PLAIN[hint]
     if is_typeddict(hint):
@@ -68,7 +83,7 @@ def typescript(hint: Any) -> str:
     if origin is Annotated:
         return typescript(get_args(hint)[0])
     if origin is Literal:
-        return " | ".join(f'"{value}"' for value in get_args(hint))
+        return " | ".join(json.dumps(value) for value in get_args(hint))
     if origin not in COMPOSED:
         raise TypeError(f"{hint} has no type in TypeScript")
     return COMPOSED[origin]([typescript(item) for item in get_args(hint)])
@@ -77,9 +92,11 @@ def typescript(hint: Any) -> str:
 def classes(of: tuple[Any, ...]) -> list[type]:
     """Return the TypedDicts that types refer to, each before those that refer to it."""
     known: dict[type, None] = {}
+    begun: set[type] = set()
 
     def visit(hint: Any) -> None:
-        if is_typeddict(hint):
+        if is_typeddict(hint) and hint not in begun:
+            begun.add(hint)
             for _, inner, _, _ in fields(hint):
                 visit(inner)
             known.setdefault(hint)
@@ -93,20 +110,25 @@ def classes(of: tuple[Any, ...]) -> list[type]:
 
 def interface(of: type) -> str:
     """Return a TypedDict as an interface."""
+    from equipoise.web.protocol import OPEN
+
     lines = [f"/** {' '.join((inspect.getdoc(of) or '').split())} */"]
     lines.append(f"export interface {typescript(of)} {{")
     for name, hint, comment, required in fields(of):
         if comment:
             lines.append(f"  /** {comment} */")
         lines.append(f"  {name}{'' if required else '?'}: {typescript(hint)};")
+    if of in OPEN:
+        lines.append("  [key: string]: unknown;")
     return "\n".join([*lines, "}", ""])
 
 
 def written() -> str:
     """Return the text of ``messages.ts``."""
-    from equipoise.web.protocol import MESSAGES
+    from equipoise.web.protocol import ALIASES, MESSAGES
 
-    return "\n".join([HEAD, *(interface(item) for item in classes(MESSAGES))])
+    names = (f"export type {name} = {typescript(of, False)};\n" for name, of in ALIASES.items())
+    return "\n".join([HEAD, *(interface(item) for item in classes(MESSAGES)), *names])
 
 
 def main() -> None:

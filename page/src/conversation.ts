@@ -45,6 +45,9 @@ interface Question {
   got?: ((told: HandedOut, bytes: DataView | undefined) => void) | undefined;
 }
 
+/** Number of no question: they begin with 1. */
+const NONE = 0;
+
 /** What takes long: other questions do not wait for it. */
 const SLOW = new Set(["balance", "download", "gallery"]);
 
@@ -189,8 +192,8 @@ export class Conversation {
       case "side":
         return this.events.side(told);
       case "refused":
-        if (!this.repeated(told.seq)) this.refuse(told);
-        return this.end(told.seq, told.message, told);
+        if (!this.repeated(told.seq ?? NONE)) this.refuse(told);
+        return this.end(told.seq ?? NONE, told.message, told);
       case "tables":
         this.events.tables(told);
         return this.end(told.seq, null);
@@ -217,7 +220,8 @@ export class Conversation {
   }
 
   private refuse(told: Refused): void {
-    const { seq, message } = told;
+    const { message } = told;
+    const seq = told.seq ?? NONE;
     const asked = this.flight?.seq === seq ? this.flight.asked : null;
     if (asked && ASIDE.has(asked.type) && this.flight?.answered) return;
     if (asked?.type !== "edit") return this.events.refused(message, null, told);

@@ -148,7 +148,7 @@ const flag: Maker = (_, name) => {
 /** The name of a link, a body or a point. */
 const called: Maker = ({ of, on }, name, around, hint) => {
   const element = h("select", { "aria-label": name });
-  const refresh = () => offer(element, namesOf(of, on, around), hint ? `(${hint})` : "");
+  const refresh = () => offer(element, namesOf(of, on ?? undefined, around), hint ? `(${hint})` : "");
   refresh();
   const put = (value: Plain | undefined) => {
     if (value !== undefined && ![...element.options].some((one) => one.value === value))

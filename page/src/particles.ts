@@ -1,15 +1,6 @@
 /** Korean particles by the word before them: the rules come with the language. */
 
-export interface Particles {
-  /** Both forms, as they stand in texts -> after a final consonant, after ㄹ, after a vowel. */
-  forms: Record<string, [string, string, string]>;
-  /** What a word ends in, in NFD, and which of the three that is; the first that matches counts. */
-  endings: [pattern: string, sound: number][];
-  /** Signs that may stand between a word and its particle. */
-  closing: string;
-  /** How many signs before a particle are looked at. */
-  reach: number;
-}
+import type { Particles } from "./messages";
 
 /** The function that gives every particle of a text one form. */
 export function particles({ forms, endings, closing, reach }: Particles): (text: string) => string {

@@ -47,7 +47,7 @@ export class Played implements Wire {
       const message = say(
         "this file plays what was computed; to change the machine, open its model in Equipoise",
       );
-      this.say({ type: "refused", seq, message }, []);
+      this.say({ type: "refused", seq, message, what: message }, []);
     }
   }
 

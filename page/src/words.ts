@@ -7,11 +7,12 @@ import type { Forms, Spoken, Told, Wire, Wording } from "./protocol";
 /** Where a reader's choice of a language is kept. */
 const KEPT = "equipoise language";
 
-let told: Omit<Spoken, "type"> = {
+let told: Omit<Spoken, "type" | "seq"> = {
   language: "en",
   languages: { en: "English" },
   words: {},
   explained: {},
+  particles: null,
   decimal: ".",
   forms: {},
 };

@@ -1,16 +1,19 @@
-"""Types of the messages that a page is sent of a machine: `page/src/messages.ts` is written from
-them by ``python page/messages.py``.
+"""Types of the messages between a page and its server, in both directions: `page/src/messages.ts`
+is written from them by ``python page/messages.py``.
 
 A class is a JSON object, its fields are the keys.  The text of an `Annotated` field becomes the
-comment in TypeScript; the class ``NameValues`` becomes the interface ``Name``.  Lengths in m,
-angles in rad, all else in SI.
+comment in TypeScript; the class ``NameValues`` becomes the interface ``Name``, and what stands in
+`ALIASES` a name of a type.  `Any` is any value of JSON.  Lengths in m, angles in rad, all else in
+SI.
 """
 
 from __future__ import annotations
 
 from typing import Annotated, Literal, NotRequired, TypedDict
 
-Pair = tuple[float, float]
+from equipoise.web.requests import Asked, Edit, FileKind, MadeValues, MakeRequest
+from equipoise.web.table_types import Pair, TablesValues
+
 Arrays = dict[str, tuple[int, int]]
 """Name of an array -> its offset and length in the block of floats."""
 Shape = Annotated[
@@ -266,6 +269,14 @@ class StateMessage(TypedDict):
     beside: NotRequired[Annotated[bool, "Whether links lie in different planes."]]
 
 
+# -- what else a page is sent ----------------------------------------------------------------------
+
+Shapes = Annotated[
+    list[float], "Real and imaginary parts along the shaft or support, as large as they are drawn."
+]
+Answer = Annotated[int | None, "Number of the question that it answers; null for what comes later."]
+
+
 class ExampleValues(TypedDict):
     """A bundled model."""
 
@@ -273,5 +284,375 @@ class ExampleValues(TypedDict):
     title: str
 
 
-MESSAGES = (StateMessage, ExampleValues)
-"""Classes that are written to TypeScript, with all that they refer to."""
+class NumberRulesValues(TypedDict):
+    """How numbers are written everywhere in the product."""
+
+    least: Annotated[float, "Sizes between which there is no power of ten."]
+    most: float
+    units: Annotated[list[str], "What may follow a number in a sentence; longer ones first."]
+    lengths: Annotated[dict[str, float], "m in each unit in which a length may be typed."]
+
+
+class HelloValues(TypedDict):
+    """The first message of a server."""
+
+    type: Literal["hello"]
+    version: str
+    examples: list[ExampleValues]
+    tools: list[ExampleValues]
+    study: NotRequired[Annotated[str | None, "Name of the store that is open."]]
+    largest: Annotated[int, "Most bytes of a model file."]
+    machine: Annotated[bool, "Whether the server holds a machine already."]
+    base: Annotated[
+        str, "Sign of the file that it can save, else name of what is open; empty where nothing is."
+    ]
+    numbers: NumberRulesValues
+
+
+class ParticlesValues(TypedDict):
+    """Korean particles by the word before them."""
+
+    forms: Annotated[
+        dict[str, tuple[str, str, str]],
+        "Both forms, as they stand in texts -> after a consonant, after rieul, after a vowel.",
+    ]
+    endings: Annotated[
+        list[tuple[str, int]],
+        "What a word ends in, in NFD, and which of the three that is; the first match counts.",
+    ]
+    closing: Annotated[str, "Signs that may stand between a word and its particle."]
+    reach: Annotated[int, "How many signs before a particle are looked at."]
+
+
+Forms = dict[str, str]
+"""Category of a count, such as ``one`` -> the text; ``by`` is the placeholder of the count."""
+
+
+class SpokenValues(TypedDict):
+    """The language that is spoken from now on."""
+
+    type: Literal["spoken"]
+    seq: int
+    language: str
+    languages: Annotated[dict[str, str], "Code of each language there is, and its own name."]
+    words: Annotated[dict[str, str], "English text of the page -> text in the language."]
+    explained: Annotated[dict[str, str], "Chart -> what it shows, and what to look for."]
+    particles: ParticlesValues | None
+    decimal: Annotated[str, "The sign before the decimals of a number that is shown."]
+    forms: Annotated[dict[str, Forms], "English text of the page -> its forms by a count."]
+
+
+class PicturedValues(TypedDict):
+    """A bundled machine, with its drawing."""
+
+    type: Literal["pictured"]
+    seq: int
+    name: str
+    title: str
+    line: str
+    kind: Annotated[str, "The part of the gallery that it stands in."]
+    words: Annotated[str, "By which it is found."]
+    at: Annotated[int, "Sample at which it is drawn where it stands still."]
+    scene: SceneValues
+    arrays: Arrays
+
+
+class GalleryValues(TypedDict):
+    """All pictures of the gallery have come."""
+
+    type: Literal["gallery"]
+    seq: int
+
+
+class SupportModeValues(TypedDict):
+    """A natural mode of the support."""
+
+    told: list[str]
+    seen: bool
+    shape: Annotated[
+        list[float],
+        "Real and imaginary parts along x, along y (m) and of the rotation, as large as drawn.",
+    ]
+
+
+class ResponseMessage(TypedDict):
+    """The response of the support over speed."""
+
+    type: Literal["response"]
+    seq: Answer
+    charts: list[ChartDataValues]
+    arrays: Arrays
+    notes: list[str]
+    swing: Annotated[
+        list[str] | None,
+        "What is to be said of the motion at work; its arrays are `support.place` and `.angle`.",
+    ]
+    modes: list[SupportModeValues]
+
+
+class StationOnShaftValues(TypedDict):
+    """A station on the shaft of a tool."""
+
+    name: str
+    place: float
+    told: str
+
+
+class ShaftPieceValues(TypedDict):
+    """Signs about a place of the shaft."""
+
+    layer: Literal["below", "above"]
+    place: float
+    turns: Annotated[bool, "Whether they turn with the shaft."]
+    shapes: list[Shape]
+
+
+class ToolSceneValues(TypedDict):
+    """A tool from the side at rest: lengths in m."""
+
+    tubes: Annotated[list[tuple[float, float, float]], "Start, stop, diameter."]
+    stations: list[StationOnShaftValues]
+    pieces: list[ShaftPieceValues]
+    looks: dict[str, str]
+    box: tuple[float, float, float, float]
+
+
+class ShaftViewValues(TypedDict):
+    """How the shaft may be seen to move."""
+
+    name: str
+    told: list[str]
+    shape: Shapes
+
+
+class ChangeValues(TypedDict):
+    """A figure before and after."""
+
+    name: NotRequired[str]
+    label: str
+    unit: str
+    before: float
+    after: float
+    texts: Annotated[tuple[str, str, str], "Before, after, and the change."]
+    way: Literal["same", "better", "worse"]
+    main: NotRequired[
+        Annotated[
+            bool,
+            "Whether it comes first: of a whole signal on the frame, or the mass that it takes.",
+        ]
+    ]
+
+
+class ToolMessage(TypedDict):
+    """A hand-held tool."""
+
+    type: Literal["tool"]
+    seq: int
+    name: str
+    title: str
+    description: str
+    undo: str | None
+    redo: str | None
+    steps: Annotated[Pair, "How many steps can be undone and redone."]
+    file: ModelFileValues | None
+    length: UnitValues
+    fields: list[FieldValues]
+    scene: ToolSceneValues
+    before: Annotated[ToolSceneValues | None, "As it was opened, where it is another now."]
+    along: Annotated[list[float], "Places along the shaft."]
+    views: list[ShaftViewValues]
+    figures: list[ChangeValues]
+    charts: list[ChartDataValues]
+    arrays: Arrays
+    notes: list[str]
+
+
+class ColumnOfValues(UnitValues):
+    """What varies in a study, or what came of it."""
+
+    name: str
+    label: str
+    kind: Literal["number", "output"]
+    limits: Annotated[tuple[float | None, float | None], "At least and at most, SI units."]
+    make: Literal["smallest", "largest"] | None
+
+
+class RefusedDesignsValues(TypedDict):
+    """Designs of a study that failed for one reason."""
+
+    why: str
+    code: int
+    count: int
+
+
+class StudyMessage(TypedDict):
+    """A store of a study."""
+
+    type: Literal["study"]
+    seq: int
+    name: str
+    title: str
+    columns: list[ColumnOfValues]
+    own: Annotated[list[float] | None, "Of the model itself, column by column, SI units."]
+    size: int
+    drawn: int
+    computed: int
+    kept: int
+    limited: bool
+    refused: list[RefusedDesignsValues]
+    best: list[int]
+    arrays: Arrays
+
+
+class StoresValues(TypedDict):
+    """Stores that can be opened."""
+
+    type: Literal["stores"]
+    seq: int
+    folder: Annotated[str | None, "That they lie in; null where there is no server."]
+    names: list[str]
+
+
+class GhostMessage(TypedDict):
+    """A design that is drawn pale, or none."""
+
+    type: Literal["ghost"]
+    seq: Answer
+    scene: SceneValues | None
+    arrays: Arrays
+
+
+class VariantRowValues(TypedDict):
+    """A figure of every variant."""
+
+    label: str
+    unit: str
+    texts: list[str]
+    best: list[int]
+
+
+class VariantsMessage(TypedDict):
+    """Figures of designs that are kept, by column, and of the one that is."""
+
+    type: Literal["variants"]
+    seq: Answer
+    kept: list[str]
+    against: Annotated[str, "With what figures are compared: a word, or a variant."]
+    rows: list[VariantRowValues]
+
+
+class SideValues(TypedDict):
+    """Links in different planes, drawn from the side."""
+
+    type: Literal["side"]
+    seq: Answer
+    svg: str
+
+
+class ReadingValues(TypedDict):
+    """A figure that comes after the state."""
+
+    name: str
+    label: str
+    unit: str
+    value: Annotated[float | None, "Null if it is not finite."]
+    text: str
+    was: NotRequired[Annotated[str, "Previous value and change; empty if it is the same."]]
+
+
+class PlantedValues(TypedDict):
+    """Figures of a planting finger, of gauges, or of sliders and rockers."""
+
+    type: Literal["planting", "gauges", "strokes"]
+    seq: Answer
+    figures: list[ReadingValues]
+    compared: Annotated[bool, "Whether figures of another design are shown beside them."]
+    notes: list[str]
+
+
+class BalancedValues(TypedDict):
+    """A balanced machine, beside the one that it comes from."""
+
+    type: Literal["balanced"]
+    seq: int
+    changes: list[str]
+    aims: Annotated[list[ChangeValues], "What was to become small."]
+    figures: list[ChangeValues]
+    worse: Annotated[list[str], "What got worse, a sentence for each kind of figure."]
+    gauges_worse: Annotated[
+        bool, "Whether a gauge reads more; then balancing can be asked for that holds them."
+    ]
+    proof: str
+    notes: list[str]
+
+
+class RefusedValues(TypedDict):
+    """Why something cannot be done."""
+
+    type: Literal["refused"]
+    seq: Answer
+    message: str
+    path: NotRequired[Annotated[str, "Key of the model file that is wrong."]]
+    what: Annotated[str, "What is wrong, without its place, and keys by the words of forms."]
+    topic: NotRequired[Annotated[str, "What `equipoise explain` knows about it."]]
+    cure: NotRequired[Annotated[tuple[str, str], "Title and text of its page of errors."]]
+
+
+class HandedOutValues(TypedDict):
+    """A file to be kept."""
+
+    type: Literal["file"]
+    seq: int
+    name: str
+    mime: str
+    files: NotRequired[Annotated[dict[str, str], "Texts of the tables that it names."]]
+
+
+class SavedValues(TypedDict):
+    """The file is saved."""
+
+    type: Literal["saved"]
+    seq: int
+    name: str
+    base: Annotated[str, "Sign of the file as it is now."]
+    text: Annotated[str, "The model that the page's steps began with."]
+
+
+class BusyValues(TypedDict):
+    """Something that takes longer has begun."""
+
+    type: Literal["busy"]
+    seq: int
+    what: str
+
+
+class AnsweredValues(TypedDict):
+    """All answers to a question have come, those too that take longer."""
+
+    type: Literal["told"]
+    seq: int
+
+
+Sent = (
+    HelloValues | SpokenValues | PicturedValues | GalleryValues | StateMessage | ResponseMessage
+    | GhostMessage | ToolMessage | StudyMessage | StoresValues | VariantsMessage | PlantedValues
+    | SideValues | BalancedValues | RefusedValues | TablesValues | SavedValues | BusyValues
+    | HandedOutValues | AnsweredValues
+)  # fmt: skip
+"""All that a server sends."""
+
+ALIASES = {
+    "Pair": Pair,
+    "Arrays": Arrays,
+    "Shape": Shape,
+    "Forms": Forms,
+    "Edit": Edit,
+    "FileKind": FileKind,
+    "Sent": Sent,
+    "Asked": Asked,
+}
+"""Names of types in TypeScript that are no interfaces."""
+OPEN = (MadeValues, MakeRequest)
+"""Classes whose objects have other keys too: those that an operation needs."""
+MESSAGES = (Sent, Asked, MadeValues)
+"""What is written to TypeScript, with all that it refers to."""

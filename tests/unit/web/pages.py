@@ -13,6 +13,7 @@ from equipoise.web.messages import message_of
 from equipoise.web.openings import opened_example
 from equipoise.web.replies import Reply
 from equipoise.web.session import Session
+from unit.web.typed import misfits_of_reply
 
 Array = np.ndarray[Any, Any]
 Content = dict[str, Any]
@@ -58,8 +59,14 @@ def opened(name: str) -> tuple[Session, State]:
 
 
 def ask(session: Session, asked: str, /, **values: Any) -> list[Reply]:
-    """The answers to a message, which goes by way of JSON."""
-    return [*session.receive(message_of(json.loads(json.dumps({"type": asked, **values}))))]
+    """The answers to a message, which goes by way of JSON; each has to hold to its type."""
+    replies = [*session.receive(message_of(json.loads(json.dumps({"type": asked, **values}))))]
+    for reply in replies:
+        content = json.loads(json.dumps(reply.content))
+        if values.get("seq") is None and content.get("seq", 0) is None:
+            content["seq"] = 0  # a page numbers what it asks
+        assert misfits_of_reply(content) == []
+    return replies
 
 
 def edit(session: Session, *edits: Content, commit: bool = True, label: str = "edit") -> State:

@@ -2,78 +2,20 @@
 
 from __future__ import annotations
 
-import importlib.util
 import json
-from collections.abc import Iterator
-from pathlib import Path
-from types import ModuleType, UnionType
-from typing import Annotated, Any, Literal, Union, get_args, get_origin, is_typeddict
+from typing import Any, get_args
 
 import pytest
 
-from equipoise.web.protocol import StateMessage
+from equipoise.web.messages import KINDS
+from equipoise.web.protocol import Asked, StateMessage
 from equipoise.web.session import Session
 from unit.web.pages import ask, opened, state
-
-PAGE = Path(__file__).resolve().parents[3] / "page"
-
-
-@pytest.fixture(scope="module")
-def writer() -> ModuleType:
-    """The script that writes the types."""
-    spec = importlib.util.spec_from_file_location("page_messages", PAGE / "messages.py")
-    assert spec is not None and spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+from unit.web.typed import declared_keys, misfits, misfits_of_reply, sent, writer
 
 
-def misfits(writer: ModuleType, value: Any, hint: Any, place: str = "") -> Iterator[str]:
-    """Places at which a value of JSON is not of a type."""
-    origin, inner = get_origin(hint), get_args(hint)
-    if origin is Annotated:
-        yield from misfits(writer, value, inner[0], place)
-    elif origin in (Union, UnionType):
-        yield from min(([*misfits(writer, value, item, place)] for item in inner), key=len)
-    elif origin is Literal:
-        yield from [] if value in inner else [f"{place}: {value!r}"]
-    elif not isinstance(value, kind_of(hint)) or (isinstance(value, bool) and hint is not bool):
-        yield f"{place}: {value!r}"
-    elif is_typeddict(hint):
-        yield from misfits_of_keys(writer, value, hint, place)
-    elif origin is tuple and len(value) != len(inner):
-        yield f"{place}: not {len(inner)} values"
-    elif origin in (tuple, list):
-        hints = inner if origin is tuple else inner * len(value)
-        for number, (part, item) in enumerate(zip(value, hints, strict=True)):
-            yield from misfits(writer, part, item, f"{place}[{number}]")
-    elif origin is dict:
-        for name, part in value.items():
-            yield from misfits(writer, part, inner[1], f"{place}.{name}")
-
-
-def kind_of(hint: Any) -> Any:
-    """Class of the values that JSON gives for a type."""
-    if is_typeddict(hint):
-        return dict
-    kinds = {tuple: list, float: (int, float)}
-    origin = get_origin(hint) or hint
-    return kinds.get(origin, origin)
-
-
-def misfits_of_keys(writer: ModuleType, value: Any, of: Any, place: str) -> Iterator[str]:
-    """Keys of an object that are missing, not declared, or of another type."""
-    declared = {name: (item, required) for name, item, _, required in writer.fields(of)}
-    yield from (f"{place}.{name}: not declared" for name in value if name not in declared)
-    for name, (item, required) in declared.items():
-        if name in value:
-            yield from misfits(writer, value[name], item, f"{place}.{name}")
-        elif required:
-            yield f"{place}.{name}: missing"
-
-
-def test_types_of_the_page_are_written_from_those_of_python(writer: ModuleType) -> None:
-    assert writer.TARGET.read_text("utf-8") == writer.written(), "run python page/messages.py"
+def test_types_of_the_page_are_written_from_those_of_python() -> None:
+    assert writer().TARGET.read_text("utf-8") == writer().written(), "run python page/messages.py"
 
 
 @pytest.mark.parametrize(
@@ -88,14 +30,14 @@ def test_types_of_the_page_are_written_from_those_of_python(writer: ModuleType) 
         "planetary-planting-arm",
     ],
 )
-def test_states_of_machines_hold_to_their_type(writer: ModuleType, name: str) -> None:
+def test_states_of_machines_hold_to_their_type(name: str) -> None:
     session, _ = opened(name)
     shown = state(ask(session, "outputs", seq=1, names=[])[0])
     content = json.loads(json.dumps(shown.content))
-    assert [*misfits(writer, content, StateMessage)] == []
+    assert [*misfits(content, StateMessage)] == []
 
 
-def test_states_with_all_that_can_be_asked_for_hold_to_their_type(writer: ModuleType) -> None:
+def test_states_with_all_that_can_be_asked_for_hold_to_their_type() -> None:
     session, _ = opened("yamashita-1")
     point = {"type": "move", "move": "B", "to": [0.02, 0.03], "at": 40}
     shown = state(ask(session, "edit", seq=1, commit=True, label="edit", edits=[point])[0])
@@ -103,34 +45,86 @@ def test_states_with_all_that_can_be_asked_for_hold_to_their_type(writer: Module
     shown = state(ask(session, "arrows", seq=2, point="P")[0])
     assert shown.content["arrows"]
     content = json.loads(json.dumps(shown.content))
-    assert [*misfits(writer, content, StateMessage)] == []
+    assert [*misfits(content, StateMessage)] == []
 
 
-def test_the_state_of_an_unfinished_machine_holds_to_its_type(writer: ModuleType) -> None:
+def test_the_state_of_an_unfinished_machine_holds_to_its_type() -> None:
     session = Session()
     (reply, *_) = [
         item for item in ask(session, "open", seq=1, new=True) if item.content["type"] == "state"
     ]
     content = json.loads(json.dumps(reply.content))
     assert content["status"]["finished"] is False
-    assert [*misfits(writer, content, StateMessage)] == []
+    assert [*misfits(content, StateMessage)] == []
 
 
-def test_keys_that_lack_or_are_too_many_are_seen(writer: ModuleType) -> None:
+def test_keys_that_lack_or_are_too_many_are_seen() -> None:
     session, _ = opened("yamashita-1")
     shown = state(ask(session, "outputs", seq=1, names=[])[0])
     content = json.loads(json.dumps(shown.content))
     del content["figures"][0]["label"]
     content["scene"]["signs"][0]["colour"] = "red"
     content["turns"] = "1"
-    assert sorted(misfits(writer, content, StateMessage)) == [
+    assert sorted(misfits(content, StateMessage)) == [
         ".figures[0].label: missing",
         ".scene.signs[0].colour: not declared",
         ".turns: '1'",
     ]
 
 
-def test_a_type_that_json_lacks_is_refused(writer: ModuleType) -> None:
+def test_a_type_that_json_lacks_is_refused() -> None:
     with pytest.raises(TypeError, match="complex"):
-        writer.typescript(complex)
-    assert writer.typescript(list[int | None]) == "(number | null)[]"
+        writer().typescript(complex)
+    assert writer().typescript(list[int | None]) == "(number | null)[]"
+
+
+def test_a_page_can_ask_all_that_a_server_knows_and_nothing_else() -> None:
+    kinds = {kind for item in get_args(Asked) for kind in get_args(declared_keys(item)["type"][0])}
+    assert kinds == set(KINDS)
+
+
+MASS = {"set": "links.crank.mass", "value": 0.2}
+TORQUE_CHART = {"kind": "chart", "chart": "output", "choice": "drive_torque", "format": "svg"}
+
+
+@pytest.mark.parametrize(
+    ("asked", "values", "answers"),
+    [
+        ("speak", {"languages": ["ko"]}, {"spoken"}),
+        ("open", {"example": "quick-return"}, {"state"}),
+        ("open", {"new": True}, {"state"}),
+        ("edit", {"commit": True, "label": "edit", "edits": [MASS]}, {"state"}),
+        ("balance", {}, {"busy", "state", "balanced"}),
+        ("tables", {}, {"tables"}),
+        ("download", {"kind": "model"}, {"file"}),
+        ("download", TORQUE_CHART, {"file"}),
+        ("arrows", {"point": "B"}, {"state"}),
+        ("variant", {"do": "pin"}, {"variants"}),
+        ("stores", {}, {"stores"}),
+        ("outputs", {"names": ["drive_torque"]}, {"state"}),
+        ("make", {"do": "nothing", "at": 0}, {"refused"}),
+        ("design", {"number": 3, "store": "lengths.zarr"}, {"refused"}),
+    ],
+)
+def test_questions_and_answers_hold_to_their_types(
+    asked: str, values: dict[str, Any], answers: set[str]
+) -> None:
+    """`ask` looks at every answer; here the question is one that the page may send too."""
+    question = {"type": asked, **values}
+    of = [item for item in get_args(Asked) if asked in get_args(declared_keys(item)["type"][0])]
+    assert any([*misfits(question, item)] == [] for item in of)
+    session, _ = opened("yamashita-1")
+    kinds = {reply.content["type"] for reply in ask(session, asked, seq=1, **values)}
+    assert answers <= kinds <= {*sent()}
+
+
+def test_what_comes_later_holds_to_its_type() -> None:
+    """The side, strokes, gauges, figures of planting and the response over speed."""
+    kinds = set()
+    for name in ("yamashita-rig", "kim-chung-a", "walking-transplanter"):
+        session, _ = opened(name)
+        for reply in session.tell_more():
+            content = json.loads(json.dumps(reply.content))
+            assert misfits_of_reply(content) == []
+            kinds.add(content["type"])
+    assert {"strokes", "gauges", "planting", "response"} <= kinds
