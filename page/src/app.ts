@@ -261,7 +261,7 @@ export class App {
     stage.append(this.seeing.variants.root);
     stage.append(this.across, this.gauges.root, this.strokes.root, this.planted.root);
     const empty = say(
-      "Forces, torque and paths stand here as soon as the machine moves. What is missing is told above the drawing.",
+      "Forces, torque and paths appear here as soon as the machine moves. The line above the drawing says what is missing.",
     );
     this.side.append(h("p", { class: "quiet empty" }, empty), this.charts.root);
     // A file that plays shows numbers, and takes none.
@@ -520,7 +520,7 @@ export class App {
       : say(
           "The server does not answer; trying again. If it was ended, start it again and open the address that it prints: this tab goes on then.",
         );
-    const kept = waiting ? ` ${say("Changes that wait for it, and are kept: {count}.", { count: waiting })}` : "";
+    const kept = waiting ? ` ${say("Changes waiting for the server: {count}.", { count: waiting })}` : "";
     write(this.lost, why + kept);
   }
 

@@ -24,7 +24,7 @@ export class Heading {
     const told = [state.name, state.title, state.description].join("\n");
     if (told !== this.shown) {
       this.shown = told;
-      const text = state.description.trim() || say("This file says nothing more in words.");
+      const text = state.description.trim() || say("This file has no description.");
       this.about.replaceChildren(
         h("summary", {}, h("h1", {}, state.title || state.name)),
         h("p", {}, text),

@@ -86,7 +86,7 @@ export class Inspector {
       this.groups.set(group, details);
     }
     const words = say(
-      "Lengths and masses stand here as soon as there is a link: take Link above the drawing, then show where it begins and where it ends.",
+      "Lengths and masses appear here as soon as there is a link: choose Link above the drawing, then click where it begins and where it ends.",
     );
     this.root.replaceChildren(...this.groups.values(), ...(fields.length ? [] : [h("p", { class: "quiet" }, words)]));
   }

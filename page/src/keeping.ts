@@ -67,11 +67,11 @@ export class Keeping {
     if (!state?.undo || this.asking) return !this.asking;
     this.asking = true;
     const text = this.unsaved
-      ? say("{file} is not saved. Opening {name} gives up what was done, and all that can be undone.", {
+      ? say("{file} is not saved. Opening {name} discards the changes and everything that can be undone.", {
           file: state.file?.name ?? "",
           name,
         })
-      : say("Opening {name} gives up what was done to {machine}, and all that can be undone.", {
+      : say("Opening {name} discards the changes to {machine} and everything that can be undone.", {
           machine: state.name,
           name,
         });
@@ -89,7 +89,7 @@ export class Keeping {
     page.talk.release();
     if (!file) return page.talk.ask({ type: "download", kind: "model" });
     if (file.saved) return page.say(say("{name} is saved", { name: file.name }), false);
-    const text = say("{name} has comments, which a model that is saved does not have.", {
+    const text = say("{name} has comments, which are lost when the model is saved.", {
       name: file.name,
     });
     if (file.comments && !(await question(page.root, text, say("Save")))) return;
@@ -116,7 +116,7 @@ export class Keeping {
       const values = { length: address.length, most: LONGEST };
       return this.page.say(
         say(
-          "the link would have {length} signs; at most {most} can be relied on: download the model",
+          "the link would have {length} characters; at most {most} are reliable: download the model",
           values,
         ),
         true,
@@ -151,7 +151,7 @@ export class Keeping {
     } catch {
       // Above the page, where no machine that opens takes it away.
       this.offer.replaceChildren(
-        say("the address holds no whole model: copy all of the link"),
+        say("the address holds only a part of a model: copy the complete link"),
         " ",
         this.button(say("Close"), () => undefined),
       );

@@ -30,7 +30,7 @@ const STEPS: Step[] = [
     where: ".transport",
     what: toSay("Turn the crank"),
     text: toSay(
-      "Play it slower than it is, stop it, or turn the crank by the slider; a click in a chart turns it there. Each ? says what its chart shows and what to look for.",
+      "Play it in slow motion, stop it, or turn the crank with the slider; a click in a chart turns it to that angle. Each ? explains its chart and what to look for.",
     ),
     until: "turned",
   },
@@ -38,14 +38,14 @@ const STEPS: Step[] = [
     where: ".bar [data-do=balance]",
     what: toSay("Press Balance"),
     text: toSay(
-      "It finds the masses that make this machine shake the least, with a proof that no others do better.",
+      "It computes the masses that minimize the shaking of this machine, with a proof that no others are better.",
     ),
     until: "balanced",
   },
   {
     where: ".balance",
-    what: toSay("See what it takes away"),
-    text: toSay("{figure}. Keep it, or take it back; undo takes back whole steps, also after the page was loaded again."),
+    what: toSay("See the reduction"),
+    text: toSay("{figure}. Keep the change or take it back; undo works on whole steps, also after the page is reloaded."),
     until: "decided",
   },
   {

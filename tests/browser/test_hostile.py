@@ -22,7 +22,7 @@ from support.chosen import few
 from support.hostile import HOSTILE, hostile_text
 from surface.running import equipoise, example_text, succeeded
 
-WHOLE = "holds no whole model"
+WHOLE = "holds only a part of a model"
 RUN = """() => {
   const leads = new Set(["href", "xlink:href", "src", "action", "formaction", "data", "srcdoc"]);
   const script = (value) => value.trim().toLowerCase().startsWith("javascript:");

@@ -185,7 +185,7 @@ def test_edits_without_a_server_are_kept_for_the_next_one(free_page: Page, tmp_p
         expect(alert).to_be_visible()
     live.field("crank mass").fill("300 g")
     live.field("crank mass").press("Enter")
-    expect(alert).to_contain_text("Changes that wait for it, and are kept: 1")
+    expect(alert).to_contain_text("Changes waiting for the server: 1")
     page.get_by_title("Download", exact=True).click()
     live.button("Download model").click()
     expect(live.told("the server does not answer; ask again when it does")).to_be_visible()
@@ -236,6 +236,6 @@ def test_a_link_holds_the_model(live: Live, new_page: Callable[..., Page]) -> No
     expect(there.page.locator(figures)).to_have_text(live.page.locator(figures).all_inner_texts())
     assert "#" not in there.page.url  # a reload goes on with what is done from here
     there.page.goto(link[:-30])
-    expect(there.told("holds no whole model")).to_be_visible()
+    expect(there.told("holds only a part of a model")).to_be_visible()
     damaged = Live.open(new_page(), link.replace("model=", "model=A"))
-    expect(damaged.told("holds no whole model")).to_be_visible()
+    expect(damaged.told("holds only a part of a model")).to_be_visible()

@@ -52,7 +52,8 @@ def test_korean_particles_go_by_the_name_before_them(
         page.get_by_role("combobox", name=ko["Example"]).select_option(name)
         with speaking("ko"):
             told = say(
-                "Opening {name} gives up what was done to {machine}, and all that can be undone.",
+                "Opening {name} discards the changes to {machine} and everything that can be "
+                "undone.",
                 name=name,
                 machine="yamashita-1",
             )

@@ -16,7 +16,7 @@ from browser.live import NUMBER, Live
 from unit.web.test_camming import SWUNG
 from unit.web.test_sketch import GEARED, SAME, check_same, massed
 
-TURNS = "1 free motion; crank turns fully"
+TURNS = "1 degree of freedom; crank turns fully"
 
 
 @dataclass
@@ -189,7 +189,9 @@ def test_a_four_bar_is_made_by_mouse(sheet: Sheet) -> None:
     expect(add).to_be_visible()
     parts.click()
     sheet.click((33, 0), (83, -52))
-    sheet.says("free motions too many: 1; coupler hangs free: pin D to something")
+    sheet.says(
+        "mobility is 2; expected 1; coupler is not connected: pin D to another link or the frame"
+    )
     sheet.click((11, -87), (83, -52))
     sheet.says("no drive: choose the driven link (crank or rocker)")
     sheet.take("Drive")
@@ -207,7 +209,7 @@ def test_a_four_bar_is_made_by_mouse(sheet: Sheet) -> None:
     check_same(massed(made, like, {name: name for name in like.links}), like, 10 * SAME)
     for _ in range(8):  # seven numbers and a point, then the drive
         sheet.live.button("Undo").click()
-        sheet.says("1 free motion")
+        sheet.says("1 degree of freedom")
     sheet.live.button("Undo").click()
     sheet.says("no drive: choose the driven link (crank or rocker)")
     sheet.live.page.reload()
@@ -224,7 +226,7 @@ def test_a_slider_crank_is_made_by_finger(new_page: Callable[..., Page], address
     sheet.click((0, 0))
     sheet.take("Link")
     sheet.click((0, 0), (25, 0), (25, 0), (0, 86))  # the second begins where the first will end
-    sheet.says("coupler hangs free: pin C to something")
+    sheet.says("coupler is not connected: pin C to another link or the frame")
     sheet.take("Slider")
     sheet.click((0, 86), (0, 0))
     sheet.take("Drive")
@@ -256,7 +258,7 @@ def test_a_geared_five_bar_is_made_by_keys(sheet: Sheet) -> None:
             sheet.steer(*place)
     sheet.steer(88, 22)
     sheet.steer(91, 79)
-    sheet.says("free motions too many: 1")
+    sheet.says("mobility is 2; expected 1")
     keys.press("d")
     sheet.steer(15, 0)
     keys.press("b")
@@ -265,7 +267,7 @@ def test_a_geared_five_bar_is_made_by_keys(sheet: Sheet) -> None:
     sheet.says(TURNS)
     keys.press("Delete")
     sheet.steer(-15, -15)  # on the wheel about A
-    sheet.says("free motions too many: 1")
+    sheet.says("mobility is 2; expected 1")
     keys.press("g")
     sheet.live.field("Teeth of the driven link").fill("40")
     sheet.steer(15, 0)
@@ -288,7 +290,9 @@ def test_a_cam_and_its_follower_are_made_by_mouse(sheet: Sheet) -> None:
     sheet.click((0, 0), (20, 0), (60, 0), (30, 40))
     sheet.take("Drive")
     sheet.click((10, 0))
-    sheet.says("free motions too many: 1; rocker hangs free: pin D to something")
+    sheet.says(
+        "mobility is 2; expected 1; rocker is not connected: pin D to another link or the frame"
+    )
     sheet.take("Cam")
     live = sheet.live
     expect(live.page.locator(".making .next")).to_have_text("click the link that bears the cam")
@@ -310,7 +314,7 @@ def test_a_cam_and_its_follower_are_made_by_mouse(sheet: Sheet) -> None:
     assert 0.031 < live.machine().cams[0].base_radius < 0.04
     for _ in range(3):  # both, and the cam
         live.button("Undo").click()
-    sheet.says("free motions too many: 1")
+    sheet.says("mobility is 2; expected 1")
 
 
 def test_a_cylinder_is_made_by_its_form(sheet: Sheet) -> None:
@@ -352,7 +356,7 @@ def test_a_cam_and_a_sliding_face_are_made_by_keys(sheet: Sheet) -> None:
     assert (cam.rides, cam.driven, cam.base_radius) == ("flat", "slider", 0.03)
     sheet.take("Delete")
     sheet.steer(-15, 26)  # on the cam
-    sheet.says("free motions too many: 1")
+    sheet.says("mobility is 2; expected 1")
     assert not live.findings()
 
 
@@ -389,7 +393,10 @@ def test_parts_are_joined_renamed_and_deleted(live: Live) -> None:
     sheet.take("Separate")
     live.joint("C").focus()
     live.page.keyboard.press("Enter")
-    sheet.says("free motions too many: 2; coupler hangs free: pin C or P to something")
+    sheet.says(
+        "mobility is 3; expected 1; coupler is not connected: pin C or P to another link "
+        "or the frame"
+    )
     expect(live.joint("E")).to_be_visible()
     live.page.keyboard.press("Escape")
     live.drag(live.joint("E"), (40, 30))
@@ -418,7 +425,7 @@ def test_parts_are_joined_renamed_and_deleted(live: Live) -> None:
     sheet.says(TURNS)
     sheet.take("Delete")
     page.mouse.click(*live.spot(page.locator(".signs [data-what=slider]").last))  # its block
-    sheet.says("rod and piston can move freely")
+    sheet.says("the position of rod and piston is undetermined")
     expect(live.joint("C")).to_be_visible()
     live.button("Undo").click()
     sheet.says(TURNS)

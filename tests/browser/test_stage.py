@@ -269,7 +269,7 @@ def test_a_stranger_makes_a_four_bar_with_forces_in_ten_actions(live: Live) -> N
     press("Drive")
     click(0.325, 0.65)
     assert actions == 10
-    expect(page.locator(".making .status")).to_have_text("1 free motion; crank turns fully")
+    expect(page.locator(".making .status")).to_have_text("1 degree of freedom; crank turns fully")
     figures = page.get_by_role("table", name="Figures")
     expect(figures.get_by_role("row", name="Shaking force", exact=False).first).to_contain_text("N")
     expect(page.get_by_text("the masses of crank, coupler, rocker are assumed")).to_be_visible()

@@ -11,7 +11,7 @@ import equipoise as eq
 from browser.live import FITS, LONGEST, SCREENSHOTS, Live
 from support.chromium import serving
 
-STEPS = ("Drag a joint", "Turn the crank", "Press Balance", "See what it takes away", "Share it")
+STEPS = ("Drag a joint", "Turn the crank", "Press Balance", "See the reduction", "Share it")
 
 
 def test_an_empty_page_shows_what_there_is_to_open(free_page: Page) -> None:

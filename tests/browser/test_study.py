@@ -122,6 +122,6 @@ def test_designs_are_brushed_and_opened(browser: Browser, store: str) -> None:
     page.get_by_role("button", name="Open", exact=True).click()
     page.get_by_role("button", name="New machine").click()
     expect(page.get_by_text("nothing moves yet")).to_be_visible()
-    expect(page.get_by_text("stand here as soon as")).to_have_count(2)
+    expect(page.get_by_text("appear here as soon as")).to_have_count(2)
     assert wrong == []
     page.close()

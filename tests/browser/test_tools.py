@@ -53,7 +53,7 @@ def test_a_tool_is_seen_and_changed(live: Live) -> None:
     page.set_viewport_size({"width": 1280, "height": 900})
     page.get_by_role("combobox", name="Example").select_option("yamashita-1")
     question = page.get_by_role("dialog", name="Question")
-    expect(question).to_contain_text("gives up what was done to brush-cutter")
+    expect(question).to_contain_text("discards the changes to brush-cutter")
     question.get_by_role("button", name="Open").click()
     expect(live.joint("B")).to_be_visible()
     expect(side).to_be_hidden()

@@ -299,7 +299,7 @@ ANSWERS = {
     "press": r"drive torque.* 3 times as fast as crank, which .* 5 %; .* 20 %.* motor .* 100 N m",
     "pump-jack": r"A weight of 9\d\d kg m \(1\d{3} kg at 700 mm\) on crank.* off the swing of",
     "sieve-eccentric": r"Shaking force, RMS: 547 → .* eccentric: add a ",
-    "reciprocating-saw": r"^Nothing of what reciprocates .* Nothing else that .* Flywheel on",
+    "reciprocating-saw": r"^Nothing of what reciprocates .* No other change that .* Flywheel on",
     "sieve-on-stand": r"stand_along, RMS .* → 0\.257 mm.* First move the resonance at 732 rpm",
     "sieve-short": r"Shaking force, RMS: 500 → .* shaft: drill a hole of ",
     "stamping-press": r"^No counterweight .* 5 times as fast as crank.* gives 41\.7 N m at crank",
@@ -319,7 +319,7 @@ OF_BUNDLED = {
     "quick-return": r"Flywheel on a shaft \d+ times .* 5 %; .* 20 %.* A motor",
     "sieve": r"First move the resonance at 255 rpm, .* 2 times softer",
     "slider-crank-engine": r"Flywheel on crank.* Half of what reciprocates is balanced .* 1383 N",
-    "straw-walker": r"Leave the machine as it is: nothing is large",
+    "straw-walker": r"Leave the machine as it is: no figure is large",
     "yamashita-1": r"Shaking force, RMS: 15\.0 → 8\.84 N .* plane of its own beside pin C",
 }
 """The same of bundled machines."""

@@ -207,7 +207,7 @@ def test_two_rows_that_jump_end_in_a_proof() -> None:
     machine = eq.load("transplanter").with_rows([Row(), Row(lateral=0.3)])
     found = choose_phases(machine, [Objective("drive_torque", "peak")])
     assert found.bound <= found.combined[1] <= found.bound + 1.01 * CLOSE
-    assert not any("before it had proved" in str(note) for note in found.notes)
+    assert not any("before the optimum was proved" in str(note) for note in found.notes)
     term = PhaseObjective(
         Objective("drive_torque", "peak"),
         PhasedRows(machine).signals(Objective("drive_torque", "peak")),
@@ -225,7 +225,7 @@ def test_a_force_that_jumps_ends_in_a_proof() -> None:
     machine = replace(eq.load("knife-drive"), balance=None).with_rows([Row(), Row(lateral=0.3)])
     found = choose_phases(machine, [Objective("frame_force", "peak")])
     assert found.bound <= found.combined[1] <= found.bound + 1.01 * CLOSE
-    assert not any("before it had proved" in str(note) for note in found.notes)
+    assert not any("before the optimum was proved" in str(note) for note in found.notes)
     theta = (np.arange(7200) + 0.5) * (2 * pi / 7200)
     each = [forces(move(machine, theta + row.phase)).frame_force for row in found.machine.rows]
     peak = np.max(np.hypot(sum(one.x for one in each), sum(one.y for one in each)))
@@ -300,7 +300,7 @@ def test_masses_with_phases_end_in_a_proof(most: float | None) -> None:
     plan = Balance(masses=(DISC,), phases=Phases(), objectives=(TORQUE,), limits=limits)
     found = eq.balance(machine, plan)
     assert 0 <= found.gap <= 1.01 * rows_and_masses.CLOSE
-    assert not any("before it had proved" in str(note) for note in found.notes)
+    assert not any("before the optimum was proved" in str(note) for note in found.notes)
     before, after = found.objectives[TORQUE.name]
     phases = np.array([row.phase for row in found.machine.rows])
     term = PhaseObjective(TORQUE, PhasedRows(found.machine).signals(TORQUE))

@@ -220,10 +220,10 @@ def test_a_drive_with_nothing_to_do_is_said_to_do_nothing() -> None:
     """Where weight and springs alone act, the microjoules of a last cycle say nothing."""
     machine = eq.load("walking-transplanter")
     told = str([*run_blocks(eq.run(machine))])
-    assert "drive: nothing to do in the mean, with neither friction nor load" in told
+    assert "drive: zero mean power, as the file has neither friction nor load" in told
     assert " J in a turn" not in told
     loaded = replace(machine, loads=(eq.Load("coupler", "P", (1e-3, 0.0)),))
-    assert "drive: nothing to do" not in str([*run_blocks(eq.run(loaded))])
+    assert "drive: zero mean power" not in str([*run_blocks(eq.run(loaded))])
 
 
 def test_values_that_cannot_be_used() -> None:

@@ -248,11 +248,11 @@ LINKAGES = {
     ),
     "no free motion": (
         four_bar('points.P = ["-160 mm"', 'points.A = ["-160 mm"'),
-        "no free motion",
+        "the linkage cannot move",
     ),
     "two free motions": (
         four_bar("[assembly]", '[links.more]\npoints.P = ["0 mm", "0 mm"]\n[assembly]'),
-        "2 free motions",
+        "the mobility of the linkage is 2",
     ),
     "drive link off the frame": (
         four_bar('link = "crank"', 'link = "coupler"'),

@@ -179,7 +179,7 @@ def test_gauges_at_several_speeds() -> None:
     name = "reading at gauge, peak to peak, at 150, 193, 240 rpm, mm"
     assert cells(text, name)[:2] == ["19.87", "7.622"]
     assert cells(text, "reading at gauge, peak to peak, mm")
-    assert "note: added mass makes the support heavier" in text
+    assert "note: added mass increases the mass of the support" in text
     words = ("peak gauges.gauge speeds 100 rpm, 193 rpm", "--at-most", "500 g")
     content = told("yamashita-rig", "--crank-counterweight", "--objective", *words)
     (values,) = content["objectives"].values()
@@ -432,7 +432,7 @@ MACHINES = {
                              '= "5 mm"\nmaterial = "steel"\nmass = "1145 g"', "model.toml: balance."
                              "masses[1].mass: a disc of 1145 g and 5 mm steel has a radius of"),
     "a ring of no use": ("balance-crank", POINT, 'shape = "ring"\nradius = "40 mm"\nthickness = '
-                         '"5 mm"\nmaterial = "steel"', "nothing that is free to change has an eff"),
+                         '"5 mm"\nmaterial = "steel"', "none of the permitted changes affects"),
     "no masses": ("balance-crank", 'mass = "687 g"\n', "", "mass"),
     "no balance": ("balance-crank", "[[balance.masses]]", "[[balance.mases]]", "balance.mases: no"),
 }  # fmt: skip

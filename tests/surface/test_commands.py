@@ -146,7 +146,10 @@ def test_help_says_what_an_option_wants() -> None:
 def test_help_has_lines_of_its_own_and_no_markup() -> None:
     """Whatever lines the text has in the source."""
     told = helps()["balance --help"]
-    assert "Its table  │\n│          [balance] says what may change and what is to" in told
+    assert (
+        "Its table  │\n│          [balance] has the permitted changes and the objectives; the"
+        in told
+    )
     assert "`" not in "".join(helps().values())
 
 

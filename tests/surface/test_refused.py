@@ -223,8 +223,8 @@ REFUSED = {
         "joints.Q": "--objective: no joint is called 'Q'; there are 'A', 'D', 'B',",
         "roll_moment": "--objective: roll_moment comes from linkages side by side; gi",
         "shaking_moment": (
-            "nothing that is free to change has an effect on the rms of shaking_moment; free "
-            "something else, or choose another objective"
+            "none of the permitted changes affects the rms of shaking_moment; "
+            "permit another change, or choose another objective"
         ),
     },
     f"balance lee-kim-a {UP} --geared-counterweight": {
@@ -257,7 +257,7 @@ REFUSED = {
     },
     "balance trade-off": {
         f"four-row-transplanter {PARTS}": "a front is not drawn over phases; lea",
-        f"yamashita-1 {PARTS}": "nothing is free to change; give",
+        f"yamashita-1 {PARTS}": "no change is permitted; give",
     },
     "balance sensitivities yamashita-1": {
         "joints.B": (
@@ -285,10 +285,8 @@ REFUSED = {
         "--csv no/x.csv": "no/x.csv: there is no such folder; make i",
     },
     "balance yamashita-1": {
-        UP: "nothing is free to change; give tables such as",
-        "--crank-counterweight": (
-            "nothing is to become small; give [[balance.objectives]], or an opt"
-        ),
+        UP: "no change is permitted; give tables such as",
+        "--crank-counterweight": ("there is no objective; give [[balance.objectives]], or an opt"),
         f"{UP} --move-cm copler": "--move-cm: no link is called 'copler'; did you mean 'coupler'?",
         f"{UP} --counterweight x": "--counterweight: no link is",
         f"{UP} --move-cm coupler --move-cm coupler": (

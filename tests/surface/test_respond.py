@@ -71,7 +71,7 @@ def test_tables_of_a_model(model: str) -> None:
     text = succeeded(equipoise("respond", "--full", RIG, "--model", model))
     assert f"by the model {model}: " in text
     assert ("residual" in text) == (model in {"coupled", "exact"})
-    assert ("energy in a period" in text) == (model == "exact")
+    assert ("energy per period" in text) == (model == "exact")
 
 
 def test_all_models_are_compared() -> None:
@@ -125,8 +125,8 @@ def test_models_that_differ_say_so() -> None:
     """(59) is 5.2 % above the exact equations on the paper's rig, whose arm is long."""
     text = " ".join(succeeded(equipoise("respond", "--full", RIG)).split())
     assert (
-        "the models differ: at gauge, linear gives 12.62 mm and exact, which leaves out least, "
-        "12.00 mm; where they do not agree, use exact" in text
+        "the models differ: at gauge, linear gives 12.62 mm and exact, the most complete model, "
+        "12.00 mm; use exact where they differ" in text
     )
 
 
@@ -485,4 +485,4 @@ def test_what_does_nothing_is_told() -> None:
     speeding = ('speed = "193 rpm"', 'speed = "193 rpm"\nacceleration = "5 rad/s^2"')
     notes = read("respond", written(text, speeding))["notes"]
     assert any("gauges.roll does nothing: the support cannot roll" in note for note in notes)
-    assert any("acceleration is left out" in note for note in notes)
+    assert any("acceleration of the drive is ignored" in note for note in notes)

@@ -55,7 +55,7 @@ def test_the_front_as_a_table() -> None:
     own = eq.studies.search(study, population=12, generations=8)
     assert shown.startswith(f"Lengths of type I\n{own.computed} designs in 8 generations, seed 1")
     assert "Limits: vertical at most 13000 mN" in shown
-    assert f"{own.front} designs that no other beats; vertical smallest, torque largest" in shown
+    assert f"{own.front} Pareto-optimal designs; vertical smallest, torque largest" in shown
     rows = [line.split() for line in shown.splitlines() if re.match(r"(model|\d+)  +\d", line)]
     assert rows[0][0] == "model"
     assert float(rows[0][3]) == 71.5
@@ -63,7 +63,7 @@ def test_the_front_as_a_table() -> None:
     assert found[:, 0].tolist() == list(range(len(own.values)))
     assert found[:, 1] == pytest.approx(1e3 * own.figures[:, 0], rel=1e-3)
     assert found[:, 3:] == pytest.approx(1e3 * own.values, rel=1e-3)
-    assert "note: it may get better yet; give more generations" in shown
+    assert "note: the search has not converged; give more generations" in shown
 
 
 def test_one_aim() -> None:
@@ -91,14 +91,14 @@ def test_files() -> None:
 
 def test_a_bundled_study() -> None:
     shown = succeeded(equipoise("search", "study-of-balance", *QUICK))
-    assert "designs that no other beats; forward smallest, upward smallest" in shown
+    assert "Pareto-optimal designs; forward smallest, upward smallest" in shown
 
 
 REFUSED = {
     "search": {
         "tolerances.toml": "tolerances.toml: vary[1]: links.coupler.mass has a tolerance, whic",
         "aimless.toml": (
-            "aimless.toml: outputs: none is to become small or large; give one of them make = "
+            "aimless.toml: outputs: no output is an objective; give one of them make = "
         ),
         "impossible.toml --population 12 --generations 8": "none of ",
         "study.toml --population 4": "--population: got '4'; give a whole number f",

@@ -87,7 +87,7 @@ def test_options_and_values_stand_as_they_are_typed(site: Path) -> None:
         assert re.findall(r".{20}[–—][a-z].{20}", page.read_text(encoding="utf-8")) == [], page.name
     told = (site / "commands.html").read_text(encoding="utf-8")
     assert re.findall(r".{20}[“”‘].{20}", told) == []
-    assert "With --json: add every force by cause and by link." in told
+    assert "With --json: add the contributions to every force by cause and by link." in told
 
 
 def test_the_glossary_has_every_term_and_its_meaning_in_every_language(site: Path) -> None:

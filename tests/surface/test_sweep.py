@@ -152,7 +152,7 @@ def test_a_study_without_an_aim() -> None:
         assert "is good" not in text and "chosen designs" not in text
     assert "equipoise best new.zarr --by vertical" in shown
     said = refused(equipoise("best", "new.zarr"))
-    assert "no output of the study is to become small or large; name one to go by" in said
+    assert "the study has no objective; name an output to rank by" in said
 
 
 def test_the_note_does_not_depend_on_the_wording_of_a_refusal(
@@ -213,7 +213,7 @@ def test_processes() -> None:
     )
     result = process("sweep", study, "-o", "new.zarr", "--workers", "2")
     shown = succeeded(result)
-    assert "Designs that no other beats" in shown or "note: " in shown
+    assert "Pareto-optimal designs" in shown or "note: " in shown
     assert result.err.splitlines()[-1].startswith("6 designs computed in ")
 
 
@@ -346,7 +346,7 @@ def test_what_to_go_by() -> None:
     found = best("--by", "torque", "--largest", "links.crank.mass")
     assert found["by"] == {"torque": "smallest", "links.crank.mass": "largest"}
     shown = succeeded(equipoise("best", STORE, "--by", "torque", "--largest", "links.crank.mass"))
-    assert "Designs that no other beats; torque smallest, mass of the crank largest" in shown
+    assert "Pareto-optimal designs; torque smallest, mass of the crank largest" in shown
     assert "\n  mass of the crank: links.crank.mass\n" in shown  # as --by takes it
     assert "Limits: vertical at most 13000 mN" in shown
 

@@ -45,7 +45,7 @@ def test_figures_in_the_units_of_the_files(shown: str) -> None:
     assert (model, mean) == pytest.approx((one.base, one.mean), rel=1e-3)
     assert deviation == pytest.approx(one.deviation, rel=1e-3)
     assert own.within is not None
-    assert f"Every limit is kept by {100 * own.within.value:.2f} % (" in shown
+    assert f"\n{100 * own.within.value:.2f} % (" in shown
     mass = r"^mass \+ inertia of the coupler +deviation 15.00 g, cut at 3; deviation "
     assert re.search(mass, shown, re.MULTILINE)
     assert re.search(r"^centre of mass of the coupler, x +\+- 2.000 mm ", shown, re.MULTILINE)
@@ -58,7 +58,7 @@ def test_what_to_tighten_first(shown: str) -> None:
     sentence = unfolded(shown)[unfolded(shown).index("Tighten first: ") :]
     units = units_of(own.study)
     assert sentence.startswith(f"Tighten first: {named_together(first.numbers, units)}")
-    assert f"takes {100 * first.gain:.0f} % off the variance of vertical" in sentence
+    assert f"reduces the variance of vertical by {100 * first.gain:.0f} %" in sentence
     ranked = [named_together(cause.numbers, units) for cause in own.causes]
     ranked = [words.replace("–", "-") for words in ranked]  # which is all that some terminals have
     lines = shown.replace("–", "-").splitlines()  # the ends of long cells stand in the next ones
@@ -70,16 +70,18 @@ def test_what_to_tighten_first(shown: str) -> None:
 def test_without_limits() -> None:
     shown = succeeded(equipoise("tolerance", written(TOLERANCES, ('at_most = "23.5 N"', ""))))
     assert "Limits" not in shown
-    assert "Every limit" not in shown
-    assert re.search(r" Tighten first: .* off the variance of vertical\.$", unfolded(shown))
+    assert "within all limits" not in shown
+    assert re.search(
+        r" Tighten first: .* reduces the variance of vertical by \d+ %\.$", unfolded(shown)
+    )
 
 
 def test_a_limit_that_the_model_does_not_keep() -> None:
     shown = succeeded(equipoise("tolerance", written(TOLERANCES, ("23.5 N", "20 N"))))
-    assert "Every limit is kept by 0.00 % (" in shown
-    assert "hardly more machines keep every limit then" in shown
+    assert "\n0.00 % (" in shown
+    assert "the share of machines within all limits hardly changes" in shown
     assert (
-        "note: the model itself does not keep the limits of vertical; change its numbers first"
+        "note: the model itself is outside the limits of vertical; change its numbers first"
     ) in shown
 
 

@@ -543,17 +543,17 @@ def _notes(solution: Solution) -> Iterator[Note]:
     """What a reader has to know."""
     problem, rows = solution.problem, len(solution.problem.machine.rows)
     if problem.machine.drive.acceleration:
-        yield Note("the drive's acceleration is left out: the crank is taken as turning steadily")
+        yield Note("the acceleration of the drive is ignored: the crank speed is taken as constant")
     if problem.rubs:
         yield Note(
-            "with friction in joints {outputs} is not linear in masses: the best was sought "
-            "without friction, and is told with it; the bound is that without",
+            "with friction in joints {outputs} is not linear in the masses: the optimum was "
+            "computed without friction; the figures include friction, the bound does not",
             outputs=all_of([*problem.rubs], commas=True),
         )
     if problem.reads_gauges and problem.supports_more:
         yield Note(
-            "added mass makes the support heavier, which bends what is linear "
-            "otherwise: the bound is that of small changes about this result"
+            "added mass increases the mass of the support, which makes the problem nonlinear: "
+            "the bound holds for small changes about this result"
         )
     yield from filter(None, (part.stopped(x) for part, x in problem.with_numbers(solution.numbers)))
     yield from _over_pins(solution)
@@ -574,6 +574,6 @@ def _notes(solution: Solution) -> Iterator[Note]:
         )
     if solution.best.nodes >= 1 and solution.best.value - solution.best.bound > 1e-7:
         yield Note(
-            "the search ended before it had proved that nothing better exists; "
-            "the gap tells how far it came"
+            "the search ended before the optimum was proved; the gap bounds the possible "
+            "improvement"
         )

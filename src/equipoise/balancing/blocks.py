@@ -110,7 +110,7 @@ def balanced_headline(balanced: Balanced, alone: bool = False) -> Iterator[Block
     title = say("Changes; places and directions in the axes of each link")
     yield Facts(title, lines, is_whole=True)
     if aims[1:]:
-        yield Facts(say("What else was made small"), aims[1:])
+        yield Facts(say("Other objectives"), aims[1:])
     if balanced.advice is not None:
         is_long = balanced.advice.beyond.mounts is not None
         yield from (Text(line, is_detail=is_long) for line in beside_the_aim(balanced))
@@ -136,8 +136,8 @@ def _large(balanced: Balanced) -> Facts:
     assert balanced.advice is not None
     large, few = large_figures(balanced.advice)
     lines = tuple(sentence(item, balanced.original.crank_turns) for item in few)
-    largest = to_say("What is large, each beside its own yardstick")
-    nearest = to_say("What comes nearest to its yardstick")
+    largest = to_say("Large figures, each with its reference value")
+    nearest = to_say("Nearest to its reference value")
     return Facts(say(largest if large else nearest), lines)
 
 
@@ -210,7 +210,7 @@ def objectives_table(balanced: Balanced) -> Table:
         left = Value(100 * share if share > FAINT else 0.0)
         rows.append((f"{say('together')}, %", Value(100.0), left, RelativeChange(1.0, share)))
     columns = (Column(""), *(Column(say(label)) for label in BEFORE_AFTER))
-    return Table(say("What was made small"), columns, tuple(rows))
+    return Table(say("Objectives"), columns, tuple(rows))
 
 
 def before_after(balanced: Balanced) -> Table:
@@ -314,9 +314,9 @@ def phasing_blocks(phasing: Phasing) -> Iterator[Block]:
         orders = say(", ").join(texts[:MOST_ORDERS])
         more = len(texts) - MOST_ORDERS
         orders = say("{orders} and higher ones", orders=orders) if more > 0 else orders
-        yield Text(say("Orders of the shaking force that are left: {orders}.", orders=orders))
+        yield Text(say("Remaining orders of the shaking force: {orders}.", orders=orders))
     else:
-        yield Text(say("No order of the shaking force is left."))
+        yield Text(say("No order of the shaking force remains."))
     whole = max(max(values) for values in phasing.lateral.values())
     rows: tuple[tuple[Cell, ...], ...] = tuple(
         (say(LATERAL[name]), *(Value(value, 1e3 * whole) for value in values))

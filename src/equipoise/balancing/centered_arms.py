@@ -117,9 +117,9 @@ def centered_arms_sentence(arms: CenteredArms) -> str:
     """What the arms would leave of the force."""
     shown = display("force", [arms.before, arms.after])
     return say(
-        "With the centre of mass of {links} on {pins}, from which it is {distance} now, {what}, "
-        "would go from {before} to {after} ({gain} % less): take mass off beyond the pin, or lay "
-        "some behind it, up to {weight} on each.",
+        "With the centre of mass of {links} on {pins} (now {distance} away), {what}, would "
+        "decrease from {before} to {after}, by {gain} %: remove mass beyond the pin, or add mass "
+        "behind it, up to {weight} on each.",
         weight=weight_named(arms.moment, arms.distance),
         links=say(", ").join(arms.links),
         pins=say(", ").join(arms.pins),

@@ -255,8 +255,8 @@ class FreeSpring(DesignVariables):
         if self.choice.free_length is not None or not 0 < 0.999 * longest < float(numbers[1]):
             return None
         return Note(
-            "the spring on {link} has come to twice the largest distance of "
-            "points, where its free length was stopped; give it free_length",
+            "the free length of the spring on {link} has reached the default limit of twice the "
+            "largest distance between points; give free_length",
             link=self.link,
         )
 

@@ -66,16 +66,15 @@ def _checked(machine: Machine, plan: Balance | None) -> Balance:
     if plan is None or plan.changes_nothing:
         raise UsageError(
             Note(
-                "nothing is free to change; give tables such as [[balance.masses]] or "
-                "[[balance.moves]], or options such as --crank-counterweight or --move-cm "
-                "LINK"
+                "no change is permitted; give tables such as [[balance.masses]] or "
+                "[[balance.moves]], or options such as --crank-counterweight or --move-cm LINK"
             )
         )
     if not plan.objectives:
         raise UsageError(
             Note(
-                "nothing is to become small; give [[balance.objectives]], or an option "
-                'such as --objective "shaking_force.y"'
+                "there is no objective; give [[balance.objectives]], or an option such as "
+                '--objective "shaking_force.y"'
             )
         )
     check_moving(machine)

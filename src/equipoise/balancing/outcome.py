@@ -127,7 +127,7 @@ def good_already(balanced: Balanced) -> str:
     """What a machine is where balancing brings nothing, as a part of a sentence."""
     if balanced.advice is not None:
         return say("leave the masses as they are")
-    return say("already as small as what may be changed can make it")
+    return say("already the minimum for the permitted changes")
 
 
 # -- where nobody said what may be changed ---------------------------------------------------------
@@ -146,7 +146,7 @@ def large_sentences(advice: Advice, crank_turns: bool) -> Iterator[str]:
     """What is large on the machine; where nothing is, how large the largest figure is."""
     large, few = large_figures(advice)
     template = to_say("Large here: {figure}.")
-    nearest = to_say("What comes nearest to its yardstick: {figure}.")
+    nearest = to_say("Nearest to its reference value: {figure}.")
     for item in few:
         yield say(template if large else nearest, figure=sentence(item, crank_turns))
 
@@ -162,17 +162,17 @@ def reasons_to_leave(balanced: Balanced) -> Iterator[str]:
         yield words
         return
     if (largest is None or not largest.is_large) and not (asked and balanced.changes):
-        yield say("Leave the machine as it is: nothing is large beside its yardstick.")
+        yield say("Leave the machine as it is: no figure is large relative to its reference value.")
     elif balanced.changes:
         yield say(
-            "Leave the masses as they are: the best that fits the room that is assumed, "
-            "{remedy}, takes {gain} % off {aims}; {why}.",
+            "Leave the masses as they are: the best change within the assumed space, {remedy}, "
+            "reduces {aims} by {gain} %; {why}.",
             **_best_tried(balanced),
         )
     elif largest is not None and largest.is_shaking:
         yield say(
-            "Leave the masses as they are: in the room that is assumed, no change of a mass about "
-            "a pivot of the frame makes {aims} noticeably smaller.",
+            "Leave the masses as they are: within the assumed space, no change of a mass about a "
+            "frame pivot reduces {aims} noticeably.",
             aims=aims_told(balanced),
         )
     elif largest is not None:
@@ -196,8 +196,8 @@ def reasons_beside_weights(balanced: Balanced) -> Iterator[str]:
     """Why no other mass is offered, where a weight is named first."""
     if balanced.changes:
         yield say(
-            "Nothing else that was tried is worth building: the best that fits the room that is "
-            "assumed, {remedy}, takes {gain} % off {aims}; {why}.",
+            "No other change that was tried is worth building: the best within the assumed "
+            "space, {remedy}, reduces {aims} by {gain} %; {why}.",
             **_best_tried(balanced),
         )
 
@@ -267,7 +267,7 @@ def beside_the_aim(balanced: Balanced) -> Iterator[str]:
               and abs(new.value) <= (1 - FALLEN) * abs(was.value)
               and not was.is_limit]  # fmt: skip
     if fallen:
-        yield say("That also brings down {figures}.", figures=listed(fallen))
+        yield say("This also reduces {figures}.", figures=listed(fallen))
     poor = balanced.advice.beyond.transmission
     for item in _left(balanced.advice)[:1]:
         if poor is not None and item.yardstick_kind == "transmission":
@@ -334,8 +334,8 @@ def _with_more_room(balanced: Balanced) -> Iterator[str]:
     if (with_room := balanced.with_room) is not None:
         assumed, wanted = display("length", [with_room.assumed, with_room.wanted]), with_room.wanted
         yield say(
-            "The room about {at} is assumed, from the lengths of the links, to reach {assumed}: "
-            "with {wanted} there, {remedy} would take {gain} % off with {mass}.",
+            "The space about {at} is assumed, from the lengths of the links, to have a radius of "
+            "{assumed}: with {wanted}, {remedy} would bring a reduction of {gain} % with {mass}.",
             at=with_room.at,
             assumed=assumed.with_unit(assumed.text(with_room.assumed, digits=2)),
             wanted=assumed.with_unit(assumed.text(wanted, digits=2)),
@@ -388,7 +388,7 @@ def why_not(balanced: Balanced) -> str:
         reason = say("the unbalance may be what the machine is for")
     else:
         mass = told(balanced.added_mass, "mass", digits=3)
-        reason = say("{mass} would be added, too much for that", mass=mass)
+        reason = say("{mass} would be added, too much for this reduction", mass=mass)
     return reason
 
 
@@ -431,7 +431,7 @@ def advice_blocks(balanced: Balanced) -> Iterator[Block]:
             (remedy_named(item), RelativeChange(1.0, 1 - item.gain), why_not(item)) for item in same
         )
         columns = (Column(say("remedy")), Column(say("change")), Column(say("why not")))
-        title = say("What was tried to make smaller {aims}", aims=aims)
+        title = say("Candidates for reducing {aims}", aims=aims)
         yield Table(title, columns, rows, detail=True)
     yield from map(Text, _asking_for_more(balanced))
 
@@ -440,21 +440,20 @@ def _asking_for_more(balanced: Balanced) -> Iterator[str]:
     """What is offered, and how to ask for something else."""
     if balanced.tried:
         yield say(
-            "A change is offered that takes away at least {least} % of its aim, of what adds mass "
-            "{added} % and {net} % more than the share that it adds to the mass of the moving "
-            "links, with which the "
-            "figure that is large falls in its own measure too, and that makes no headline "
-            "figure worse by more than 1 %, or a tenth of the share that is gone, no force in a "
-            "single joint and no component of the shaking force by more than 5 %, but for what is "
-            "small beside its yardstick and stays so; and no couple that was not there, larger "
-            "than what is gone.",
+            "A change is offered if it reduces its objective by at least {least} % (with added "
+            "mass by {added} %, and by {net} % more than the share that it adds to the mass of "
+            "the moving links), reduces the large figure in its own measure too, increases no "
+            "headline figure by more than 1 % or a tenth of the reduction, and no single joint "
+            "force or component of the shaking force by more than 5 % (except figures that stay "
+            "small relative to their reference value), and introduces no couple larger than the "
+            "reduction.",
             least=percent(LEAST_GAIN, 0),
             added=percent(LEAST_GAIN_OF_ADDED, 0),
             net=percent(LEAST_NET_GAIN, 0),
         )
         yield say(
-            "How far the room about a pivot reaches where nothing is in the way is assumed from "
-            "the lengths of the links."
+            "Where nothing limits it, the space about a pivot is assumed from the lengths of the "
+            "links."
         )
     of_one = to_say(
         "The file does not say what may be changed: [balance] in it asks for something else, or "

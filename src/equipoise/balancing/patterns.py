@@ -226,7 +226,7 @@ def pattern_blocks(machine: Machine, rows: int, spacing: float) -> Iterator[Bloc
         for pattern in patterns
     ]
     heads = ("", say("orders left, of how many rows"), say("twist"))
-    title = say("What is left, up to the order from which it repeats")
+    title = say("Remaining orders, up to the order from which they repeat")
     yield Table(title, tuple(map(Column, heads)), tuple(left))
     outputs = ("shaking_force", *OF_ROWS)
     columns = (

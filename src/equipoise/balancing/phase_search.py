@@ -102,7 +102,7 @@ class PhaseSearch:
                 ),
             )
         if not self.objectives:
-            raise UsageError(Note("got no objective; give what is to become small"))
+            raise UsageError(Note("got no objective; give an output to minimize"))
         if not 0 < step <= pi / 2 * (1 + 1e-12):
             raise UsageError(
                 Note(

@@ -223,6 +223,6 @@ def _notes(search: PhaseSearch, found: Array, complete: bool) -> Iterator[Note]:
             )
     if not complete:
         yield Note(
-            "the search ended before it had proved that nothing better exists; "
-            "the gap tells how far it came"
+            "the search ended before the optimum was proved; the gap bounds the possible "
+            "improvement"
         )

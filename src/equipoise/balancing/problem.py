@@ -227,8 +227,8 @@ class Problem:
             if self._effect(one) < WITHOUT_EFFECT * self.scale(one):
                 raise UsageError(
                     Note(
-                        "nothing that is free to change has an effect on the {name}; free "
-                        "something else, or choose another objective",
+                        "none of the permitted changes affects the {name}; permit another "
+                        "change, or choose another objective",
                         name=one.name,
                     )
                 )

@@ -140,8 +140,8 @@ class AddedWeight(DesignVariables):
         if given or float(numbers[0]) * self.mass_unit <= self.cap * (1 - 1e-3):
             return None
         return Note(
-            "the weight on {link} has come to ten times the mass of the links, "
-            "where it was stopped; more would do better still: give it at_most",
+            "the weight on {link} has reached the default limit of ten times the mass of the "
+            "links; a larger mass would be better: give at_most",
             link=self.link,
         )
 

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
 app = App(
     name="equipoise",
-    help="How a planar linkage moves, what that does to its frame, drive and joints.",
+    help="Motion and forces of planar linkages: analyse, balance, put on mounts, optimize.",
     version=__version__,
     help_format="plaintext",
     help_formatter=Laid(),

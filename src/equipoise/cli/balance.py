@@ -50,18 +50,18 @@ def balance(
     out: Out = None,
     drawing: NewFile = None,
 ) -> CommandResult:
-    """What to change so that the machine shakes less, with proof that nothing better exists.
+    """Optimal changes of a machine to reduce its shaking, with a proof of optimality.
 
     Parameters
     ----------
     machine
-        Path of a model file, or the name of a bundled example.  Its table [balance] says what may
-        change and what is to become small; the options below take the place of it.  Without either,
+        Path of a model file, or the name of a bundled example.  Its table [balance] has the
+        permitted changes and the objectives; the options below replace them.  Without both,
         remedies that can be built are tried.
     objective
-        What is to become small: "shaking_force.y", "peak shaking_moment about D".  May be repeated.
+        Objective: "shaking_force.y", "peak shaking_moment about D".  May be repeated.
     limit
-        What must be kept: "peak joints.B <= 120 N", "rms drive_torque <= 90 %",
+        Limit on another output: "peak joints.B <= 120 N", "rms drive_torque <= 90 %",
         "added_mass <= 500 g".  May be repeated.
     out
         Write the balanced machine as a new model file.
@@ -164,21 +164,21 @@ def trade_off(
     speed: Speed = None,
     freed: Freed = Freed(),
 ) -> Result:
-    """The best that can be had of two objectives at once: their Pareto front, point by point.
+    """Pareto front of two objectives, point by point.
 
     Parameters
     ----------
     machine
-        Path of a model file, or the name of a bundled example.  Its table [balance] says what may
-        change; the options below take the place of it.
+        Path of a model file, or the name of a bundled example.  Its table [balance] has the
+        permitted changes; the options below replace them.
     first
-        What is to become small: "shaking_force.y", "peak shaking_moment about D".
+        Objective: "shaking_force.y", "peak shaking_moment about D".
     second
-        What is to become small besides.
+        Second objective.
     points
         Number of points.
     limit
-        What must be kept: "peak joints.B <= 120 N".  May be repeated.
+        Limit on another output: "peak joints.B <= 120 N".  May be repeated.
     """
     from equipoise.balancing import pareto
 
@@ -192,7 +192,7 @@ def trade_off(
 @app.command
 @command(Printed, long=True)
 def conditions(machine: LinkageFile, /, *, speed: Speed = None) -> CommandResult:
-    """When the shaking force is zero or a pure sine, and whether mass can make it so."""
+    """Conditions for a shaking force of zero or a pure sine, and whether masses can meet them."""
     from equipoise.balancing import linear_conditions as balancing
     from equipoise.balancing.physical_consistency import feasibility
 
@@ -220,7 +220,7 @@ def sensitivities(
     crank_zero: CrankZero = None,
     speed: Speed = None,
 ) -> CommandResult:
-    """What each link's mass, centre of mass and inertia does to an output.
+    """Sensitivity of an output to mass, centre of mass and inertia of each link.
 
     Parameters
     ----------
@@ -249,14 +249,14 @@ def arrangements(
     ] = 0.3,
     speed: Speed = None,
 ) -> CommandResult:
-    """Named arrangements of so many rows in fixed phases, and what each leaves of the forces.
+    """Named arrangements of rows in fixed phases, and the remaining forces of each.
 
     Parameters
     ----------
     rows
-        How many linkages stand side by side.
+        Number of linkages side by side.
     spacing
-        From row to row, 300 mm if not given.
+        Distance from row to row.  Default: 300 mm.
     """
     from equipoise.balancing.patterns import pattern_blocks, patterns_for
     from equipoise.vibration.forced import check_moving

@@ -35,17 +35,17 @@ def best(
     chosen: Chosen = Chosen(),
     outputs: Outputs,
 ) -> CommandResult:
-    """The best designs of a store, of those that keep every limit; of several aims, the trade-offs.
+    """Best designs of a store within all limits; for several objectives, the Pareto front.
 
     Parameters
     ----------
     by
-        Name of an output or of a varied number to go by, instead of what the study makes small or
-        large; small is good unless the study says otherwise.  May be repeated.
+        Output or varied number to rank by, instead of the objectives of the study; smallest first
+        unless the study says otherwise.  May be repeated.
     largest
-        The same, of which much is good.  May be repeated.
+        Output or varied number to rank by, largest first.  May be repeated.
     most
-        Most designs that are told.
+        Largest number of designs to list.
     """
     from equipoise.figures.designs import best_charts
     from equipoise.schema.study_units import machine_of, owner_of, study_of, units_in
@@ -89,17 +89,18 @@ def search(
     computers: Computers = Computers(),
     chosen: Chosen = Chosen(),
 ) -> CommandResult:
-    """Look for the best designs of a study; of several aims, those that no other beats.
+    """Optimize the designs of a study; for several objectives, find the Pareto front.
 
     Parameters
     ----------
     population
-        Designs in a generation; if not given 100, or a tenth of the designs of the study.
+        Designs in a generation.  Default: 100, or a tenth of the designs of the study.
     generations
-        Most generations; if not given as many as the designs of the study make, at most 200.  The
-        search ends where nothing gets better any more.
+        Largest number of generations.  Default: as many as the designs of the study make, at most
+        200. The search ends when it has converged.
     seed
-        Of the random numbers, that of the study if not given; the same gives the same designs.
+        Seed of the random numbers.  Default: that of the study.  The same seed gives the same
+        designs.
     """
     from equipoise.figures.designs import searched_charts
     from equipoise.schema.study_units import units_of

@@ -52,7 +52,7 @@ def export(
     Parameters
     ----------
     out
-        The file, whose ending tells the format: .html for an interactive page, .xml for MuJoCo,
+        Output file; its extension gives the format: .html for an interactive page, .xml for MuJoCo,
         .dxf, .xlsx, .inp for finite elements of a link, and for the designs of a store .csv or
         .parquet.  docs/exchange.md has them all.
     format
@@ -61,9 +61,9 @@ def export(
         Crank angle at which a linkage is drawn; 0 deg if not given.  Of loads along a link that of
         the largest stress, or, as CSV, all.
     balanced
-        Balance the linkage first, as "equipoise balance" would; its counterweights are told too.
+        Balance the linkage first, as "equipoise balance" does; its counterweights are included.
     kept
-        Of a store, only designs that keep every limit.
+        For a store: only designs within all limits.
     link
         Of loads along a link: which; the only one with a section if not given.
     angles

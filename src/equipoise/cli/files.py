@@ -35,7 +35,7 @@ def examples() -> CommandResult:
 
 @command(Shown)
 def check(file: AnyFile, /) -> CommandResult:
-    """Check a file and tell how the linkage or tool is built up, or what a study will compute."""
+    """Check a file, and describe the structure of the machine or the computations of a study."""
     from equipoise.handheld.model import Tool
     from equipoise.mechanism.parts.machine import Machine
     from equipoise.present import checks
@@ -65,9 +65,9 @@ def schema(*, tool: bool = False, study: bool = False) -> CommandResult:
     Parameters
     ----------
     tool
-        That of the file of a hand-held tool.
+        Schema of the file of a hand-held tool.
     study
-        That of the study file.
+        Schema of the study file.
     """
     import json
 
@@ -81,12 +81,13 @@ def schema(*, tool: bool = False, study: bool = False) -> CommandResult:
 def completion(
     shell: Annotated[Literal["bash", "zsh", "fish", "powershell"], Parameter(name="SHELL")], /
 ) -> CommandResult:
-    """Print what lets a shell complete commands, options and their values.
+    """Print a completion script for a shell.
 
     Parameters
     ----------
     shell
-        Whose; bash reads it from ~/.local/share/bash-completion/completions/equipoise, fish from
+        Name of the shell; bash reads the script from
+        ~/.local/share/bash-completion/completions/equipoise, fish from
         ~/.config/fish/completions/equipoise.fish, zsh as _equipoise from a folder of its fpath.
     """
     from equipoise.cli import app
@@ -108,11 +109,11 @@ def new(
     Parameters
     ----------
     file
-        Where to write it, machine.toml if not given; a file that is there already is left alone.
+        File to write.  Default: machine.toml.  An existing file is not overwritten.
     tool
-        That of a hand-held tool, not of a linkage.
+        Write the model of a hand-held tool instead of a linkage.
     study
-        That of a study of many designs; study.toml if no name is given.
+        Write a study of many designs; default name: study.toml.
     """
     from importlib.resources import files
 
@@ -139,19 +140,19 @@ def serve(
     port: Annotated[int | None, count(0, 65535)] = None,
     no_browser: bool = False,
 ) -> None:
-    """Open a page in the browser on which the linkage moves and can be dragged and changed.
+    """Open the live page in the browser, to animate, drag and change a linkage.
 
-    It is served on this machine, for this machine only, until Ctrl+C; nothing is sent elsewhere.
+    The server runs until Ctrl+C and accepts connections from this computer only.
 
     Parameters
     ----------
     file
-        Path of a model file or of a store of a study, or the name of a bundled example; else one is
-        picked on the page.
+        Path of a model file or of a store of a study, or the name of a bundled example.  Default:
+        choose one on the page.
     port
-        On which it is served; if not given 8471, or any that is free.
+        Port of the server.  Default: 8471, or any free port.
     no_browser
-        Print the address, and open no browser.
+        Print the address without opening a browser.
     """
     from equipoise.web import server
     from equipoise.web.desk import begun

@@ -93,9 +93,9 @@ def tool(
     duration: Annotated[Any, read_by(time_a_day, '"2 h"')] = None,
     outputs: Outputs,
 ) -> CommandResult:
-    """A hand-held tool: how its shaft vibrates, and what the hands get.
+    """Vibration of a hand-held tool, and the exposure of the hands.
 
-    Without any of --modes, --respond and --exposure it tells what stands first of all three.
+    Without --modes, --respond and --exposure, a summary of all three is printed.
 
     Parameters
     ----------
@@ -106,13 +106,13 @@ def tool(
     respond
         Transmission, forces and motion over a range of speeds of the engine.
     speeds
-        Number of speeds in the range, 400 if not given; more are added about resonances.
+        Number of speeds in the range (default: 400); more are added near resonances.
     at
-        With --respond: further places of the shaft to be told of.
+        With --respond: additional positions on the shaft to report.
     exposure
-        Weighted acceleration of the hands, and what a day of work amounts to.
+        Weighted acceleration of the hands, and daily exposure.
     duration
-        Time a day at the working speed, in the place of the file's [[work]].
+        Daily time at the working speed, instead of [[work]] of the file.
     """
     from equipoise.handheld.sweep import default_answers
 
@@ -325,7 +325,7 @@ def sensitivities(
     *,
     speeds: Speeds = None,
 ) -> CommandResult:
-    """What each number of a tool does to the hands.
+    """Sensitivity of the hand vibration to each number of a tool.
 
     Parameters
     ----------
@@ -361,12 +361,12 @@ def design(
     *,
     out: Out = None,
 ) -> CommandResult:
-    """Change what [design] allows so that the hands feel least.
+    """Minimize the hand vibration within the limits of [design].
 
     Parameters
     ----------
     out
-        Write the better tool to this new file.
+        Write the optimized tool to this new file.
     """
     from equipoise.handheld.design import design_tool
 

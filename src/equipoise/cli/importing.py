@@ -55,14 +55,14 @@ def import_file(
     ] = None,
     shown: Shown,
 ) -> CommandResult:
-    """Make a model file of a DXF or SVG drawing, of MJCF or URDF, or of Linkage or PMKS+.
+    """Create a model file from a DXF or SVG drawing, MJCF, URDF, Linkage or PMKS+.
 
     Parameters
     ----------
     file
-        Path of the file; what it is, its content and its ending tell.
+        Path of the file.  The format is detected from content and extension.
     out
-        Model file to write; FILE.toml beside you if not given.
+        Model file to write.  Default: FILE.toml in the current folder.
     crank
         Driven link; if not given the file's, or one that turns fully.
     speed

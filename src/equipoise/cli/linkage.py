@@ -78,13 +78,13 @@ def analyze(
     Parameters
     ----------
     angles
-        Number of crank angles a turn, or the angles: "0 deg, 45 deg, 90 deg".
+        Number of crank angles per turn, or a list of angles: "0 deg, 45 deg, 90 deg".
     acceleration
         Acceleration of the crank instead of the file's.
     about
-        Point about which moments are taken: a point of the frame, or "10 mm, 20 mm".
+        Reference point of moments: a point of the frame, or "10 mm, 20 mm".
     split
-        With --json: add every force by cause and by link.
+        With --json: add the contributions to every force by cause and by link.
     csv
         Write every signal against crank angle to this file.
     orders
@@ -92,10 +92,11 @@ def analyze(
     crank_zero
         With --orders: direction from which crank angles count; else the x axis.
     output
-        Tell this output over crank angle instead, by its name in --json, such as "points.P.vx" or
+        Print this output over crank angle instead, by its name in --json, such as "points.P.vx" or
         "joints.A".  May be repeated.
     dwell
-        Tell how long sliders and points move by no more than "0.5 mm", or links by "0.5 deg".
+        Print the dwells in which sliders and points move by at most "0.5 mm", or links by "0.5
+        deg".
     """
     from equipoise.results.analysis import analyze as analyzed
     from equipoise.results.analysis import order_values
@@ -130,7 +131,7 @@ def modes(machine: SupportFile, /, *, model: Model | None = None) -> Result:
     Parameters
     ----------
     model
-        moment, the default: the linkages' mass spread as in the mean of a turn; linear or torque:
+        moment, the default: mass of the linkages distributed, mean over one turn; linear or torque:
         at the drive's pivot.
     """
     from equipoise.vibration import free
@@ -167,7 +168,7 @@ def respond(
     speeds: Annotated[int | None, count(2, 20_000)] = None,
     drive: bool = False,
 ) -> CommandResult:
-    """How the support of a machine vibrates under its linkages, at one speed or over a range.
+    """Vibration of a machine on its support, at one speed or over a range of speeds.
 
     Parameters
     ----------
@@ -178,11 +179,10 @@ def respond(
     speed
         Speed of the crank instead of the file's, or a range: "20 rpm : 400 rpm".
     speeds
-        With a range: number of speeds, 200 if not given; more are added about resonances, where
-        curves bend, and at that of the file.  Without --speed the range is that of speeds in
-        [drive].
+        With a range: number of speeds (default: 200); more are added near resonances, where curves
+        bend, and at the speed of the file.  Without --speed the range is speeds in [drive].
     drive
-        Let the speed follow from the motor in [drive.motor], by the model exact.
+        Compute the crank speed from the motor in [drive.motor], with the exact model.
     """
     from equipoise.vibration import forced, sweep
 
@@ -236,14 +236,14 @@ def simulate(
     speed: Speed = None,
     drive: bool = False,
 ) -> Result:
-    """How the support vibrates when the machine starts from rest, by the model exact.
+    """Simulate the vibration of the support from rest, with the exact model.
 
     Parameters
     ----------
     duration
-        How long the machine is followed, such as "5 s".
+        Simulated time, such as "5 s".
     drive
-        Let the speed follow from the motor in [drive.motor].
+        Compute the crank speed from the motor in [drive.motor].
     """
     from equipoise.vibration import transient
 
@@ -271,9 +271,9 @@ def run(
     off_turns: Annotated[int | None, count(1, 10_000)] = None,
     fluctuation: Annotated[float | None, read_by(_share, '"2 %"')] = None,
 ) -> Result:
-    """How a machine on a fixed frame runs when its motor, weight, springs and loads decide.
+    """Simulate a machine on a fixed frame under its motor, weight, springs and loads.
 
-    What no option says is as in the table [run] of the file.
+    Defaults are those of the table [run] of the file.
 
     Parameters
     ----------
@@ -291,7 +291,8 @@ def run(
     off_turns
         Turns of the crank after which the motor is switched off.
     fluctuation
-        Also size a flywheel for this share of the mean speed from lowest to highest, such as "2 %".
+        Also size a flywheel for this speed fluctuation (highest minus lowest, over the mean), such
+        as "2 %".
     """
     from equipoise.running.run import run as follow
 
@@ -322,12 +323,12 @@ def plant(
     crank_zero: CrankZero = None,
     angles: Annotated[int | None, count(0, MOST), BelongsTo("--csv")] = None,
 ) -> CommandResult:
-    """The path of a planting finger relative to machine and ground, and every figure of it.
+    """Path of a planting finger relative to machine and ground, and its figures.
 
     Parameters
     ----------
     angles
-        With --csv: number of crank angles a turn, 360 if not given.
+        With --csv: number of crank angles per turn.  Default: 360.
     """
     from equipoise.planting.summary import plant as read_off
     from equipoise.planting.summary import table
@@ -351,18 +352,18 @@ def fit(
     speed: Speed = None,
     workers: WorkerCount = None,
 ) -> CommandResult:
-    """Look for the geometry that meets targets and limits, and write it as a new model file.
+    """Search for a geometry that meets targets and limits, and write it as a new model file.
 
     Parameters
     ----------
     targets
-        A TOML file with what is wanted, and what may change.
+        TOML file with the goals and the permitted changes.
     out
-        The new model file; FILE-fit.toml beside you if not given.
+        New model file.  Default: FILE-fit.toml in the current folder.
     seed
-        Of the random numbers, instead of the target file's.
+        Seed of the random numbers, instead of that of the target file.
     workers
-        Processes that judge designs; as many as there are processors if not given.
+        Number of processes that evaluate designs.  Default: the number of processors.
     """
     from equipoise.planting.goals import figure_names
     from equipoise.planting.search import fit_planting

@@ -71,7 +71,7 @@ def decay(
     stiffness
         Of the spring, or of a pivot, "500 N m/rad"; adds inertia and forces.
     arm
-        Distance from the pivot at which the displacement was read; makes an angle of it.
+        Distance from the pivot at which the displacement was measured; converts it to an angle.
     spring_arm
         Distance from the pivot at which the spring acts; its stiffness is then in N/m.
     confidence
@@ -206,7 +206,7 @@ def exposure(
     periodic: bool = False,
     gauge: Names = None,
 ) -> CommandResult:
-    """Hand-arm vibration: weighted acceleration, a day's exposure, and how long one may work.
+    """Hand-arm vibration: weighted acceleration, daily exposure and permitted working time.
 
     Parameters
     ----------
@@ -215,10 +215,10 @@ def exposure(
         signals (columns "time [s]" and "x [m/s^2]", y, z), spectra ("frequency [Hz]" and the
         same), tasks ("task", "acceleration [m/s^2]", "duration [h]"), responses of gauges.
     duration
-        Time of exposure a day of a signal, a spectrum, or --idle and --racing.  One for all of
-        them, or repeated for each.
+        Daily exposure time of signals, spectra, or --idle and --racing: one for all, or repeated
+        for each.
     idle
-        Total value when idling; put together with --racing as in ISO 22867.
+        Total value when idling; combined with --racing as in ISO 22867.
     racing
         Total value when racing.
     bands
@@ -228,8 +228,8 @@ def exposure(
     single_axis
         Estimate the total value of one or two axes as 1.7 times the largest.
     periodic
-        The signals are whole periods of a steady vibration, with nothing above half the sampling
-        rate, as simulated ones; any rate and duration will do then.
+        The signals are whole periods of a steady vibration without content above half the sampling
+        rate, such as simulated ones; any rate and duration is accepted.
     gauge
         Of what "equipoise respond --csv" writes: the gauge of the hand, if there are several.
         Repeated for up to three of one place, along x, y and z.

@@ -265,7 +265,7 @@ ShownIn = Annotated[
     Any,
     read_by(_units, '"length=in"'),
     Parameter(
-        help="Units of tables and pictures where they are not to be the usual ones or the file's: "
+        help="Units of tables and plots, instead of the default ones or those of the file: "
         '"length=in, force=lbf" or "um, rad/s".'
     ),
 ]
@@ -344,7 +344,7 @@ class Computers:
     """Who computes."""
 
     workers: WorkerCount = None
-    """Threads or processes of this machine, one a processor if not given."""
+    """Threads or processes on this computer. Default: one per processor."""
     cluster: Annotated[str | None, wants("ADDRESS")] = None
     """Address of a Dask scheduler whose workers compute instead, such as tcp://192.168.0.7:8786."""
 

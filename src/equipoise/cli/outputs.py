@@ -78,7 +78,7 @@ class Length:
     """How much a command prints of what it has found."""
 
     full: bool = False
-    """Print all tables, not only what stands first: the verdict, what is large, what to look at."""
+    """Print all tables instead of the summary."""
 
 
 @Parameter(name="*")
@@ -87,9 +87,9 @@ class Drawn(Printed):
     """What a command prints and draws."""
 
     plot: NewFolder = None
-    """Draw what is told into this folder."""
+    """Save plots to this folder."""
     format: Kind | None = None
-    """With --plot: kind of the pictures, svg if not given."""
+    """With --plot: file format of the plots. Default: svg."""
 
     def __post_init__(self) -> None:
         check_belonging("--plot", self.plot is not None, format=self.format)
@@ -103,7 +103,7 @@ class Pictures(Shown):
     """Where pictures go, and as what."""
 
     out: Out = None
-    """Folder for the pictures; FILE-pictures beside you if not given."""
+    """Folder for the plots. Default: FILE-pictures in the current folder."""
     format: Kind = "svg"
     """Kind of the pictures."""
 
@@ -120,7 +120,7 @@ class Outputs(Drawn):
     """What a command prints, draws and writes as columns."""
 
     csv: NewFile = None
-    """Write what is told, column by column, to this file."""
+    """Write the results as columns to this CSV file."""
 
 
 @Parameter(name="*")
@@ -166,19 +166,26 @@ def write_text(path: str, text: str) -> list[str]:
 
 def wrote(what: str) -> str:
     """What was written."""
-    return f"wrote {what}"
+    return say("wrote {what}", what=what)
 
 
 def wrote_pictures(number: int, folder: str) -> str:
     """How many pictures were written."""
-    return wrote(f"{'1 picture' if number == 1 else f'{number} pictures'} to {folder}")
+    return say("wrote {count} pictures to {folder}", count=number, folder=folder)
 
 
 def boxes(signs: str, otherwise: str) -> list[str]:
     """Which signs no font of this computer has, if there are any, and what to do."""
     shown = "".join(dict.fromkeys(signs))[:20]
-    hint = f"install one such as Noto Sans CJK, or {otherwise}"
-    return [f"note: no font has {shown}, for which boxes are drawn; {hint}"] if signs else []
+    if not signs:
+        return []
+    missing = say(
+        "note: no font has {signs}, so boxes are drawn; install one such as Noto Sans CJK, "
+        "or {cure}",
+        signs=shown,
+        cure=otherwise,
+    )
+    return [missing]
 
 
 def write_pictures(figures: Mapping[str, Picture], folder: str, kind: Kind) -> list[str]:

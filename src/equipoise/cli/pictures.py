@@ -79,14 +79,14 @@ def plot(
     speed: AnySpeed = None,
     pictures: Pictures,
 ) -> CommandResult:
-    """Every picture of a linkage or a tool: motion, forces, vibration, balance.
+    """Save plots of a linkage or a tool: motion, forces, vibration, balance.
 
     Parameters
     ----------
     only
-        Draw this picture, by its name, and no other.  May be repeated.
+        Save this plot only, by its name.  May be repeated.
     output
-        Draw this output over crank angle, such as "points.P.vx", instead.  May be repeated.
+        Plot this output over crank angle instead, such as "points.P.vx".  May be repeated.
     at
         Crank angles at which the linkage is drawn.
     """
@@ -168,9 +168,9 @@ def landscape(
     second
         Another.
     output
-        What the map tells, such as "rms shaking_force.y".
+        Output of the map, such as "rms shaking_force.y".
     set
-        A number that is set first, "counterweights.crank.mass = 1 kg".  May be repeated.
+        A number to set first, "counterweights.crank.mass = 1 kg".  May be repeated.
     points
         Values of each number.
     """

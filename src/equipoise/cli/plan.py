@@ -94,33 +94,32 @@ class Freed:
     """What may be changed, in the place of what the table [balance] says."""
 
     move_cm: Links = None
-    """Free the centre of mass of this link.  May be repeated."""
+    """Permit a new position of the centre of mass of this link.  May be repeated."""
     crank_counterweight: bool = False
-    """Free a counterweight on the crank's axis."""
+    """Permit a counterweight on the crank's axis."""
     counterweight: Links = None
-    """Free a counterweight on this link, about its pin in the frame, or its first point where it
-    has none.  May be repeated."""
+    """Permit a counterweight on this link, about its pin in the frame, or its first point if it has
+    none.  May be repeated."""
     geared_counterweight: Annotated[str | None, wants("LINK")] = None
-    """Free a counterweight on a shaft geared to this link."""
+    """Permit a counterweight on a shaft geared to this link."""
     ratio: Annotated[Any, read_by(_ratio)] = None
     """With --geared-counterweight: speed of the shaft over the link's, or a range "0.3, 2"."""
     pitch_radius: Annotated[float | None, size("length")] = None
-    """With --geared-counterweight: of the gear on the link."""
+    """With --geared-counterweight: pitch radius of the gear on the link."""
     shape: Shape | None = None
-    """Of counterweights: any distribution of mass, point, disc, ring or sector."""
+    """Shape of counterweights: any distribution of mass, point, disc, ring or sector."""
     radius: Annotated[float | None, size("length")] = None
-    """Of the room that a counterweight has; the reach of its link if neither this nor a mass is
-    given."""
+    """Largest radius of a counterweight. Default, without a mass: the length of its link."""
     mass: Annotated[float | None, size("mass")] = None
-    """Of a counterweight, where it is given."""
+    """Fixed mass of a counterweight."""
     at_most: Annotated[float | None, size("mass")] = None
-    """Most mass of a counterweight."""
+    """Largest mass of a counterweight."""
     thickness: Annotated[float | None, size("length"), wants('"8 mm"')] = None
-    """Of the plate that discs, rings and sectors are cut from."""
+    """Thickness of the plate for discs, rings and sectors."""
     material: Annotated[str | None, wants("MATERIAL")] = None
-    """Of that plate, such as steel."""
+    """Material of that plate, such as steel."""
     phases: bool = False
-    """Free the phases of [[rows]]."""
+    """Permit new phases of [[rows]]."""
 
     def __post_init__(self) -> None:
         of_weights = ("shape", "radius", "mass", "at_most", "thickness", "material")

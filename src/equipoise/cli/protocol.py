@@ -47,12 +47,12 @@ ANSWER = {
 
 
 def mcp(*, folder: Annotated[str, wants("FOLDER")] = ".") -> None:
-    """Offer the commands as tools to a program, by the Model Context Protocol on standard streams.
+    """Serve the commands as tools to other programs, by the Model Context Protocol.
 
     Parameters
     ----------
     folder
-        Whose files are read and written; none outside of it are.
+        Folder whose files may be read and written; no others are.
     """
     needed("mcp.server.stdio", "the Model Context Protocol")
     import anyio

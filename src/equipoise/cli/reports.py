@@ -62,33 +62,32 @@ def animate(
     mode: Annotated[int | None, SIGNED] = None,
     dark: bool = False,
 ) -> CommandResult:
-    """Show how a linkage and its support move: as SVG for a page, as GIF, or as a film in MP4.
+    """Animate a linkage and its support, as SVG, GIF or MP4.
 
     A hand-held tool is shown in a mode of its vertical plane, as SVG.
 
     Parameters
     ----------
     out
-        The animation: name of an .svg, .gif or .mp4 file; FILE.svg beside you if not given.
+        Animation file, .svg, .gif or .mp4. Default: FILE.svg in the current folder.
     seconds
-        Time that a turn of the crank takes, or with --mode a swing.
+        Duration of a turn of the crank, or with --mode of an oscillation.
     turns
-        With .mp4: turns of the crank, the whole cycle if not given.
+        With .mp4: turns of the crank.  Default: the whole cycle.
     width
         Width of the picture in pixels.
     trace
-        A point whose path is drawn; can be given again.  If not given, a planting tip, or points of
+        A point whose path is drawn; may be repeated.  Default: a planting tip, or points of
         couplers.
     force
         Draw the shaking force on the frame as an arrow.
     speed
         With --force or a support: speed of the crank instead of the file's.
     exaggerate
-        By how much larger than true the support moves; 1 is to scale.  If not given, so that it
-        can be seen.
+        Magnification of the motion of the support; 1 is to scale.  Default: a visible one.
     mode
-        The support in this mode of free vibration, counted from 1, instead of what moves at speed;
-        of a tool its mode, the lowest if not given.
+        Animate this mode of the support, counted from 1, instead of the motion at speed; for a tool
+        its mode, by default the lowest.
     dark
         With .gif and .mp4: light lines on a dark ground.  An SVG follows the reader's screen.
     """
@@ -267,16 +266,16 @@ def report(
     pdf: bool = False,
     speed: SpeedText = None,
 ) -> CommandResult:
-    """One page that tells all of a linkage or a tool: summary, pictures, tables, before and after.
+    """Write a report of a linkage or a tool: summary, plots, tables, before and after.
 
     Parameters
     ----------
     out
-        Name of the report, which ends in .html or .pdf; NAME-report.html beside you if not given.
+        Report file, .html or .pdf.  Default: NAME-report.html in the current folder.
     language
         Of the report.
     pdf
-        Write a PDF beside the page too.
+        Also write a PDF next to the page.
     """
     paths = _paths(file, out, pdf)
     rate = None if speed is None else quantity("--speed", speed, "angular speed")

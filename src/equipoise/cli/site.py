@@ -23,7 +23,7 @@ def site(
     wheels: InFolder = None,
     docs: InFolder = None,
 ) -> CommandResult:
-    """Write the live page as a folder that any web host can serve; it computes in the browser.
+    """Write the live page as a folder for any web host; it computes in the browser.
 
     To try it: python -m http.server --directory FOLDER
 

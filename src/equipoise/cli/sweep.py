@@ -40,7 +40,7 @@ TOLD = 3
 def sweep(
     study: StudyFile, /, *, out: Out = None, computers: Computers = Computers()
 ) -> CommandResult:
-    """Compute every design of a study into a store, from which any interruption can be resumed.
+    """Compute every design of a study into a store; an interrupted sweep can be resumed.
 
     Parameters
     ----------
@@ -61,7 +61,7 @@ def sweep(
 
 @command(Drawn, long=True)
 def resume(store: OpenedStore, /, *, computers: Computers = Computers()) -> CommandResult:
-    """Compute what is missing in a store, as if nothing had ever stopped."""
+    """Compute the designs that are missing in a store, and continue an interrupted sweep."""
     from equipoise.schema import study_units
 
     path = str(store.path)
@@ -164,12 +164,12 @@ def tolerance(
     designs: Annotated[int | None, count(1, MOST_DESIGNS)] = None,
     computers: Computers = Computers(),
 ) -> CommandResult:
-    """What manufacturing tolerances do to the figures of a machine, and which to tighten first.
+    """Effect of manufacturing tolerances on the figures of a machine, and which to tighten first.
 
     Parameters
     ----------
     designs
-        Machines that are drawn, instead of as many as the study has.
+        Number of sampled machines, instead of that of the study.
     """
     from equipoise.figures.studies import tolerance_charts
     from equipoise.schema.study_units import units_of

@@ -197,8 +197,8 @@ class Batch:
         if moves_shared(self.base, paths):
             raise UsageError(
                 Note(
-                    "got lengths of a linkage whose joints hold more than its motion needs; "
-                    "each design has to be looked at by itself, whether they agree"
+                    "got lengths of an overconstrained linkage; each design has to be checked by "
+                    "itself for compatible lengths"
                 )
             )
         self.paths, self.wanted = tuple(paths), tuple(wanted)

@@ -81,7 +81,7 @@ class MassBatch:
         tolerance: float = 1e-4,
     ) -> None:
         if not can_use(machine, paths, wanted):
-            raise UsageError(Note("these designs or figures need the way round the cycle"))
+            raise UsageError(Note("these designs or figures need the motion over the whole cycle"))
         self.base, self.paths, self.wanted = assemble(machine), tuple(paths), tuple(wanted)
         links = {massive_link(path) for path in paths}
         self.links = [link for link in machine.links if link in links]

@@ -28,10 +28,7 @@ SWITCHING = Note(
     "be computed in a loop"
 )
 STIFF = Note("forces that joints share by their stiffness cannot be computed in a loop")
-SINGULAR = Note(
-    "forces of joints that nearly let go of the machine at some crank angle cannot be computed in "
-    "a loop"
-)
+SINGULAR = Note("joint forces near a singular position cannot be computed in a loop")
 
 Column = dict[int, Any]
 

@@ -24,7 +24,7 @@ from equipoise.sequences import sobol
 
 Array = np.ndarray[Any, Any]
 
-UNPROVED = to_say("nothing proves that no other design is better; another seed may lead further")
+UNPROVED = to_say("the optimum is not proved; another seed may give a better design")
 """What the result of a solver without a proof says of itself."""
 
 
@@ -139,5 +139,5 @@ class EveryDesign:
             numbers = np.arange(begin, min(begin + problem.population, problem.count))
             steps = np.column_stack(np.unravel_index(numbers, counts))
             problem.evaluate(np.asarray((steps + 0.5) / counts))
-        proof = to_say("every design that there is was computed, so that no other is better")
+        proof = to_say("all possible designs were computed: no other design is better")
         return DesignSolution(np.empty((0, len(counts))), proof=Note(proof))

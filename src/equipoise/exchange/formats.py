@@ -228,9 +228,8 @@ class Job:
         if joints.surplus:
             raise UsageError(
                 Note(
-                    "joints hold more than the motion needs, so that the equations of this "
-                    "format have no single solution; give another format, or leave cranks or "
-                    "guides out"
+                    "the linkage is overconstrained, so the equations of this format have no "
+                    "unique solution; give another format, or remove redundant cranks or guides"
                 )
             )
 

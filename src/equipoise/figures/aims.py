@@ -147,13 +147,13 @@ def aims_of(balanced: Balanced) -> Iterator[Aim]:
 
 
 def aims(balanced: Balanced) -> Iterator[Chart]:
-    """What was made small or limited and changed, before and after."""
+    """Objectives and limited outputs that changed, before and after."""
     every = [aim for aim in aims_of(balanced) if changed(aim.pair)]
     speeds = {speed for aim in every for speed in aim.asked[0][0].speeds}
     when = say("before and after")
     if speeds == {balanced.original.drive.speed}:
         when = say("before and after, at {speed}", speed=told_speed(balanced.original.drive.speed))
-    heading = f"{say('What was made small or limited')}, {when}"
+    heading = f"{say('Objectives and limited outputs')}, {when}"
     for suffix, some in groups(every, MOST_AIMS):
         last = max(last_order(aim.read) for aim in some)
         text = f"{heading}{continued(some, every)}"

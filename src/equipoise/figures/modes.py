@@ -191,8 +191,8 @@ def described(mode: Mode) -> str:
         return say("{hertz} Hz, {frequency} rad/s, damping ratio {damping}", **values)
     time = shown(1 / abs(decay))
     if decay > 0:
-        return say("does not swing: overdamped, dies out by a factor of e in {time} s", time=time)
-    return say("does not swing: falls over, grows by a factor of e in {time} s", time=time)
+        return say("does not oscillate: overdamped, decays by a factor of e in {time} s", time=time)
+    return say("does not oscillate: unstable, grows by a factor of e in {time} s", time=time)
 
 
 def parts_of(free: FreeVibration, mode: Mode) -> list[str]:

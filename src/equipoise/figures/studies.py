@@ -117,7 +117,7 @@ def tighten(tolerances: Tolerances, units: Units) -> Chart:
     most = 1.12 * float(np.max(gains)) or 1.0
     x = Axis(say("variance less"), PERCENT, low=0.0, high=most)
     panel = _bars_of(tolerances.causes, units, (bars,), x)
-    what = say("What half of a tolerance does: variance less, in the mean of the figures")
+    what = say("Effect of halving each tolerance: mean reduction of the variance of the figures")
     return Chart("tighten", tolerances.study.title, what, (panel,))
 
 
@@ -125,7 +125,7 @@ def shares(tolerances: Tolerances, units: Units) -> Iterator[Chart]:
     """Share of each tolerance in the variance of each figure, each with its 95 % interval."""
     causes = tolerances.causes
     every = [name for name in tolerances.scatters if name in causes[0].effects]
-    together = say("with all that it does together with others")
+    together = say("including interactions with others")
     keys = (("part", say("by itself")), ("whole", together), ("interval", say("95 % interval")))
     rows = np.arange(len(causes))
     kinds = (("first", "part", -THIN / 2), ("total", "whole", THIN / 2))

@@ -135,8 +135,8 @@ def unbounded(tool: Tool) -> Iterator[Block]:
     measured = any(station.hand is not None and station.hand.impedance for station in tool.stations)
     if not (tool.damped or measured):
         template = to_say(
-            "nothing takes power from this tool, so at its resonances there is no bound; peaks "
-            "are only those at the speeds that are computed"
+            "the tool has no damping, so its vibration at resonances is unbounded; peaks are "
+            "those at the computed speeds"
         )
         yield Notes((Note(template),))
 
@@ -278,8 +278,8 @@ def _stations(sweep: ToolSweep) -> Table:
         Column(say("bending moment"), "torque", "N m"),
     )
     title = say(
-        "Stations at the speed at which each is accelerated most, and what it does there; RMS "
-        "over time, both planes, and bending moment"
+        "Stations, each at the speed of its largest acceleration; RMS over time, both planes, "
+        "and bending moment"
     )
     return Table(title, columns, tuple(rows))
 
@@ -297,9 +297,7 @@ def _forces(sweep: ToolSweep) -> Block:
     if not rows:
         return Text(say("Nothing holds the tool."))
     columns = (Column(""), Column(""), column(say("force"), "force"), column(say("power"), "power"))
-    title = say(
-        "Largest forces on what holds the tool, of both hands where two hold on, RMS over time"
-    )
+    title = say("Largest forces on hands, harness and ground, the sum for two hands, RMS over time")
     return Table(title, columns, tuple(rows))
 
 

@@ -43,7 +43,7 @@ if TYPE_CHECKING:
     from equipoise.handheld.model import Tool
     from equipoise.handheld.studies import Variation
 
-EDGES = {"lowest": to_say("as low as it may be"), "highest": to_say("as high as it may be")}
+EDGES = {"lowest": to_say("at its lower limit"), "highest": to_say("at its upper limit")}
 VARIED = {
     "position": to_say("position of {station}"),
     "mass": to_say("mass of {station}"),
@@ -98,9 +98,9 @@ def exposure_of_tool(
     )
     yield from unbounded(exposure.response.tool)
     if exposure.worst is None:
-        yield Text(say("There is no daily exposure without work; the file tells none."))
+        yield Text(say("There is no daily exposure: the file has no table [[work]]."))
         return
-    title = say("A day at {hand}, the hand that gets most", hand=exposure.worst)
+    title = say("A day at {hand}, the hand with the largest vibration", hand=exposure.worst)
     yield ReportSection("day", title, tuple(exposure_blocks(exposure.days[exposure.worst], judged)))
 
 
@@ -152,8 +152,7 @@ def design_blocks(design: ToolDesign, judged: bool = True) -> Iterator[Block]:
     yield from unbounded(design.tool)
     yield Text(
         say(
-            "{arrived} of {searches} searches from places spread over the whole room came to this "
-            "design",
+            "{arrived} of {searches} searches from different starting points ended at this design",
             arrived=design.arrived,
             searches=design.searches,
         )
@@ -224,8 +223,8 @@ def sensitivity_blocks(
     rows = sorted((row for row in rows if row[2].value), key=lambda row: -abs(row[2].value))
     columns = (Column(""), Column(say("now")), Column(say("effect"), unit="mm/s^2"))
     title = say(
-        "What 1 % more of each number (of a position, 1 % of the shaft) does to the total value "
-        "a_hv of the worst hand, RMS over {low} to {high} rpm",
+        "Change of the total value a_hv of the worst hand, RMS over {low} to {high} rpm, for 1 % "
+        "more of each number (of a position, 1 % of the shaft)",
         **ends_told(np.array(ends)),
     )
     yield Table(title, columns, tuple(rows))

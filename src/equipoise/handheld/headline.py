@@ -43,7 +43,9 @@ def exposure_headline(exposure: ToolExposure, alone: bool = False) -> Iterator[B
     elif WORKING in exposure.named:
         at_work = {name: float(grip.a_hv[0]) for name, grip in exposure.named[WORKING].items()}
         hand = max(at_work, key=at_work.__getitem__)
-        template = to_say("The hand at {hand} gets most: {value} m/s² at the working speed")
+        template = to_say(
+            "The hand at {hand} has the largest vibration: {value} m/s² at the working speed"
+        )
         text = say(template, hand=hand, value=brief(at_work[hand]))
         yield Text(say("{sentence}.", sentence=text))
     if not alone:
@@ -113,7 +115,7 @@ def sweep_headline(sweep: ToolSweep, alone: bool = False) -> Iterator[Block]:
         k = int(highest_at(sizes[name], smooth=False))
         yield Text(
             say(
-                "Of a force at {source}, up to {ratio} times passes to {name}, at {speed} rpm.",
+                "The force on {name} is up to {ratio} times that at {source}, at {speed} rpm.",
                 source=passed.source,
                 ratio=brief(float(sizes[name][k])),
                 name=name,

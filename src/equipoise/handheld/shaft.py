@@ -178,7 +178,9 @@ def _linear(given: dict[str, Any]) -> float | None:
     if "mass_per_length" in given:
         raise ModelError("mass", Note("has no place beside mass_per_length; give one of both"))
     if given.get("segments"):
-        raise ModelError("mass", Note("does not tell that of each part; give mass_per_length"))
+        raise ModelError(
+            "mass", Note("does not determine that of each segment; give mass_per_length")
+        )
     length, mass = given["length"], given["mass"]
     if mass <= 0:
         right = Note("give more than {limit:g}", limit=0)

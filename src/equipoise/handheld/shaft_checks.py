@@ -50,8 +50,8 @@ def _wrong_profile(where: str, profile: Section | Tube, shaft: Shaft) -> Iterato
             yield ModelError(
                 f"{where}.bending_stiffness",
                 Note(
-                    "does not tell what shear does; with theory timoshenko give the measures "
-                    "of a tube, outer_diameter and material"
+                    "does not determine the shear stiffness; with theory timoshenko give the "
+                    "dimensions of a tube, outer_diameter and material"
                 ),
             )
         return

@@ -209,7 +209,7 @@ def _wrong_hand(where: str, hand: Hand) -> Iterator[ModelError]:
     elif not hand.impedance and not given:
         yield ModelError(
             where,
-            Note("nothing is said of the hand; give mass, stiffness and damping, or an impedance"),
+            Note("the hand has no properties; give mass, stiffness and damping, or an impedance"),
         )
     if len(hand.impedance) > 2:
         yield ModelError(

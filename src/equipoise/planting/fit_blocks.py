@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 def fit_blocks(fit: Fit) -> Iterator[Block]:
     """Goals, what was changed for them, and the figures before and after."""
-    yield Text(say("{count} designs judged, seed {seed}", count=fit.judged, seed=fit.seed))
+    yield Text(say("{count} designs evaluated, seed {seed}", count=fit.judged, seed=fit.seed))
     yield _goals(fit)
     yield _changes(fit)
     yield _figures(fit)

@@ -356,7 +356,8 @@ def _notes(
     base = finger_base(curve)
     if base is not None and "soil.hole_length" not in known and curve.forward[0, 0] != 0:
         yield Note(
-            "{base} is below the surface at entry or exit, so that no length of a hole is told",
+            "{base} is below the surface at entry or exit, so the length of the hole is not "
+            "defined",
             base=base,
         )
     if arm.finger_from is None and base is not None:

@@ -1,4 +1,4 @@
-"""What `equipoise check` tells of a study."""
+"""Blocks that `equipoise check` prints for a study."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from equipoise.codegen.backends import engine, processors
 from equipoise.codegen.figures import COMPUTED, REASONS
 from equipoise.errors import lacking
-from equipoise.i18n import Note
+from equipoise.i18n import Note, say, to_say
 from equipoise.quantities.numbers import rate_told, time_told
 from equipoise.results.blocks import Block, Cell, FileText, Notes, Table, Text
 from equipoise.signals import Array
@@ -24,9 +24,12 @@ from equipoise.studies.tolerances import machines_of
 if TYPE_CHECKING:
     from equipoise.studies.study import Study
 
-HOW = {"numba": "many at once, in compiled loops", "numpy": "many at once, by NumPy"}
+HOW = {
+    "numba": to_say("computed many at once, in compiled loops"),
+    "numpy": to_say("computed many at once, by NumPy"),
+}
 """How designs are computed, by what computes them."""
-SLOW = "one after the other"
+SLOW = to_say("computed one after the other")
 
 
 def study_blocks(study: Study, units: Units, file: str) -> Iterator[Block]:
@@ -35,18 +38,26 @@ def study_blocks(study: Study, units: Units, file: str) -> Iterator[Block]:
     own = study.own
     outcome = compute(own[None])
     sampling = study.sampling
-    seed = "" if sampling.method == "grid" else f", seed {sampling.seed}"
-    yield Text(f"model: {study.model.base().title}")
-    yield Text(f"{study.size} designs, {sampling.method}{seed}")
+    yield Text(say("model: {title}", title=study.model.base().title))
+    template = to_say("{count} designs, {method}, seed {seed}")
+    if sampling.method == "grid":
+        template = to_say("{count} designs, {method}")
+    yield Text(say(template, count=study.size, method=sampling.method, seed=sampling.seed))
     varied = _varied(study, units, own)
     yield Table.of("What varies", ("", "path", "model", "in the study"), varied)
     for correlation in study.correlations:
-        pair = f"{correlation.first} goes with {correlation.second}"
-        yield Text(f"{pair}, coefficient {correlation.coefficient:g}")
+        yield Text(
+            say(
+                "correlation of {first} and {second}, coefficient {coefficient:g}",
+                first=correlation.first,
+                second=correlation.second,
+                coefficient=correlation.coefficient,
+            )
+        )
     heads = ("", "of", "model", "at least", "at most", "make")
     yield Table.of("What is computed", heads, _computed(study, units, outcome))
     compiled = getattr(compute, "compiled", False)
-    yield Text(f"computed {HOW[engine()] if compiled else SLOW}")
+    yield Text(say(HOW[engine()] if compiled else SLOW))
     yield from map(Text, _times(study, compute))
     if outcome.reason[0] != COMPUTED:
         reason = Note(REASONS[int(outcome.reason[0])])
@@ -58,11 +69,13 @@ def _times(study: Study, compute: Evaluator) -> Iterator[str]:
     """How long each command that takes the study needs at most, and what that was taken from."""
     route = Route(study)
     found = estimated(route, study.size, route.chunk, processors())
-    here = "one processor" if found.workers == 1 else f"{found.workers} processors"
-    one = "1 design" if found.designs == 1 else f"{found.designs} designs"
-    rate = rate_told(found.rate)
-    total = _about(found.seconds)
-    yield f"time for all: {total} on {here}; {one} of a chunk went at {rate} on one"
+    yield say(
+        "time for all: {total} on {processors}; measured: {rate} on one, with {designs}",
+        total=_about(found.seconds),
+        processors=say("{count} processors", count=found.workers),
+        rate=rate_told(found.rate),
+        designs=say("{count} designs", count=found.designs),
+    )
 
     def drawn(designs: range) -> Outcome:
         return compute(samples(study, designs.start, len(designs)))
@@ -72,17 +85,24 @@ def _times(study: Study, compute: Evaluator) -> Iterator[str]:
         most = population * generations
         seconds = estimated(drawn, most, population, 1).seconds
         seconds += generations * breeding_time(study, population)
-        parts = f"{generations} generations of {population}"
-        yield f"time for a search of at most {most} designs, {parts}: {_about(seconds)}"
+        yield say(
+            "time for a search of at most {count} designs, {generations} generations of "
+            "{population}: {time}",
+            count=most,
+            generations=generations,
+            population=population,
+            time=_about(seconds),
+        )
     if _is_tolerance(study):
         most = machines_of(study)
         found = estimated(drawn, study.size, min(study.chunk, SLOW_CHUNK), 1)
         seconds = found.seconds * most / study.size
-        yield f"time for equipoise tolerance, of {most} machines: {_about(seconds)}"
+        template = to_say("time for equipoise tolerance, of {count} machines: {time}")
+        yield say(template, count=most, time=_about(seconds))
 
 
 def _about(seconds: float) -> str:
-    return f"about {time_told(seconds)}" if seconds >= 1 else "less than 1 s"
+    return say("about {time}", time=time_told(seconds)) if seconds >= 1 else say("less than 1 s")
 
 
 def _is_searched(study: Study) -> bool:
@@ -111,8 +131,12 @@ def _computed(study: Study, units: Units, outcome: Outcome) -> Iterator[tuple[Ce
 
 def _ready(study: Study, file: str) -> Iterator[str]:
     """Commands that take it, and what those lack that might."""
-    yield lacking("a sweep") or f"ready for: equipoise sweep {file} -o designs.zarr"
+    yield lacking("a sweep") or _ready_for(f"equipoise sweep {file} -o designs.zarr")
     if _is_tolerance(study):
-        yield f"ready for: equipoise tolerance {file}"
+        yield _ready_for(f"equipoise tolerance {file}")
     if study.objectives and not any(item.spread.tolerance for item in study.vary):
-        yield lacking("a search") or f"ready for: equipoise search {file}"
+        yield lacking("a search") or _ready_for(f"equipoise search {file}")
+
+
+def _ready_for(command: str) -> str:
+    return say("ready for: {command}", command=command)

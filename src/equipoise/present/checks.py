@@ -10,6 +10,7 @@ from equipoise.errors import ModelError
 from equipoise.handheld.design_plan import OUTPUTS
 from equipoise.handheld.hand_blocks import varied_named
 from equipoise.handheld.shaft import Section
+from equipoise.i18n import say, to_say
 from equipoise.mechanism.assembly.cycle import turns_given
 from equipoise.mechanism.assembly.joints import moving_links
 from equipoise.mechanism.assembly.linkage import assemble
@@ -52,15 +53,15 @@ def machine_blocks(machine: Machine) -> Iterator[Block]:
     text = f"{drive.link} at {number(drive.speed / PER_RPM)} rpm about {linkage.pivot}"
     if not machine.has_crank:
         text = driven(machine, drive.speed)
-    free = "one free motion" if not machine.drives else f"{len(machine.driven)} free motions"
-    yield Text(f"{moving_links(len(machine.links))}, {free}; driven: {text}")
+    links, mobility = moving_links(len(machine.links)), max(len(machine.driven), 1)
+    template = to_say("{links}, mobility {mobility}; driven: {drive}")
+    yield Text(say(template, links=links, mobility=mobility, drive=text))
     yield from map(Text, _build_up(linkage))
     crank = machine.crank_turns
-    turns = "one turn" if cycle.turns == 1 else f"{cycle.turns} turns"
-    after = turns if crank else f"{angle(2 * pi * cycle.turns, 0)} of the cycle"
-    repeats = "motion repeats" if turns_given(machine) == 1 else "motion and loads repeat"
-    fully = "the crank turns fully; " if crank else ""
-    yield Text(f"{fully}the {repeats} after {after}")
+    after = say("{count} turns", count=cycle.turns)
+    if not crank:
+        after = say("{angle} of the cycle", angle=angle(2 * pi * cycle.turns, 0))
+    yield Text(_repeats(crank, turns_given(machine) == 1, after))
     yield from bodies_tables(machine)
     parts = (
         *_joints(machine),
@@ -82,6 +83,17 @@ def machine_blocks(machine: Machine) -> Iterator[Block]:
     ):
         yield Notes(notes)
     yield Text("ready to be analysed")
+
+
+def _repeats(crank: bool, alone: bool, after: str) -> str:
+    """After how much of the cycle the motion repeats, with the loads or alone."""
+    if crank and alone:
+        return say("the crank turns fully; the motion repeats after {after}", after=after)
+    if crank:
+        return say("the crank turns fully; motion and loads repeat after {after}", after=after)
+    if alone:
+        return say("the motion repeats after {after}", after=after)
+    return say("motion and loads repeat after {after}", after=after)
 
 
 def _uncarried(machine: Machine) -> Iterator[str]:
@@ -196,7 +208,7 @@ def _drive_train(machine: Machine) -> Iterator[str]:
         speed = "is the drive's" if motor.mean_speed == "held" else "follows from it"
         yield f"motor: {_curve(motor)}, ratio {number(motor.ratio)}{rotor}; mean speed {speed}"
     if machine.duty:
-        yield f"duty states: {len(machine.duty)}, over which bearings live"
+        yield f"duty states for the lives of bearings: {len(machine.duty)}"
     if machine.rows:
         unit = display("angle")
         shown = [unit.text(row.phase) for row in machine.rows[:MOST_SHOWN]]

@@ -311,7 +311,7 @@ def _balance(findings: Findings) -> Iterator[PictureEntry]:
     if of_linkage:
         caption, draw = to_say("What to change, to scale."), partial(changes, balanced)
         yield PictureEntry("changes", caption, draw, partial(seen.added, findings))
-    caption = to_say("What was made small or limited, before and after, by crank angle and order.")
+    caption = to_say("Objectives and limited outputs, before and after, by crank angle and order.")
     yield from pages("aims", caption, partial(aims, balanced), partial(seen.reached, balanced))
     if of_linkage:
         captions = {

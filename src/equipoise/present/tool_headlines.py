@@ -55,7 +55,7 @@ def worst(findings: ToolFindings) -> str:
     if findings.exposure is None or WORKING not in findings.exposure.named:
         return ""
     name, value = worst_at_work(findings.exposure)
-    text = to_say("The hand at {hand} gets most: {value} m/s² at the working speed")
+    text = to_say("The hand at {hand} has the largest vibration: {value} m/s² at the working speed")
     return say(text, hand=named(name), value=brief(value))
 
 
@@ -79,4 +79,4 @@ def improved(findings: ToolFindings) -> str:
     assert findings.design is not None
     best = findings.design.figures[0]
     text = change(best.before, best.after) or percent(0)
-    return say("Vibration of the hand that gets most: {change}", change=text)
+    return say("Vibration of the worst hand: {change}", change=text)

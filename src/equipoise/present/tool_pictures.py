@@ -57,9 +57,7 @@ def of_tool(findings: ToolFindings) -> Iterator[PictureEntry]:
     if findings.design is not None:
         caption = to_say("The tool from the side before and after what is changed.")
         yield PictureEntry("side-design", caption, partial(tool_side.side_design, findings.design))
-        caption = to_say(
-            "What the hand that gets most gets over the band of speeds, before and after."
-        )
+        caption = to_say("Vibration of the worst hand over the band of speeds, before and after.")
         yield PictureEntry(
             "design",
             caption,

@@ -77,8 +77,8 @@ def _felt(exposure: ToolExposure) -> Iterator[str]:
     if WORKING in exposure.named:
         name, value = worst_at_work(exposure)
         yield say(
-            "At the working speed the hand at {hand} gets most: a weighted acceleration a_hv of "
-            "{value} m/s².",
+            "At the working speed the hand at {hand} has the largest vibration: a weighted "
+            "acceleration a_hv of {value} m/s².",
             hand=name,
             value=brief(value),
         )
@@ -134,7 +134,7 @@ def _transmitted(findings: ToolFindings) -> Iterator[str]:
         size = np.max(station.size, axis=0)
         k = int(highest_at(size, smooth=False))
         yield say(
-            "Of a force at {source}, {name} gets at most {ratio} times as much, at {speed} rpm.",
+            "The force on {name} is at most {ratio} times that at {source}, at {speed} rpm.",
             source=transmission.source,
             name=name,
             ratio=brief(float(size[k])),

@@ -34,9 +34,9 @@ MOST_LARGE, MOST_SMALL = 3, 2
 """Figures that are told beside the verdict: of those that are large, and where none is."""
 MOST_NOTES = 3
 """Notes that stand first; the others follow with all tables."""
-ELSE_LARGE = to_say("What else is large, each beside its own yardstick")
-NEXT_TO_ONE = to_say("Nothing else is large; what comes nearest to its yardstick")
-NEXT_TO_NONE = to_say("Nothing is large; what comes next to its yardstick")
+ELSE_LARGE = to_say("Other large figures, each with its reference value")
+NEXT_TO_ONE = to_say("Nothing else is large; nearest to their reference values")
+NEXT_TO_NONE = to_say("Nothing is large; nearest to their reference values")
 
 
 def analysis_headline(

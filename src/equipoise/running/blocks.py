@@ -43,8 +43,8 @@ def run_headline(run: Run, alone: bool = False) -> Iterator[Block]:
     if run.machine.drive.motor is None:
         yield Text(
             say(
-                "It has no motor: it goes on from the speed at the start, as its weight, springs "
-                "and loads let it; a table [drive.motor] drives it."
+                "The machine has no motor: it moves from its initial speed under weight, springs "
+                "and loads; add a table [drive.motor] to drive it."
             )
         )
     if run.flywheel is not None:
@@ -139,7 +139,7 @@ def _figures(run: Run) -> Iterator[str]:
     share = abs(cycle.energy) / float(np.max(run.kinetic_energy))
     gives = share > ROUNDING
     if share < SETTLED and all(source.conserves for source in run.equation.sources):
-        yield say("drive: nothing to do in the mean, with neither friction nor load in the file")
+        yield say("drive: zero mean power, as the file has neither friction nor loads")
     else:
         yield say(
             "drive: {energy} in a turn, {power} in the mean",

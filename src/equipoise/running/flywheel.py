@@ -141,7 +141,7 @@ class SteadyCycle:
             if np.max(np.abs(speed - before)) <= SAME * self.mean_speed:
                 return speed
         raise ResponseError(
-            Note("no steady state is met, as what resists changes too much with speed")
+            Note("there is no steady state, because the resistance varies too much with speed")
         )
 
     def _of_energy(self, work: Array) -> Array | None:
@@ -240,7 +240,7 @@ def _least(fluctuation: Callable[[float], float], wanted: float, about: float) -
     while missed(high) > 0:
         low, high = high, high * MANY_TIMES
         if high > LARGEST * about:
-            raise ResponseError(Note("no flywheel, however large, brings about so even a speed"))
+            raise ResponseError(Note("no flywheel of any size achieves this fluctuation"))
     return float(brentq(missed, low, high, rtol=CLOSE))
 
 

@@ -703,4 +703,4 @@ class Integration:
 
 def _not_beyond(time: float) -> ResponseError:
     """The motion can be followed up to a time, s, and no further."""
-    return ResponseError(Note("the motion cannot be followed beyond {t:g} s", t=time))
+    return ResponseError(Note("the motion cannot be integrated beyond {t:g} s", t=time))

@@ -79,7 +79,7 @@ class Tabulated:
             theta = middle[:, None] + half[:, None] * POINTS
             if theta.size > MOST_NODES:
                 raise ResponseError(
-                    Note("what acts on the crank changes too often in a cycle to be followed")
+                    Note("the load on the crank varies too rapidly within a cycle to be integrated")
                 )
             values = functions(theta.ravel()).reshape(-1, *theta.shape)
             scale = np.maximum(scale, np.max(np.abs(values), axis=(1, 2)))

@@ -87,7 +87,7 @@ class Document:
         content = deepcopy(self.content)
         above = _above(self.of, content, place) if place else {}
         if not place or not _held(above, place[-1]):
-            raise ModelError(place.shown, Note("there is no such entry; it may be deleted"))
+            raise ModelError(place.shown, Note("entry not found; it may have been deleted"))
         del above[place[-1]]
         if not above and len(place) > 1:
             del _above(self.of, content, place.parent)[place[-2]]

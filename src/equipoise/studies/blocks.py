@@ -181,12 +181,12 @@ def best_blocks(
     if best.note:
         yield Text(best.note, "broken")
     elif len(best.by) > 1:
-        yield Text(say("{count} designs that no other beats in everything", count=best.front))
+        yield Text(say("{count} Pareto-optimal designs", count=best.front))
     yield best_table(best, units)
     labels = {name: unit_in(units, name).called for name in (*best.numbers, *best.outputs)}
     paths = tuple(f"{label}: {name}" for name, label in labels.items() if label != name)
     if paths:
-        yield Facts(say("As --by takes them:"), paths)
+        yield Facts(say("Names for --by:"), paths)
 
 
 def best_table(best: Best, units: Units | None = None) -> Table:
@@ -197,7 +197,7 @@ def best_table(best: Best, units: Units | None = None) -> Table:
     if best.note:
         title = say("Designs nearest to the limits")
     elif len(best.by) > 1:
-        title = say("Designs that no other beats; {aims}", aims=aims)
+        title = say("Pareto-optimal designs; {aims}", aims=aims)
     else:
         title = say("The best designs; {aims}", aims=aims)
     return designs_table(title, labels, columns, (*best.by, *best.outputs), units)
@@ -225,13 +225,13 @@ def searched_blocks(
         parts = [say("{count} designs in {generations} generations, seed {seed}", **counted)]
     parts += [say("{count} failed", count=failed)] if failed else []
     if searched.proof is None:
-        still, growing = say("the front stands still"), say("the front may still grow")
+        still, growing = say("the front has converged"), say("the front has not converged")
         parts.append(still if searched.stood_still else growing)
     yield Text("; ".join(parts))
     yield from _limits(searched.study.outputs, units)
     yield _front(searched, units, own)
     if not searched.stood_still:
-        yield Notes((Note(to_say("it may get better yet; give more generations")),))
+        yield Notes((Note(to_say("the search has not converged; give more generations")),))
     elif searched.proof is None:
         yield Notes((Note(UNPROVED),))
 
@@ -254,9 +254,9 @@ def _front(searched: Searched, units: Units | None, own: tuple[Array, Array] | N
     if len(searched.objectives) == 1:
         title = say("The best design; {aims}", **text)
     elif len(shown) < searched.front:
-        title = say("{shown} of {count} designs that no other beats; {aims}", **text)
+        title = say("{shown} of {count} Pareto-optimal designs; {aims}", **text)
     else:
-        title = say("{count} designs that no other beats; {aims}", **text)
+        title = say("{count} Pareto-optimal designs; {aims}", **text)
     return designs_table(
         title, labels, columns, (*searched.objectives, *searched.study.names), units
     )

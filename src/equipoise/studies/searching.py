@@ -304,7 +304,7 @@ def _check(study: Study) -> None:
     if study.correlations:
         raise ModelError("correlations", Note("have no place in a search; leave them out"))
     if not study.objectives:
-        note = Note('none is to become small or large; give one of them make = "smallest"')
+        note = Note('no output is an objective; give one of them make = "smallest"')
         raise ModelError("outputs", note)
 
 

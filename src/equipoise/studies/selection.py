@@ -63,7 +63,7 @@ class Best(Result):
     by : what makes them the best, and which way; several give a Pareto front.
     designs : (K,) their numbers.  values : (K, d).  figures : (K, m).  SI units.
     numbers, outputs : names of the columns of values and figures.
-    front : number of designs that no other beats in everything, of which K are told; 1 where there
+    front : number of Pareto-optimal designs, of which K are told; 1 where there
         is one figure to go by, but for others just as good.
     kept, computed, stored : number of designs that keep every limit, that have figures, that are
         stored at all.
@@ -140,8 +140,8 @@ def _ways(
         if not makes:
             raise UsageError(
                 Note(
-                    "no output of the study is to become small or large; name one to go by, "
-                    'or give it make = "smallest" in the study'
+                    "the study has no objective; name an output to rank by, or give it make = "
+                    '"smallest" in the study'
                 )
             )
         return makes

@@ -32,7 +32,7 @@ def tolerances_blocks(tolerances: Tolerances, units: Units | None = None) -> Ite
     failed = say(", ").join(f"{what} {count}" for what, count in tolerances.failures.items())
     yield Text(f"{drawn}; {say('failed: {list}', list=failed)}" if failed else drawn)
     if tolerances.within is not None:
-        yield Text(say("Every limit is kept by {share} of them.", share=_share(tolerances.within)))
+        yield Text(say("{share} of them are within all limits.", share=_share(tolerances.within)))
     yield _scatters(tolerances, units)
     if any(scatter.within is not None for scatter in tolerances.scatters.values()):
         yield _kept(tolerances, units)
@@ -54,7 +54,7 @@ def _scatters(tolerances: Tolerances, units: Units | None) -> Table:
         parts = (item.base, item.mean, item.deviation, *(item.percentiles[p] for p in shared))
         rows.append((labelled(unit), *(in_unit(value, unit) for value in parts)))
     labels = ("", say("model"), say("mean"), say("deviation"), *(f"{p:g} %" for p in shared))
-    title = say("Figures; the columns with % tell below what so many machines lie")
+    title = say("Figures; the columns with % are percentiles")
     return Table(title, tuple(map(Column, labels)), tuple(rows))
 
 
@@ -90,7 +90,7 @@ def _causes(tolerances: Tolerances, units: Units | None) -> Table:
         gain = Value(100 * cause.gain, after=1)
         rows.append((named_together(cause.numbers, units), given, gain, *cells))
     texts = [say("variance less by")]
-    title = say("What half of a tolerance does, the most first")
+    title = say("Effect of halving each tolerance, the largest first")
     if tolerances.unchanged is not None:
         texts += [say("keep limits with half"), say("keep limits without")]
         share = percent(tolerances.unchanged, digits)
@@ -117,7 +117,7 @@ def _variances(tolerances: Tolerances, units: Units | None) -> Table:
     names = [name for name in tolerances.scatters if name in tolerances.causes[0].effects]
     causes = ((named_together(cause.numbers, units), cause) for cause in tolerances.causes)
     rows = tuple((words, *_effects(cause, names)) for words, cause in causes)
-    title = say("Share of the variance by cause, with what it does together with others, %")
+    title = say("Share of the variance by cause, including interactions with others, %")
     heads = (Column(unit_in(units, name).called) for name in names)
     return Table(title, (Column(""), *heads), rows)
 
@@ -139,14 +139,15 @@ def advice(tolerances: Tolerances, units: Units | None) -> str:
     first = tolerances.causes[0]
     if first.gain < LITTLE:
         return say(
-            "No tolerance is worth tightening: half of any takes less than 1 % off the variance."
+            "No tolerance is worth tightening: halving any of them reduces the variance by less "
+            "than 1 %."
         )
     limited = [name for name, scatter in tolerances.scatters.items() if scatter.within is not None]
     names = limited or [*tolerances.scatters]
     of = say("the figures with limits") if limited else say("the figures")
     what = named_together(first.numbers, units)
     text = say(
-        "Tighten first: {what}. Half of the tolerance takes {share} % off the variance of {of}",
+        "Tighten first: {what}. Halving the tolerance reduces the variance of {of} by {share} %",
         what=say("{names} together", names=what) if len(first.numbers) > 1 else what,
         share=f"{100 * first.gain:.0f}",
         of=unit_in(units, names[0]).called if len(names) == 1 else of,
@@ -154,12 +155,12 @@ def advice(tolerances: Tolerances, units: Units | None) -> str:
     if first.halved is None or tolerances.unchanged is None:
         return f"{text}."
     if (first.halved - tolerances.unchanged) * tolerances.rows < CHANCE:
-        return say("{text}; hardly more machines keep every limit then.", text=text)
+        return say("{text}; the share of machines within all limits hardly changes.", text=text)
     before, after = (
         percent(share, _digits(tolerances)) for share in (tolerances.unchanged, first.halved)
     )
     return say(
-        "{text}, and {after} % of the machines keep every limit, not {before} %.",
+        "{text}; {after} % of the machines are then within all limits, instead of {before} %.",
         text=text,
         after=after,
         before=before,
@@ -168,7 +169,7 @@ def advice(tolerances: Tolerances, units: Units | None) -> str:
 
 def _outside(tolerances: Tolerances) -> Iterator[Note]:
     """Limits that the model itself does not keep."""
-    text = to_say("the model itself does not keep the limits of {name}; change its numbers first")
+    text = to_say("the model itself is outside the limits of {name}; change its numbers first")
     for name, scatter in tolerances.scatters.items():
         low, high = scatter.output.at_least, scatter.output.at_most
         if (low is not None and scatter.base < low) or (high is not None and scatter.base > high):

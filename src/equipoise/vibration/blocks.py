@@ -200,8 +200,8 @@ def disagreement(others: Mapping[str, Response | None]) -> Iterator[Note]:
     if known[reference].gauges[gauge].rotation:
         dimension, unit = TURNED[0]
     template = to_say(
-        "the models differ: at {gauge}, {model} gives {reading} and {reference}, which leaves out "
-        "least, {right}; where they do not agree, use {reference}"
+        "the models differ: at {gauge}, {model} gives {reading} and {reference}, the most "
+        "complete model, {right}; use {reference} where they differ"
     )
     values = (told(readings[key], dimension, unit) for key in (worst, (reference, gauge)))
     reading, right = values
@@ -227,7 +227,7 @@ def _mounts(response: Response) -> Table:
     labels = (say("mean"), say("largest"), say("smallest"), say("RMS"), say("transmissibility"))
     in_air = (Column(say("in the air"), unit="%"),) if lifting else ()
     title = say(
-        "Mounts: force on the support, RMS about the mean; what they hand on of the shaking force"
+        "Mounts: force on the support, RMS about the mean; transmitted share of the shaking force"
     )
     return Table.of(title, ("", *labels, *in_air, *headings(MountForce.declared)), rows)
 
@@ -261,7 +261,7 @@ def _solution(response: Response) -> Iterator[str]:
         yield say("residual {residual}", residual=f"{response.residual:.1e}")
     if response.energy is not None and response.mounts:
         yield say(
-            "energy in a period: {fed} J fed in, {lost} J lost in mounts",
+            "energy per period: {fed} J supplied, {lost} J dissipated in mounts",
             fed=f"{response.energy.fed_in:.6g}",
             lost=f"{response.energy.lost:.6g}",
         )

@@ -325,7 +325,7 @@ def follow(
         raise StallError(_stalled(system, table.at(last[2 * d + 1]), states(last), last[-1]))
     if not done.success or not np.all(np.isfinite(done.y)):
         raise ResponseError(
-            Note("the motion cannot be followed beyond {t:g} s: it grows away", t=done.t[-1])
+            Note("the motion cannot be integrated beyond {t:g} s: it diverges", t=done.t[-1])
         )
     return np.asarray(done.y)
 

@@ -286,7 +286,9 @@ class ExactSolution:
                 )
                 yield Note(said, shift=f"{shift:.4g}", own=f"{own:.4g}")
         if abs(self.lean) > LEANING:
-            said = to_say("the support leans by {angle} deg from the drawn position in the mean")
+            said = to_say(
+                "the mean position of the support is tilted by {angle} deg from the drawn position"
+            )
             yield Note(said, angle=f"{self.lean:.1f}")
 
     def _gauges(self, body: SupportBody) -> dict[str, GaugeSignals]:

@@ -119,13 +119,16 @@ def left_out(machine: Machine) -> list[Note | str]:
     """What the model file gives that does nothing in a steady vibration."""
     sentences: list[Note | str] = list(idle_parts(machine.support))
     if machine.drive.acceleration:
-        said = to_say("the drive's acceleration is left out: a steady vibration has a steady crank")
+        said = to_say(
+            "the acceleration of the drive is ignored: a steady-state vibration has a constant "
+            "crank speed"
+        )
         sentences.append(Note(said))
     if machine.support is not None and machine.support.planar and machine.has_planes:
-        said = to_say("rocking moments do nothing: the support can neither roll nor yaw")
+        said = to_say("rocking moments have no effect: the support can neither roll nor yaw")
         sentences.append(Note(said))
     if machine.rubs:
-        said = to_say("friction in joints is left out: the support is shaken as without it")
+        said = to_say("friction in joints is ignored in the excitation of the support")
         sentences.append(Note(said))
     return sentences
 
@@ -221,8 +224,8 @@ def respond_exact(machine: Machine, speed: float, drive: bool) -> Response:
 
     louder = max(responses, key=loudness)
     said = to_say(
-        "another steady state at this speed shakes {share} % as much; which of "
-        "them the machine takes depends on the speeds it comes from"
+        "another steady state exists at this speed, with {share} % of this vibration; which one "
+        "occurs depends on the preceding speeds"
     )
     shares = (100 * _ratio(louder, other) for other in responses if other is not louder)
     notes = (Note(said, share=f"{share:.0f}") for share in shares)

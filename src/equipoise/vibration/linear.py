@@ -361,8 +361,8 @@ class Linear:
         ]
         if parts:
             template = to_say(
-                "the preloads do not hold the weight, but leave {parts} over; modes and linear "
-                "models are those of the drawn position, in which the machine does not rest"
+                "the preloads do not balance the weight; {parts} remain. Modes and linear models "
+                "are linearized about the drawn position, which is no equilibrium"
             )
             yield Note(template, parts=all_of(parts))
 

@@ -482,7 +482,7 @@ def in_words(multipliers: Array) -> list[Note]:
     """What to say of multipliers that are not below 1, the largest of them first."""
     largest = abs(multipliers[0]) if multipliers.size else 0.0
     if largest > 1 + NEUTRAL:
-        return [Note(to_say("this steady state is not stable: a disturbance does not die out"))]
+        return [Note(to_say("this steady state is unstable: a disturbance does not decay"))]
     if largest >= 1 - NEUTRAL:
         return [Note(to_say("a disturbance neither grows nor dies out: something is undamped"))]
     return []

@@ -41,7 +41,7 @@ def respond_linear(linear: Linear, speed: float) -> Response:
     mounts, notes = _mounts(linear, moved, moving, speed)
     notes.extend(linear.unsettled)
     if any(mode.eigenvalue.real > NEUTRAL * mode.natural_frequency for mode in linear.modes):
-        said = to_say("the support falls over by itself: it does not stand in the drawn position")
+        said = to_say("the support is unstable: the drawn position is no stable equilibrium")
         notes.append(Note(said))
     return Response(
         body.machine,
@@ -80,9 +80,12 @@ def _mounts(
         said = ""
         if not linear.rest.carries(name, mount):
             force, preload = force * 0.0, 0.0
-            said = to_say("{name} does not touch at rest, and is left out")
+            said = to_say("{name} has no contact at rest and is ignored")
         elif mount.one_sided and force.extreme(-1)[0] + preload < 0:
-            said = to_say("{name} would have to pull, which it cannot; the model exact lets it go")
+            said = to_say(
+                "{name} would be in tension, which a one-sided mount cannot transmit; the model "
+                "exact includes the loss of contact"
+            )
         if said:
             notes.append(Note(said, name=name))
         hands_on = exciting if mount.axis is None else exciting[:0]

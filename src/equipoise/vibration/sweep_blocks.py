@@ -102,7 +102,7 @@ def free_blocks(free: FreeVibration) -> Iterator[Block]:
     """Natural frequencies, damping, shapes, and the crank speeds that meet them."""
     model = free.linear.excitation.model
     if model == "moment":
-        yield Text(say("Mass of the linkages spread as in the mean of a turn."))
+        yield Text(say("Mass of the linkages: distributed, mean over one turn."))
     else:
         yield Text(say("Mass of the linkages at the drive's pivot."))
     yield Text(model_told(model))
@@ -145,7 +145,7 @@ def _met(free: FreeVibration) -> Block:
         if mode.swings
     ]
     if not rows:
-        return Text(say("No mode swings, so no crank speed meets one."))
+        return Text(say("No mode oscillates, so there is no resonance."))
     columns = (Column(say("order {order}", order=order), *CRANK) for order in MET_ORDERS)
     return Table.of(say("Crank speeds that meet a mode"), (say("mode"), *columns), rows)
 

@@ -35,8 +35,8 @@ MOST_SAMPLES = 2880
 """Crank angles in a cycle of many turns, which has fewer in each."""
 OTHER_SIDE = {item: other for pair in ALTERNATIVES for item, other in (pair, pair[::-1])}
 HELD = to_say(
-    "the stroke of the drive sets where {name} is at this crank angle, and it comes as near as it "
-    "can; change the stroke, or other points"
+    "the position of {name} is limited by the stroke of the drive; change the stroke, or other "
+    "points"
 )
 THERE = 1e-5
 """Of the size of the machine: how near a dragged point has to come to where it was put."""

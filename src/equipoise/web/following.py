@@ -57,9 +57,7 @@ class Following:
             else Note("{point} of {body!r}", point=point, body=body)
             for body, point in self.spots
         ]
-        return Note(
-            "{spots} went along, so that all joints still fit", spots=all_of(values, commas=True)
-        )
+        return Note("{spots} moved too, so that all joints fit", spots=all_of(values, commas=True))
 
 
 def following(motion: Motion, machine: Machine, goals: Goals) -> Following | None:

@@ -24,15 +24,20 @@ def lacking(sketch: Sketch) -> str:
         return say("nothing moves yet: draw a link from a point of the frame")
     joints = sketch.joints
     if not any(FRAME in bodies for bodies in joints.pins.values()):
-        return say("nothing holds the machine: pin a point of it to the frame")
+        return say("the machine is not connected to the frame: pin one of its points to the frame")
     mobility, drive = sketch.mobility, sketch.drive
     wanted = max(len(sketch.driven), 1)
     if mobility > wanted:
-        too_many = say("free motions too many: {count}", count=mobility - wanted)
+        too_many = say(
+            "mobility is {mobility}; expected {wanted}", mobility=mobility, wanted=wanted
+        )
         return f"{too_many}; {_loose(sketch, joints)}"
     if mobility < 1 and drive is None:
         links = _listed(held_too_often(joints, sketch.driven), AND)
-        return say("no free motion: too many joints hold {links}; free a point", links=links)
+        return say(
+            "no degree of freedom: overconstrained by the joints of {links}; free a point",
+            links=links,
+        )
     return _without_drive(_pivoted(sketch)) if drive is None else ""
 
 
@@ -66,9 +71,15 @@ def _loose(sketch: Sketch, joints: Structure) -> str:
         held += sum(link in (slider.link, slider.on) for slider in sketch.sliders)
         if held < 2 and free:
             points = _listed(free, OR)
-            return say("{link} hangs free: pin {points} to something", link=link, points=points)
+            return say(
+                "{link} is not connected: pin {points} to another link or the frame",
+                link=link,
+                points=points,
+            )
     links = _listed(left or [*sketch.links], AND)
-    return say("{links} can move freely: add a link, a joint or another drive", links=links)
+    return say(
+        "the position of {links} is undetermined: add a link, a joint or another drive", links=links
+    )
 
 
 def _pivoted(sketch: Sketch) -> list[str]:

@@ -112,7 +112,7 @@ def lost(before: Sketch, after: Sketch) -> Iterator[str]:
     tables = [f"[[{key}]]" for key, (old, new) in lists.items() if len(new) < len(old)]
     tables += [f"[{key}]" for key in TABLES if before.rest.get(key) and not after.rest.get(key)]
     if tables:
-        yield say("gone with it, because they named it: {tables}", tables=", ".join(tables))
+        yield say("also deleted, because they refer to it: {tables}", tables=", ".join(tables))
 
 
 def made(sketch: Sketch, asked: Message) -> tuple[Sketch, str]:

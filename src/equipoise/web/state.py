@@ -140,7 +140,7 @@ def turning(machine: Machine) -> str:
     """That a machine is finished."""
     if not machine.has_crank:
         return driven(machine, machine.drive.speed)
-    return say("1 free motion; {link} turns fully", link=machine.drive.link)
+    return say("1 degree of freedom; {link} turns fully", link=machine.drive.link)
 
 
 def _add_outputs(

@@ -246,7 +246,7 @@ def test_what_more_room_would_allow_is_said() -> None:
     assert more.remedy.helps and more.remedy.gain > found.gain + LEAST_GAIN
     assert found.to_dict()["with_room"]["gain"] == more.remedy.gain
     told = " ".join(helps_told(found))
-    assert f"The room about {more.at} is assumed, from the lengths of the links" in told
+    assert f"The space about {more.at} is assumed, from the lengths of the links" in told
     assert advise(bare("balance-shafts")).with_room is None
 
 
@@ -516,7 +516,7 @@ def test_what_falls_besides_is_said() -> None:
     before, after = (one["shaking_force"].peak for one in (old, new))
     assert after < 0.9 * before
     text = " ".join(helps_told(found))
-    assert f"That also brings down shaking force, peak, from {before:.1f} to {after:.1f} N" in text
+    assert f"This also reduces shaking force, peak, from {before:.1f} to {after:.1f} N" in text
 
 
 # -- mass taken off --------------------------------------------------------------------------------

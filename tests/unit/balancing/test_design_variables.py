@@ -228,6 +228,6 @@ def test_a_spring_that_is_wanted_all_but_constant() -> None:
     spring = found.machine.springs[-1]  # another is there already
     size = max(abs(complex(*p)) for link in machine.links.values() for p in link.points.values())
     assert 1.5 * size < spring.free_length
-    assert any("where its free length was stopped" in str(note) for note in found.notes)
+    assert any("has reached the default limit" in str(note) for note in found.notes)
     assert found.gap < 1e-8
     assert found.cost < 0.9

@@ -87,7 +87,7 @@ def test_a_counterweight_against_rows_that_cancel_already() -> None:
     rows = (Row(0.0), Row(np.pi))
     machine = replace(eq.load("yamashita-1"), rows=rows)
     plan = Balance(masses=(COUNTER,), objectives=(Objective("shaking_force"),))
-    with pytest.raises(eq.EquipoiseError, match="nothing that is free to change has an effect"):
+    with pytest.raises(eq.EquipoiseError, match="none of the permitted changes affects"):
         eq.balance(machine, plan)
 
 

@@ -331,5 +331,5 @@ def test_what_cannot_be_traded() -> None:
 
 
 def test_nothing_free() -> None:
-    with pytest.raises(UsageError, match="nothing is free"):
+    with pytest.raises(UsageError, match="no change is permitted"):
         trade_off(MACHINE, FORCE, TORQUE)

@@ -157,7 +157,7 @@ def rows(count: int, phase: float = 0.0, spacing: float = 0.3) -> Machine:
     [
         (TYPE_II, [FORCE], 5, "rows: got 0 rows, which leaves no phase to choose; give two at"),
         (rows(1), [FORCE], 5, "rows: got 1 row, which leaves no phase to choose; give two at"),
-        (rows(2), [], 5, "got no objective; give what is to become small"),
+        (rows(2), [], 5, "got no objective; give an output to minimize"),
         (rows(2), [FORCE], 0, "got a step of 0 deg; give more than 0 deg and at most 90 deg"),
         (rows(2), [FORCE], 91, "got a step of 91 deg; give more than 0 deg and at most 90 deg"),
         (
@@ -284,7 +284,7 @@ def test_many_rows_are_noted() -> None:
     more = choose_phases(rows(13), [FORCE, ROLL], combine="squares")
     assert more.combinations == 0
     assert 0 <= more.bound < more.combined[1]
-    assert "before it had proved that nothing better exists" in str(more.notes[-1])
+    assert "before the optimum was proved" in str(more.notes[-1])
     assert "too many rows for a grid" in str(more.notes[0])
     assert more.combined[1] < 0.2
 
@@ -376,7 +376,7 @@ def test_values() -> None:
 
 def test_printed() -> None:
     told = printed(choose_phases(rows(4), [FORCE, ROLL]).blocks())
-    assert "Orders of the shaking force that are left: 2, 4, 6, 8" in told
+    assert "Remaining orders of the shaking force: 2, 4, 6, 8" in told
     assert [line.split() for line in told.splitlines() if line.startswith("4 ")] == [
         ["4", "450.0", "0", "0", "0.0"]
     ]

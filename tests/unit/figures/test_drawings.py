@@ -181,7 +181,7 @@ def test_modes_are_told() -> None:
     assert f"damping ratio {mode.damping_ratio:.4g}" in shown and "pitch 1 rad" in shown
     kinds = [described(mode) for mode in eq.modes(falling()).modes]
     assert kinds[0] == "free, without a spring"
-    assert "falls over" in kinds[2] and "overdamped" in kinds[3]
+    assert "unstable" in kinds[2] and "overdamped" in kinds[3]
     assert described(Mode(complex(1e-15, 20.0), np.array([1 + 0j]))).endswith("damping ratio 0")
 
 

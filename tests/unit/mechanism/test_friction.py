@@ -303,8 +303,8 @@ def test_balancing_says_what_it_sought_without_friction() -> None:
     plan = Balance(masses=(weight,), objectives=(Objective("joints.A"),))
     worn, plain = (eq.balance(one, plan) for one in (WORN, ENGINE))
     assert worn.machine.links["crank"].mass == pytest.approx(plain.machine.links["crank"].mass)
-    assert any("is not linear in masses" in str(note) for note in worn.notes)
-    assert not any("is not linear in masses" in str(note) for note in plain.notes)
+    assert any("is not linear in the masses" in str(note) for note in worn.notes)
+    assert not any("is not linear in the masses" in str(note) for note in plain.notes)
     before, after = worn.objectives["rms of joints.A"]
     assert before == pytest.approx(eq.analyze(WORN).summary["joints.A"].rms, rel=1e-5)
     assert after == pytest.approx(eq.analyze(worn.machine).summary["joints.A"].rms, rel=1e-5)
@@ -333,7 +333,7 @@ def test_formats_say_that_they_leave_friction_out(ending: str, tmp_path: Any) ->
 def test_a_response_says_that_it_leaves_friction_out() -> None:
     machine = eq.load("yamashita-rig")
     rubbing = replace(machine, joints=(JointProperties("joints.C", torsional_damping=0.01),))
-    left_out = "friction in joints is left out: the support is shaken as without it"
+    left_out = "friction in joints is ignored in the excitation of the support"
     assert left_out in map(str, eq.respond(rubbing).notes)
     assert left_out not in map(str, eq.respond(machine).notes)
 

@@ -66,7 +66,7 @@ WRONG: list[tuple[dict[str, Any], str]] = [
     ({"joint": "joints.C", "radius": -0.01}, "joints[1].radius: got -0.01 m; give more than 0"),
     ({"joint": "joints.C", "radius": 0.0}, "joints[1].radius: got 0 m; give more than 0"),
     ({"joint": "joints.C"}, "joints[1]: give radius, stiffness, bearing or friction of the joint"),
-    ({"joint": "joints.C", "stiffness": 1e6}, "joints[1].stiffness: statics decides"),
+    ({"joint": "joints.C", "stiffness": 1e6}, "joints[1].stiffness: the joint forces of"),
 ]  # fmt: skip
 
 

@@ -53,8 +53,8 @@ def test_two_free_motions() -> None:
     """A four-bar with an arm that dangles from its coupler."""
     four = crank_rocker()
     assert refused(linked(four, arm=body(C=ORIGIN, E=(1.0, 0.0)))) == (
-        "the linkage has 2 free motions (4 moving links, 5 pins and 0 sliding joints), "
-        "and one drive can command only one; the drive leaves 'arm' undetermined"
+        "the mobility of the linkage is 2 (4 moving links, 5 pins and 0 sliding joints), "
+        "but it has one drive, which leaves 'arm' undetermined"
     )
 
 
@@ -71,8 +71,8 @@ def test_three_free_motions() -> None:
         },
     )
     message = refused(chain)
-    assert message.startswith("the linkage has 3 free motions (5 moving links, 6 pins ")
-    assert message.endswith("the drive leaves 'one', 'two', 'three' and 'four' undetermined")
+    assert message.startswith("the mobility of the linkage is 3 (5 moving links, 6 pins ")
+    assert message.endswith("which leaves 'one', 'two', 'three' and 'four' undetermined")
 
 
 def test_pins_whose_names_differ_in_case() -> None:
@@ -100,7 +100,8 @@ def test_no_free_motion() -> None:
     """A four-bar whose coupler is held by a third link to the frame."""
     told = refused(tied())
     assert told.startswith(
-        "the linkage has no free motion (count 0: 4 moving links, 6 pins and 0 sliding joints): "
+        "the linkage cannot move (mobility by count 0: 4 moving links, 6 pins "
+        "and 0 sliding joints): "
         "P of 'tie' comes "
     )
     assert "its points E and P are 1000 mm apart, and the others bring the pins " in told
@@ -115,8 +116,8 @@ def test_a_single_link_that_is_held() -> None:
 def test_held_here_and_free_there() -> None:
     """The count is one for the whole, but one part has none and another has two."""
     message = refused(tied(pendulum=body(E=ORIGIN, Q=(1.0, 0.0))))
-    assert "hold tie, while other links are free to move" in message
-    assert "one free motion, but no drive can command it" in message
+    assert "overconstrained: tie, while other links are free to move" in message
+    assert "but no drive can control it" in message
 
 
 def test_a_part_that_the_drive_does_not_reach() -> None:
@@ -125,7 +126,7 @@ def test_a_part_that_the_drive_does_not_reach() -> None:
         {"A": ORIGIN, "D": (1.0, 0.0), "E": (2.0, 0.0)},
         {"crank": body(A=ORIGIN), "lever": body(D=ORIGIN)},
     )
-    assert refused(lone).endswith("the drive leaves 'lever' undetermined")
+    assert refused(lone).endswith("which leaves 'lever' undetermined")
 
 
 def test_the_drive_turns_about_one_point_of_the_frame() -> None:

@@ -174,7 +174,7 @@ def test_a_remedy_that_makes_something_far_worse_is_told_and_not_recommended():
     found = found_of("class-three")
     assert not found.helped and found.after is None
     told = text_of(found)
-    assert "Leave the masses as they are: the best that fits the room that is assumed" in told
+    assert "Leave the masses as they are: the best change within the assumed space" in told
     assert "shaking moment, peak, from 1.62 to 3.54 N m" in told and " would grow." in told
     assert "add a counterweight" not in told
     assert [*tiles(found)][-1].value == "0"
@@ -210,8 +210,8 @@ def test_rounding_has_no_crank_angle():
 
 
 def test_notes_are_said_in_the_language_of_the_reader():
-    note = Note("{name} does not touch at rest, and is left out", name="float")
-    assert str(note) == "float does not touch at rest, and is left out"
+    note = Note("{name} has no contact at rest and is ignored", name="float")
+    assert str(note) == "float has no contact at rest and is ignored"
     with speaking("ko"):
         assert noted(note).startswith("참고: float: 정지")
         assert noted("the moon is full") == "참고(원문): the moon is full"

@@ -97,7 +97,7 @@ CASES = {
         "mounts.spring.new [N]",
         "force",
         of="respond",
-        title="Mounts: force on the support, RMS about the mean; what they hand on of the shaking "
+        title="Mounts: force on the support, RMS about the mean; transmitted share of the shaking "
         "force",
     ),
     "joint": Case(

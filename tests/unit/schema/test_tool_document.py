@@ -176,7 +176,7 @@ REFUSED: dict[str, tuple[str, str, str, str]] = {
                          'got a list of 2; give "20 kN/m", or { vertical = "20 kN/m", lateral'),
     "three hands": (HAND, f"{HAND}\nhand.hands = 3", "shaft.stations[2].hand.hands", "1 or 2"),
     "hand as text": (HAND, 'hand = "two"', "shaft.stations[2].hand", "got 'two'; give a table"),
-    "no hand": (HAND, "hand = {}", "shaft.stations[2].hand", "nothing is said of the hand; give"),
+    "no hand": (HAND, "hand = {}", "shaft.stations[2].hand", "the hand has no properties; give"),
     "spring and impedance": (HAND, f'{HAND}\nhand.impedance = "x.csv"',
                              "shaft.stations[2].hand.impedance", "a table can only be read beside"),
     "impedance as number": (HAND, "hand.impedance = 3", "shaft.stations[2].hand.impedance",
@@ -212,9 +212,9 @@ REFUSED: dict[str, tuple[str, str, str, str]] = {
 BEYOND_THE_SCHEMA: dict[str, tuple[str, str, str, str]] = {
     "mass of parts": (SECTION, 'bending_stiffness = "980 N m^2"\nmass = "3 kg"\n'
                       f'[[shaft.segments]]\nfrom = "0 m"\nto = "1 m"\n{SECTION}', "shaft.mass",
-                      "does not tell that of each part; give mass_per_length"),
+                      "does not determine that of each segment; give mass_per_length"),
     "timoshenko without measures": (MASS, f'{MASS}\ntheory = "timoshenko"',
-                                    "shaft.bending_stiffness", "give the measures of a tube"),
+                                    "shaft.bending_stiffness", "give the dimensions of a tube"),
     "off the shaft": ('"550 mm"', '"1.6 m"', "shaft.stations[2].position",
                       "got 1.6 m, which is off the shaft; give 0 m to 1.5 m"),
     "unknown station": ('station = "engine"', 'station = "engin"', "excitations[1].station",

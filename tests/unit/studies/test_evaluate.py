@@ -423,7 +423,7 @@ def test_without_masses() -> None:
 
 def test_a_model_that_cannot_be_computed() -> None:
     given = study("yamashita-1", "drive.speed", "turns", *asked("balance", "gap"))
-    sentence = "outputs[2].of: equipoise balance cannot compute the model: nothing is free to"
+    sentence = "outputs[2].of: equipoise balance cannot compute the model: no change is permitted"
     with pytest.raises(ModelError, match=f"^{re.escape(sentence)}"):
         find_outputs(given)
 

@@ -204,7 +204,7 @@ def test_nothing_is_computed_twice(
         (of(*made("f"), correlations=(Correlation(MASS, LENGTH, 0.5),)),
          "correlations: have no place in a search; leave them out"),
         (of(Output("f", value="a.b", at_most=1.0)),
-         "outputs: none is to become small or large"),
+         "outputs: no output is an objective"),
     ],
 )  # fmt: skip
 def test_what_cannot_be_searched(some: Study, told: str) -> None:

@@ -159,7 +159,7 @@ def refused(store: Store, *given: Any) -> str:
 def test_nothing_to_go_by(tmp_path: Path) -> None:
     outputs = tuple(Output(one.name, value=one.value) for one in OUTPUTS)
     store = stored(tmp_path, random_designs(20), outputs)
-    assert re.match("no output of the study is to become small or large; name one", refused(store))
+    assert re.match("the study has no objective; name an output", refused(store))
     assert refused(store, 5, {"lfit": None}) == (
         "no output or varied number is called 'lfit'; did you mean 'lift'?"
     )

@@ -300,7 +300,7 @@ def test_given_preloads_may_leave_a_load_over_beside_mounts_without_any() -> Non
     linear = Linear.of(block(mounts=mounts), "moment")
     assert linear.rest.preload == pytest.approx({"a": 50, "b": 50, "across": 0})
     assert linear.rest.unbalance[1] == pytest.approx(100 - 10 * G)
-    assert "do not hold the weight" in " ".join(map(str, linear.unsettled))
+    assert "do not balance the weight" in " ".join(map(str, linear.unsettled))
     sideways = {"across": across, "preloaded": replace(across, preload=3.0)}
     with pytest.raises(ModelError, match="they do not carry the weight in heave"):
         _ = Linear.of(block(mounts=sideways), "moment").rest

@@ -304,7 +304,8 @@ def test_what_the_frame_bears_itself_shakes_no_mount(model: Model) -> None:
 def test_rocking_moments_need_a_support_that_rolls() -> None:
     apart = eq.load("yamashita-rig").with_link("rocker", plane=0.05)
     assert (
-        "rocking moments do nothing: the support can neither roll nor yaw" in respond(apart).notes
+        "rocking moments have no effect: the support can neither roll nor yaw"
+        in respond(apart).notes
     )
 
 

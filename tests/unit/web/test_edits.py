@@ -202,7 +202,7 @@ def test_what_joints_need_goes_along(
     changed = {(body, one) for body in new for one in new[body] if new[body][one] != old[body][one]}
     assert changed == set(wanted.items())
     (note,) = after.content["notes"]
-    assert note.endswith("went along, so that all joints still fit")
+    assert note.endswith("moved too, so that all joints fit")
     assert all(one == point or f"{one} of {body!r}" in note for body, one in wanted.items())
     (undone,) = ask(session, "undo", seq=2)
     assert undone.content["notes"] == []
@@ -214,6 +214,6 @@ def test_lengths_that_are_typed_take_along_what_joints_need() -> None:
     after = edit(session, {"set": "links.walker-2.lengths.F2-R2", "text": "1500 mm"})
     assert after.field("links.walker-2.lengths.F2-R2")["value"] == pytest.approx(1.5)
     assert after.content["notes"] == [
-        "D of the frame, R1 of 'walker-1', R3 of 'walker-3' and R4 of 'walker-4' went along, so "
-        "that all joints still fit"
+        "D of the frame, R1 of 'walker-1', R3 of 'walker-3' and R4 of 'walker-4' moved too, so "
+        "that all joints fit"
     ]

@@ -305,7 +305,7 @@ def test_downloads() -> None:
 def test_a_crank_that_cannot_turn_swings_and_can_be_dragged() -> None:
     session = Session()
     first = state(ask(session, "open", seq=1, name="s.toml", text=STUCK)[0]).content
-    assert "which is not what the file says: motion = { between =" in first["notes"][0]
+    assert "which is not in the file: motion = { between =" in first["notes"][0]
     assert "crank from" in first["status"]["text"]
     moved = [{"move": "C", "to": [0.1, 0.1], "at": 3}]
     found = state(ask(session, "edit", seq=2, edits=moved, label="move C")[0]).content
@@ -320,7 +320,7 @@ def test_what_a_drive_holds_is_told_where_it_is_dragged() -> None:
     session, first = opened("hydraulic-loader")
     assert first.content["held"] is None
     told = edit(session, move("B", 0.95 - 0.05j, at=90)).content["held"]
-    assert told.startswith("the stroke of the drive sets where B is at this crank angle")
+    assert told.startswith("the position of B is limited by the stroke of the drive")
     assert edit(session, move("Q", -0.1 + 0.32j, at=90)).content["held"] is None
 
 

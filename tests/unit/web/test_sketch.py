@@ -116,7 +116,7 @@ def test_four_bar_from_nothing_has_the_figures_of_its_file() -> None:
     assert status["mobility"] == 1 and not status["finished"]
     assert status["text"] == "no drive: choose the driven link (crank or rocker)"
     assert page.seen.content["angles"] == 1 and page.seen.content["charts"] == []
-    assert page.do("drive", link="crank") == "1 free motion; crank turns fully"
+    assert page.do("drive", link="crank") == "1 degree of freedom; crank turns fully"
     page.do("point", spot=at(drawn("yamashita-1")["P"]), on="coupler")
     page.do("rename", what="point", name="E", to="P")
     like = eq.load("yamashita-1")
@@ -134,10 +134,13 @@ def test_slider_crank_from_nothing_has_the_figures_of_its_file() -> None:
     page.do("new")
     page.do("link", **{"from": at(place["A"], "frame"), "to": at(place["B"])})
     told = page.do("link", **{"from": spot("B"), "to": at(place["C"])})
-    assert told == "free motions too many: 1; coupler hangs free: pin C to something"
+    assert (
+        told
+        == "mobility is 2; expected 1; coupler is not connected: pin C to another link or the frame"
+    )
     page.do("drive", link="crank")
     told = page.do("slider", **{"from": spot("C"), "to": spot("A")})
-    assert told == "1 free motion; crank turns fully"
+    assert told == "1 degree of freedom; crank turns fully"
     made = page.machine
     assert made.sliders[0].direction == pytest.approx(np.pi / 2, abs=1e-15)
     assert made.assembly == like.assembly
@@ -198,10 +201,12 @@ def test_geared_five_bar_from_nothing_has_the_figures_of_its_file() -> None:
     page.do("point", spot=at(place["E"]))  # is called D
     page.do("link", **{"from": spot("D"), "to": at(place["D"])})
     told = page.do("link", **{"from": spot("E"), "to": spot("C")})
-    assert told.startswith("free motions too many: 1; crank, coupler, rocker and link1 can move")
+    assert told.startswith(
+        "mobility is 2; expected 1; the position of crank, coupler, rocker and link1 is"
+    )
     page.do("drive", link="crank")
     told = page.do("gears", driver="crank", driven="rocker", teeth=20, driven_teeth=40)
-    assert told == "1 free motion; crank turns fully"
+    assert told == "1 degree of freedom; crank turns fully"
     names = {"crank": "crank", "coupler": "coupler", "rocker": "rocker", "link1": "link1"}
     made = page.machine
     assert np.degrees(made.gears[0].start) == pytest.approx(120, abs=1e-9)
@@ -216,7 +221,7 @@ def test_an_example_goes_on_being_made_and_finishes_again() -> None:
         page, like = Maker(session), session.shown.design.machine
         crank = like.drive.link
         told = page.do("rename", what="link", name=crank, to="wheel", at=123)
-        assert told == "1 free motion; wheel turns fully"
+        assert told == "1 degree of freedom; wheel turns fully"
         assert page.machine.assembly == like.assembly
         page.do("rename", what="link", name="wheel", to=crank, at=50)
         check_same(page.machine, like)
@@ -226,14 +231,17 @@ def test_what_hangs_free_is_told_until_it_is_pinned_again() -> None:
     session, _ = opened("yamashita-1")
     page = Maker(session)
     told = page.do("separate", point="C", at=30)
-    assert told == "free motions too many: 2; coupler hangs free: pin C or P to something"
+    assert told == (
+        "mobility is 3; expected 1; coupler is not connected: pin C or P to another link "
+        "or the frame"
+    )
     assert page.seen.content["scene"]["movable"] == ["A", "D", "B", "C", "P", "E"]
     moved = state(
         ask(session, "edit", edits=[{"move": "E", "to": [0.1, 0.05], "at": 0}], label="move E")[0]
     )
     assert moved.content["status"]["mobility"] == 3
     assert moved.place("E")[0] == pytest.approx(0.1 + 0.05j, abs=1e-7)
-    assert page.do("pin", point="E", to="C") == "1 free motion; crank turns fully"
+    assert page.do("pin", point="E", to="C") == "1 degree of freedom; crank turns fully"
     asked = ("undo",) * 3
     for kind in asked:
         last = state(ask(session, kind)[0])
@@ -244,9 +252,9 @@ def test_what_hangs_free_is_told_until_it_is_pinned_again() -> None:
 def test_too_many_joints_are_told() -> None:
     page = four_bar()
     told = page.do("link", **{"from": spot("C"), "to": at(0.02 - 0.12j, "frame")})
-    assert told.startswith("no free motion: too many joints hold ")
+    assert told.startswith("no degree of freedom: overconstrained by the joints of ")
     page.do("delete", what="link", name=[*page.seen.content["scene"]["bodies"]][-1]["name"])
-    assert page.do("drive", link="crank") == "1 free motion; crank turns fully"
+    assert page.do("drive", link="crank") == "1 degree of freedom; crank turns fully"
 
 
 def test_a_crank_that_cannot_turn_swings_and_goes_on_being_made() -> None:
@@ -301,7 +309,7 @@ def test_numbers_of_what_is_unfinished_are_typed() -> None:
 def test_one_slider_or_pair_of_gears_is_deleted() -> None:
     maker = Maker()
     maker.session = opened("slider-crank-engine")[0]
-    assert "can move freely" in maker.do("delete", what="slider", name="piston on frame")
+    assert "is undetermined" in maker.do("delete", what="slider", name="piston on frame")
     sketch = maker.session.base().design
     assert not sketch.sliders and "piston" in sketch.links  # which has a mass
     assert maker.seen.content["notes"] == []
@@ -333,7 +341,10 @@ def test_a_belt_and_a_rack_are_added_as_they_are_drawn() -> None:
     told = "neither shaft nor crank slides on a body about one point of which the other turns;"
     assert told in maker.refused("rack", driver="shaft", driven="crank")
     maker.do("belt", driver="shaft", driven="crank", teeth=34, driven_teeth=34)
-    assert maker.do("rack", driver="sector", driven="knife") == "1 free motion; shaft turns fully"
+    assert (
+        maker.do("rack", driver="sector", driven="knife")
+        == "1 degree of freedom; shaft turns fully"
+    )
     made = maker.machine
     (belt,), (rack,) = made.belts, made.racks
     assert (belt.pitch, belt.start) == (0.014, pytest.approx(0.0, abs=1e-9))
@@ -395,14 +406,14 @@ def test_tables_of_a_file_are_added_while_a_machine_is_unfinished() -> None:
     page = four_bar()
     values: Content = {"between": ["crank", "rocker"], "teeth": [20, 40]}
     told = ask(page.session, "entry", place=["gears", 0], values=values, label="gears")[0]
-    assert state(told).content["status"]["text"].startswith("no free motion: too many joints")
+    assert state(told).content["status"]["text"].startswith("no degree of freedom: overconstrained")
     ask(page.session, "undo")
     values = {"points": {"A": ["0 mm", "0 mm"], "B": ["33.5 mm", "0 mm"]}, "mass": "200 g"}
     values |= {"center_of_mass": ["10 mm", "0 mm"], "inertia": "30 kg mm^2"}
     told = ask(page.session, "entry", place=["links", "crank"], values=values, label="mass")[0]
     assert state(told).content["scene"]["mass_centers"] == ["crank", "coupler", "rocker"]
     assert not page.session.base().design.links["crank"].bodies  # given, and not assumed
-    assert page.do("drive", link="crank") == "1 free motion; crank turns fully"
+    assert page.do("drive", link="crank") == "1 degree of freedom; crank turns fully"
     assert page.machine.links["crank"].mass == 0.2
 
 
@@ -423,7 +434,7 @@ def test_a_cylinder_pushes_from_where_it_is_drawn() -> None:
     assert eq.move(page.machine, np.zeros(1)).points["D"].place[0] == pytest.approx(0.12 + 0.01j)
     told = entered(page, ["drive", "stroke"], between=["130 mm", "150 mm"])
     assert told == "cylinder C to D from 130.0 to 150.0 mm and back, 6.000 cycles a minute"
-    assert page.do("drive", link="crank") == "1 free motion; crank turns fully"
+    assert page.do("drive", link="crank") == "1 degree of freedom; crank turns fully"
     entered(page, ["drive"], link="crank", speed="6 rpm", between=["C", "D"])
     assert page.do("delete", what="point", name="C") == "no drive: choose the driven link (crank)"
 
@@ -436,7 +447,7 @@ def test_a_second_drive_goes_with_its_link() -> None:
     page.do("link", **{"from": spot("B"), "to": at(0.06 + 0.08j)})
     page.do("link", **{"from": spot("D"), "to": spot("E")})
     told = page.do("drive", link="crank")
-    assert told.endswith("can move freely: add a link, a joint or another drive")
+    assert told.endswith("undetermined: add a link, a joint or another drive")
     assert "rocker turns 2.000 times" in entered(page, ["drives", 0], link="rocker", ratio=2)
     page.do("delete", what="link", name="rocker")
     assert page.session.base().design.rest["drives"] == ()
@@ -493,7 +504,7 @@ def test_what_goes_with_a_point_is_told() -> None:
     page = Maker(session)
     spring = session.shown.design.own.springs[0]
     page.do("delete", what="point", name=spring.point, at=0)
-    told = "gone with it, because they named it: [[springs]]"
+    told = "also deleted, because they refer to it: [[springs]]"
     assert page.seen.content["notes"][0].startswith(told)
     page = Maker(opened("knife-drive")[0])
     page.do("delete", what="link", name=page.machine.belts[0].driven)

@@ -335,7 +335,7 @@ def test_masses_that_balancing_adds_beside_a_link_are_listed_in_round_numbers() 
          "missing"),
         (["loads", "links", 0], None, "loads.links[1]", "give the number of the entry too"),
         (["drive"], None, "drive", "missing; add the table [drive]"),
-        (["gears", 0], None, "gears[1]", "there is no such entry"),
+        (["gears", 0], None, "gears[1]", "entry not found"),
     ],
 )  # fmt: skip
 def test_what_is_wrong_is_told_at_its_key(
@@ -412,7 +412,7 @@ def test_gears_make_one_motion_of_two() -> None:
     for entry in reversed(entries):
         shown = state(enter(session, entry["place"], None)[0])
     assert not shown.content["status"]["finished"]
-    assert "free motions" in shown.content["status"]["text"]
+    assert "mobility" in shown.content["status"]["text"]
     wrong = {**entries[0]["values"], "carrier": "nothing"}
     assert "no link is called 'nothing'" in refusal(enter(session, ["gears", 0], wrong))
     for entry in entries:

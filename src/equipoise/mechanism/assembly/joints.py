@@ -233,8 +233,8 @@ def _check_mobility(joints: Structure, drives: Sequence[str], alike: Note | str)
     if len(drives) > 1:
         raise MobilityError(
             Note(
-                "the linkage has {mobility} free motions ({count}), and {drives} drives command as "
-                "many as they are; give it as many drives as free motions{alike}",
+                "the mobility of the linkage is {mobility} ({count}), but it has {drives} "
+                "drives; give it as many drives as its mobility{alike}",
                 mobility=mobility,
                 count=_count(joints),
                 drives=len(drives),
@@ -243,8 +243,8 @@ def _check_mobility(joints: Structure, drives: Sequence[str], alike: Note | str)
         )
     raise MobilityError(
         Note(
-            "the linkage has {mobility} free motions ({count}), and one drive can "
-            "command only one; the drive leaves {names} undetermined{alike}",
+            "the mobility of the linkage is {mobility} ({count}), but it has one drive, which "
+            "leaves {names} undetermined{alike}",
             mobility=mobility,
             count=_count(joints),
             names=_names(undetermined(joints, drives)),
@@ -278,7 +278,7 @@ def no_motion(joints: Structure) -> Note:
             count=_count(joints),
         )
     return Note(
-        "the linkage has no free motion (count {mobility}: {count})",
+        "the linkage cannot move (mobility by count {mobility}: {count})",
         mobility=joints.mobility,
         count=_count(joints),
     ).about("the-linkage-has-no-free-motion")
@@ -288,7 +288,7 @@ def held_fast(joints: Structure, drives: Sequence[str]) -> MobilityError:
     """An error for joints that hold links whatever the lengths."""
     names = _names(held_too_often(joints, drives))
     return MobilityError(
-        Note("{held}; too many joints hold {names}", held=no_motion(joints), names=names)
+        Note("{held}; overconstrained: {names}", held=no_motion(joints), names=names)
     )
 
 

@@ -52,13 +52,15 @@ from equipoise.mechanism.parts.machine import FRAME, LINKAGE, Machine
 
 NO_PARALLELS = Note(
     "no two links of this linkage close a four-bar of equal opposite sides with known ones, so "
-    "that there are no change points to go on through; leave it out"
+    "there are no change points to pass; leave it out"
 )
 TWICE = Note(
     "the inner joints of two dyads are both called {name!r}, so that one entry would be of both; "
     "rename the point, or give the guide another label"
 )
-DECIDED = Note("statics decides all joint forces of this linkage; leave the stiffness out")
+DECIDED = Note(
+    "the joint forces of this linkage are statically determinate; leave the stiffness out"
+)
 NOTHING: Mapping[str, Any] = {}
 
 

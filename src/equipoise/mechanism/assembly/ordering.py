@@ -62,8 +62,8 @@ def _loops(builder: Builder, joints: Structure, unknown: list[str]) -> Group | N
         if freedom < 0 and not surplus:
             raise MobilityError(
                 Note(
-                    "too many joints hold {names}, while other links are free to move; the "
-                    "linkage as a whole has one free motion, but no drive can command it",
+                    "overconstrained: {names}, while other links are free to move; the mobility "
+                    "of the linkage as a whole is 1, but no drive can control it",
                     names=", ".join(links),
                 )
             )

@@ -84,10 +84,10 @@ IDLE = "flank({}) idle"
 """Where teeth bear nothing on either flank (N,), in the state."""
 
 SHARE = to_say(
-    "joints let {links} move in one way only, so that statics does not tell how their drives share "
-    "the torque; drive one of them"
+    "{links} have one degree of freedom together, so the distribution of the torque among their "
+    "drives is indeterminate; drive one of them"
 )
-LINED_UP = Note("parallel linkages go on through their change points with one drive only")
+LINED_UP = Note("parallel linkages can pass their change points with one drive only")
 
 
 def min_norm(matrix: Array, right: Array) -> Array:
@@ -421,8 +421,8 @@ class RedundantReactions(LoopForces):
             raise ModelError(
                 "joints",
                 Note(
-                    "the stiffness given leaves forces in {names} open; give that of one of "
-                    "these, or of no joint at all",
+                    "with the given stiffness the forces in {names} remain indeterminate; give "
+                    "the stiffness of one of these, or of no joint at all",
                     names=all_of(names, commas=True),
                 ),
             )

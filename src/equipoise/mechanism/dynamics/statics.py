@@ -172,9 +172,9 @@ class Statics:
         """A sentence on what is open."""
         if self.open:
             yield Note(
-                "statics leaves the tilting moments in {joints} open, as what acts on a link there "
-                "lies in several planes and no joint holds it in the frame: told are those of "
-                "least squares; rocking moments do not depend on that",
+                "the tilting moments in {joints} are statically indeterminate, because forces on "
+                "a link act in several planes and no joint connects it to the frame: reported "
+                "are those of least squares; rocking moments do not depend on this choice",
                 joints=all_of([*self.open], commas=True),
             )
 

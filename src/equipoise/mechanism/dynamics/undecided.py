@@ -22,19 +22,20 @@ ANGLES = 7
 
 
 LEAST_SQUARES = to_say(
-    "statics leaves the forces in {joints} open, as joints hold more than the motion needs: told "
-    "are those of least squares; drive torque, shaking force and moment, and the load on the frame "
-    "as a whole do not depend on that"
+    "the forces in {joints} are statically indeterminate, because of redundant constraints: "
+    "reported are those of least squares; drive torque, shaking force and moment, and the "
+    "resultant load on the frame do not depend on this choice"
 )
 WITH_GUIDES = to_say(
-    "statics leaves the forces in {joints} open, as joints hold more than the motion needs: told "
-    "are those of least squares, moments in guides counted as forces at {reach:.4g} mm; drive "
-    "torque, shaking force and moment, and the load on the frame as a whole do not depend on that"
+    "the forces in {joints} are statically indeterminate, because of redundant constraints: "
+    "reported are those of least squares, with moments in guides counted as forces at "
+    "{reach:.4g} mm; drive torque, shaking force and moment, and the resultant load on the frame "
+    "do not depend on this choice"
 )
 LEAST_ENERGY = to_say(
-    "statics leaves the forces in {joints} open, as joints hold more than the motion needs: told "
-    "are those of least energy by the stiffness of joints; drive torque, shaking force and moment, "
-    "and the load on the frame as a whole do not depend on that"
+    "the forces in {joints} are statically indeterminate, because of redundant constraints: "
+    "reported are those of least energy by the stiffness of the joints; drive torque, shaking "
+    "force and moment, and the resultant load on the frame do not depend on this choice"
 )
 
 
@@ -63,9 +64,9 @@ class Undecided:
             yield Note(rule, joints=all_of([*self.open], commas=True), reach=self.reach * 1e3)
         if self.unbounded:
             yield Note(
-                "the forces in {joints} grow without bound towards crank angle {angle:.4g} deg, "
-                "where {links} lie in line and nothing else holds them, so that none is told; a "
-                "further crank or rod that is not in line there would hold them",
+                "the forces in {joints} are unbounded at crank angle {angle:.4g} deg, where "
+                "{links} lie in line without another support, so none are reported; a further "
+                "crank or rod that is not in line there would support them",
                 joints=all_of([*self.unbounded], commas=True),
                 angle=degrees(self.at),
                 links=all_of([repr(link) for link in self.links]),
@@ -83,8 +84,8 @@ def idle_told(linkage: Linkage, solved: State) -> Iterator[Note]:
     idle = [name for name in names if np.any(solved.get(IDLE.format(name), False))]
     if idle:
         yield Note(
-            "at some crank angles {names} would push back on either flank as joints share forces, "
-            "and are told to bear nothing there",
+            "at some crank angles neither flank of {names} can carry the force shared with the "
+            "joints; it is reported as zero there",
             names=all_of(idle, commas=True),
         )
 

@@ -31,8 +31,8 @@ class Swing:
         motion = self.machine.drive.motion
         assert motion is not None
         return Note(
-            "{reason}; it is shown swinging a little short of that by a sine, which is not what "
-            "the file says: {motion}",
+            "{reason}; it is shown with an assumed sinusoidal motion just within that range, "
+            "which is not in the file: {motion}",
             reason=self.reach.note,
             motion=motion_line(motion),
         )

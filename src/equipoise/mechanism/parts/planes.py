@@ -90,8 +90,8 @@ def _wrong_bearing(where: str, bearing: Bearing, machine: Mechanism) -> Iterator
         yield ModelError(
             where,
             Note(
-                "bearings of {link!r}: {count}, different planes of them: {planes}; give it two in "
-                "two planes, whose forces statics can tell",
+                "bearings of {link!r}: {count}, different planes of them: {planes}; give it two "
+                "in two planes, whose forces are statically determinate",
                 link=bearing.link,
                 count=len(planes),
                 planes=len({*planes}),
