@@ -18,7 +18,14 @@ import equipoise as eq
 from equipoise.mechanism.parts.field import Soil, SoilTable
 from equipoise.mechanism.parts.machine import FRAME
 from support import machines_cams
-from support.loads import axes_angle, force_and_torque, has_soil, soil_force, tips_of
+from support.loads import (
+    axes_angle,
+    force_and_torque,
+    has_soil,
+    pull_of,
+    soil_force,
+    tips_of,
+)
 from support.machines import KINDS, make
 from support.machines_redundant import REDUNDANT
 from support.machines_torsion import torque_of
@@ -122,7 +129,7 @@ def load_power(found: eq.mechanism.Forces) -> Array:
 
 
 def spring_power(found: eq.mechanism.Forces) -> Array:
-    """Power of the springs, one row a spring: what their energy k (l - l0)^2 / 2 loses."""
+    """Power of the springs, one row a spring: what their pull takes as they lengthen."""
     motion, machine = found.motion, found.motion.machine
     rows = [np.zeros(len(motion.crank_angle))]
     for spring in machine.springs:
@@ -130,7 +137,7 @@ def spring_power(found: eq.mechanism.Forces) -> Array:
         arm = point.place - to.place
         length = np.abs(arm)
         growth = along(arm, point.velocity - to.velocity) / np.where(length > 0, length, 1.0)
-        rows.append(-spring.stiffness * (length - spring.free_length) * growth)
+        rows.append(-pull_of(spring, length) * growth)
     for torsion in machine.torsion_springs:
         ends = [motion.links[one] for one in torsion.bodies if one != FRAME]
         turned, speed = (

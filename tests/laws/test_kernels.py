@@ -465,6 +465,7 @@ SIGNATURES = {
     "weight_demand": "urcc",
     "load_demand": "cccr",
     "spring": "ccrr",
+    "pulled": "ccr",
     "drive_torque": "crcr",
     "transfer": "crccc",
     "transfer_couple": "crcccr",

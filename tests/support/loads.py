@@ -166,8 +166,18 @@ def spring_force(spring: Spring, at: Array, to: Vector) -> Array:
     """Return what a spring does to a point at some places (N, 2)."""
     arm = at - np.array(to)
     length = np.hypot(*arm.T)
-    stretched = (length - spring.free_length) / np.where(length > 0, length, 1.0)
-    return -spring.stiffness * stretched[:, None] * arm
+    stretched = pull_of(spring, length) / np.where(length > 0, length, 1.0)
+    return -stretched[:, None] * arm
+
+
+def pull_of(spring: Spring, length: Array) -> Array:
+    """Return the pull of a spring at some lengths (N,): linear, or between rows searched anew."""
+    if spring.stiffness is not None:
+        return (spring.preload or 0.0) + spring.stiffness * (length - spring.free_length)
+    lengths, forces = map(np.asarray, spring.rows)
+    k = np.clip(np.searchsorted(lengths, length) - 1, 0, len(lengths) - 2)
+    slope = (forces[k + 1] - forces[k]) / (lengths[k + 1] - lengths[k])
+    return np.asarray(forces[k] + slope * (length - lengths[k]))
 
 
 def springs_on_links(machine: Machine, poses: Poses) -> Iterator[tuple[str, Array, Array, Array]]:

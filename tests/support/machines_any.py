@@ -539,8 +539,14 @@ def _forces(chance: random.Random, document: Document) -> Files:
         link, point = chance.choice(moving)
         hook = f"S{len(springs)}"
         document["frame"]["points"][hook] = pair(rect(300, chance.uniform(-pi, pi)))
-        spring = {"link": link, "point": point, "to": hook, "stiffness": "2 N/mm"}
-        springs.append(spring | chance.choice([{}, {"free_length": "50 mm"}]))
+        spring = {"link": link, "point": point, "to": hook}
+        laws: list[Document] = [
+            {"stiffness": "2 N/mm"},
+            {"stiffness": "2 N/mm", "free_length": "50 mm"},
+            {"stiffness": "2 N/mm", "free_length": "50 mm", "preload": "30 N"},
+            {"lengths": ["10 mm", "60 mm", "90 mm"], "forces": ["-20 N", "0 N", "50 N"]},
+        ]
+        springs.append(spring | chance.choice(laws))
     return tables
 
 

@@ -107,7 +107,12 @@ def _row(model: Data, tree: Tree, job: Job, flywheel: float) -> None:
     model["geared"] += _geared(tree)
     for spring in machine.springs:
         ends = [_end(tree, spring.on, spring.to), _end(tree, spring.link, spring.point)]
+        if spring.stiffness is None:
+            job.leave_out("springs with a table")
+            continue
         rates = {"stiffness": spring.stiffness, "length": spring.free_length}
+        if spring.preload is not None:
+            rates["preload"] = spring.preload
         model["springs"].append({"ends": ends, **rates})
     if machine.torsion_springs:
         job.leave_out("the torsion springs")

@@ -93,12 +93,14 @@ class Build:
         pair = self.pair(driven, by)
         self.add(item.ObjectConnectorCoordinate(markerNumbers=pair, factor1=factor))
 
-    def spring(self, ends: list[Any], stiffness: float, length: float) -> None:
-        """Put a spring between two points."""
+    def spring(
+        self, ends: list[Any], stiffness: float, length: float, preload: float = 0.0
+    ) -> None:
+        """Put a spring between two points; preload : its pull at the length."""
         both = self.both(ends)
         self.add(
             item.ObjectConnectorSpringDamper(
-                markerNumbers=both, stiffness=stiffness, referenceLength=length
+                markerNumbers=both, stiffness=stiffness, referenceLength=length, force=preload
             )
         )
 

@@ -61,8 +61,8 @@ FORMATS: Mapping[str, Format] = {
             "mjcf",
             ".xml",
             "MuJoCo (MJCF)",
-            "bodies, pins, sliders, gears, belts, springs, linear torsion springs, constant loads, "
-            "rows, the support on its mounts, the drive at constant speed",
+            "bodies, pins, sliders, gears, belts, linear springs and torsion springs, constant "
+            "loads, rows, the support on its mounts, the drive at constant speed",
             turns=True,
             joints=(),
             rubs=False,
@@ -71,8 +71,9 @@ FORMATS: Mapping[str, Format] = {
             "exudyn",
             ".py",
             "Exudyn",
-            "a script that builds and runs bodies, pins, sliders, gears, belts, springs, constant "
-            "loads, rows, the support on its mounts in the plane, the drive at constant speed",
+            "a script that builds and runs bodies, pins, sliders, gears, belts, linear springs, "
+            "constant loads, rows, the support on its mounts in the plane, the drive at constant "
+            "speed",
             turns=True,
             joints=(),
             rubs=False,

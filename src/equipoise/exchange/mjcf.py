@@ -246,7 +246,16 @@ def _kept(root: ET.Element, name: str, factors: Mapping[str, float]) -> None:
 
 def _springs(root: ET.Element, tree: Tree, job: Job) -> None:
     for spring in tree.machine.springs:
-        rates = {"stiffness": repr(spring.stiffness), "springlength": repr(spring.free_length)}
+        if spring.stiffness is None:
+            job.leave_out("springs with a table")
+            continue
+        rest = spring.free_length
+        if spring.preload is not None:
+            rest -= spring.preload / spring.stiffness
+        if rest < 0:
+            job.leave_out("springs that pull at every length")
+            continue
+        rates = {"stiffness": repr(spring.stiffness), "springlength": repr(rest)}
         tendon = ET.SubElement(_part(root, "tendon"), "spatial", rates)
         plane = _plane(tree, spring.link, spring.point)
         for body, point in ((spring.link, spring.point), (spring.on, spring.to)):

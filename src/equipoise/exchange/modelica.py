@@ -16,6 +16,7 @@ from equipoise.exchange.tree import constant_loads, mass_of, weighed
 from equipoise.mechanism.assembly.joints import structure
 from equipoise.mechanism.kinematics.motion import Motion, move
 from equipoise.mechanism.parts.machine import FRAME, Load, Machine
+from equipoise.mechanism.parts.ramps import Ramps
 
 
 @dataclass
@@ -197,7 +198,10 @@ def _forces(model: Flat, job: Job) -> None:
         length, pull = f"L_{number}", f"S_{number}"
         model.real(length, pull)
         model.equations.append(f"{length} = sqrt(({x} - {x0})^2 + ({y} - {y0})^2);")
-        stretched = f"{spring.stiffness!r} * ({length} - {spring.free_length!r})"
+        if spring.proportional:
+            stretched = f"{spring.stiffness!r} * ({length} - {spring.free_length!r})"
+        else:
+            stretched = f"({_ramps(spring.pieces, length)})"
         model.equations.append(f"{pull} * {length} = {stretched};")
         force = f"({pull} * ({x0} - {x}))", f"({pull} * ({y0} - {y}))"
         model.push(spring.link, spring.point, force, "+")
@@ -236,16 +240,21 @@ def _torsion_springs(model: Flat, job: Job) -> None:
         model.equations.append(
             f"{angle} = {model.angle(ends[0])} - {model.angle(ends[1])} + {turned};"
         )
-        start, at_start, slope, changes = spring.pieces
-        terms = [
-            f"{_in_brackets(at_start)} + {_in_brackets(slope)} * ({angle} - {_in_brackets(start)})"
-        ]
-        for at, change in changes:
-            far = f"({angle} - {_in_brackets(at)})"
-            terms.append(f"{_in_brackets(change)} * 0.5 * ({far} + abs{far})")
-        model.equations.append(f"{torque} = {' + '.join(terms)};")
+        model.equations.append(f"{torque} = {_ramps(spring.pieces, angle)};")
         model.turn(ends[0], torque)
         model.turn(ends[1], f"(-{torque})")
+
+
+def _ramps(pieces: Ramps, place: str) -> str:
+    """The line through rows of a table, by the variable of its place."""
+    start, at_start, slope, changes = pieces
+    terms = [
+        f"{_in_brackets(at_start)} + {_in_brackets(slope)} * ({place} - {_in_brackets(start)})"
+    ]
+    for at, change in changes:
+        far = f"({place} - {_in_brackets(at)})"
+        terms.append(f"{_in_brackets(change)} * 0.5 * ({far} + abs{far})")
+    return " + ".join(terms)
 
 
 def _drive(model: Flat, job: Job) -> None:

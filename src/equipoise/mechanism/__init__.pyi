@@ -41,6 +41,7 @@ from .parts.run_plans import RunPlan as RunPlan
 from .parts.sections import LinkSection as LinkSection
 from .parts.servo_motors import ServoMotor as ServoMotor
 from .parts.springs import Spring as Spring
+from .parts.springs import SpringTable as SpringTable
 from .parts.stops import Stop as Stop
 from .parts.support import Gauge as Gauge
 from .parts.support import Mount as Mount

@@ -82,7 +82,8 @@ def test_each_table_that_a_file_can_have_is_offered() -> None:
         needed = [control["required"] for control in form["controls"]]
         assert needed == sorted(needed, reverse=True), name
     assert [one["key"] for one in told["forms"]["Spring"]["controls"]] == [
-        "link", "point", "to", "stiffness", "free_length", "on"
+        "link", "point", "to", "stiffness", "free_length", "preload", "lengths", "forces", "table",
+        "on",
     ]  # fmt: skip
 
 

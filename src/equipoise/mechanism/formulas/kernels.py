@@ -328,6 +328,12 @@ def spring(p, to, stiffness, free_length):
     return along * (stiffness * (1 - free_length / (length(along) + 1e-300)))
 
 
+def pulled(p, to, pull):
+    """Force on p that pulls it towards `to`, which must lie elsewhere."""
+    along = to - p
+    return along * (pull / (length(along) + 1e-300))
+
+
 def drive_torque(p1, w, force, moment):
     """Torque at the drive that a link's demand about its point p asks for.
 

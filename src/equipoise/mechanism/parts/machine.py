@@ -180,7 +180,7 @@ class Machine(Driven, Displayed, Frozen):
         default=None,
     )
     springs: tuple[Spring, ...] = key(
-        Tables(KeyTable(Spring)), "linear springs between links, or links and frame", default=()
+        Tables(KeyTable(Spring)), "springs between links, or links and frame", default=()
     )
     drives: tuple[FurtherDrive, ...] = key(
         Tables(KeyTable(FurtherDrive)), "links that are driven besides", default=()

@@ -1,31 +1,78 @@
-"""Linear springs between two points, as frozen values with their checks."""
+"""Springs between two points, linear or by a table, as frozen values with their checks."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from itertools import pairwise
 from typing import Any, ClassVar
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, to_say
-from equipoise.keys import TextKind, declared, key
+from equipoise.keys import (
+    ROW,
+    Conditions,
+    File,
+    Listing,
+    Quantity,
+    TextKind,
+    declared,
+    inside,
+    key,
+    lacks,
+    needs,
+)
+from equipoise.keys.csv_tables import CsvTable
 from equipoise.mechanism.checks import FRAME, Bodies, unknown, unknown_body, unknown_link
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.parts.between import BetweenPoints
 from equipoise.mechanism.parts.element_kinds import Placed
 from equipoise.mechanism.parts.force_kinds import Action, ForceElement
+from equipoise.mechanism.parts.ramps import Ramps, ramp_value, ramps_of, wrong_rows
 from equipoise.quantities import Dimension, told
 
 MEETING = to_say(
     "{point!r} of {link!r} meets {to!r} at crank angle {angle:.6g} deg, where a spring with a free "
     "length points nowhere; give another point, or a {free_length} of 0"
 )
+MEETING_PULLED = to_say(
+    "{point!r} of {link!r} meets {to!r} at crank angle {angle:.6g} deg, where a spring that pulls "
+    "has no direction; give another point"
+)
+
+
+@declared
+class SpringTable(CsvTable):
+    """Pull of a spring against its length: linear between rows, and beyond them as between the last
+    two.
+
+    length : m, rising.  force : N, as long as `length`.
+    file : name of the CSV file that it came from.
+    """
+
+    sort = "spring"
+    forms = (("length", "force"),)
+
+    length: tuple[float, ...] = inside(ROW)
+    force: tuple[float, ...] = inside(ROW)
+    file: str = inside(TextKind(), default="", compare=False)
 
 
 @declared
 class Spring(BetweenPoints, ForceElement):
-    """A linear spring without mass: it pulls `point` of `link` towards the point `to` of `on`."""
+    """A spring without mass: it pulls `point` of `link` towards the point `to` of `on`, by their
+    distance.
+    """
 
     called = to_say("{what} of spring {number}")
+    file_order = ("link", "point", "to", "stiffness", "free_length", "preload", "lengths", "forces",
+                  "table", "on")  # fmt: skip
+    conditions: ClassVar[Conditions] = {
+        "oneOf": [
+            {**needs("stiffness"), **lacks("lengths", "forces", "table")},
+            {**needs("table"), **lacks("stiffness", "free_length", "preload", "lengths", "forces")},
+            {**needs("lengths", "forces"), **lacks("stiffness", "free_length", "preload", "table")},
+        ]
+    }
 
     title = to_say("Springs, each with its crank angle; below 0 they push their ends apart")
     group = to_say("springs")
@@ -50,10 +97,12 @@ class Spring(BetweenPoints, ForceElement):
         example="S",
         word=to_say("other point"),
     )
-    stiffness: float = key("stiffness", "more than 0", example="2 kN/m", above=0)
+    stiffness: float | None = key(
+        "stiffness", "more than 0", default=None, example="2 kN/m", above=0
+    )
     free_length: float = key(
         "length",
-        "at which it exerts nothing; shorter it pushes",
+        "at which it pulls with `preload`, or with nothing; shorter it pulls less, or pushes",
         default=0.0,
         shown="0 m",
         at_least=0,
@@ -62,11 +111,64 @@ class Spring(BetweenPoints, ForceElement):
     on: str = key(
         TextKind(of="body"), "the body of its other point", default=FRAME, word=to_say("other body")
     )
+    preload: float | None = key(
+        "force",
+        "pull at `free_length`, as the initial tension of a spring; below 0 it pushes there",
+        default=None,
+        example="15 N",
+    )
+    lengths: tuple[float, ...] = key(
+        Listing(Quantity("length"), right=Note('a list such as ["40 mm", "60 mm", "70 mm"]')),
+        "distances of its points, rising, instead of a stiffness",
+        default=(),
+        example=["40 mm", "60 mm", "70 mm"],
+    )
+    forces: tuple[float, ...] = key(
+        Listing(Quantity("force"), right=Note('a list such as ["-20 N", "0 N", "45 N"]')),
+        "pull at these lengths; linear between them, and beyond them as between the last two",
+        default=(),
+        example=["-20 N", "0 N", "45 N"],
+    )
+    table: SpringTable | None = key(
+        File("spring"),
+        "CSV file beside this one, instead of these lists: `length [mm],force [N]`",
+        default=None,
+        example="spring.csv",
+    )
+
+    @property
+    def idle_keys(self) -> tuple[str, ...]:
+        """Keys that count for nothing beside a table."""
+        return () if self.stiffness is not None else ("free_length", "preload")
+
+    @property
+    def rows(self) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
+        """Lengths, m, and pulls, N, of a table; empty of a linear spring."""
+        if self.table is not None:
+            return self.table.length, self.table.force
+        return self.lengths, self.forces
+
+    @property
+    def proportional(self) -> bool:
+        """Whether its pull is stiffness times the length beyond the free one."""
+        return self.stiffness is not None and self.preload is None
+
+    @property
+    def pieces(self) -> Ramps:
+        """A length (m), pull (N) and slope (N/m) there; then lengths at which the slope changes,
+        and by how much.
+        """
+        if self.stiffness is None:
+            return ramps_of(*self.rows)
+        preload = 0.0 if self.preload is None else self.preload
+        return self.free_length, preload, self.stiffness, ()
 
     @property
     def meeting(self) -> str:
-        """What is wrong where its ends meet, of a spring with a free length."""
-        return MEETING if self.free_length else ""
+        """What is wrong where its ends meet, of a spring that pulls or pushes there."""
+        if self.proportional:
+            return MEETING if self.free_length else ""
+        return MEETING_PULLED if ramp_value(self.pieces, 0.0) else ""
 
     def ends(self, at: Placed) -> tuple[Any, Any]:
         """Places of both ends in the frame, complex, m."""
@@ -74,7 +176,12 @@ class Spring(BetweenPoints, ForceElement):
 
     def actions(self, at: Placed) -> Iterator[Action]:
         """Force on each end, N, complex; it has no torque."""
-        force = kernels.spring(*self.ends(at), self.stiffness, self.free_length)
+        ends = self.ends(at)
+        if self.proportional:
+            force = kernels.spring(*ends, self.stiffness, self.free_length)
+        else:
+            place, to = ends
+            force = kernels.pulled(place, to, self._pull(kernels.length(to - place)))
         yield self.link, self.point, force, 0.0
         yield self.on, self.to, -force, 0.0
 
@@ -82,31 +189,70 @@ class Spring(BetweenPoints, ForceElement):
         """Its length, m, and its pull, N, less than 0 where it pushes."""
         place, to = self.ends(at)
         length = kernels.length(to - place)
-        return {"length": length, "pull": self.stiffness * (length - self.free_length)}
+        return {"length": length, "pull": self._pull(length)}
+
+    def _pull(self, length: Any) -> Any:
+        """Pull at a length, m, in N."""
+        if self.stiffness is not None and self.preload is None:
+            return self.stiffness * (length - self.free_length)
+        return ramp_value(self.pieces, length)
 
     def problems(self, where: str, bodies: Bodies) -> Iterator[ModelError]:
-        """Everything that is wrong with its ends in a machine of these bodies."""
-        return wrong_ends(where, self, bodies)
+        """Everything that is wrong with it in a machine of these bodies."""
+        yield from wrong_ends(where, self, bodies)
+        listed = bool(self.lengths or self.forces)
+        if [self.stiffness is not None, listed, self.table is not None].count(True) != 1:
+            wrong = Note("give exactly one of stiffness, lengths with forces, and table")
+            yield ModelError(where, wrong)
+        elif self.stiffness is None:
+            yield from self._wrong_rows(where)
+
+    def _wrong_rows(self, where: str) -> Iterator[ModelError]:
+        lengths, forces = self.rows
+        at = f"{where}.lengths" if self.table is None else f"{where}.table"
+        for key_name in ("free_length", "preload"):
+            if getattr(self, key_name):
+                wrong = Note("goes with a stiffness; the rows say it already, leave it out")
+                yield ModelError(f"{where}.{key_name}", wrong)
+        uneven = Note(
+            "got {lengths} lengths and {forces} forces; give as many of both",
+            lengths=len(lengths),
+            forces=len(forces),
+        )
+        falling = Note("the lengths must rise from row to row")
+        wrong_table = [*wrong_rows(at, lengths, forces, uneven, falling)]
+        yield from wrong_table
+        if not wrong_table and lengths[0] < 0:
+            yield ModelError(at, Note("a length cannot be negative, give 0 or more"))
 
     def sentence(self) -> Note:
         """Its stiffness and its ends, for a report."""
+        ends = {"point": self.point, "link": self.link, "to": self.to}
+        if self.stiffness is None:
+            return Note("Spring: by a table, from {point} of {link} to {to}", **ends)
         return Note(
             "Spring: {stiffness} from {point} of {link} to {to}",
             stiffness=told(self.stiffness, "stiffness", "N/m"),
-            point=self.point,
-            link=self.link,
-            to=self.to,
+            **ends,
         )
 
     def summary(self) -> str:
         """All its numbers, in a line of `check`."""
+        held = f"spring: from {self.point} of {self.link} to {self.to}"
+        if self.stiffness is None:
+            lengths, _ = self.rows
+            shortest, longest = (told(lengths[end], "length") for end in (0, -1))
+            return f"{held}, {len(lengths)} rows from {shortest} to {longest}"
         free = f", free at {told(self.free_length, 'length')}" if self.free_length else ""
-        stiffness = told(self.stiffness, "stiffness", "N/m")
-        return f"spring: from {self.point} of {self.link} to {self.to}, {stiffness}{free}"
+        if self.preload is not None:
+            free = f", {told(self.preload, 'force')} at {told(self.free_length, 'length')}"
+        return f"{held}, {told(self.stiffness, 'stiffness', 'N/m')}{free}"
 
     def demands(self) -> Iterator[Any]:
-        """What has to be true of stiffness and free length, or of columns of them."""
-        yield (self.stiffness > 0) & (self.free_length >= 0)
+        """What has to be true of stiffness and lengths, or of columns of them."""
+        if self.stiffness is not None:
+            yield (self.stiffness > 0) & (self.free_length >= 0)
+        yield from (after > before for before, after in pairwise(self.rows[0]))
 
 
 def wrong_ends(where: str, spring: Any, bodies: Bodies) -> Iterator[ModelError]:
