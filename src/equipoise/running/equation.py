@@ -31,6 +31,8 @@ from equipoise.signals import Array
 
 PIECES = 24
 """Pieces of a turn, to begin with."""
+DIFFERENCE = 1e-6
+"""rad/s, or of a speed: steps of a difference that only tells whether the motion is stiff."""
 CLOSE = 1e-9
 """rad, within which edges of pieces are one: rounding of crank angles at which a load sets in."""
 
@@ -159,6 +161,27 @@ class CrankEquation:
         values, slopes = self.table.at(theta)
         torques = self.torques(values, np.asarray(speed), np.asarray(driving), sense)
         return float(values[0]), float(slopes[0]), torques
+
+    @cached_property
+    def largest_at_rest(self) -> float:
+        """Largest torque of any source but friction on a crank at rest, N m, at any angle."""
+        columns = self.table.values
+        still = np.zeros(columns.shape[1:])
+        each = zip(self.sources, self.slices, strict=True)
+        torques = (source.torque(columns[part], still)
+                   for source, part in each if source is not self.friction)  # fmt: skip
+        return max((float(np.max(np.abs(torque))) for torque in torques), default=0.0)
+
+    def damping(self, theta: Array, speed: float, sense: float) -> float:
+        """By how much the torque of all sources falls with the crank's speed, over the inertia,
+        1/s: the most at crank angles (N,).
+        """
+        step, rates = DIFFERENCE * max(abs(speed), 1.0), []
+        for angle in theta.tolist():
+            inertia, _, slow = self.at(angle, speed, 0.0, sense)
+            fast = self.at(angle, speed + step, 0.0, sense)[2]
+            rates.append(float(np.sum(slow - fast)) / (step * inertia))
+        return max(rates)
 
     def at_rest(self, theta: float) -> tuple[float, dict[float, float]]:
         """Torque of all sources but friction on a crank that stands still, N m, and the torque

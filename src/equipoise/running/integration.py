@@ -7,9 +7,9 @@ integral of the torques, and collocation at the table's own nodes needs no linka
 
 About standstill, where the angle is no clock, SciPy's DOP853 integrates in time to the piece's end:
 explicit and of order 8, because the equation is smooth and not stiff there, and tolerances are
-tight; or Radau, where a motor's current is far quicker than the crank.  The work of each source is
-integrated on the way, so that their sum can be held against the kinetic energy of the linkage
-itself.
+tight; or Radau, where a motor's current is far quicker than the crank, or dampers brake it at once.
+The work of each source is integrated on the way, so that their sum can be held against the kinetic
+energy of the linkage itself.
 """
 
 from __future__ import annotations
@@ -58,6 +58,9 @@ differ while the motion goes on evenly; share of the most pieces, from which it 
 """
 AT_REST = 1e-9
 """Share of the largest torque below which nothing sets the crank in motion."""
+AT_EASE = 1e-6
+"""Share of the widest swing below which a crank that swings to and fro has come to rest: a
+million-millionth of the energy is left, less than what the integration misses of it."""
 SAMPLES = 72
 """In a cycle, from which sizes are read."""
 PATHS = {end: integral_to(POINTS, end) for end in (-1.0, 1.0)}
@@ -72,6 +75,9 @@ TINY = 1e-300
 STIFF = 1e-4
 """rad at the usual speed within which a motor's current follows the speed, below which an explicit
 method takes thousands of steps to a piece."""
+DAMPED = 0.1
+"""rad at the usual speed within which dampers bring a speed to its lasting one, below which an
+explicit method, whose steps are six times as long, takes too many of them until `PATIENCE`."""
 ELECTRIC = 3
 """Values of a motor's circuit in a row of the track: its current, and two works."""
 BETWEEN = 6
@@ -159,6 +165,7 @@ class Integration:
     track : rows of time, angle, speed, current, its two works, and works, at the nodes of the
         solution.
     begins : instants at which a cycle begins.
+    halts : crank angles at which the crank was at rest, rad.
     cycle_before : of each part, by its place, what was gained when it was passed last: near a
         steady state Newton's method takes a round or two from there.
     on_turns : called with the turns of the crank from the start, as often as these may change.
@@ -173,6 +180,7 @@ class Integration:
         self.direction = 1.0
         self.halvings = 0
         self.cycle_before: dict[tuple[float, ...], Gained] = {}
+        self.halts: list[float] = []
         self.rates_left = MOST_RATES
         self.on_turns: Callable[[float], None] = lambda turns: None
 
@@ -202,8 +210,10 @@ class Integration:
         self.corner = self.driver.ramp_end or inf
         self._record(now)
         self.direction = copysign(1.0, speed)
-        if speed == 0.0 and not self._sets_off(now):
-            return
+        if speed == 0.0:
+            self.halts.append(angle)
+            if not self._sets_off(now):
+                return
         now = self._switched_on(now)
         marks = [now]
         for k in range(1, MOST_PIECES + 1):
@@ -287,7 +297,7 @@ class Integration:
         driving = float(self.driver.torque(np.zeros(())))
         net = acting + driving
         held = holding[copysign(1.0, net)] + self.driver.holding()
-        held += AT_REST * max(abs(acting), abs(driving))
+        held += AT_REST * max(self.equation.largest_at_rest, abs(driving))
         if abs(net) <= held:
             rubs = holding[copysign(1.0, net)] > 0
             pushes = rubs and self.driver.on and net * self.driver.sense > 0
@@ -575,7 +585,7 @@ class Integration:
             self._rates,
             span,
             state,
-            "Radau" if self.driver.current_lag * self.usual < STIFF else "DOP853",
+            "Radau" if self._is_stiff(begin, edge) else "DOP853",
             dense_output=True,
             events=events,
             rtol=RELATIVE,
@@ -596,6 +606,14 @@ class Integration:
             kind = name if hit.size else kind
         instant = self._instant(end)
         return self._happens(kind, replace(instant, angle=edge) if kind == "edge" else instant)
+
+    def _is_stiff(self, begin: Instant, edge: float) -> bool:
+        """Whether something follows the speed far quicker than the crank turns to an edge."""
+        if self.driver.current_lag * self.usual < STIFF:
+            return True
+        places = np.linspace(begin.angle, edge, 3)
+        rate = self.equation.damping(places, begin.speed, self.direction)
+        return self.usual < DAMPED * rate
 
     def _rates(self, time: float, state: Array) -> list[float]:
         if not np.all(np.isfinite(state[:2])):  # a try that has left all numbers
@@ -677,8 +695,17 @@ class Integration:
             return None
         if not self._sets_off(now):
             return None
+        self.halts.append(now.angle)
+        if self._is_at_ease():
+            self._note("standstill", now)
+            return None
         self._note("reversal", now)
         return now if len(self.events) < MOST_REVERSALS else None
+
+    def _is_at_ease(self) -> bool:
+        """Whether the last swing is next to nothing beside the widest."""
+        swings = np.abs(np.diff(self.halts))
+        return len(swings) > 1 and bool(swings[-1] <= AT_EASE * np.max(swings))
 
     def _waits(self, now: Instant) -> Instant | None:
         """At speed 0, with a motor whose torque changes with time: turn back where it is too weak

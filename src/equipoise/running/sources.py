@@ -22,6 +22,8 @@ from equipoise.mechanism.kinematics.tip import surface_of
 from equipoise.mechanism.parts.field import Planting
 from equipoise.mechanism.parts.force_kinds import RatedElement, rated_elements
 from equipoise.mechanism.parts.machine import Machine
+from equipoise.mechanism.parts.resistances import Resistance
+from equipoise.mechanism.parts.stops import Stop
 from equipoise.signals import Array
 
 Motions = Sequence[Motion]
@@ -106,11 +108,11 @@ def _of_springs(motion: Motion) -> Array:
 
 @dataclass(frozen=True)
 class OfDampers(Source):
-    """Force elements whose forces depend on velocities: dampers, stops and resistances."""
+    """Force elements whose forces depend on velocities: dampers, stops or resistances."""
 
     elements: tuple[tuple[str, int, RatedElement], ...]
     key: str = "dampers"
-    label: str = to_say("dampers, stops and resistances")
+    label: str = to_say("dampers")
 
     def columns(self, motions: Motions) -> list[Array]:
         """Of each row and element its ways, m or rad, each followed by its derivative by the crank
@@ -148,8 +150,14 @@ def sources_of(machine: Machine) -> Iterator[Source]:
     if stiff or any(coupling.preload for coupling in machine.couplings):
         yield ByAngle("springs", to_say("springs"), _of_springs, conserves=True)
     rated = rated_elements(machine)
-    if rated:
-        yield OfDampers(rated)
+    stops = tuple(item for item in rated if isinstance(item[2], Stop))
+    resistances = tuple(item for item in rated if isinstance(item[2], Resistance))
+    if dampers := tuple(item for item in rated if item not in (*stops, *resistances)):
+        yield OfDampers(dampers)
+    if stops:
+        yield OfDampers(stops, "stops", to_say("stops"))
+    if resistances:
+        yield OfDampers(resistances, "resistances", to_say("resistances"))
     if machine.loads:
         yield ByAngle("loads", to_say("loads"), _of_loads)
     planting = machine.planting

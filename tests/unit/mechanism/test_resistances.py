@@ -116,7 +116,7 @@ def test_a_run_loses_the_work_of_cuts() -> None:
     found = eq.run(shear(replace(CUT, speed=1e-3)), "0.6 s", speed=12.0)
     turns = (found.crank_angle[-1] - found.crank_angle[0]) / (2 * np.pi)
     assert 0.9 < turns < 1.5  # it cuts in the last quarter of a turn
-    assert found.work["dampers"][-1] == pytest.approx(-30.0, rel=1e-4)
+    assert found.work["resistances"][-1] == pytest.approx(-30.0, rel=1e-4)
     assert found.energy_error < 1e-9
 
 

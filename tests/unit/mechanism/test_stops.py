@@ -106,7 +106,7 @@ def test_a_body_leaves_with_the_restitution(restitution: float, speed: float) ->
     left = found.crank_speed[-1] * 0.2
     assert left == pytest.approx(restitution * speed, rel=1e-3)  # the line turns by 1e-3 rad in it
     lost = 0.5 * (0.01 + 1.5 * 0.1**2) * (found.crank_speed[-1] ** 2 - (speed / 0.2) ** 2)
-    assert found.work["dampers"][-1] == pytest.approx(lost, rel=1e-6, abs=1e-7)
+    assert found.work["stops"][-1] == pytest.approx(lost, rel=1e-6, abs=1e-7)
 
 
 def test_it_is_read_written_and_refused() -> None:

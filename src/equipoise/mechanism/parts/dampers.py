@@ -145,7 +145,10 @@ class Damper(BetweenPoints, Damping):
 
     def problems(self, where: str, bodies: Bodies) -> Iterator[ModelError]:
         """Everything that is wrong with it in a machine of these bodies."""
-        yield from wrong_ends(where, self, bodies)
+        idle = to_say(
+            "{point!r} is pinned to the frame, where a damper does nothing; give a point that moves"
+        )
+        yield from wrong_ends(where, self, bodies, idle)
         given_twice = Note("give exactly one of damping, speeds with forces, and table")
         speeds, forces = self.rows
         uneven = Note(

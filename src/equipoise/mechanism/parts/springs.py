@@ -57,6 +57,12 @@ class SpringTable(CsvTable):
     file: str = inside(TextKind(), default="", compare=False)
 
 
+IDLE = to_say(
+    "{point!r} is pinned to the frame, where a spring does nothing; give a point that moves"
+)
+"""Of a spring that holds nothing."""
+
+
 @declared
 class Spring(BetweenPoints, ForceElement):
     """A spring without mass: it pulls `point` of `link` towards the point `to` of `on`, by their
@@ -255,8 +261,11 @@ class Spring(BetweenPoints, ForceElement):
         yield from (after > before for before, after in pairwise(self.rows[0]))
 
 
-def wrong_ends(where: str, spring: Any, bodies: Bodies) -> Iterator[ModelError]:
-    """What is wrong with the two points of a spring, or of one that may be set."""
+def wrong_ends(where: str, spring: Any, bodies: Bodies, idle: str = IDLE) -> Iterator[ModelError]:
+    """What is wrong with the two points of a spring, of one that may be set, or of a damper.
+
+    idle : sentence for a point that is pinned to the frame.
+    """
     link, point, to, on = spring.link, spring.point, spring.to, getattr(spring, "on", FRAME)
     problem = [
         *unknown_link(f"{where}.link", link, bodies),
@@ -281,9 +290,5 @@ def wrong_ends(where: str, spring: Any, bodies: Bodies) -> Iterator[ModelError]:
     elif point in frame and on == FRAME:
         yield ModelError(
             f"{where}.point",
-            Note(
-                "{point!r} is pinned to the frame, where a spring does nothing; give a "
-                "point that moves",
-                point=point,
-            ),
+            Note(idle, point=point),
         )
