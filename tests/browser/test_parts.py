@@ -94,7 +94,7 @@ def test_a_spring_and_a_body_are_added_changed_and_deleted(live: Live) -> None:
     form = add(live, "springs:")
     press(form, "Save")
     expect(form.locator("[data-key=link] .error")).to_have_text("Choose one.")
-    expect(form.locator("[data-key=stiffness] .error")).to_contain_text("Give it, such as ")
+    expect(form.locator("[data-key=to] .error")).to_have_text("Choose one.")
     expect(form.get_by_label("link", exact=True)).to_be_focused()
     press(form, "Show point on the drawing")
     x, y = live.spot(live.joint("P"))
