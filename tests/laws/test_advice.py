@@ -315,7 +315,7 @@ OF_BUNDLED = {
     "brush-cutter-engine": r"Flywheel on crank.* Half of what reciprocates .* 423 N along",
     "four-stroke-engine": r"^95 % of what .* off the counterweight.* Flywheel on crank.* 0\.029",
     "hydraulic-loader": r"bore holds that; 1050 mm long, it takes a rod of 32.* has no room",
-    "pick-and-place": r"^Leave the masses .* 2\.8 % off shaking moment.* too little.* 1\.5 times",
+    "pick-and-place": r"^Leave the masses .* shaking moment.* by 2\.8 %.* too little.* 1\.5 times",
     "quick-return": r"Flywheel on a shaft \d+ times .* 5 %; .* 20 %.* A motor",
     "sieve": r"First move the resonance at 255 rpm, .* 2 times softer",
     "slider-crank-engine": r"Flywheel on crank.* Half of what reciprocates is balanced .* 1383 N",

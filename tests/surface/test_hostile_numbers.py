@@ -141,8 +141,8 @@ def test_no_number_breaks_a_command(part: int) -> None:
     [
         (0, ("drive", "motor", "stall_torque"), "1e30 N m", "cannot be integrated beyond"),
         (1, ("links", "crank", "section", "diameter"), "1e30 mm", "section.wall: got a wall"),
-        (23, ("drive", "motor", "servo", "speed"), "1e30 rpm", "servo.speed_gain: the speeds"),
-        (23, ("drive", "motor", "servo", "torque_limit"), "1e-30 N m", "lost in rounding"),
+        (119, ("drive", "motor", "servo", "speed"), "1e30 rpm", "servo.speed_gain: the speeds"),
+        (119, ("drive", "motor", "servo", "torque_limit"), "1e-30 N m", "lost in rounding"),
         (21, ("circular_slots", 0, "radius"), "1 m", "cannot be joined at any crank angle"),
     ],
 )

@@ -138,7 +138,7 @@ def test_rows_add_their_own_rocking() -> None:
     [
         (
             {"left": Bearing("shaft", 0.0)},
-            "bearings of 'shaft': 1, different planes of them: 1; give two",
+            "bearings of 'shaft': 1, different planes of them: 1; give it two",
         ),
         ({"left": Bearing("axle", 0.0)}, "no link is called 'axle'"),
     ],

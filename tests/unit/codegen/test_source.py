@@ -206,7 +206,11 @@ def test_forces_that_joints_share_are_refused_where_no_formula_holds() -> None:
         },
         assembly={"mode": "parallel"},
     )  # fmt: skip
-    for machine, reason in ((train, "by the sense"), (stiff, "stiffness"), (square, "let go")):
+    for machine, reason in (
+        (train, "by the sense"),
+        (stiff, "stiffness"),
+        (square, "singular position"),
+    ):
         assert assemble(machine).shared is not None
         joint = next(iter(assemble(machine).named_reactions))[0]
         with pytest.raises(UsageError, match=reason):

@@ -105,7 +105,7 @@ def test_lift_off_is_shaded() -> None:
     assert "off its ground" not in words(pictures("plane")["mounts"])
     mounts = dict(plane().support.mounts)  # type: ignore[union-attr]
     mounts["float"] = replace(mounts["float"], preload=0.0)
-    assert "has no contact" in words(response_charts(respond(plane(mounts=mounts)))["mounts"])
+    assert "does not touch" in words(response_charts(respond(plane(mounts=mounts)))["mounts"])
 
 
 def test_drive_torque_and_crank_speed() -> None:
