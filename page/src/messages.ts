@@ -600,7 +600,7 @@ export interface Refused {
 }
 
 /** A table of the file. */
-export interface EntryTold {
+export interface TableEntry {
   place: (string | number)[];
   /** Its path, as refusals have it. */
   where: string;
@@ -623,7 +623,7 @@ export interface Group {
   /** What has to be there first. */
   needs: string;
   required: boolean;
-  entries: EntryTold[];
+  entries: TableEntry[];
   /** What its entries are together. */
   result?: string;
 }

@@ -6,7 +6,7 @@ import { h } from "./dom";
 import { lengths, round } from "./format";
 import { Form, type Subject } from "./form";
 import type { Picked } from "./inputs";
-import type { EntryTold, Group, Pair, State, Steps, Tables, Values } from "./protocol";
+import type { TableEntry, Group, Pair, State, Steps, Tables, Values } from "./protocol";
 import { say } from "./words";
 
 /** What of the page it needs. */
@@ -198,7 +198,7 @@ export class Parts {
     });
   }
 
-  private edit(group: Group, entry: EntryTold, values: Values = {}, key = ""): void {
+  private edit(group: Group, entry: TableEntry, values: Values = {}, key = ""): void {
     const last = entry.place[entry.place.length - 1];
     this.open({
       heading: nameOf(group, entry),
@@ -306,7 +306,7 @@ function titleOf({ word, of }: Group): string {
   return of ? say("{what} of {name}", { what: word, name: of }) : word;
 }
 
-function nameOf(group: Group, entry: EntryTold): string {
+function nameOf(group: Group, entry: TableEntry): string {
   const last = entry.place[entry.place.length - 1];
   if (group.many === "named") return String(last);
   return group.many === "list" ? `${group.word} ${Number(last) + 1}` : titleOf(group);

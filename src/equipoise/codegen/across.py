@@ -103,4 +103,4 @@ def _joint_plane(trace: Trace, place: int) -> Any:
 
 def _moment(linkage: Linkage, link: str, place: int) -> Read:
     anchor = linkage.anchors[link]
-    return lambda result: moments_across(result.machine.links[link], anchor)[place]
+    return lambda linkage: moments_across(linkage.machine.links[link], anchor)[place]

@@ -369,7 +369,7 @@ class _Law:
         driver, carrier = (self.trace.state[f"u({item})"] for item in (self.driver, self.carrier))
         zero = self.slot(
             "turned back",
-            lambda result: np.exp(-1j * _parameters(result, self.number)[0].zero),
+            lambda linkage: np.exp(-1j * _parameters(linkage, self.number)[0].zero),
             True,
         )
         return driver * carrier.conjugate() * zero

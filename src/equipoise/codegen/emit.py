@@ -212,7 +212,7 @@ class Signals:
             (k, coupling) for k, coupling in enumerate(couplings) if coupling.name == item
         )
         preload = coupling.preload and self.trace.slot(
-            f"preload of {item}", lambda result: result.machine.couplings[number].preload
+            f"preload of {item}", lambda linkage: linkage.machine.couplings[number].preload
         )
         at = Push(self.forces, reaction, self.linkage.joints, coupling, preload)
         return coupling.parts(at)[part]

@@ -90,8 +90,8 @@ def _turned(drive: Drive | FurtherDrive, place: int, theta: Array) -> Array:
     return np.asarray(drive.turned(theta)[place] + 0.0 * theta)
 
 
-def _frame_point(name: str, result: Any) -> Any:
-    return planar(result.machine.frame[name])
+def _frame_point(name: str, linkage: Any) -> Any:
+    return planar(linkage.machine.frame[name])
 
 
 def trace_step(trace: Trace, step: Step, steps: str, number: int) -> None:
@@ -139,7 +139,7 @@ def _trace_call(trace: Trace, step: KernelCall, steps: str, number: int) -> None
 
 
 def _parameter(steps: str, number: int, place: int) -> Read:
-    return lambda result: getattr(result, steps)[number].parameters[place]
+    return lambda linkage: getattr(linkage, steps)[number].parameters[place]
 
 
 # -- forces ----------------------------------------------------------------------------------------
@@ -201,7 +201,7 @@ def _inertia(trace: Trace) -> tuple[list[Held], list[Held]]:
 
 def _inertial(trace: Trace, link: str, place: int) -> Read:
     anchor = trace.linkage.anchors[link]
-    return lambda result: inertia_moved(result.machine, link, anchor)[place]
+    return lambda linkage: inertia_moved(linkage.machine, link, anchor)[place]
 
 
 def _on_frame(trace: Trace, what: str, demands: list[Held]) -> None:

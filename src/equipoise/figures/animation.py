@@ -7,7 +7,6 @@ their computer for less motion, and while the pointer is on it.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Collection, Iterator
 from hashlib import sha256
 from html import escape
@@ -199,9 +198,29 @@ def animated_svg(
     check_seconds(seconds)
     check_width(width)
     parts = in_turn(scene, clear_angle(scene))
+    options: dict[str, Any] = {
+        "seconds": seconds, "frames": frames, "width": width, "arrow": arrow
+    }  # fmt: skip
     if len(parts) > 1:
-        options = {"seconds": seconds, "frames": frames, "width": width, "arrow": arrow}
         return _one_below_another(parts, title, traced, options)
+    return _picture(scene, title, traced, **options)[0]
+
+
+def _picture(
+    scene: Scene,
+    title: str,
+    traced: Collection[str],
+    *,
+    seconds: float,
+    frames: int,
+    width: int,
+    arrow: ForceArrow | None,
+    place: str = "",
+) -> tuple[str, Stage]:
+    """One picture as SVG, and its stage, which knows its width and height in pixels.
+
+    place : attributes that place it within another picture.
+    """
     moving = laid_out(scene, traced, frames, width, arrow)
     if moving.stage.turns * frames > MOST_STEPS:
         frames = max(1, int(MOST_STEPS / moving.stage.turns))
@@ -226,8 +245,8 @@ def animated_svg(
         [*_colors(mark, moving), *_motions(mark, moves, lasting, moving.stage.closed)]
     )
     stage = moving.stage
-    return f"""\
-<svg xmlns="http://www.w3.org/2000/svg" class="linkage {mark}" role="img" \
+    text = f"""\
+<svg {place}xmlns="http://www.w3.org/2000/svg" class="linkage {mark}" role="img" \
 viewBox="0 0 {stage.width} {stage.height}" width="{stage.width}" height="{stage.height}">
 <title>{escape(said(title))}</title>
 <desc>{escape(" ".join(words))}</desc>
@@ -238,6 +257,7 @@ viewBox="0 0 {stage.width} {stage.height}" width="{stage.width}" height="{stage.
 {shapes}
 </svg>
 """
+    return text, stage
 
 
 def _one_below_another(
@@ -247,20 +267,12 @@ def _one_below_another(
     options: dict[str, Any],
 ) -> str:
     """Pictures of links that would cover each other, each scene with their names, in one."""
-    parts = [
-        animated_svg(
-            part,
-            title=", ".join(names),
-            traced=[name for name in traced if name in part.places],
-            **options,
-        )
-        for names, part in scenes
-    ]
-    width = max(int(re.findall(r'width="(\d+)"', part)[0]) for part in parts)
-    pieces, top = [], 0
-    for part in parts:
-        pieces.append(part.replace("<svg ", f'<svg y="{top}" ', 1))
-        top += int(re.findall(r'height="(\d+)"', part)[0])
+    pieces, width, top = [], 0, 0
+    for names, part in scenes:
+        own = [name for name in traced if name in part.places]
+        piece, stage = _picture(part, ", ".join(names), own, place=f'y="{top}" ', **options)
+        pieces.append(piece)
+        width, top = max(width, stage.width), top + stage.height
     inner = "".join(pieces)
     return f"""\
 <svg xmlns="http://www.w3.org/2000/svg" class="linkages" role="img" \

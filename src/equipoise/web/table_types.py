@@ -84,7 +84,7 @@ class FormValues(TypedDict):
     rule: RuleValues
 
 
-class EntryToldValues(TypedDict):
+class TableEntryValues(TypedDict):
     """A table of the file."""
 
     place: Steps
@@ -106,7 +106,7 @@ class GroupValues(TypedDict):
     of: Annotated[str, "The entry that it belongs to."]
     needs: Annotated[str, "What has to be there first."]
     required: bool
-    entries: list[EntryToldValues]
+    entries: list[TableEntryValues]
     result: NotRequired[Annotated[str, "What its entries are together."]]
 
 

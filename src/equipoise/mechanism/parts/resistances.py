@@ -90,7 +90,7 @@ class Resistance(BetweenPoints, RatedElement):
         example=["0 mm", "2 mm", "6 mm"],
     )
     forces: tuple[float, ...] = key(
-        Listing(Quantity("force"), right=Note('a list such as ["-40 N", "0 N", "90 N"]')),
+        Listing(Quantity("force"), right=Note('a list such as ["0 N", "900 N", "0 N"]')),
         "dry part at these positions, 0 or more; linear between them, and as in the first and last "
         "beyond them",
         default=(),
