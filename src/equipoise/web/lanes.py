@@ -13,7 +13,7 @@ from collections.abc import Callable
 from concurrent.futures import Executor
 from concurrent.futures import ThreadPoolExecutor as Threads
 from contextlib import AbstractContextManager, ExitStack
-from threading import Lock, get_ident
+from threading import Lock, Timer, get_ident
 from typing import TypeVar
 
 Found = TypeVar("Found")
@@ -24,6 +24,10 @@ HEAPS, LARGE, KEPT = (-8, 2), (-3, 4 << 20), (-1, 16 << 20)
 """Of glibc's `mallopt`: how many heaps threads share; bytes from where on memory is given back to
 the system as soon as it is free, and how many may be free at a heap's end.  The arrays of one
 answer stay below: to get their pages anew each time takes a tenth of the time of the answer."""
+AGAIN = 0.25
+"""s after which a computation that was to end is ended again: an error that Python raises inside
+the callback of a weak reference, or in `__del__`, is printed and lost.  Much longer than a
+computation takes to unwind, so that the second error does not meet the first one's clean-up."""
 
 
 def share_heaps() -> None:
@@ -67,6 +71,7 @@ class Lanes(AbstractContextManager["Lanes"]):
 
     def __init__(self) -> None:
         share_heaps()
+        print_no_endings()
         self._stack = ExitStack()
         self.quick: Executor = self._stack.enter_context(Threads(2, "quick"))
         self.heavy: Executor = self._stack.enter_context(Threads(1, "heavy"))
@@ -96,9 +101,7 @@ class PageWork:
         try:
             return compute()
         finally:
-            with self._lock:  # from here on nobody raises anything in this thread
-                self._threads.discard(thread)
-                _raise_in(thread, None)
+            self._leave(thread)
 
     def timed(self, compute: Callable[[], Found]) -> Found:
         """The same, and remember how long it took."""
@@ -114,9 +117,44 @@ class PageWork:
             self._ended = True
             for thread in self._threads:
                 _raise_in(thread, EndedError)
+            if self._threads:
+                again = Timer(AGAIN, self.end)
+                again.daemon = True
+                again.start()
+
+    def _leave(self, thread: int) -> None:
+        """Let nobody raise anything in this thread any more."""
+        try:
+            self._forget(thread)
+        except EndedError:  # raised just before
+            self._forget(thread)
+            raise
+
+    def _forget(self, thread: int) -> None:
+        with self._lock:
+            self._threads.discard(thread)
+            _raise_in(thread, None)
 
 
 def _raise_in(thread: int, error: type[BaseException] | None) -> None:
     """Have an error raised in another thread at its next step in Python; None takes that back."""
     raised = None if error is None else ctypes.py_object(error)
     ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(thread), raised)
+
+
+def print_no_endings() -> None:
+    """Keep Python from printing an `EndedError` that it cannot raise: the computation is ended
+    again, and there is nothing to mend.
+    """
+    if isinstance(sys.unraisablehook, _PrintNoEndings):
+        return
+    sys.unraisablehook = _PrintNoEndings(sys.unraisablehook)
+
+
+class _PrintNoEndings:
+    def __init__(self, otherwise: Callable[[sys.UnraisableHookArgs], object]) -> None:
+        self._otherwise = otherwise
+
+    def __call__(self, lost: sys.UnraisableHookArgs) -> None:
+        if not isinstance(lost.exc_value, EndedError):
+            self._otherwise(lost)

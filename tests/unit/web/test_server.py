@@ -8,7 +8,9 @@ import socket
 import struct
 import threading
 import time
+import weakref
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from typing import Any
@@ -30,7 +32,7 @@ from equipoise.web import session as session_module
 from equipoise.web.balanced import balanced
 from equipoise.web.design import Design
 from equipoise.web.incoming import LONGEST, Incoming
-from equipoise.web.lanes import MOMENT, Lanes, PageWork
+from equipoise.web.lanes import MOMENT, EndedError, Lanes, PageWork, print_no_endings
 from equipoise.web.openings import opened_example
 from equipoise.web.page import MOST_WAITING
 from equipoise.web.server import FULL, HOST, MOST_PAGES, ORIGIN, POLICY, TOKEN, served
@@ -352,6 +354,39 @@ def test_a_page_whose_answers_take_long_is_heavy() -> None:
 
     work.timed(computed)
     assert work.spent > MOMENT
+
+
+def test_work_ends_though_an_error_is_lost(capfd: pytest.CaptureFixture[str]) -> None:
+    """Python prints and drops what is raised inside the callback of a weak reference."""
+    begun, lost = threading.Event(), threading.Event()
+    print_no_endings()
+    work = PageWork()
+
+    class Item:
+        pass
+
+    def in_callback(_: object) -> None:
+        begun.set()
+        while True:
+            pass
+
+    def without_end() -> None:
+        item = Item()
+        reference = weakref.ref(item, in_callback)
+        del item
+        lost.set()
+        while reference() is None:
+            pass
+
+    with ThreadPoolExecutor(1) as threads:
+        computed = threads.submit(work.do, without_end)
+        assert begun.wait(20)
+        work.end()
+        with pytest.raises(EndedError):
+            computed.result(20)
+        assert threads.submit(lambda: 3).result(20) == 3  # and nothing is raised afterwards
+    assert lost.is_set()
+    assert capfd.readouterr().err == ""
 
 
 @pytest.mark.parametrize("how", ["closed", "gone"])
