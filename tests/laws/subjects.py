@@ -32,7 +32,6 @@ from support.machines_torsion import torque_of
 
 Array = NDArray[Any]
 IN_SOIL = "kim-chung-b in soil"
-CAUSES = ("translation", "rotation", "weight", "load", "spring")
 STRANDS = ("left", "right")
 SEEDS = (0, 1, 2)
 ANGLES = 0.0173 + np.linspace(0, 2 * np.pi, 24, endpoint=False)

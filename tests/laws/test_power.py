@@ -10,9 +10,13 @@ import numpy as np
 import pytest
 
 import equipoise as eq
+from equipoise.mechanism.dynamics.shares import EVERYWHERE
+from equipoise.mechanism.parts.dampers import Damper
+from equipoise.mechanism.parts.resistances import Resistance
+from equipoise.mechanism.parts.stops import Stop
+from equipoise.mechanism.parts.torsion_dampers import TorsionDamper
 from laws.subjects import (
     ANGLES,
-    CAUSES,
     acting,
     along,
     families_of,
@@ -116,8 +120,9 @@ def test_shaking_is_the_loss_of_momentum(name: str) -> None:
 @every_subject
 def test_causes_and_links_add_up_to_every_output(name: str) -> None:
     found = forces_of(name)
-    shape = (len(CAUSES), len(found.motion.machine.links), len(ANGLES))
-    parts = dict(split_outputs(found.split))
+    split = found.split
+    shape = (len(split.causes), len(found.motion.machine.links), len(ANGLES))
+    parts = dict(split_outputs(split))
     scale = split_scales(parts)
     for key, value in outputs(found):
         assert parts[key].shape == shape, key
@@ -147,9 +152,36 @@ def test_split_by_cause_and_by_link_has_names(name: str) -> None:
     keys = ["drive_torque", "shaking_force", *joints, *(f"gears.{name}" for name in found.gears)]
     for key in keys:
         causes, links = found.split.by_cause(key), found.split.by_link(key)
-        assert tuple(causes) == CAUSES
+        assert tuple(causes) == EVERYWHERE
         assert tuple(links) == tuple(found.motion.machine.links)
         same(sum(causes.values()), sum(links.values()), TOLERANCE, sizes(found)[0])
+
+
+def test_each_kind_of_force_element_has_its_own_cause() -> None:
+    """Its share is what an analysis loses without it, at every output; statics is linear."""
+    machine = eq.load("spring-balanced-crank")
+    lists = {
+        "spring": {"springs": machine.springs},
+        "damper": {
+            "dampers": (Damper("rocker", "F", "S", 40.0),),
+            "torsion_dampers": (TorsionDamper("coupler", "rocker", damping=0.1),),
+        },
+        "stop": {"stops": (Stop("rocker", "F", "S", 2e4, restitution=0.6, speed=0.4),)},
+        "resistance": {
+            "resistances": (Resistance("coupler", "C", "S", force=25.0, speed=0.05),),
+        },
+    }
+    whole = replace(machine, **{key: given for own in lists.values() for key, given in own.items()})
+    found = forces(whole)
+    assert found.split.causes == (*EVERYWHERE, "damper", "stop", "resistance")
+    for cause, own in lists.items():
+        bare = forces(replace(whole, **dict.fromkeys(own, ())))
+        share = found.split.by_cause("drive_torque")[cause]
+        assert np.max(np.abs(share)) > 1e-3
+        same(share, found.drive_torque - bare.drive_torque, TOLERANCE, sizes(found)[1])
+        joint = found.split.by_cause("joints.C")[cause]
+        lost = found.joints["C"].value - bare.joints["C"].value
+        same(joint, lost, TOLERANCE, sizes(found)[0])
 
 
 @every_subject
@@ -188,7 +220,7 @@ def test_outputs_are_linear_in_the_parameters(name: str) -> None:
     })  # fmt: skip
     rows = dict(split_outputs(regressor))
     for key, value in outputs(found):
-        of_loads = loads[key][CAUSES.index("load") :].sum(axis=(0, 1))
+        of_loads = loads[key][EVERYWHERE.index("load") :].sum(axis=(0, 1))
         bound = max(scale[is_force(key)], sizes(found)[not is_force(key)])
         same(regressor.values @ rows[key] + of_loads, value, TOLERANCE, bound)
 

@@ -263,7 +263,8 @@ def shares(parts: Mapping[str, Array], motion: Motion) -> dict[str, float]:
 def _causes(analysis: Analysis) -> Table:
     drive, forces = analysis.machine.drive, analysis.resolved.forces
     scale = analysis.summary[drive.effort].peak
-    given = {"load": forces.loads, "spring": [*analysis.machine.force_elements]}
+    springs = [item for _, _, item in analysis.machine.force_elements if item.cause == "spring"]
+    given = {"load": forces.loads, "spring": springs}
     rows: list[tuple[Cell, ...]] = []
     for cause, values in forces.split.by_cause(drive.effort).items():
         if given.get(cause, True):

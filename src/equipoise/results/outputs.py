@@ -267,6 +267,9 @@ CAUSES = {
     "weight": to_say("weight"),
     "load": to_say("loads"),
     "spring": to_say("springs"),
+    "damper": to_say("dampers"),
+    "stop": to_say("stops"),
+    "resistance": to_say("resistances"),
     "friction": to_say("friction"),
 }
 DIMENSIONS = {unit: dimension for dimension, unit in SI.items()}

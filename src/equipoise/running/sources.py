@@ -16,14 +16,14 @@ from equipoise.i18n import to_say
 from equipoise.mechanism.dynamics.acting import against_soil, given_loads, spring_demands
 from equipoise.mechanism.dynamics.reactions import demands_of
 from equipoise.mechanism.dynamics.reduced import generalized_force, weight_torque
+from equipoise.mechanism.dynamics.shares import ELEMENTS
 from equipoise.mechanism.formulas.kernels import dot
 from equipoise.mechanism.kinematics.motion import Motion, PlacedBodies
 from equipoise.mechanism.kinematics.tip import surface_of
 from equipoise.mechanism.parts.field import Planting
 from equipoise.mechanism.parts.force_kinds import RatedElement, rated_elements
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.mechanism.parts.resistances import Resistance
-from equipoise.mechanism.parts.stops import Stop
+from equipoise.results.outputs import CAUSES
 from equipoise.signals import Array
 
 Motions = Sequence[Motion]
@@ -107,12 +107,12 @@ def _of_springs(motion: Motion) -> Array:
 
 
 @dataclass(frozen=True)
-class OfDampers(Source):
-    """Force elements whose forces depend on velocities: dampers, stops or resistances."""
+class OfRatedElements(Source):
+    """Force elements of one cause whose forces depend on velocities."""
 
     elements: tuple[tuple[str, int, RatedElement], ...]
-    key: str = "dampers"
-    label: str = to_say("dampers")
+    key: str
+    label: str
 
     def columns(self, motions: Motions) -> list[Array]:
         """Of each row and element its ways, m or rad, each followed by its derivative by the crank
@@ -150,14 +150,9 @@ def sources_of(machine: Machine) -> Iterator[Source]:
     if stiff or any(coupling.preload for coupling in machine.couplings):
         yield ByAngle("springs", to_say("springs"), _of_springs, conserves=True)
     rated = rated_elements(machine)
-    stops = tuple(item for item in rated if isinstance(item[2], Stop))
-    resistances = tuple(item for item in rated if isinstance(item[2], Resistance))
-    if dampers := tuple(item for item in rated if item not in (*stops, *resistances)):
-        yield OfDampers(dampers)
-    if stops:
-        yield OfDampers(stops, "stops", to_say("stops"))
-    if resistances:
-        yield OfDampers(resistances, "resistances", to_say("resistances"))
+    for cause in ELEMENTS:
+        if own := tuple(item for item in rated if item[2].cause == cause):
+            yield OfRatedElements(own, f"{cause}s", CAUSES[cause])
     if machine.loads:
         yield ByAngle("loads", to_say("loads"), _of_loads)
     planting = machine.planting

@@ -105,7 +105,7 @@ def test_what_dampers_take_the_drive_gives(speed: float) -> None:
         np.testing.assert_allclose(ours, theirs, atol=1e-9)
     np.testing.assert_allclose(found.forces.frame_moment, bare.forces.frame_moment, atol=1e-9)
     by_cause = found.forces.split.by_cause("drive_torque")
-    np.testing.assert_allclose(by_cause["spring"], more / speed, atol=1e-11)
+    np.testing.assert_allclose(by_cause["damper"], more / speed, atol=1e-11)
     pins = [one.forces.joints["C"].value for one in (found, bare)]
     assert np.max(np.abs(pins[0] - pins[1])) > 1.0
 

@@ -30,31 +30,37 @@ def load_demands(motion: Motion) -> dict[str, Demand]:
     return demands_of(motion, acting_loads(motion))
 
 
-def spring_demands(motion: Motion, rated: bool | None = None) -> dict[str, Demand]:
+def spring_demands(
+    motion: Motion, rated: bool | None = None, cause: str | None = None
+) -> dict[str, Demand]:
     """What holds force elements and preloads of couplings, for every link that has one.
 
-    rated : as of `acting_elements`; preloads are among the others.
+    rated, cause : as of `acting_elements`; preloads are springs, and depend on no velocity.
 
     Raises
     ------
     ModelError : the ends of a spring with a free length meet, or a link turns beyond where the
         torque of a torsion spring is known.
     """
-    preloads = () if rated else (end for _, ends in acting_preloads(motion) for end in ends)
-    return demands_of(motion, chain(acting_elements(motion, rated), preloads))
+    left_out = rated or cause not in (None, "spring")
+    preloads = () if left_out else (end for _, ends in acting_preloads(motion) for end in ends)
+    return demands_of(motion, chain(acting_elements(motion, rated, cause), preloads))
 
 
-def acting_elements(motion: Motion, rated: bool | None = None) -> Iterator[Acting]:
+def acting_elements(
+    motion: Motion, rated: bool | None = None, cause: str | None = None
+) -> Iterator[Acting]:
     """Link, point, force and torque of each force element at each of its ends on a link.
 
     rated : whether only of those whose forces depend on velocities, or only of the others.
+    cause : only of those of this cause.
 
     Raises
     ------
     ModelError : as of `spring_demands`.
     """
     for table, number, element in motion.machine.force_elements:
-        if rated is not None and element.rated != rated:
+        if (rated is not None and element.rated != rated) or cause not in (None, element.cause):
             continue
         if sentence := element.meeting:
             (link, point), (_, to) = element.points

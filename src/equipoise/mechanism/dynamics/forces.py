@@ -43,7 +43,7 @@ from equipoise.mechanism.dynamics.reactions import (
     reactions,
 )
 from equipoise.mechanism.dynamics.section_loads import SectionLoads, section_loads
-from equipoise.mechanism.dynamics.shares import CAUSES, Split
+from equipoise.mechanism.dynamics.shares import CAUSES, ELEMENTS, EVERYWHERE, INERTIA, Split
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.kinematics.rubbing import rubbing_joints
@@ -370,30 +370,26 @@ def _inertia(motion: Motion, link: str, *numbers: Any) -> Demand:
 def split(whole: Forces) -> Split:
     """Run the joints once for every cause and link."""
     motion, links = whole.motion, tuple(whole.inertia)
-    causes = len(CAUSES) if whole.frictions else len(CAUSES) - 1
-    shape = (causes, len(links), len(motion.crank_angle))
-    demands = {}
-    for k, link in enumerate(links):
-        force, moment = np.zeros(shape, complex), np.zeros(shape)
-        for c, (f, m) in enumerate(_causes(whole, link)):
-            force[c, k], moment[c, k] = f, m
-        demands[link] = (force, moment)
-    solved = reactions(motion, _with_friction(whole, demands, shape), whole.solved)
-    solved = replace(solved, friction=_split_frictions(whole, links, shape))
+    causes = _causes_of(whole)
+    shape = (len(causes), len(links), len(motion.crank_angle))
+    demands = _split_demands(whole, causes, shape)
+    frictions = _split_frictions(whole, causes, shape)
+    solved = reactions(motion, _with_friction(whole, demands, frictions, shape), whole.solved)
+    solved = replace(solved, friction=frictions)
 
     def preload_shares(coupling: Coupling) -> Array:
         """With the springs, and with the driven link."""
         own = np.zeros(shape)
-        own[CAUSES.index("spring"), links.index(coupling.driven)] = coupling.preload
+        own[causes.index("spring"), links.index(coupling.driven)] = coupling.preload
         return own
 
-    inertial = np.array([1, 1, 0, 0, 0, 0])[:causes, None, None]
+    inertial = np.isin(causes, INERTIA)[:, None, None]
     # A spring's pull on the frame and what it makes the joints bear there cancel.
-    on_frame = np.array([1, 1, 1, 1, 0, 1])[:causes, None, None]
+    on_frame = ~np.isin(causes, ELEMENTS)[:, None, None]
     frame_force = np.broadcast_to(on_frame * solved.frame_force, shape).copy()
     frame_moment = np.broadcast_to(on_frame * solved.frame_moment(whole.about), shape).copy()
     for link, demand in whole.inner.items():
-        at = CAUSES.index("load"), links.index(link)
+        at = causes.index("load"), links.index(link)
         frame_force[at] += demand[0]
         frame_moment[at] += whole.moment({link: demand}, whole.about)
     return Split(
@@ -406,47 +402,40 @@ def split(whole: Forces) -> Split:
         solved.joints,
         solved.couplings(preload_shares),
         apart(whole.across, exerted_in(solved), shape) if motion.machine.has_planes else None,
+        causes,
         links,
         drive_force=pushed(solved),
     )
 
 
-def _owner(links: Sequence[str], friction: JointFriction) -> int:
-    """The link, by its place, with which the friction of a joint is told."""
-    return links.index(friction.on if friction.on in links else friction.by)
+def _causes_of(whole: Forces) -> tuple[str, ...]:
+    """Of `CAUSES` those that every machine has, and those of the others that this one has."""
+    own = {element.cause for _, _, element in whole.motion.machine.force_elements}
+    own |= {*EVERYWHERE, *(("friction",) if whole.frictions else ())}
+    return tuple(cause for cause in CAUSES if cause in own)
 
 
-def _with_friction(
-    whole: Forces, demands: Mapping[str, Demand], shape: tuple[int, ...]
+def _split_demands(
+    whole: Forces, causes: Sequence[str], shape: tuple[int, ...]
 ) -> dict[str, Demand]:
-    """Demands of a shape (C, L, N), with what holds friction on both bodies of each joint."""
-    motion, links, total = whole.motion, tuple(whole.inertia), dict(demands)
-    joints = rubbing_joints(motion.linkage) if whole.frictions else ()
-    for joint, unit in zip(joints, unit_demands(motion, joints), strict=True):
-        friction = whole.frictions[joint.name]
-        at = CAUSES.index("friction"), _owner(links, friction)
-        for body, own in unit.items():
-            if body not in total:
-                total[body] = np.zeros(shape, complex), np.zeros(shape)
-            for part, item in zip(total[body], own, strict=True):
-                part[at] += friction.effort * item
-    return total
+    """Demands of each link by cause and link, (C, L, N), but for friction."""
+    motion, demands = whole.motion, {}
+    elements = {
+        cause: acting.spring_demands(motion, cause=cause) for cause in causes if cause in ELEMENTS
+    }
+    for k, link in enumerate(whole.inertia):
+        force, moment = np.zeros(shape, complex), np.zeros(shape)
+        by_cause = dict(zip(EVERYWHERE, _demands_everywhere(whole, link), strict=False))
+        by_cause |= {cause: own[link] for cause, own in elements.items() if link in own}
+        for cause, (f, m) in by_cause.items():
+            c = causes.index(cause)
+            force[c, k], moment[c, k] = f, m
+        demands[link] = (force, moment)
+    return demands
 
 
-def _split_frictions(
-    whole: Forces, links: Sequence[str], shape: tuple[int, ...]
-) -> dict[str, JointFriction]:
-    """The friction of each joint, (C, L, N)."""
-    joint_frictions = {}
-    for name, friction in whole.frictions.items():
-        effort = np.zeros(shape)
-        effort[CAUSES.index("friction"), _owner(links, friction)] = friction.effort
-        joint_frictions[name] = replace(friction, effort=effort)
-    return joint_frictions
-
-
-def _causes(whole: Forces, link: str) -> list[Demand]:
-    """Demands of a link in the order of `CAUSES`, but for friction."""
+def _demands_everywhere(whole: Forces, link: str) -> list[Demand]:
+    """Demands of a link in the order of `EVERYWHERE`, up to loads."""
     motion = whole.motion
     body = motion.machine.links[link]
     mass, moment, _ = inertia_about(body, whole.anchor(link))
@@ -458,5 +447,35 @@ def _causes(whole: Forces, link: str) -> list[Demand]:
         demand_of_inertia(motion, link, speed2, 0.0, 0.0, turning),
         whole.weights[link],
         whole.loads.get(link, (0j, 0.0)),
-        whole.springs.get(link, (0j, 0.0)),
     ]
+
+
+def _with_friction(
+    whole: Forces,
+    demands: Mapping[str, Demand],
+    frictions: Mapping[str, JointFriction],
+    shape: tuple[int, ...],
+) -> dict[str, Demand]:
+    """Demands of a shape (C, L, N), with what holds friction on both bodies of each joint."""
+    motion, total = whole.motion, dict(demands)
+    joints = rubbing_joints(motion.linkage) if frictions else ()
+    for joint, unit in zip(joints, unit_demands(motion, joints), strict=True):
+        effort = frictions[joint.name].effort
+        for body, own in unit.items():
+            before = total.get(body) or (np.zeros(shape, complex), np.zeros(shape))
+            force, moment = (part + effort * item for part, item in zip(before, own, strict=True))
+            total[body] = force, moment
+    return total
+
+
+def _split_frictions(
+    whole: Forces, causes: Sequence[str], shape: tuple[int, ...]
+) -> dict[str, JointFriction]:
+    """The friction of each joint, (C, L, N)."""
+    links, joint_frictions = tuple(whole.inertia), {}
+    for name, friction in whole.frictions.items():
+        owner = friction.on if friction.on in links else friction.by
+        effort = np.zeros(shape)
+        effort[causes.index("friction"), links.index(owner)] = friction.effort
+        joint_frictions[name] = replace(friction, effort=effort)
+    return joint_frictions

@@ -20,9 +20,15 @@ from equipoise.mechanism.dynamics.reactions import (
     SliderForce,
 )
 
-CAUSES = ("translation", "rotation", "weight", "load", "spring", "friction")
-"""Inertia of the centres of mass, inertia of rotation about them, weight, loads from outside, and
-springs and preloads of couplings; friction, where joints have it."""
+CAUSES = ("translation", "rotation", "weight", "load", "spring", "damper", "stop", "resistance",
+          "friction")  # fmt: skip
+"""Inertia of the centres of mass, inertia of rotation about them, weight, loads from outside,
+springs with preloads of couplings, other force elements by their `cause`, friction in joints."""
+EVERYWHERE = CAUSES[:5]
+"""Those that every machine has, be they 0."""
+INERTIA = CAUSES[:2]
+ELEMENTS = CAUSES[4:-1]
+"""Those of force elements: what acts between bodies, the frame too."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -58,19 +64,16 @@ class Shares(HasCouplings, Brief):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Split(Shares):
-    """Outputs by cause and link: arrays (C, L, N), causes as in `CAUSES`, of which the
-    last only with friction; links in file order.
+    """Outputs by cause and link: arrays (C, L, N), links in file order.
+
+    causes : those of `CAUSES` that every machine has, and of the others those of this machine.
 
     Teeth are taken with the flank in contact that the whole load gives, and chains with the strand
     that pulls.
     """
 
+    causes: tuple[str, ...]
     links: tuple[str, ...]
-
-    @property
-    def causes(self) -> tuple[str, ...]:
-        """Those of `CAUSES` that it has."""
-        return CAUSES[: len(self.shaking_moment)]
 
     def by_cause(self, output: str) -> dict[str, Array]:
         """An output, such as ``drive_torque`` or ``joints.B``, summed over links."""

@@ -34,6 +34,7 @@ class Damping(RatedElement):
     efforts_key : key of the list of what it resists with, beside `speeds`.
     """
 
+    cause = "damper"
     efforts_key: ClassVar[str]
 
     damping: Any

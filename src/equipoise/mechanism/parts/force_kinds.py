@@ -22,9 +22,11 @@ class ForceElement(Element):
     """What exerts forces on two bodies, and stores or loses what work they do on it.
 
     rated : whether its forces depend on velocities.
+    cause : under which its share of forces and drive torques is listed.
     """
 
     rated: ClassVar[bool] = False
+    cause: ClassVar[str] = "spring"
 
     @abstractmethod
     def actions(self, at: Placed) -> Iterator[Action]:

@@ -38,6 +38,7 @@ class Resistance(BetweenPoints, RatedElement):
     }
     freedoms = 2
 
+    cause = "resistance"
     special = to_say("resistance")
     legend = ("resistance", to_say("resistance"))
     sign = "equipoise.symbols.resistances:resistance_sign"

@@ -236,9 +236,13 @@ class Spring(BetweenPoints, ForceElement):
         ends = {"point": self.point, "link": self.link, "to": self.to}
         if self.stiffness is None:
             return Note("Spring: by a table, from {point} of {link} to {to}", **ends)
+        ends["stiffness"] = told(self.stiffness, "stiffness", "N/m")
+        if self.preload is None:
+            return Note("Spring: {stiffness} from {point} of {link} to {to}", **ends)
         return Note(
-            "Spring: {stiffness} from {point} of {link} to {to}",
-            stiffness=told(self.stiffness, "stiffness", "N/m"),
+            "Spring: {stiffness} from {point} of {link} to {to}, with {preload} at {length}",
+            preload=told(self.preload, "force"),
+            length=told(self.free_length, "length"),
             **ends,
         )
 

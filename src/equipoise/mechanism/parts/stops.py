@@ -47,6 +47,7 @@ class Stop(BetweenPoints, RatedElement):
     file_order = ("link", "point", "to", "on", "direction", "stiffness", "restitution", "speed")
     still = ("restitution",)
 
+    cause = "stop"
     special = to_say("stop")
     legend = ("stop", to_say("stop"))
     sign = "equipoise.symbols.stops:stop_sign"

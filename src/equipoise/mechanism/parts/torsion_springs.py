@@ -197,11 +197,18 @@ class TorsionSpring(BetweenBodies, ForceElement):
         """Its stiffness and its bodies, for a report."""
         if self.stiffness is None:
             return Note("Torsion spring: by a table, {link} on {on}", link=self.link, on=self.on)
+        numbers = {
+            "stiffness": told(self.stiffness, "torsional stiffness", "N m/rad"),
+            "link": self.link,
+            "on": self.on,
+        }
+        if not self.preload:
+            return Note("Torsion spring: {stiffness}, {link} on {on}", **numbers)
         return Note(
-            "Torsion spring: {stiffness}, {link} on {on}",
-            stiffness=told(self.stiffness, "torsional stiffness", "N m/rad"),
-            link=self.link,
-            on=self.on,
+            "Torsion spring: {stiffness}, {link} on {on}, with {preload} at {angle}",
+            preload=told(self.preload, "torque"),
+            angle=told(self.angle, "angle"),
+            **numbers,
         )
 
     def summary(self) -> str:
