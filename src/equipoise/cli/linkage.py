@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -21,6 +22,7 @@ from equipoise.cli.options import (
     Out,
     Speed,
     WorkerCount,
+    blaming_by_place,
     count,
     crank_angles,
     ends_of_range,
@@ -47,11 +49,15 @@ from equipoise.errors import EquipoiseError, UsageError, at_place
 from equipoise.i18n import Note
 
 if TYPE_CHECKING:
+    from equipoise.mechanism.parts.force_elements import Motor
     from equipoise.mechanism.parts.machine import Machine
     from equipoise.results.result import Result
     from equipoise.vibration.response import Response
 
 planting = App(name="plant")
+MOTOR = "no_load_speed = 300 rpm, stall_torque = 2 N m"
+NUMBER = r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)(e[+-]?[0-9]+)?"
+"""What stands for a plain number where keys have values without a unit."""
 MOST_ORDERS, MOST = 100, 999_999_999
 QUICK = 40
 """Free swings of the support in a turn, up to which the exact model answers in a moment."""
@@ -256,6 +262,34 @@ def _share(_: str, text: str) -> float:
     return share_of_mean(text)
 
 
+def _motor(option: str, text: str) -> Motor:
+    """A motor by its keys in a file, such as ``no_load_speed = 300 rpm, stall_torque = 2 N m``;
+    a key of a table in its table has a dot: ``dc.voltage = 24 V``.
+    """
+    from equipoise.mechanism.parts.force_elements import Motor
+    from equipoise.schema.models import Beside
+    from equipoise.schema.places import Context
+    from equipoise.schema.reading import read_table
+
+    content: dict[str, Any] = {}
+    for part in text.split(","):
+        path, sign, value = (item.strip() for item in part.partition("="))
+        *tables, name = path.split(".")
+        if not (sign and name and value) or len(tables) > 1:
+            wrong = Note("got {text!r}; give such as {example}", text=text, example=MOTOR)
+            raise UsageError(at_place(option, wrong))
+        table = content
+        for above in tables:
+            table = table.setdefault(above, {})
+        if not isinstance(table, dict) or name in table:
+            wrong = Note("got {text!r}, with {word} twice; give it once", text=text, word=path)
+            raise UsageError(at_place(option, wrong))
+        table[name] = float(value) if re.fullmatch(NUMBER, value) else value
+    with error_in_option(option):
+        motor: Motor = read_table(Motor, content, Context(Beside(".").read))
+        return motor
+
+
 @command(Length, Outputs)
 def run(
     machine: LinkageFile,
@@ -270,6 +304,7 @@ def run(
     off: Annotated[float | None, size("time", "give a time of more than 0")] = None,
     off_turns: Annotated[int | None, count(1, 10_000)] = None,
     fluctuation: Annotated[float | None, read_by(_share, '"2 %"')] = None,
+    motor: Annotated[Any, read_by(_motor, f'"{MOTOR}"')] = None,
 ) -> Result:
     """Simulate a machine on a fixed frame under its motor, weight, springs and loads.
 
@@ -293,9 +328,15 @@ def run(
     fluctuation
         Also size a flywheel for this speed fluctuation (highest minus lowest, over the mean), such
         as "2 %".
+    motor
+        Motor on the crank instead of that of the file, by the keys of [drive.motor], a comma
+        between them.
     """
     from equipoise.running.run import run as follow
 
+    if motor is not None:
+        with blaming_by_place({("drive", "motor"): "--motor"}):
+            machine = machine.with_drive(motor=motor)
     with counted("turn") as progress:
         return follow(
             machine,

@@ -14,11 +14,12 @@ import numpy as np
 from equipoise.dataclass import dataclass
 from equipoise.i18n import to_say
 from equipoise.mechanism.dynamics.acting import against_soil, given_loads, spring_demands
+from equipoise.mechanism.dynamics.rated import rated_torque, rated_ways
 from equipoise.mechanism.dynamics.reactions import demands_of
 from equipoise.mechanism.dynamics.reduced import generalized_force, weight_torque
 from equipoise.mechanism.dynamics.shares import ELEMENTS
 from equipoise.mechanism.formulas.kernels import dot
-from equipoise.mechanism.kinematics.motion import Motion, PlacedBodies
+from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.kinematics.tip import surface_of
 from equipoise.mechanism.parts.field import Planting
 from equipoise.mechanism.parts.force_kinds import RatedElement, rated_elements
@@ -115,31 +116,15 @@ class OfRatedElements(Source):
     label: str
 
     def columns(self, motions: Motions) -> list[Array]:
-        """Of each row and element its ways, m or rad, each followed by its derivative by the crank
-        angle, which is its speed at a crank speed of 1 rad/s.
-        """
-        return [
-            np.asarray(value + np.zeros(len(motion.crank_angle)))
-            for motion in motions
-            for table, number, element in self.elements
-            for way in element.ways(PlacedBodies(motion.at(1.0, 0.0), f"{table}[{number + 1}]"))
-            for value in way
-        ]
+        """Of each row its ways and their derivatives, as of `rated_ways`."""
+        return [column for motion in motions for column in rated_ways(motion, self.elements)]
 
     def groups(self, count: int) -> list[int]:
         """A way and its derivative are measured together: either may vanish."""
         return [number // 2 for number in range(count)]
 
     def torque(self, columns: Array, speed: Array) -> Array:
-        ways = iter(columns.reshape(-1, 2, *columns.shape[1:]))
-        each = [element for *_, element in self.elements]
-        total = np.zeros(np.shape(speed))
-        for element in each * (len(columns) // (2 * sum(item.freedoms for item in each))):
-            own = [next(ways) for _ in range(element.freedoms)]
-            efforts = element.efforts([(way, slope * speed) for way, slope in own])
-            parts = zip(efforts, own, strict=True)
-            total = total + sum(effort * slope for effort, (_, slope) in parts)
-        return np.asarray(total)
+        return rated_torque([element for *_, element in self.elements], columns, speed)
 
 
 def sources_of(machine: Machine) -> Iterator[Source]:

@@ -23,12 +23,13 @@ from math import copysign, pi
 import numpy as np
 
 from equipoise.dataclass import dataclass
-from equipoise.errors import ModelError, ResponseError
+from equipoise.errors import ResponseError
 from equipoise.i18n import Note, to_say
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.assembly.steps import size_of_bodies
+from equipoise.mechanism.dynamics.rated import differentiable_torque
 from equipoise.mechanism.kinematics.jumps import jumps_of_rows
-from equipoise.mechanism.parts.force_kinds import rated_elements
+from equipoise.mechanism.parts.force_kinds import RatedElement, rated_elements
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.signals import Array, within_period
 from equipoise.vibration.body import IN_PLANE, PITCH, MountContact, Rest, SupportBody, contacts_of
@@ -73,13 +74,6 @@ class Coupled:
         cls, body: SupportBody, rest: Rest, speed: float, torque: Torque | None = None
     ) -> Coupled:
         """On the support of the model."""
-        for table, number, element in rated_elements(body.machine):
-            if torque is not None and not element.linear:
-                wrong = Note(
-                    "a motor on a support is computed with linear dampers only; give a damping "
-                    "coefficient, or let the crank turn at constant speed"
-                )
-                raise ModelError(f"{table}[{number + 1}]", wrong)
         matrix = body.mass
         first, reference = complex(matrix[1, 5], -matrix[0, 5]), complex(*body.reference[:2])
         sums = float(matrix[0, 0]), first, float(matrix[5, 5])
@@ -102,6 +96,11 @@ class Coupled:
         linkage = assemble(self.machine)
         period = 2 * pi * linkage.cycle.turns
         return np.sort(within_period(self.sense * jumps_of_rows(linkage), period))
+
+    @cached_property
+    def rated(self) -> list[RatedElement]:
+        """Force elements whose forces depend on the crank's speed."""
+        return [element for *_, element in rated_elements(self.machine)]
 
     @cached_property
     def gravity(self) -> Array:
@@ -174,7 +173,10 @@ class Coupled:
 
     def load_torque(self, table: ReducedInertia, speed: Array) -> Array:
         """Torque (...) of loads and force elements on the crank, N m, at its speed (...)."""
-        return np.asarray(table.load_torque - table.damping * (speed - self.speed))
+        if not table.ways:
+            return np.asarray(table.load_torque + np.zeros_like(speed))
+        columns = np.array(table.ways)
+        return table.load_torque + differentiable_torque(self.rated, columns, speed)
 
     def _equations(self, table: ReducedInertia, states: Array) -> tuple[Array, Array]:
         """Matrix (4, 4, ...) and right-hand side (4, ...) for surge, heave, pitch and crank."""
@@ -254,8 +256,10 @@ class CouplingTable:
         self.mass = result.mass
         columns: list[Array] = []
         self.complex: list[bool] = []
-        for item in fields(ReducedInertia)[1:]:
-            values = np.broadcast_to(getattr(result, item.name), s.shape)
+        self.count = len(fields(ReducedInertia)) - 2
+        own = (getattr(result, item.name) for item in fields(ReducedInertia)[1:-1])
+        for each in (*own, *result.ways):
+            values = np.broadcast_to(each, s.shape)
             self.complex.append(np.iscomplexobj(values))
             columns += [values.real, values.imag] if self.complex[-1] else [values]
         table = np.column_stack(columns)
@@ -268,7 +272,7 @@ class CouplingTable:
             np.array(complex(next(values), next(values)) if two else next(values))
             for two in self.complex
         ]
-        return ReducedInertia(self.mass, *items)
+        return ReducedInertia(self.mass, *items[: self.count], (*items[self.count :],))
 
 
 def follow(

@@ -27,17 +27,18 @@ from equipoise.dataclass import dataclass
 from equipoise.errors import MassError
 from equipoise.mechanism.assembly.steps import p, u
 from equipoise.mechanism.dynamics.acting import (
-    acting_elements,
     inner_demands,
     load_demands,
     outer_loads,
     spring_demands,
 )
 from equipoise.mechanism.dynamics.forces import massless
+from equipoise.mechanism.dynamics.rated import rated_ways
 from equipoise.mechanism.dynamics.reactions import Demand, JointReactions, demands_of, reactions
 from equipoise.mechanism.dynamics.reduced import generalized_force, reduced_inertia
 from equipoise.mechanism.formulas.kernels import cross, dot
 from equipoise.mechanism.kinematics.motion import Motion, move
+from equipoise.mechanism.parts.force_kinds import rated_elements
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.planes import masses_of, moments_across
 from equipoise.mechanism.parts.support import Row
@@ -52,8 +53,8 @@ class ReducedInertia:
     mass : kg.  first, first_1, first_2 : complex, kg m.
     inertia, inertia_1, spin, spin_1, drive, drive_1 : kg m2.
     load_force (complex, N), load_moment (N m, about the reference point) and load_torque (N m, on
-    the crank) : what loads from outside do; the torque is that of force elements, too.
-    damping : of the crank by dampers, N m s: the torque falls by that with its speed.
+    the crank) : what loads from outside do; the torque is that of springs, too.
+    ways : of dampers, stops and resistances of each row, as of `rated_ways`, each (N,).
     """
 
     mass: float
@@ -69,7 +70,7 @@ class ReducedInertia:
     load_force: Array
     load_moment: Array
     load_torque: Array
-    damping: Array
+    ways: tuple[Array, ...] = ()
 
     def __add__(self, other: ReducedInertia) -> ReducedInertia:
         return ReducedInertia(
@@ -120,7 +121,8 @@ def sums(machine: Machine, theta: Array, reference: complex, speed: float) -> Re
 def _of_row(motion: Motion, shift: complex) -> ReducedInertia:
     zero = np.zeros(len(motion.crank_angle))
     reduced, loads = reduced_inertia(motion), _loads(motion, shift)
-    total = ReducedInertia(0.0, *(zero + 0j,) * 3, *(zero,) * 4, *reduced, *loads, _damping(motion))
+    ways = (*rated_ways(motion, rated_elements(motion.machine)),)
+    total = ReducedInertia(0.0, *(zero + 0j,) * 3, *(zero,) * 4, *reduced, *loads, ways)
     for mass, own, place, first, second, w, a in _bodies(motion, shift):
         total += ReducedInertia(
             mass,
@@ -131,7 +133,7 @@ def _of_row(motion: Motion, shift: complex) -> ReducedInertia:
             2 * mass * dot(place, first),
             mass * cross(place, first) + own * w,
             mass * cross(place, second) + own * a,
-            *(zero,) * 6,
+            *(zero,) * 5,
         )
     return total
 
@@ -156,18 +158,9 @@ def _loads(motion: Motion, shift: complex) -> tuple[Array, Array, Array]:
         anchor = motion.state[p(motion.linkage.anchors[link])[0]]
         total = total - held
         about = about - moment - cross(anchor + shift, held)
-    every = (loads, inner_demands(motion), spring_demands(motion))
+    every = (loads, inner_demands(motion), spring_demands(motion, rated=False))
     turning = sum(generalized_force(motion, demands) for demands in every)
     return total, about, np.asarray(turning)
-
-
-def _damping(motion: Motion) -> Array:
-    """By how much the torque of dampers on the crank falls with its speed (N,), N m s."""
-    still, turning = (
-        generalized_force(at, demands_of(at, acting_elements(at, rated=True)))
-        for at in (motion.at(0.0, 0.0), motion.at(1.0, 0.0))
-    )
-    return np.asarray(still - turning)
 
 
 def spread(motion: Motion) -> Array:
