@@ -29,7 +29,7 @@ def test_a_motor_has_tables_and_files(tmp_path: Path, monkeypatch: pytest.Monkey
         "dc.voltage = 24 V, dc.resistance = 0.5 ohm, dc.torque_constant = 0.05 N m/A, ratio = 20",
     ):
         done = equipoise("run", "transplanter", "--turns", "1", "--motor", motor)
-        assert done.status == 0 and "1.00 turns" in done.out
+        assert done.status == 0 and "1.000 turns" in done.out
 
 
 @pytest.mark.parametrize(
