@@ -1,8 +1,9 @@
-"""Make the pictures of README: a linkage that moves, a force before and after, page and report.
+"""Make the pictures of README, and screenshots for other pages of the documentation.
 
     make pictures
 
-The first two are what `equipoise animate` and `equipoise balance --plot` write.  The others are
+A linkage that moves and a force before and after are what `equipoise animate` and `equipoise
+balance --plot` write.  The live page, a report, an interactive file and a notebook's cell are
 screenshots, for which Chromium is needed; `sources.json` keeps what they were taken of, so that a
 test can say when they are stale.
 """
@@ -29,15 +30,24 @@ SOURCES = HERE / "sources.json"
 
 MOVING, BALANCED, SERVED = "transplanter", "balance-crank", "yamashita-rig"
 REPORTED = BALANCED
+EXPORTED = IN_NOTEBOOK = "yamashita-1"
 """Examples that are shown."""
+AS_NOTEBOOKS = """<!doctype html><style>
+body{font:13px/1.4 system-ui,sans-serif;margin:12px} table{font-size:12px;border-spacing:0}
+th,td{padding:3px 6px}
+</style>"""
+"""As a notebook sets tables."""
 COLORS = 128
 """Of a screenshot: enough for lines and text, at a quarter of the bytes."""
+
+
+WRITTEN = {"animate": "out.svg", "export": "out.html", "report": "out.html"}
 
 
 def written(command: str, *words: str) -> str:
     """The file that a command writes, as text."""
     with TemporaryDirectory() as folder:
-        out = Path(folder) / ("out.svg" if command == "animate" else "out.html")
+        out = Path(folder) / WRITTEN[command]
         run = [sys.executable, "-m", "equipoise", command, *words, "-o", str(out)]
         subprocess.run(run, check=True, capture_output=True)
         return out.read_text(encoding="utf-8")
@@ -79,13 +89,29 @@ class _Words(HTMLParser):
             self.found += re.findall(r"[^\W\d_]{2,}", data)
 
 
+def in_notebook() -> str:
+    """What a notebook shows of a machine, as HTML."""
+    import equipoise as eq
+
+    html: str = eq.load(IN_NOTEBOOK)._repr_html_()
+    return html
+
+
 def sources() -> dict[str, str]:
-    """A digest of what each screenshot shows: the words of the report, the sources of the page."""
-    words = " ".join(_Words(written("report", REPORTED)).found)
+    """A digest of what each screenshot shows: the words of report, interactive file and notebook,
+    the sources of the live page.
+    """
     files = sorted((ROOT / "page" / "src").rglob("*.*"))
     shown = (file for file in files if "interactive" not in file.parts)  # another page than this
-    page = "".join(file.read_text(encoding="utf-8") for file in shown)
-    return {"report.png": _digest(words), "page.png": _digest(page)}
+    pages = {
+        "report.png": written("report", REPORTED),
+        "interactive.png": written("export", EXPORTED),
+        "notebook.png": in_notebook(),
+    }
+    return {
+        **{name: _digest(" ".join(_Words(page).found)) for name, page in pages.items()},
+        "page.png": _digest("".join(file.read_text(encoding="utf-8") for file in shown)),
+    }
 
 
 def _digest(text: str) -> str:
@@ -122,6 +148,20 @@ def _report(browser: Browser) -> bytes:
     return view.screenshot()
 
 
+def _interactive(browser: Browser) -> bytes:
+    view = browser.new_page(viewport={"width": 1100, "height": 640}, reduced_motion="reduce")
+    view.set_content(written("export", EXPORTED))
+    view.wait_for_timeout(2000)
+    return view.screenshot()
+
+
+def _notebook(browser: Browser) -> bytes:
+    view = browser.new_page(viewport={"width": 480, "height": 400}, reduced_motion="reduce")
+    view.set_content(f"{AS_NOTEBOOKS}{in_notebook()}")
+    view.wait_for_timeout(500)
+    return view.screenshot(full_page=True)
+
+
 def main() -> None:
     sys.path.insert(0, str(ROOT / "tests"))
     from support.chromium import chromium, path_of_chromium
@@ -133,6 +173,8 @@ def main() -> None:
     with chromium() as browser:
         (HERE / "page.png").write_bytes(_reduced(_page(browser)))
         (HERE / "report.png").write_bytes(_reduced(_report(browser)))
+        (HERE / "interactive.png").write_bytes(_reduced(_interactive(browser)))
+        (HERE / "notebook.png").write_bytes(_reduced(_notebook(browser)))
     SOURCES.write_text(json.dumps(sources(), indent=2) + "\n", encoding="utf-8")
 
 

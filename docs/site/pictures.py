@@ -1,23 +1,27 @@
 """The pictures that pages show: each is made by the command that its path tells, or is a sketch.
 
 ``/moving/NAME.svg`` is a machine that moves, ``/drawn/NAME/PICTURE.svg`` one of `equipoise plot`,
-``/sketches/NAME.svg`` one of `sketches.py`.
+``/sketches/NAME.svg`` one of `sketches.py`, ``/demonstrations/NAME/PICTURE.svg`` one of
+`demonstrations.py`.
 """
 
 from __future__ import annotations
 
 import re
+import shutil
 from collections.abc import Iterable
 from contextlib import chdir, redirect_stderr, redirect_stdout
 from io import StringIO
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
+from demonstrations import DEMONSTRATIONS
 from sketches import SKETCHES
 
 from equipoise import examples
 from equipoise.cli import run
 
-SHOWN = re.compile(r"\]\((/(?:moving|drawn|sketches)/[\w/-]+\.svg)\)")
+SHOWN = re.compile(r"\]\((/(?:moving|drawn|sketches|demonstrations)/[\w/-]+\.svg)\)")
 
 
 def command_of(path: str) -> str:
@@ -37,8 +41,12 @@ def draw(pages: Iterable[str], into: Path) -> None:
     RuntimeError : a command does not make what it should.
     """
     told = StringIO()
-    for path in sorted({path for page in pages for path in SHOWN.findall(page)}):
+    shown = sorted({path for page in pages for path in SHOWN.findall(page)})
+    _demonstrate([path for path in shown if path.startswith("/demonstrations/")], into)
+    for path in shown:
         kind, name = path.split("/")[1:3]
+        if kind == "demonstrations":
+            continue
         folder = into / kind
         folder.mkdir(exist_ok=True)
         if kind == "sketches":
@@ -47,3 +55,18 @@ def draw(pages: Iterable[str], into: Path) -> None:
         with chdir(folder), redirect_stdout(told), redirect_stderr(told):
             if run(command_of(path).split()):
                 raise RuntimeError(f"equipoise {command_of(path)}: {told.getvalue()}")
+
+
+def _demonstrate(paths: Iterable[str], into: Path) -> None:
+    """Keep of what demonstrations write the pictures that are shown."""
+    wanted: dict[str, list[str]] = {}
+    for path in paths:
+        name, picture = path.split("/")[2:]
+        wanted.setdefault(name, []).append(picture)
+    for name, pictures in wanted.items():
+        target = into / "demonstrations" / name
+        target.mkdir(parents=True)
+        with TemporaryDirectory() as folder, redirect_stdout(StringIO()):
+            DEMONSTRATIONS[name](Path(folder))
+            for picture in pictures:
+                shutil.copy(Path(folder) / picture, target)

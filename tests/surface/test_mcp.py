@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import base64
+import json
 import os
+import re
 import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -27,12 +29,23 @@ BALANCED = {
     **{"file": "mine.toml", "objective": ["rms shaking_force"]},
     **{"crank_counterweight": True, "at_most": "500 g"},
 }
+
+
+def called() -> tuple[str, dict[str, Any]]:
+    """The call that the page on programs shows."""
+    page = (Path(__file__).parents[2] / "docs" / "programs.md").read_text(encoding="utf-8")
+    blocks = map(json.loads, re.findall(r"```json\n(.*?)```", page, re.DOTALL))
+    call = next(block for block in blocks if "arguments" in block)
+    return call["name"], call["arguments"]
+
+
 CALLS: Calls = {
     "made": ("new", {"file": "mine.toml"}),
     "analysed": ("analyze", {"file": "mine.toml", "speed": "250 rpm", "csv": "all.csv"}),
     "whole": ("analyze", {"file": "mine.toml", "json": True, "orders": 3, "angles": 90}),
     "balanced": ("balance", {**BALANCED, "out": "new.toml"}),
     "drawn": ("plot", {"file": "new.toml", "only": ["linkage"]}),
+    "of the documentation": called(),
     "animated": ("animate", {"file": "mine.toml", "out": "turns.svg"}),
     "exported": ("export", {"file": "mine.toml", "out": "mine.xml"}),
     "example": ("plant_fit", {"file": "transplanter", "targets": "none.toml"}),
@@ -153,7 +166,12 @@ def test_a_machine_is_made_analysed_balanced_and_drawn(session: Session) -> None
 
 
 @pytest.mark.parametrize(
-    ("key", "kind", "begin"), [("drawn", "png", b"\x89PNG"), ("animated", "svg+xml", b"<")]
+    ("key", "kind", "begin"),
+    [
+        ("drawn", "png", b"\x89PNG"),
+        ("of the documentation", "png", b"\x89PNG"),
+        ("animated", "svg+xml", b"<"),
+    ],
 )
 def test_pictures_are_shown(session: Session, key: str, kind: str, begin: bytes) -> None:
     answer = session.answers[key]

@@ -1,4 +1,4 @@
-"""The pictures of README: small, and of the product as it is."""
+"""The pictures of README and other pages: small, and of the product as it is."""
 
 from __future__ import annotations
 
@@ -18,11 +18,28 @@ STALE = "stale; run `make pictures`"
 NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
 
 
-def test_readme_shows_all_of_them_and_they_are_small() -> None:
-    shown = re.findall(r"docs/pictures/([\w.]+)", (ROOT / "README.md").read_text(encoding="utf-8"))
+def test_pages_show_all_of_them_and_they_are_small() -> None:
+    """README those that it begins with."""
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    pages = "".join(page.read_text(encoding="utf-8") for page in (ROOT / "docs").glob("*.md"))
+    shown = {*re.findall(r"\]\(pictures/([\w.]+)\)", pages)}
+    shown |= {*re.findall(r"docs/pictures/([\w.]+)", readme)}
     there = {file.name for file in PICTURES.iterdir() if file.suffix in (".svg", ".png")}
-    assert {*shown} == there
+    assert shown == there
     assert sum((PICTURES / name).stat().st_size for name in there) < 1_000_000
+
+
+HOW_TO = re.compile(r"^## How to\n(.*?)^## ", re.MULTILINE | re.DOTALL)
+WITHOUT = {"../src/equipoise/errors.md"}
+"""A page of sentences, which are of no one machine."""
+
+
+def test_every_page_on_how_to_do_something_has_a_picture() -> None:
+    index = (ROOT / "docs" / "index.md").read_text(encoding="utf-8")
+    listed = re.findall(r"\(([\w./]+\.md)\)", HOW_TO.findall(index)[0])
+    assert len(listed) > 12 and {*listed} >= WITHOUT
+    pages = {name: (ROOT / "docs" / name).read_text(encoding="utf-8") for name in listed}
+    assert [name for name, text in pages.items() if "![" not in text] == [*WITHOUT]
 
 
 def test_readme_is_short_and_begins_with_what_balancing_gains() -> None:

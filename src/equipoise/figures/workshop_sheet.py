@@ -7,8 +7,9 @@ from __future__ import annotations
 
 import io
 from cmath import rect
-from collections.abc import Sequence
-from math import degrees, pi
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from math import cos, degrees, pi
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -42,24 +43,28 @@ def made(job: Job) -> bytes:
     """
     from matplotlib.backends.backend_pdf import PdfPages
 
+    out = io.BytesIO()
+    about = {"CreationDate": None, "Title": str(job.machine.title)}
+    with sheets(job) as figures, PdfPages(out, metadata=about) as pages:
+        for figure in figures:
+            pages.savefig(figure)
+    return out.getvalue()
+
+
+@contextmanager
+def sheets(job: Job) -> Iterator[list[Figure]]:
+    """The sheet of each part, to be saved inside: fonts are written when a file is closed."""
     result = parts(job)
-    sheets = [_texts(job, part) for part in result]
-    if spoken() != "en" and fonts_for(frozenset("".join(map("".join, sheets))))[1]:
+    texts = [_texts(job, part) for part in result]
+    if spoken() != "en" and fonts_for(frozenset("".join(map("".join, texts))))[1]:
         job.leave_out(
             f"texts in {LANGUAGES[spoken()]}, for which this computer has no font; they are in "
             "English; install one such as Noto Sans CJK"
         )
         with speaking("en"):
-            sheets = [_texts(job, part) for part in result]
-    out = io.BytesIO()
-    about = {"CreationDate": None, "Title": str(job.machine.title)}
-    with (
-        settings(texts="".join(map("".join, sheets))),
-        PdfPages(out, metadata=about) as pages,
-    ):
-        for part, lines in zip(result, sheets, strict=True):
-            pages.savefig(_sheet(part, lines))
-    return out.getvalue()
+            texts = [_texts(job, part) for part in result]
+    with settings(texts="".join(map("".join, texts))):
+        yield [_sheet(part, lines) for part, lines in zip(result, texts, strict=True)]
 
 
 def _texts(job: Job, part: Part) -> tuple[str, ...]:
@@ -130,8 +135,10 @@ def _angle(axes: Axes, part: Part, scale: float) -> None:
         axes.annotate("", (end.real, end.imag), (before.real, before.imag), arrowprops=arrow)
         line = np.array([center, center + (end - center) * (1 + 2.0 * scale / radius)])
         axes.plot(line.real, line.imag, color=MAIN, linewidth=0.6)
-    at = center + rect(radius + 5.0 * scale, outer.direction)
-    axes.text(at.real, at.imag, f"{in_mm(degrees(outer.angle))}°", ha="center", va="center",
+    sideways = cos(outer.direction)
+    align = "center" if abs(sideways) < 0.5 else "left" if sideways > 0 else "right"
+    at = center + rect(radius + (5.0 if align == "center" else 2.0) * scale, outer.direction)
+    axes.text(at.real, at.imag, f"{in_mm(degrees(outer.angle))}°", ha=align, va="center",
               color=MAIN)  # fmt: skip
     way = 1.0 if abs(outer.direction) > outer.angle / 2 else -1.0  # beside the part
     reach = MM * outer.radius

@@ -159,7 +159,9 @@ def test_a_workshop_drawing_gives_what_was_advised(name: str, tmp_path: Path) ->
             pages += 1
         wanted = change.values["moment"] * np.exp(1j * change.values["direction"])
         assert abs(moment - wanted) <= 1e-5 * abs(wanted)
-    sheets = re.findall(rb"/Type /Page\b", (tmp_path / "x.pdf").read_bytes())
+    content = (tmp_path / "x.pdf").read_bytes()
+    sheets = re.findall(rb"/Type /Page\b", content)
+    assert b"/Subtype /CIDFontType2" in content and b"/Type3" not in content  # fonts are embedded
     assert pages and len(sheets) == pages
 
 
