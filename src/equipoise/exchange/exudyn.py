@@ -23,12 +23,17 @@ from equipoise.i18n import Note
 from equipoise.mechanism.assembly.joints import structure
 from equipoise.mechanism.kinematics.motion import move
 from equipoise.mechanism.parts.machine import FRAME, Machine
+from equipoise.mechanism.parts.resistances import Resistance
+from equipoise.mechanism.parts.stops import Stop, loss_factor
 from equipoise.mechanism.parts.support import PLANAR, Support, unit_vector
 
 Data = dict[str, Any]
 End = tuple[str, list[float]]
 BASE, GROUND = "support", "ground"
-LISTS = ("pins", "sliders", "geared", "springs", "loads", "mounts", "held")
+LISTS = (
+    *("pins", "sliders", "geared", "springs", "dampers", "torsion_dampers", "stops"),
+    *("resistances", "loads", "mounts", "held"),
+)
 EMPTY = "MODEL: Data = {}"
 
 
@@ -116,6 +121,7 @@ def _row(model: Data, tree: Tree, job: Job, flywheel: float) -> None:
         model["springs"].append({"ends": ends, **rates})
     if machine.torsion_springs:
         job.leave_out("the torsion springs")
+    _rated(model, tree, job)
     for _, load in constant_loads(job):
         end = _end(tree, load.link, load.point or next(iter(machine.links[load.link].points)))
         force, turns = complex(*(load.force or (0.0, 0.0))), load.axes is not None
@@ -123,6 +129,43 @@ def _row(model: Data, tree: Tree, job: Job, flywheel: float) -> None:
             force *= np.exp(1j * load.axes_angle(machine.sliders))
         model["loads"].append({"end": end, "force": [float(force.real), float(force.imag)],
                                "torque": load.torque or 0.0, "turns": turns})  # fmt: skip
+
+
+def _rated(model: Data, tree: Tree, job: Job) -> None:
+    """Dampers, stops and resistances."""
+    machine = tree.machine
+    for damper in machine.dampers:
+        ends = [_end(tree, damper.on, damper.to), _end(tree, damper.link, damper.point)]
+        speeds, forces = damper.rows
+        law: Data = {"speeds": [*speeds], "forces": [*forces]}
+        law = {"damping": damper.damping} if damper.linear else law
+        model["dampers"].append({"ends": ends, **law})
+    base = "" if machine.support is None else BASE
+    for torsion in machine.torsion_dampers:
+        if not torsion.linear:
+            job.leave_out("torsion dampers with a table")
+            continue
+        on, by = (base if body == FRAME else f"{body}{tree.suffix}"
+                  for body in (torsion.link, torsion.on))  # fmt: skip
+        model["torsion_dampers"].append({"on": on, "by": by, "damping": torsion.damping})
+    for noun, items in (("stops", machine.stops), ("resistances", machine.resistances)):
+        for item in items:
+            if item.on != FRAME or base:
+                job.leave_out(f"{noun} over a body that moves")
+                continue
+            ends = [_end(tree, FRAME, item.to), _end(tree, item.link, item.point)]
+            model[noun].append({"ends": ends, **_law(item)})
+
+
+def _law(item: Stop | Resistance) -> Data:
+    """The numbers of a stop or a resistance."""
+    if isinstance(item, Resistance):
+        names = ("direction", "one_way", "force", "damping", "positions", "forces", "speed")
+        return {name: getattr(item, name) for name in names}
+    law: Data = {"direction": item.direction, "stiffness": item.stiffness}
+    if item.speed is not None and item.restitution is not None:
+        law["loss"] = loss_factor(item.restitution) / item.speed
+    return law
 
 
 def _end(tree: Tree, body: str, point: str) -> End:

@@ -5,7 +5,7 @@ Run it for one turn of the crank; or call `simulate` for more.
 
 from __future__ import annotations
 
-from math import pi
+from math import cos, pi, sin
 from typing import Any
 
 import exudyn
@@ -14,6 +14,18 @@ from exudyn import itemInterface as item
 
 Data = dict[str, Any]
 MODEL: Data = {}
+
+
+def along(way: complex, vector: complex) -> float:
+    """The part of a vector along a unit vector."""
+    return way.real * vector.real + way.imag * vector.imag
+
+
+def on_lines(place: float, places: list[float], values: list[float]) -> float:
+    """The value on lines through points, which go on beyond the first and the last."""
+    k = min(max(int(np.searchsorted(places, place)), 1), len(places) - 1)
+    slope = (values[k] - values[k - 1]) / (places[k] - places[k - 1])
+    return values[k - 1] + slope * (place - places[k - 1])
 
 
 class Build:
@@ -34,17 +46,25 @@ class Build:
         for guide in model["sliders"]:
             kinds = {"axisMarker0": guide["axis"], "normalMarker1": guide["normal"]}
             self.add(item.ObjectJointPrismatic2D(markerNumbers=self.both(guide["ends"]), **kinds))
-        for turning in model["geared"]:
-            self.geared(**turning)
-        for spring in model["springs"]:
-            self.spring(**spring)
-        for load in model["loads"]:
-            self.load(**load)
-        for mount in model["mounts"]:
-            self.mount(**mount)
+        for kind, put in self.elements().items():
+            for element in model[kind]:
+                put(**element)
         for body, coordinate in model["held"]:
             self.add(item.ObjectConnectorCoordinate(markerNumbers=self.pair("", body, coordinate)))
         self.drive = self.driven(**model["drive"])
+
+    def elements(self) -> Data:
+        """What adds each kind of element besides joints."""
+        return {
+            "geared": self.geared,
+            "springs": self.spring,
+            "dampers": self.damper,
+            "torsion_dampers": self.torsion_damper,
+            "stops": self.stop,
+            "resistances": self.resistance,
+            "loads": self.load,
+            "mounts": self.mount,
+        }
 
     def marker(self, made: Any) -> int:
         """Add a marker."""
@@ -103,6 +123,87 @@ class Build:
                 markerNumbers=both, stiffness=stiffness, referenceLength=length, force=preload
             )
         )
+
+    def damper(
+        self,
+        ends: list[Any],
+        damping: float = 0.0,
+        speeds: list[float] | None = None,
+        forces: list[float] | None = None,
+    ) -> None:
+        """Put a damper between two points: linear, or by the speed with which it lengthens."""
+        law: Data = {"damping": damping}
+        if speeds and forces:
+
+            def pull(_: Any, t: float, number: int, way: float, speed: float, *rest: Any) -> float:
+                return on_lines(speed, speeds, forces)
+
+            law = {"springForceUserFunction": pull}
+        both = self.both(ends)
+        self.add(
+            item.ObjectConnectorSpringDamper(
+                markerNumbers=both, stiffness=0.0, referenceLength=1.0, **law
+            )
+        )
+
+    def torsion_damper(self, on: str, by: str, damping: float) -> None:
+        """Resist the turning of a body against another."""
+        pair = self.pair(by, on)
+        self.add(
+            item.ObjectConnectorCoordinateSpringDamper(
+                markerNumbers=pair, stiffness=0.0, damping=damping
+            )
+        )
+
+    def pushed(self, ends: list[Any], force: Any) -> None:
+        """Let a force act on a point that moves over the ground, by its place and velocity as
+        complex numbers.
+        """
+
+        def push(_: Any, t: float, number: int, way: Any, speed: Any, *rest: Any) -> list[float]:
+            size = force(complex(way[0], way[1]), complex(speed[0], speed[1]))
+            return [-size.real, -size.imag, 0.0]
+
+        pushed: Data = {"stiffness": [1.0] * 3, "springForceUserFunction": push}
+        self.add(item.ObjectConnectorCartesianSpringDamper(markerNumbers=self.both(ends), **pushed))
+
+    def stop(self, ends: list[Any], direction: float, stiffness: float, loss: float = 0.0) -> None:
+        """Push a point back where it is beyond a line; loss : of force, by speed of approach."""
+        normal = complex(cos(direction), sin(direction))
+
+        def force(place: complex, velocity: complex) -> complex:
+            gap, opening = (along(normal, value) for value in (place, velocity))
+            return stiffness * max(-gap, 0.0) * max(1.0 - loss * opening, 0.0) * normal
+
+        self.pushed(ends, force)
+
+    def resistance(
+        self,
+        ends: list[Any],
+        direction: float | None,
+        one_way: bool,
+        force: float | None,
+        damping: float | None,
+        positions: list[float],
+        forces: list[float],
+        speed: float | None,
+    ) -> None:
+        """Resist the motion of a point: a viscous part, and a dry one, which may go by the way."""
+        line = complex(cos(direction or 0.0), sin(direction or 0.0))
+
+        def against(place: complex, velocity: complex) -> complex:
+            if direction is not None:
+                rate = along(line, velocity)
+                velocity = (max(rate, 0.0) if one_way else rate) * line
+            factor = damping or 0.0
+            if speed:
+                dry = force or 0.0
+                if positions:
+                    dry += float(np.interp(along(line, place), positions, forces))
+                factor += dry / (abs(velocity) ** 2 + speed**2) ** 0.5
+            return -factor * velocity
+
+        self.pushed(ends, against)
 
     def load(self, end: Any, force: list[float], torque: float, turns: bool) -> None:
         """Load a body by a force at a point and a torque, always the same; turns : whether the

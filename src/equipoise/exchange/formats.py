@@ -61,10 +61,11 @@ FORMATS: Mapping[str, Format] = {
             "mjcf",
             ".xml",
             "MuJoCo (MJCF)",
-            "bodies, pins, sliders, gears, belts, linear springs and torsion springs, constant "
-            "loads, rows, the support on its mounts, the drive at constant speed",
+            "bodies, pins, sliders, gears, belts, linear springs, torsion springs and dampers, "
+            "viscous resistances, constant loads, rows, the support on its mounts, the drive at "
+            "constant speed",
             turns=True,
-            joints=(),
+            joints=("damper", "torsion damper", "resistance"),
             rubs=False,
         ),
         Format(
@@ -72,10 +73,10 @@ FORMATS: Mapping[str, Format] = {
             ".py",
             "Exudyn",
             "a script that builds and runs bodies, pins, sliders, gears, belts, linear springs, "
-            "constant loads, rows, the support on its mounts in the plane, the drive at constant "
-            "speed",
+            "dampers, stops, resistances, constant loads, rows, the support on its mounts in the "
+            "plane, the drive at constant speed",
             turns=True,
-            joints=(),
+            joints=("damper", "torsion damper", "stop", "resistance"),
             rubs=False,
         ),
         Format(
@@ -103,9 +104,10 @@ FORMATS: Mapping[str, Format] = {
             ".mo",
             "Modelica",
             "one flat model: equations of motion of each link, pins, sliders, gears, belts, "
-            "springs, torsion springs, constant loads, the drive at constant speed",
+            "springs, torsion springs, dampers, stops, resistances, constant loads, the drive at "
+            "constant speed",
             turns=True,
-            joints=(),
+            joints=("damper", "torsion damper", "stop", "resistance"),
             rubs=False,
         ),
         Format(

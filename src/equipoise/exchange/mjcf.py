@@ -28,6 +28,7 @@ from equipoise.exchange.tree import (
 from equipoise.mechanism.assembly.steps import Array
 from equipoise.mechanism.dynamics.forces import forces
 from equipoise.mechanism.kinematics.motion import move
+from equipoise.mechanism.parts.between import BetweenPoints
 from equipoise.mechanism.parts.links import Link, size_of
 from equipoise.mechanism.parts.machine import FRAME, Machine
 from equipoise.mechanism.parts.support import FREEDOMS, Support, unit_vector
@@ -63,6 +64,8 @@ def made(job: Job) -> str:
         _links(base, tree, job, machine.drive.flywheel if tree is drawn[0] else 0.0)
         _held(root, tree)
         _springs(root, tree, job)
+        _dampers(root, tree, job)
+        _resistances(root, tree, job)
         _loads(root, world, tree, job)
     _shaft(root, drawn)
     if machine.support is not None:
@@ -256,10 +259,7 @@ def _springs(root: ET.Element, tree: Tree, job: Job) -> None:
             job.leave_out("springs that pull at every length")
             continue
         rates = {"stiffness": repr(spring.stiffness), "springlength": repr(rest)}
-        tendon = ET.SubElement(_part(root, "tendon"), "spatial", rates)
-        plane = _plane(tree, spring.link, spring.point)
-        for body, point in ((spring.link, spring.point), (spring.on, spring.to)):
-            ET.SubElement(tendon, "site", site=_in_plane(root, tree, body, point, plane))
+        _between(root, tree, spring, rates)
     motion = move(tree.machine, [tree.crank_angle + tree.row.phase], acceleration=0.0)
     for number, torsion in enumerate(tree.machine.torsion_springs):
         if torsion.stiffness is None:
@@ -268,9 +268,58 @@ def _springs(root: ET.Element, tree: Tree, job: Job) -> None:
         drawn = float(motion.element_values("torsion_springs", number)["angle"][0])
         rest = torsion.angle + torsion.preload / torsion.stiffness - drawn
         rates = {"stiffness": repr(torsion.stiffness), "springlength": _row((rest, rest))}
-        tendon = ET.SubElement(_part(root, "tendon"), "fixed", rates)
-        for joint, factor in tree.angle_between(torsion.link, torsion.on).items():
-            ET.SubElement(tendon, "joint", joint=f"{joint}{tree.suffix}", coef=repr(factor))
+        _turning(root, tree, (torsion.link, torsion.on), rates)
+
+
+def _between(root: ET.Element, tree: Tree, item: BetweenPoints, rates: Mapping[str, str]) -> None:
+    """A tendon between two points, in the plane of the first."""
+    tendon = ET.SubElement(_part(root, "tendon"), "spatial", dict(rates))
+    plane = _plane(tree, item.link, item.point)
+    for body, point in ((item.link, item.point), (item.on, item.to)):
+        ET.SubElement(tendon, "site", site=_in_plane(root, tree, body, point, plane))
+
+
+def _turning(
+    root: ET.Element, tree: Tree, bodies: tuple[str, str], rates: Mapping[str, str]
+) -> None:
+    """A tendon whose length is the angle of a body less that of another."""
+    tendon = ET.SubElement(_part(root, "tendon"), "fixed", dict(rates))
+    for joint, factor in tree.angle_between(*bodies).items():
+        ET.SubElement(tendon, "joint", joint=f"{joint}{tree.suffix}", coef=repr(factor))
+
+
+def _dampers(root: ET.Element, tree: Tree, job: Job) -> None:
+    for damper in tree.machine.dampers:
+        if damper.linear:
+            _between(root, tree, damper, {"damping": repr(damper.damping)})
+        else:
+            job.leave_out("dampers with a table")
+    for torsion in tree.machine.torsion_dampers:
+        if torsion.linear:
+            rates = {"damping": repr(torsion.damping)}
+            _turning(root, tree, (torsion.link, torsion.on), rates)
+        else:
+            job.leave_out("torsion dampers with a table")
+
+
+def _resistances(root: ET.Element, tree: Tree, job: Job) -> None:
+    """Viscous ones, as forces on sites against their speeds along lines of the frame."""
+    for number, item in enumerate(tree.machine.resistances, 1):
+        if item.on != FRAME or tree.machine.support is not None:
+            job.leave_out("resistances over a body that moves")
+            continue
+        if not item.linear:
+            job.leave_out("dry and one-way parts of resistances")
+        if not item.damping or item.one_way:
+            continue
+        site, other = (
+            _place(tree, body, at) for body, at in ((item.link, item.point), (FRAME, item.to))
+        )
+        ways = (0.0, np.pi / 2) if item.direction is None else (item.direction,)
+        for k, way in enumerate(ways):
+            name = f"resistance {number}{' across' if k else ''}{tree.suffix}"
+            gear = (float(np.cos(way)), float(np.sin(way)), 0, 0, 0, 0)
+            _push(root, name, site, other, gear, (0.0, 0.0, -item.damping))
 
 
 def _loads(root: ET.Element, world: ET.Element, tree: Tree, job: Job) -> None:

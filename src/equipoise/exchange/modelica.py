@@ -15,8 +15,11 @@ from equipoise.exchange.formats import Job
 from equipoise.exchange.tree import constant_loads, mass_of, weighed
 from equipoise.mechanism.assembly.joints import structure
 from equipoise.mechanism.kinematics.motion import Motion, move
+from equipoise.mechanism.parts.damping import Damping
 from equipoise.mechanism.parts.machine import FRAME, Load, Machine
-from equipoise.mechanism.parts.ramps import Ramps
+from equipoise.mechanism.parts.ramps import Ramps, ramps_of
+from equipoise.mechanism.parts.resistances import Resistance
+from equipoise.mechanism.parts.stops import Stop, loss_factor
 
 
 @dataclass
@@ -46,6 +49,13 @@ class Flat:
         name, (ax, ay) = self.names[body], self.arm(body, point)
         return f"(x_{name} + {ax})", f"(y_{name} + {ay})"
 
+    def velocity(self, body: str, point: str) -> tuple[str, str]:
+        """Of a point of a body, in the frame."""
+        if body == FRAME:
+            return "0.0", "0.0"
+        name, (ax, ay) = self.names[body], self.arm(body, point)
+        return f"(vx_{name} - vphi_{name} * {ay})", f"(vy_{name} + vphi_{name} * {ax})"
+
     def arm(self, body: str, point: str) -> tuple[str, str]:
         """From the centre of mass of a link to a point of it, in the frame."""
         _, (cx, cy), _ = mass_of(self.machine.links[body])
@@ -61,6 +71,16 @@ class Flat:
         """Of a body in the frame."""
         return "0.0" if body == FRAME else f"phi_{self.names[body]}"
 
+    def rate(self, body: str) -> str:
+        """Angular velocity of a body."""
+        return "0.0" if body == FRAME else f"vphi_{self.names[body]}"
+
+    def define(self, name: str, expression: str) -> str:
+        """Declare a variable with the equation that gives it."""
+        self.real(name)
+        self.equations.append(f"{name} = {expression};")
+        return name
+
     def push(self, body: str, point: str, force: tuple[str, str], sign: str) -> None:
         """Let a force act on a body at one of its points."""
         if body == FRAME:
@@ -70,6 +90,15 @@ class Flat:
         xs.append(f"{sign} {fx}")
         ys.append(f"{sign} {fy}")
         moments.append(f"{sign} ({ax} * {fy} - {ay} * {fx})")
+
+    def push_back(self, body: str, at: tuple[str, str], force: tuple[str, str]) -> None:
+        """Let the opposite of a force act on a body at a place in the frame."""
+        if body != FRAME:
+            (x, y), (fx, fy), name = at, force, self.names[body]
+            xs, ys, moments = self.acting[body]
+            xs.append(f"- {fx}")
+            ys.append(f"- {fy}")
+            moments.append(f"- (({x} - x_{name}) * {fy} - ({y} - y_{name}) * {fx})")
 
     def turn(self, body: str, couple: str) -> None:
         """Let a couple act on a body."""
@@ -163,13 +192,8 @@ def _sliders(model: Flat, motion: Motion) -> None:
         force = f"(-sin{way} * {normal})", f"(cos{way} * {normal})"
         model.push(slider.link, slider.point, force, "+")
         model.turn(slider.link, couple)
-        if slider.on != FRAME:
-            xs, ys, moments = model.acting[slider.on]
-            name = model.names[slider.on]
-            xs.append(f"- {force[0]}")
-            ys.append(f"- {force[1]}")
-            moments.append(f"- (({x} - x_{name}) * {force[1]} - ({y} - y_{name}) * {force[0]})")
-            moments.append(f"- {couple}")
+        model.push_back(slider.on, (x, y), force)
+        model.turn(slider.on, f"(-{couple})")
 
 
 def _couplings(model: Flat, motion: Motion) -> None:
@@ -208,6 +232,9 @@ def _forces(model: Flat, job: Job) -> None:
         if spring.on != FRAME:
             model.push(spring.on, spring.to, force, "-")
     _torsion_springs(model, job)
+    _dampers(model)
+    _stops(model)
+    _resistances(model)
     for _, load in constant_loads(job):
         if load.force is not None and load.point is not None:
             fx, fy = _force(model, load)
@@ -243,6 +270,130 @@ def _torsion_springs(model: Flat, job: Job) -> None:
         model.equations.append(f"{torque} = {_ramps(spring.pieces, angle)};")
         model.turn(ends[0], torque)
         model.turn(ends[1], f"(-{torque})")
+
+
+def _dampers(model: Flat) -> None:
+    """Pulls along lines, and couples, against their speeds."""
+    for number, damper in enumerate(model.machine.dampers, 1):
+        (x, y), (x0, y0) = model.place(damper.link, damper.point), model.place(damper.on, damper.to)
+        (vx, vy), (vx0, vy0) = (
+            model.velocity(damper.link, damper.point),
+            model.velocity(damper.on, damper.to),
+        )
+        length = model.define(f"LD_{number}", f"sqrt(({x} - {x0})^2 + ({y} - {y0})^2)")
+        gained = f"({x} - {x0}) * ({vx} - {vx0}) + ({y} - {y0}) * ({vy} - {vy0})"
+        speed = model.define(f"VD_{number}", f"({gained}) / {length}")
+        pull = model.define(f"PD_{number}", f"({_resisted(damper, speed)}) / {length}")
+        force = f"({pull} * ({x0} - {x}))", f"({pull} * ({y0} - {y}))"
+        model.push(damper.link, damper.point, force, "+")
+        model.push(damper.on, damper.to, force, "-")
+    for number, torsion in enumerate(model.machine.torsion_dampers, 1):
+        speed = f"{model.rate(torsion.link)} - {model.rate(torsion.on)}"
+        speed = model.define(f"WD_{number}", speed)
+        couple = model.define(f"MD_{number}", _resisted(torsion, speed))
+        model.turn(torsion.link, f"(-{couple})")
+        model.turn(torsion.on, couple)
+
+
+def _resisted(damper: Damping, speed: str) -> str:
+    """What a damper resists a speed with."""
+    if damper.linear:
+        return f"{damper.damping!r} * {speed}"
+    return _ramps(ramps_of(*damper.rows), speed)
+
+
+def _stops(model: Flat) -> None:
+    """Forces that push points back over the lines of stops."""
+    for number, stop in enumerate(model.machine.stops, 1):
+        at = _Guided.of(model, stop, stop.direction)
+        gap = model.define(f"GS_{number}", at.place(0))
+        opening = model.define(f"VS_{number}", at.speed(0))
+        force = f"{stop.stiffness!r} * {_positive(f'(-{gap})')}"
+        if stop.speed is not None and stop.restitution is not None:
+            lost = loss_factor(stop.restitution) / stop.speed
+            force = f"{force} * {_positive(f'(1.0 - {lost!r} * {opening})')}"
+        at.push(model.define(f"FS_{number}", force), "0.0")
+
+
+def _resistances(model: Flat) -> None:
+    """Forces against the motion of points: dry, viscous, by the way."""
+    for number, item in enumerate(model.machine.resistances, 1):
+        at = _Guided.of(model, item, item.direction or 0.0)
+        along = model.define(f"UR_{number}", at.speed(0))
+        along = _positive(along) if item.one_way else along
+        across, squared = "0.0", f"{along}^2"
+        if item.direction is None:
+            across = model.define(f"WR_{number}", at.speed(1))
+            squared = f"{along}^2 + {across}^2"
+        factor = "0.0" if item.damping is None else repr(item.damping)
+        if item.speed is not None:
+            dry = "0.0" if item.force is None else repr(item.force)
+            if item.positions:
+                place = model.define(f"XR_{number}", at.place(0))
+                first, last = (_in_brackets(item.positions[k]) for k in (0, -1))
+                begin, end = (f"({place} - {edge})" for edge in (first, last))
+                within = f"{first} + {_positive(begin)} - {_positive(end)}"
+                within = model.define(f"IR_{number}", within)
+                dry = f"({dry} + {_ramps(ramps_of(item.positions, item.forces), within)})"
+            factor = f"{factor} + {dry} / sqrt({squared} + {item.speed**2!r})"
+        factor = model.define(f"CR_{number}", factor)
+        at.push(f"(-{factor} * {along})", f"(-{factor} * {across})")
+
+
+@dataclass(frozen=True)
+class _Guided:
+    """A point of a link beside lines of another body, through one of its points.
+
+    arm : from that point to this.  moving : velocity of the one relative to the other.
+    way : cosine and sine of the lines' direction.
+    """
+
+    model: Flat
+    item: Stop | Resistance
+    arm: tuple[str, str]
+    moving: tuple[str, str]
+    way: tuple[str, str]
+
+    @classmethod
+    def of(cls, model: Flat, item: Stop | Resistance, direction: float) -> _Guided:
+        """direction : from the x axis of the other body, rad."""
+        (link, point), (on, to) = (item.link, item.point), (item.on, item.to)
+        arm, moving = (
+            tuple(
+                f"({one} - {other})" for one, other in zip(of(link, point), of(on, to), strict=True)
+            )
+            for of in (model.place, model.velocity)
+        )
+        angle = f"({model.angle(on)} + {_in_brackets(direction)})"
+        return cls(model, item, arm, moving, (f"cos{angle}", f"sin{angle}"))
+
+    def _axis(self, across: int) -> tuple[str, str]:
+        c, s = self.way
+        return (f"(-{s})", c) if across else (c, s)
+
+    def place(self, across: int) -> str:
+        """Along the lines, or across them to the left."""
+        (ux, uy), (ax, ay) = self._axis(across), self.arm
+        return f"{ux} * {ax} + {uy} * {ay}"
+
+    def speed(self, across: int) -> str:
+        """Rate of the place."""
+        (ux, uy), (ax, ay), (vx, vy) = self._axis(across), self.arm, self.moving
+        turning = f"({ux} * {ay} - {uy} * {ax}) * {self.model.rate(self.item.on)}"
+        return f"{ux} * {vx} + {uy} * {vy} + {turning}"
+
+    def push(self, along: str, across: str) -> None:
+        """Let a force act on the point, and its opposite there on the other body."""
+        c, s = self.way
+        force = f"({c} * {along} - {s} * {across})", f"({s} * {along} + {c} * {across})"
+        item, model = self.item, self.model
+        model.push(item.link, item.point, force, "+")
+        model.push_back(item.on, model.place(item.link, item.point), force)
+
+
+def _positive(expression: str) -> str:
+    """What is there where it is above 0, else 0."""
+    return f"(0.5 * ({expression} + abs({expression})))"
 
 
 def _ramps(pieces: Ramps, place: str) -> str:

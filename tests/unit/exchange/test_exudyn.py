@@ -15,6 +15,7 @@ import equipoise as eq
 from equipoise.mechanism.parts.support import unit_vector
 from support.conformance import compared
 from support.machines import make
+from support.rated import LAWS, LINEAR, ON_LINKS, machine_with
 from support.sources import EXUDYN
 
 pytestmark = pytest.mark.skipif(find_spec("exudyn") is None, reason="not for this computer")
@@ -82,6 +83,27 @@ def test_a_support_from_rest(name: str, tmp_path: Path) -> None:
             moved = shift.real * x + shift.imag * y
         wanted = exact.gauges[gauge]
         assert np.max(np.abs(moved - wanted)) <= 1e-5 * np.max(np.abs(wanted)) + 1e-15, gauge
+
+
+@pytest.mark.parametrize("elements", [LINEAR, LAWS], ids=["linear", "laws"])
+def test_dampers_stops_and_resistances(
+    elements: dict[str, tuple[object, ...]], tmp_path: Path
+) -> None:
+    machine = machine_with(elements)
+    assert eq.export(machine, tmp_path / "model.py") == ()
+    found = run(machine, tmp_path / "model.py", 0.5)
+    motion = eq.move(machine, found["crank_angle"])
+    wanted = eq.forces(motion).drive_torque
+    apart = np.abs(found["drive_torque"] - wanted)[STEPS // 10 :]
+    assert np.max(apart) < 2e-4 * np.max(np.abs(wanted))
+
+
+def test_what_a_script_leaves_out_of_force_elements(tmp_path: Path) -> None:
+    assert eq.export(machine_with(ON_LINKS), tmp_path / "model.py") == (
+        "torsion dampers with a table",
+        "stops over a body that moves",
+        "resistances over a body that moves",
+    )
 
 
 def test_a_constant_load(tmp_path: Path) -> None:

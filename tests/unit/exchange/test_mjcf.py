@@ -13,6 +13,7 @@ import equipoise as eq
 from equipoise.exchange.mjcf import STEPS
 from equipoise.mechanism.parts.support import unit_vector
 from support.conformance import compared
+from support.rated import LAWS, LINEAR, ON_LINKS, machine_with
 from support.sources import MUJOCO
 
 START = 0.3
@@ -65,6 +66,56 @@ def test_a_turn_of_the_crank(name: str, tmp_path: Path) -> None:
     wanted = sum(eq.forces(eq.move(machine, late + phase)).drive_torque for phase in phases)
     settled = slice(STEPS // 10, None)
     assert np.max(np.abs(torques - wanted)[settled]) < 0.02 * np.max(np.abs(wanted))
+
+
+def put_in_motion(
+    model: mujoco.MjModel, data: mujoco.MjData, machine: eq.Machine, crank_angle: float
+) -> None:
+    """Joints of a file drawn at `START` as in the package at a crank angle."""
+    motion, drawn = (eq.move(machine, [at], acceleration=0.0) for at in (crank_angle, START))
+    angles = {name: motion.links[name].angle[0] - drawn.links[name].angle[0]
+              for name in machine.links}  # fmt: skip
+    rates = {name: motion.links[name].angular_velocity[0] for name in machine.links}
+    for number in range(model.njnt):
+        joint = model.joint(number)
+        body = joint.bodyid[0]
+        link, parent = model.body(body).name, model.body(model.body(body).parentid[0]).name
+        data.qpos[joint.qposadr[0]] = angles[link] - angles.get(parent, 0.0)
+        data.qvel[joint.dofadr[0]] = rates[link] - rates.get(parent, 0.0)
+
+
+def test_dampers_and_viscous_resistances(tmp_path: Path) -> None:
+    """Power that they take in MuJoCo, pose by pose, at the velocities of the package."""
+    machine = machine_with(LINEAR)
+    model, data = opened(machine, tmp_path / "model.xml")
+    bare, still = opened(machine_with({}), tmp_path / "bare.xml")
+    for at in np.linspace(0.0, 6.0, 13):
+        powers = []
+        for rig, state in ((model, data), (bare, still)):
+            put_in_motion(rig, state, machine, START + at)
+            state.ctrl[:] = machine.drive.speed  # the servo adds nothing
+            mujoco.mj_forward(rig, state)
+            powers.append((state.qfrc_passive + state.qfrc_actuator) @ state.qvel)
+        pose = eq.move(machine, [START + at])
+        wanted = sum(
+            pose.element_values(table, number)["loss"][0]
+            for table, items in LINEAR.items()
+            for number in range(len(items))
+        )
+        assert powers[1] - powers[0] == pytest.approx(wanted, rel=1e-9)
+
+
+def test_what_a_file_leaves_out_of_force_elements(tmp_path: Path) -> None:
+    path = tmp_path / "m.xml"
+    machine = machine_with({**LAWS, "stops": ()})
+    left_out = ("dampers with a table", "dry and one-way parts of resistances")
+    assert eq.export(machine, path) == left_out
+    assert eq.export(machine_with({**ON_LINKS, "stops": ()}), path) == (
+        "torsion dampers with a table",
+        "resistances over a body that moves",
+    )
+    with pytest.raises(eq.EquipoiseError, match=r"a file of MuJoCo .* has no stop"):
+        eq.export(machine_with(LAWS), path)
 
 
 @compared(MUJOCO, "gauges of the exported file from rest, its constraints soft", 0.02)

@@ -14,8 +14,11 @@ import numpy as np
 import pytest
 
 import equipoise as eq
+from support.rated import LAWS, LINEAR, ON_LINKS, machine_with
 
 START = 0.3
+TIMES = (0.02, 0.12, 0.22)
+"""s, within a turn of 0.31 s."""
 LINE = re.compile(r"  (.+) = (.+);")
 SOLVED = [
     *("yamashita-1", "quick-return", "scotch-yoke", "class-three", "geared-counterweight"),
@@ -38,7 +41,8 @@ def text_of(machine: eq.Machine, path: Path) -> str:
 def in_motion(machine: eq.Machine, time: float) -> dict[str, Any]:
     """Every variable of position, speed and acceleration, by its name in the text."""
     motion = eq.move(machine, [START + machine.drive.speed * time], acceleration=0.0)
-    known: dict[str, Any] = {"time": time, "cos": math.cos, "sin": math.sin, "sqrt": math.sqrt}
+    known: dict[str, Any] = {"time": time, "cos": math.cos, "sin": math.sin, "sqrt": math.sqrt,
+                             "abs": abs}  # fmt: skip
     for number, link in enumerate(machine.links, 1):
         name = f"{re.sub('[^A-Za-z0-9_]', '_', link)}_{number}"
         center, turning = motion.mass_centers[link], motion.links[link]
@@ -55,8 +59,28 @@ def in_motion(machine: eq.Machine, time: float) -> dict[str, Any]:
 
 @pytest.mark.parametrize("name", SOLVED)
 def test_equations_hold_and_give_the_drive_torque(name: str, tmp_path: Path) -> None:
-    """What is left of each line vanishes for some reactions, of which the lines are linear."""
     machine = replace(eq.load(name), loads=LOADS.get(name, ()), balance=None)
+    check_equations(machine, tmp_path)
+
+
+@pytest.mark.parametrize("elements", [LINEAR, LAWS, ON_LINKS], ids=["linear", "laws", "on links"])
+def test_dampers_stops_and_resistances(
+    elements: dict[str, tuple[object, ...]], tmp_path: Path
+) -> None:
+    """Each matters at some time: without it the drive torque is another."""
+    machine = machine_with(elements)
+    wanted = [check_equations(machine, tmp_path, time) for time in TIMES]
+    for table, items in elements.items():
+        for k in range(len(items)):
+            less = replace(machine, **{table: (*items[:k], *items[k + 1 :])})
+            others = [check_equations(less, tmp_path, time) for time in TIMES]
+            assert np.max(np.abs(np.subtract(others, wanted))) > 1e-3, (table, k)
+
+
+def check_equations(machine: eq.Machine, tmp_path: Path, time: float = 0.02) -> float:
+    """The drive torque, N m, at a time, s; what is left of each line vanishes for some reactions, of which the
+    lines are linear.
+    """
     text = text_of(machine, tmp_path / "x.mo")
     declared = re.findall(r"Real (\w+)", text)
     head, body = text.split("equation\n")
@@ -64,13 +88,16 @@ def test_equations_hold_and_give_the_drive_torque(name: str, tmp_path: Path) -> 
     lines = [LINE.fullmatch(line) for line in body.splitlines()[:-1]]
     assert all(lines)
     assert len(lines) == len(declared) == len(set(declared))
-    time = 0.02
     known = in_motion(machine, time)
     unknown = [one for one in declared if one not in known]
-    for one in [one for one in unknown if one.startswith("L_")]:  # lengths of springs
-        (given,) = (line for line in lines if line and line[1] == one)
-        known[one] = left(given[2], known)
-        unknown.remove(one)
+    for line in lines:  # lengths, speeds and what follows from them
+        if (
+            line
+            and line[1] in unknown
+            and not any(re.search(rf"\b{one}\b", line[2]) for one in unknown)
+        ):
+            known[line[1]] = left(line[2], known)
+            unknown.remove(line[1])
 
     def rest(values: np.ndarray) -> np.ndarray:
         given = known | dict(zip(unknown, values, strict=True))
@@ -84,7 +111,9 @@ def test_equations_hold_and_give_the_drive_torque(name: str, tmp_path: Path) -> 
     angle = [START + machine.drive.speed * time]
     wanted = eq.forces(eq.move(machine, angle, acceleration=0.0)).drive_torque[0]
     torques = eq.forces(eq.move(machine, acceleration=0.0)).drive_torque
-    assert found[unknown.index("tau")] == pytest.approx(wanted, abs=1e-8 * np.ptp(torques))
+    torque = float(found[unknown.index("tau")])
+    assert torque == pytest.approx(wanted, abs=1e-8 * np.ptp(torques))
+    return torque
 
 
 def left(expression: str, known: dict[str, Any]) -> float:

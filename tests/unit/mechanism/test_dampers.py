@@ -199,7 +199,7 @@ def test_the_page_has_their_forms_and_numbers() -> None:
     on_the_page(machine, "torsion_dampers", keys, ["damping"])
 
 
-@pytest.mark.parametrize("file_format", ["mjcf", "exudyn", "urdf", "modelica"])
+@pytest.mark.parametrize("file_format", ["urdf"])
 def test_formats_without_them_refuse_them(file_format: str, tmp_path: Path) -> None:
     with pytest.raises(
         UsageError, match=r"^dampers\[1\]: a file of .* has no damper; give another"
