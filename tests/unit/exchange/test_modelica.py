@@ -78,8 +78,9 @@ def test_dampers_stops_and_resistances(
 
 
 def check_equations(machine: eq.Machine, tmp_path: Path, time: float = 0.02) -> float:
-    """The drive torque, N m, at a time, s; what is left of each line vanishes for some reactions, of which the
-    lines are linear.
+    """The drive torque, N m, at a time, s.
+
+    What is left of each line vanishes for some reactions, of which the lines are linear.
     """
     text = text_of(machine, tmp_path / "x.mo")
     declared = re.findall(r"Real (\w+)", text)
