@@ -584,7 +584,7 @@ def _twisted(chance: random.Random, document: Document) -> None:
 
 
 def _damped(chance: random.Random, document: Document) -> None:
-    """Of a fifth, dampers, torsion dampers and a stop, between links or a link and the frame."""
+    """Of a fifth, dampers, stops and others, between links or a link and the frame."""
     bodies = {name: link["points"] for name, link in document["links"].items()}
     bodies["frame"] = document["frame"]["points"]
     link, on = chance.choice([*bodies][:-1]), chance.choice([*bodies])
@@ -619,6 +619,21 @@ def _damped(chance: random.Random, document: Document) -> None:
             ]
         )  # fmt: skip
         document["resistances"] = [held | law]
+    _bushed(random.Random(str(held)), document, held)
+
+
+def _bushed(chance: random.Random, document: Document, held: Document) -> None:
+    """A bushing of every second; chance : of its own, so that machines of seeds stay."""
+    if chance.random() < 0.5:
+        stiff = {"stiffness": ["20 N/mm", "5 N/mm"], "direction": deg(chance.uniform(-pi, pi))}
+        about = {"torsional_stiffness": "3 N m/rad", "angle": deg(chance.uniform(-pi, pi))}
+        laws = [
+            stiff,
+            stiff | {"damping": ["20 N s/m", "0 N s/m"], "preload": ["-30 N", "5 N"]},
+            {"damping": ["9 N s/m", "4 N s/m"], "torsional_damping": "0.1 N m s/rad"},
+            stiff | about | {"torque": "0.4 N m"},
+        ]
+        document["bushings"] = [held | chance.choice(laws)]
 
 
 def _rubbing(chance: random.Random, document: Document) -> None:

@@ -93,10 +93,18 @@ FORMATS: Mapping[str, Format] = {
             ".fmu",
             "co-simulation (FMI 2.0)",
             "motion and forces as outputs, speed and acceleration of the crank as inputs; gears, "
-            "belts, racks, springs, torsion springs, dampers, stops, resistances, constant loads; "
-            "C sources, and a library where a C compiler is found",
+            "belts, racks, springs, torsion springs, dampers, bushings, stops, resistances, "
+            "constant loads; C sources, and a library where a C compiler is found",
             turns=True,
-            joints=("rack", "pin in a slot", "damper", "torsion damper", "stop", "resistance"),
+            joints=(
+                "rack",
+                "pin in a slot",
+                "damper",
+                "torsion damper",
+                "bushing",
+                "stop",
+                "resistance",
+            ),
             rubs=False,
         ),
         Format(

@@ -100,6 +100,7 @@ LOOKS: dict[str, DrawingStyle] = {
     "several 7": DrawingStyle("#008a6a", dashes=(4, 1.4, 1, 1.4, 1, 1.4)),
     "several 8": DrawingStyle("#a3478f", dashes=(2.4, 1.6)),
     "several 9": DrawingStyle("#8a6d00", dashes=(12, 2, 3, 2)),
+    "several 10": DrawingStyle(INK, 0.9),
     "air": DrawingStyle(LINES, dashes=(4, 1.6)),
     "soil signal": DrawingStyle(STRESS),
     # lines and shades

@@ -123,6 +123,16 @@ MEANINGS = {
     "largest stress along {name}": to_say(
         "Largest normal stress along a link, of bending and axial force."
     ),
+    "deflection along bushing {name}": to_say(
+        "How far a point is from that of its bushing along the direction of this."
+    ),
+    "deflection across bushing {name}": to_say(
+        "How far a point is from that of its bushing across the direction of this."
+    ),
+    "force along bushing {name}": to_say("Force of a bushing on its link along its direction."),
+    "force across bushing {name}": to_say("Force of a bushing on its link across its direction."),
+    "torque of bushing {name}": to_say("Torque of a bushing on its link about its pin."),
+    "loss of bushing {name}": to_say("Power that a bushing turns into heat."),
     "force of stop {name}": to_say("Force with which a stop pushes a point back."),
     "gap of stop {name}": to_say(
         "Distance of a point from the line of its stop; below 0 it presses the stop in."

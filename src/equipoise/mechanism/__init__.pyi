@@ -13,6 +13,7 @@ from .kinematics.motion import move as move
 from .parts.belts import Belt as Belt
 from .parts.bodies import Body as Body
 from .parts.bodies import Hole as Hole
+from .parts.bushings import Bushing as Bushing
 from .parts.circular_slots import CircularSlot as CircularSlot
 from .parts.curved_slots import CurvedSlot as CurvedSlot
 from .parts.dampers import Damper as Damper

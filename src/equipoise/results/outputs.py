@@ -268,6 +268,7 @@ CAUSES = {
     "load": to_say("loads"),
     "spring": to_say("springs"),
     "damper": to_say("dampers"),
+    "bushing": to_say("bushings"),
     "stop": to_say("stops"),
     "resistance": to_say("resistances"),
     "friction": to_say("friction"),

@@ -36,6 +36,7 @@ from equipoise.mechanism.parts import (
     weights,
 )
 from equipoise.mechanism.parts.belts import Belt
+from equipoise.mechanism.parts.bushings import Bushing
 from equipoise.mechanism.parts.circular_slots import CircularSlot
 from equipoise.mechanism.parts.curved_slots import CurvedSlot
 from equipoise.mechanism.parts.dampers import Damper
@@ -79,7 +80,8 @@ DOCUMENTED: dict[str, type[Frozen]] = {
         joint_properties.JointProperties, RollingBearing,
         gear_shapes.GearShape, Belt, Rack, cams.Cam,
         CircularSlot, CurvedSlot,
-        force_elements.Load, Spring, TorsionSpring, Damper, TorsionDamper, Stop, Resistance,
+        force_elements.Load, Spring, TorsionSpring, Damper, TorsionDamper, Bushing, Stop,
+        Resistance,
         Position, field.Planting,
         field.PlantingArm,
         field.Soil, support.Support,

@@ -20,8 +20,8 @@ from equipoise.mechanism.dynamics.reactions import (
     SliderForce,
 )
 
-CAUSES = ("translation", "rotation", "weight", "load", "spring", "damper", "stop", "resistance",
-          "friction")  # fmt: skip
+CAUSES = ("translation", "rotation", "weight", "load", "spring", "damper", "bushing", "stop",
+          "resistance", "friction")  # fmt: skip
 """Inertia of the centres of mass, inertia of rotation about them, weight, loads from outside,
 springs with preloads of couplings, other force elements by their `cause`, friction in joints."""
 EVERYWHERE = CAUSES[:5]

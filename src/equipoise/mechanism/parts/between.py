@@ -2,7 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from typing import Any
+
+from equipoise.errors import ModelError
 from equipoise.i18n import Note
+from equipoise.mechanism.checks import FRAME, Bodies, unknown, unknown_body, unknown_link
+from equipoise.mechanism.formulas.kernels import cross, dot
+from equipoise.mechanism.parts.element_kinds import Placed
 
 
 class BetweenPoints:
@@ -32,6 +39,43 @@ class BetweenPoints:
     def route(self) -> tuple[str, str]:
         """Both points."""
         return self.point, self.to
+
+    def relative_motion(
+        self, at: Placed, direction: Any
+    ) -> tuple[Any, Any, tuple[tuple[Any, Any], ...]]:
+        """Way from the other point to the point, m, complex in the frame; unit vector of a
+        direction, rad from the x axis of the other body; and the ways along and across that in the
+        axes of the other body, m, with their speeds there, m/s.
+        """
+        arm = at.point(self.link, self.point) - at.point(self.on, self.to)
+        velocity = at.velocity(self.link, self.point) - at.velocity(self.on, self.to)
+        along = at.turned(self.on, direction)
+        rate = at.rate(self.on)
+        ways = tuple(
+            (dot(way, arm), dot(way, velocity) + cross(way, arm) * rate)
+            for way in (along, 1j * along)
+        )
+        return arm, along, ways
+
+    def wrong_points(self, where: str, bodies: Bodies, itself: Note) -> Iterator[ModelError]:
+        """What is wrong with its bodies and points; itself : sentence for a link on itself."""
+        wrong = [
+            *unknown_link(f"{where}.link", self.link, bodies),
+            *unknown_body(f"{where}.on", self.on, bodies),
+        ]
+        yield from wrong
+        if wrong:
+            return
+        if self.link == self.on:
+            yield ModelError(f"{where}.on", itself)
+        if self.point not in bodies[self.link]:
+            of = Note("point of {body}", body=self.link)
+            yield ModelError(f"{where}.point", unknown(self.point, bodies[self.link], of))
+        if self.to not in bodies[self.on]:
+            kind: Note | str = "point of the frame"
+            if self.on != FRAME:
+                kind = Note("point of {body}", body=self.on)
+            yield ModelError(f"{where}.to", unknown(self.to, bodies[self.on], kind))
 
 
 class BetweenBodies:

@@ -56,7 +56,7 @@ class RatedElement(ForceElement):
     @property
     @abstractmethod
     def linear(self) -> bool:
-        """Whether its forces are proportional to the speeds."""
+        """Whether its forces change in proportion to the speeds, wherever it is."""
 
     @abstractmethod
     def ways(self, at: Placed) -> tuple[tuple[Any, Any], ...]:

@@ -43,6 +43,7 @@ from equipoise.mechanism.checks import (
     unknown,
 )
 from equipoise.mechanism.parts.belts import Belt
+from equipoise.mechanism.parts.bushings import Bushing
 from equipoise.mechanism.parts.cams import Cam
 from equipoise.mechanism.parts.circular_slots import CircularSlot
 from equipoise.mechanism.parts.constraints import Constraint, changed_points
@@ -134,7 +135,7 @@ class Machine(Driven, Displayed, Frozen):
     file_order = ("schema", "title", "description", "units", "parameters", "gravity", "drive",
                   "drives", "frame", "links", "constraints", "bearings", "assembly", "sliders",
                   "circular_slots", "curved_slots", "gears", "belts", "racks", "cams", "loads",
-                  "springs", "torsion_springs", "dampers", "torsion_dampers", "stops",
+                  "springs", "torsion_springs", "dampers", "torsion_dampers", "bushings", "stops",
                   "resistances",
                   "joints", "position", "planting", "support", "rows",
                   "duty", "run", "balance")  # fmt: skip
@@ -205,6 +206,9 @@ class Machine(Driven, Displayed, Frozen):
 
     dampers: tuple[Damper, ...] = key(
         Tables(KeyTable(Damper)), "dampers between links, or links and frame", default=()
+    )
+    bushings: tuple[Bushing, ...] = key(
+        Tables(KeyTable(Bushing)), "bushings, elastic in two axes and about their pin", default=()
     )
     stops: tuple[Stop, ...] = key(
         Tables(KeyTable(Stop)), "one-sided stops with stiffness and restitution", default=()

@@ -9,8 +9,8 @@ from typing import Any, ClassVar
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, to_say
 from equipoise.keys import Conditions, Flag, Listing, Quantity, TextKind, declared, key
-from equipoise.mechanism.checks import FRAME, Bodies, unknown, unknown_body, unknown_link
-from equipoise.mechanism.formulas.kernels import cross, dot, positive
+from equipoise.mechanism.checks import FRAME, Bodies
+from equipoise.mechanism.formulas.kernels import cross, positive
 from equipoise.mechanism.parts.between import BetweenPoints
 from equipoise.mechanism.parts.element_kinds import Placed
 from equipoise.mechanism.parts.force_kinds import Action, RatedElement
@@ -115,17 +115,8 @@ class Resistance(BetweenPoints, RatedElement):
         return self.force is None and not self.positions and not self.one_way
 
     def _moving(self, at: Placed) -> tuple[Any, Any, tuple[tuple[Any, Any], ...]]:
-        """Way from the other point, m, unit vector of its direction, and the ways along and across
-        that in the axes of the other body, m, with their speeds, m/s.
-        """
-        arm = at.point(self.link, self.point) - at.point(self.on, self.to)
-        velocity = at.velocity(self.link, self.point) - at.velocity(self.on, self.to)
-        along = at.turned(self.on, self.direction or 0.0)
-        across, rate = 1j * along, at.rate(self.on)
-        ways = tuple(
-            (dot(way, arm), dot(way, velocity) + cross(way, arm) * rate) for way in (along, across)
-        )
-        return arm, along, ways
+        """As `relative_motion`, along its direction; of one without, along the other body's x."""
+        return self.relative_motion(at, self.direction or 0.0)
 
     def ways(self, at: Placed) -> tuple[tuple[Any, Any], ...]:
         """The ways along and across its direction, m, with their speeds, m/s."""
@@ -173,23 +164,8 @@ class Resistance(BetweenPoints, RatedElement):
 
     def problems(self, where: str, bodies: Bodies) -> Iterator[ModelError]:
         """Everything that is wrong with it in a machine of these bodies."""
-        wrong = [
-            *unknown_link(f"{where}.link", self.link, bodies),
-            *unknown_body(f"{where}.on", self.on, bodies),
-        ]
-        yield from wrong
-        if wrong:
-            return
-        if self.link == self.on:
-            yield ModelError(f"{where}.on", Note("{link!r} cannot resist itself", link=self.link))
-        if self.point not in bodies[self.link]:
-            of = Note("point of {body}", body=self.link)
-            yield ModelError(f"{where}.point", unknown(self.point, bodies[self.link], of))
-        if self.to not in bodies[self.on]:
-            kind: Note | str = "point of the frame"
-            if self.on != FRAME:
-                kind = Note("point of {body}", body=self.on)
-            yield ModelError(f"{where}.to", unknown(self.to, bodies[self.on], kind))
+        itself = Note("{link!r} cannot resist itself", link=self.link)
+        yield from self.wrong_points(where, bodies, itself)
         yield from self._wrong_law(where)
 
     def _wrong_law(self, where: str) -> Iterator[ModelError]:

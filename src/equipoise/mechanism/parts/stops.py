@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, to_say
 from equipoise.keys import Number, TextKind, declared, key
-from equipoise.mechanism.checks import FRAME, Bodies, unknown, unknown_body, unknown_link
+from equipoise.mechanism.checks import FRAME, Bodies
 from equipoise.mechanism.formulas.kernels import cross, dot, positive
 from equipoise.mechanism.parts.between import BetweenPoints
 from equipoise.mechanism.parts.element_kinds import Placed
@@ -147,23 +147,8 @@ class Stop(BetweenPoints, RatedElement):
 
     def problems(self, where: str, bodies: Bodies) -> Iterator[ModelError]:
         """Everything that is wrong with it in a machine of these bodies."""
-        wrong = [
-            *unknown_link(f"{where}.link", self.link, bodies),
-            *unknown_body(f"{where}.on", self.on, bodies),
-        ]
-        yield from wrong
-        if wrong:
-            return
-        if self.link == self.on:
-            yield ModelError(f"{where}.on", Note("{link!r} cannot stop itself", link=self.link))
-        if self.point not in bodies[self.link]:
-            of = Note("point of {body}", body=self.link)
-            yield ModelError(f"{where}.point", unknown(self.point, bodies[self.link], of))
-        if self.to not in bodies[self.on]:
-            kind: Note | str = "point of the frame"
-            if self.on != FRAME:
-                kind = Note("point of {body}", body=self.on)
-            yield ModelError(f"{where}.to", unknown(self.to, bodies[self.on], kind))
+        itself = Note("{link!r} cannot stop itself", link=self.link)
+        yield from self.wrong_points(where, bodies, itself)
         if (self.speed is None) != (self.restitution is None):
             sentence = Note("give restitution and speed together, or none of them")
             yield ModelError(where, sentence)

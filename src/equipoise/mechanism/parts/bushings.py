@@ -1,0 +1,223 @@
+"""Bushings, elastic and damped in two axes and about their pin, as frozen values with checks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, ClassVar
+
+from equipoise.errors import ModelError
+from equipoise.i18n import Note, to_say
+from equipoise.keys import Conditions, Listing, Quantity, TextKind, declared, key
+from equipoise.mechanism.checks import FRAME, Bodies
+from equipoise.mechanism.formulas.kernels import cross
+from equipoise.mechanism.parts.between import BetweenPoints
+from equipoise.mechanism.parts.element_kinds import Placed
+from equipoise.mechanism.parts.force_kinds import Action, RatedElement
+from equipoise.quantities import Dimension, told
+
+Pair = tuple[float, float]
+LAWS = ("stiffness", "damping", "torsional_stiffness", "torsional_damping")
+"""Keys of which a bushing has at least one."""
+
+
+@declared
+class Bushing(BetweenPoints, RatedElement):
+    """A bushing without mass between `point` of `link` and the point `to` of `on`: linear springs
+    and dampers along two axes of `on` and about the pin.
+    """
+
+    called = to_say("{what} of bushing {number}")
+    file_order = ("link", "point", "to", "on", "direction", "stiffness", "damping", "preload",
+                  "torsional_stiffness", "torsional_damping", "angle", "torque")  # fmt: skip
+    conditions: ClassVar[Conditions] = {
+        "anyOf": [{"required": [name]} for name in LAWS],
+        "dependentRequired": {"angle": ["torsional_stiffness"]},
+    }
+    freedoms = 3
+
+    cause = "bushing"
+    special = to_say("bushing")
+    legend = ("bushing", to_say("bushing"))
+    sign = "equipoise.symbols.bushings:bushing_sign"
+    title = to_say("Bushings, each with its crank angle; forces and torques on the link")
+    group = to_say("bushings")
+    outputs: ClassVar[Mapping[str, tuple[Dimension, str]]] = {
+        "along": ("length", to_say("deflection along bushing {name}")),
+        "across": ("length", to_say("deflection across bushing {name}")),
+        "force_along": ("force", to_say("force along bushing {name}")),
+        "force_across": ("force", to_say("force across bushing {name}")),
+        "torque": ("torque", to_say("torque of bushing {name}")),
+        "loss": ("power", to_say("loss of bushing {name}")),
+    }
+    headings: ClassVar[Mapping[str, tuple[str, str]]] = {
+        "along": (to_say("lowest along"), to_say("highest")),
+        "across": (to_say("lowest across"), to_say("highest")),
+        "force_along": (to_say("lowest force along"), to_say("highest")),
+        "force_across": (to_say("lowest force across"), to_say("highest")),
+    }
+
+    link: str = key(TextKind(of="link"), "the link that it holds", example="rocker")
+    point: str = key(TextKind(of="point", on="link"), "its point on the link", example="C")
+    to: str = key(
+        TextKind(of="point", on="on"),
+        "its point on the frame, or on `on`, where it is undeflected",
+        example="S",
+        word=to_say("other point"),
+    )
+    on: str = key(
+        TextKind(of="body"),
+        "the body of its other point, with which its axes turn",
+        default=FRAME,
+        word=to_say("other body"),
+    )
+    direction: float = key("angle", "of its first axis from the x axis of `on`", default=0.0)
+    stiffness: Pair = key(
+        Listing(Quantity("stiffness"), (2,)),
+        "along its direction and across it",
+        default=(0.0, 0.0),
+        shown=["0 N/m", "0 N/m"],
+        example=["20 kN/m", "400 kN/m"],
+    )
+    damping: Pair = key(
+        Listing(Quantity("damping"), (2,)),
+        "along its direction and across it",
+        default=(0.0, 0.0),
+        shown=["0 N s/m", "0 N s/m"],
+        example=["50 N s/m", "90 N s/m"],
+    )
+    preload: Pair = key(
+        Listing(Quantity("force"), (2,)),
+        "force on the link along its direction and across it, where its points meet",
+        default=(0.0, 0.0),
+        shown=["0 N", "0 N"],
+        example=["-200 N", "0 N"],
+    )
+    torsional_stiffness: float | None = key(
+        "torsional stiffness",
+        "about the pin; the link may then turn by half a turn to either side of `angle`",
+        default=None,
+        example="30 N m/rad",
+        at_least=0,
+    )
+    torsional_damping: float | None = key(
+        "torsional damping", "about the pin", default=None, example="0.2 N m s/rad", at_least=0
+    )
+    angle: float = key(
+        "angle", "of the link from the x axis of `on`, at which it exerts `torque`", default=0.0
+    )
+    torque: float = key("torque", "preload on the link, positive counterclockwise", default=0.0)
+
+    @property
+    def axed(self) -> tuple[str, ...]:
+        return (self.on,) if self.torsional_stiffness is None else (self.link, self.on)
+
+    @property
+    def linear(self) -> bool:
+        return True
+
+    def ways(self, at: Placed) -> tuple[tuple[Any, Any], ...]:
+        """The ways along and across its direction, m, with their speeds, m/s, and how far the link
+        has turned from `angle`, rad, 0 where that does not matter, with its speed, rad/s.
+        """
+        turned: Any = 0.0
+        if self.torsional_stiffness is not None:
+            turned = at.angle(self.link, self.on, self.angle) - self.angle
+        turning = turned, at.rate(self.link) - at.rate(self.on)
+        return (*self.relative_motion(at, self.direction)[2], turning)
+
+    def _laws(self) -> tuple[tuple[Any, Any, Any], ...]:
+        """Preload, stiffness and damping of each way."""
+        about = (
+            0.0 if number is None else number
+            for number in (self.torsional_stiffness, self.torsional_damping)
+        )
+        pairs = zip(self.preload, self.stiffness, self.damping, strict=True)
+        return (*pairs, (self.torque, *about))
+
+    def efforts(self, ways: Sequence[tuple[Any, Any]]) -> tuple[Any, ...]:
+        """Forces along and across its direction, N, and torque, N m, on the link."""
+        return tuple(
+            preload - stiffness * way - damping * speed
+            for (preload, stiffness, damping), (way, speed) in zip(self._laws(), ways, strict=True)
+        )
+
+    def actions(self, at: Placed) -> Iterator[Action]:
+        """Force and torque on the link, and their opposites there on the other body."""
+        arm, direction, _ = self.relative_motion(at, self.direction)
+        along, across, torque = self.efforts(self.ways(at))
+        force = direction * along + 1j * direction * across
+        yield self.link, self.point, force, torque
+        yield self.on, self.to, -force, -cross(arm, force) - torque
+
+    def values(self, at: Placed) -> Mapping[str, Any]:
+        """Deflections, m, forces, N, and torque, N m, on the link, and power turned to heat, W."""
+        ways = self.ways(at)
+        along, across, torque = self.efforts(ways)
+        lost = [law[2] * speed * speed for law, (_, speed) in zip(self._laws(), ways, strict=True)]
+        return {
+            "along": ways[0][0],
+            "across": ways[1][0],
+            "force_along": along,
+            "force_across": across,
+            "torque": torque,
+            "loss": lost[0] + lost[1] + lost[2],
+        }
+
+    def problems(self, where: str, bodies: Bodies) -> Iterator[ModelError]:
+        """Everything that is wrong with it in a machine of these bodies."""
+        itself = Note("{link!r} cannot be held by itself", link=self.link)
+        yield from self.wrong_points(where, bodies, itself)
+        for name in ("stiffness", "damping"):
+            if any(number < 0 for number in getattr(self, name)):
+                least = Note("a bushing pulls back and takes power away; give numbers of 0 or more")
+                yield ModelError(f"{where}.{name}", least)
+        if not any(any(getattr(self, name)) for name in LAWS[:2]) and (
+            self.torsional_stiffness is None and self.torsional_damping is None
+        ):
+            wrong = Note(
+                "give at least one of stiffness, damping, torsional stiffness and torsional damping"
+            )
+            yield ModelError(where, wrong)
+        if self.angle and self.torsional_stiffness is None:
+            wrong = Note("goes with a torsional stiffness; leave it out")
+            yield ModelError(f"{where}.angle", wrong)
+
+    def demands(self) -> Iterator[Any]:
+        """What has to be true of its numbers, or of columns of them."""
+        torsional = (self.torsional_stiffness, self.torsional_damping)
+        for number in (*self.stiffness, *self.damping, *torsional):
+            if number is not None:
+                yield number >= 0
+
+    def sentence(self) -> Note:
+        """Its stiffness and its ends, for a report."""
+        along, across = (told(number, "stiffness", "N/m") for number in self.stiffness)
+        return Note(
+            "Bushing: {along} along and {across} across, {point} of {link} at {to} of {on}",
+            along=along,
+            across=across,
+            point=self.point,
+            link=self.link,
+            to=self.to,
+            on=self.on,
+        )
+
+    def summary(self) -> str:
+        """All its numbers, in a line of `check`."""
+        parts = [f"bushing: {self.point} of {self.link} at {self.to} of {self.on}"]
+        pairs: tuple[tuple[Pair, Dimension, str], ...] = (
+            (self.stiffness, "stiffness", "N/m"),
+            (self.damping, "damping", "N s/m"),
+            (self.preload, "force", "N"),
+        )
+        for pair, dimension, unit in pairs:
+            if any(pair):
+                parts.append(" and ".join(told(number, dimension, unit) for number in pair))
+        if self.torsional_stiffness is not None:
+            rate = told(self.torsional_stiffness, "torsional stiffness", "N m/rad")
+            parts.append(f"{rate} from {told(self.angle, 'angle')}")
+        if self.torsional_damping is not None:
+            parts.append(told(self.torsional_damping, "torsional damping", "N m s/rad"))
+        if self.torque:
+            parts.append(told(self.torque, "torque"))
+        return ", ".join(parts)

@@ -1,0 +1,209 @@
+"""Bushings: what they exert by deflection, turning and speed, wherever force elements are."""
+
+from __future__ import annotations
+
+import shutil
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import equipoise as eq
+from equipoise.errors import ModelError, UsageError
+from equipoise.exchange.export import export
+from equipoise.mechanism import Bushing, Machine
+from support.own_kinds import designs_by_numbers, drawn, on_the_page, read_back, scripted
+
+ON_LINK = Bushing(
+    "rocker", "F", "Q", on="coupler", direction=0.5, stiffness=(900.0, 4000.0),
+    damping=(8.0, 3.0), preload=(-6.0, 2.0), torsional_stiffness=1.5, torsional_damping=0.05,
+    angle=0.9, torque=0.2,
+)  # fmt: skip
+ON_FRAME = Bushing("coupler", "Q", "S", stiffness=(500.0, 200.0), torsional_damping=0.02)
+
+
+def held(*bushings: Bushing) -> Machine:
+    """A crank-rocker whose links are held by bushings."""
+    machine = eq.load("spring-balanced-crank")
+    coupler = machine.links["coupler"]
+    points = {**coupler.points, "Q": (0.098, -0.032)}
+    return replace(
+        machine,
+        springs=(),
+        frame={**machine.frame, "S": (0.1006, 0.0013)},
+        links={**machine.links, "coupler": replace(coupler, points=points)},
+        bushings=bushings,
+    )
+
+
+MACHINE = held(ON_LINK, ON_FRAME)
+LINKS = ("rocker", "coupler")
+
+
+def deflections(theta: Any, bushing: Bushing) -> tuple[Any, Any]:
+    """Way in the axes of the other body, complex, and angle against it, from the motion alone."""
+    motion = eq.move(MACHINE, theta)
+    turned = 0.0 if bushing.on == "frame" else motion.links[bushing.on].angle
+    apart = motion.point(bushing.point).place - motion.point(bushing.to).place
+    angle = motion.links[bushing.link].angle - turned
+    # nearest to the angle at which it is relaxed, as the machine's links swing by less than a turn
+    angle = angle - 2 * np.pi * np.round((angle - bushing.angle) / (2 * np.pi))
+    return apart * np.exp(-1j * (turned + bushing.direction)), angle - bushing.angle
+
+
+def test_its_law_by_places_and_their_differences() -> None:
+    """Deflections in the axes of the other body, their rates by differences: good to 1e-6."""
+    found, step = eq.analyze(MACHINE, 360), 1e-6
+    theta = found.motion.crank_angle
+    for number, bushing in enumerate(MACHINE.bushings):
+        way, turned = deflections(theta, bushing)
+        ends = [deflections(theta + sign * step, bushing) for sign in (-1, 1)]
+        speed = (ends[1][0] - ends[0][0]) / (2 * step) * found.motion.speed
+        turning = (ends[1][1] - ends[0][1]) / (2 * step) * found.motion.speed
+        law = bushing
+        along = law.preload[0] - law.stiffness[0] * way.real - law.damping[0] * speed.real
+        across = law.preload[1] - law.stiffness[1] * way.imag - law.damping[1] * speed.imag
+        torque = law.torque - (law.torsional_stiffness or 0.0) * turned
+        torque = torque - (law.torsional_damping or 0.0) * turning
+        loss = law.damping[0] * speed.real**2 + law.damping[1] * speed.imag**2
+        loss = loss + (law.torsional_damping or 0.0) * turning**2
+        values = found.motion.element_values("bushings", number)
+        wanted = {"along": way.real, "across": way.imag, "force_along": along,
+                  "force_across": across, "torque": torque, "loss": loss}  # fmt: skip
+        for name, value in wanted.items():
+            size = np.max(np.abs(value))
+            assert size > 0
+            np.testing.assert_allclose(values[name], value, atol=1e-6 * size, err_msg=name)
+
+
+def stored(theta: Any) -> Any:
+    """What all bushings store, J, by deflections alone."""
+    total = np.zeros(np.shape(theta))
+    for bushing in MACHINE.bushings:
+        way, turned = deflections(theta, bushing)
+        for part, k, preload in zip(
+            (way.real, way.imag), bushing.stiffness, bushing.preload, strict=True
+        ):
+            total = total + 0.5 * k * part**2 - preload * part
+        k = bushing.torsional_stiffness or 0.0
+        total = total + 0.5 * k * turned**2 - bushing.torque * turned
+    return total
+
+
+def test_the_drive_gives_what_they_store_and_lose_and_the_frame_bears_nothing_more() -> None:
+    """Power at every instant, the rate of energy by a complex sum of Fourier: good to rounding."""
+    found, bare = (eq.analyze(one, 720) for one in (MACHINE, held()))
+    theta, speed = found.motion.crank_angle, found.motion.speed
+    energy = np.fft.fft(stored(theta))
+    order = np.fft.fftfreq(720, 1 / 720)
+    rate = np.fft.ifft(1j * order * energy).real * speed
+    loss = sum(found.motion.element_values("bushings", number)["loss"] for number in range(2))
+    power = found.forces.power - bare.forces.power
+    assert np.max(loss) > 1e-2 and np.min(loss) >= 0.0 and np.ptp(stored(theta)) > 1e-2
+    np.testing.assert_allclose(power, loss + rate, atol=1e-10 * np.max(np.abs(power)))
+    for name in ("frame_force", "shaking_force"):
+        ours, theirs = (getattr(one.forces, name).value for one in (found, bare))
+        np.testing.assert_allclose(ours, theirs, atol=1e-8)
+    np.testing.assert_allclose(found.forces.frame_moment, bare.forces.frame_moment, atol=1e-8)
+    share = found.forces.split.by_cause("drive_torque")["bushing"]
+    np.testing.assert_allclose(share, power / speed, atol=1e-10 * np.max(np.abs(share)))
+
+
+def test_a_run_follows_the_equation_of_a_wheel_in_a_bushing() -> None:
+    """Its rim is pulled from all sides and damped; by SciPy from forces in the plane."""
+    link = eq.Link({"A": (0.0, 0.0), "B": (0.2, 0.0)}, 2.0, (0.0, 0.0), 0.05)
+    bushing = Bushing("wheel", "B", "T", stiffness=(30.0, 40.0), damping=(0.7, 1.5),
+                      preload=(3.0, -2.0), torsional_damping=0.03, torque=0.4)  # fmt: skip
+    frame = {"A": (0.0, 0.0), "T": (0.2, 0.05)}
+    machine = eq.Machine("wheel", eq.Drive("wheel", 20.0), frame, {"wheel": link},
+                         gravity=(0.0, 0.0), bushings=(bushing,))  # fmt: skip
+    found = eq.run(machine, "0.6 s", speed=1.0)
+
+    def rates(_: float, state: Any) -> Any:
+        angle, speed = state
+        x, y = 0.2 * np.cos(angle), 0.2 * np.sin(angle)
+        push_x = 3.0 - 30.0 * (x - 0.2) + 0.7 * y * speed
+        push_y = -2.0 - 40.0 * (y - 0.05) - 1.5 * x * speed
+        return speed, (x * push_y - y * push_x + 0.4 - 0.03 * speed) / 0.05
+
+    wanted = solve_ivp(rates, (0, 0.6), (0.0, 1.0), "DOP853", found.time, rtol=1e-12, atol=1e-13)
+    np.testing.assert_allclose(found.crank_angle, wanted.y[0], atol=1e-8)
+    np.testing.assert_allclose(found.crank_speed, wanted.y[1], atol=1e-7)
+    assert found.energy_error < 1e-9
+    change = 0.025 * (wanted.y[1, -1] ** 2 - 1.0)
+    assert abs(change) > 1e-3
+    assert found.work["bushings"][-1] == pytest.approx(float(change), rel=1e-7)
+
+
+def test_a_run_balances_the_energy_of_links_that_turn_in_bushings() -> None:
+    """A crank thrown back by them, torsion and the turning of `on` included."""
+    found = eq.run(held(replace(ON_LINK, damping=(0.3, 0.2)), ON_FRAME), "0.4 s", speed=30.0)
+    assert np.min(found.crank_speed) < 0 and np.ptp(found.work["bushings"]) > 0.1
+    assert found.energy_error < 1e-9
+
+
+def test_it_is_read_written_and_refused() -> None:
+    rows = '[[bushings]]\nlink = "rocker"\npoint = "F"\nto = "Q"\non = "coupler"\n'
+    read_back(MACHINE, "bushings", rows, ('"rocker"\npoint', '"rockr"\npoint'),
+              r"^bushings\[1\]\.link: .* 'rocker'")  # fmt: skip
+
+
+def test_loops_and_scripts_have_them(tmp_path: Path) -> None:
+    def alone(first: float, damping: float, about: float) -> Machine | None:
+        if first < 0 or about < 0:
+            return None
+        stiffness = (first, ON_LINK.stiffness[1])
+        changed = replace(ON_LINK, stiffness=stiffness, torsional_stiffness=about)
+        return held(changed, replace(ON_FRAME, torsional_damping=damping))
+
+    names = ("drive_torque", "joints.C", "bushings.1.force_along", "bushings.2.loss")
+    paths = ["bushings[1].stiffness[1]", "bushings[2].torsional_damping",
+             "bushings[1].torsional_stiffness"]  # fmt: skip
+    sizes = [(900.0, 0.02, 1.5), (100.0, 0.3, 0.0), (-1.0, 0.1, 1.0), (5.0, 0.1, -1.0)]
+    designs_by_numbers(MACHINE, paths, names, sizes, alone)
+    if shutil.which("node") is not None:
+        wanted = ["drive_torque", "bushings.1.torque", "bushings.2.across"]
+        scripted(MACHINE, wanted, tmp_path)
+
+
+def test_drawings_and_the_page_have_them() -> None:
+    assert len(drawn(MACHINE, "bushing")[1]) == 20
+    keys = ["link", "point", "to", "on", "direction", "stiffness", "damping", "preload",
+            "torsional_stiffness", "torsional_damping", "angle", "torque"]  # fmt: skip
+    numbers = ["direction", "torsional_stiffness"]
+    on_the_page(held(replace(ON_LINK, on="frame", to="S")), "bushings", keys, numbers)
+
+
+@pytest.mark.parametrize("file_format", ["mjcf", "exudyn", "urdf", "modelica"])
+def test_formats_without_them_refuse_them(file_format: str, tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match=r"^bushings\[1\]: a file of .* has no bushing"):
+        export(MACHINE, tmp_path / "mine", file_format)
+
+
+WRONG: list[tuple[dict[str, Any], str]] = [
+    ({"on": "rocker"}, "[1].on: 'rocker' cannot be held by itself"),
+    ({"point": "Q"}, "[1].point: no point of rocker is called 'Q'"),
+    ({"to": "X"}, "[1].to: no point of coupler is called 'X'"),
+    ({"stiffness": (-1.0, 2.0)}, "[1].stiffness: a bushing pulls back"),
+    ({"damping": (1.0, -2.0)}, "[1].damping: a bushing pulls back"),
+    ({"torsional_stiffness": -1.0}, "[1].torsional_stiffness: got -1 N m/rad"),
+    ({"torsional_stiffness": None}, "[1].angle: goes with a torsional stiffness"),
+    ({"stiffness": (0.0, 0.0), "damping": (0.0, 0.0), "torsional_stiffness": None, "angle": 0.0,
+      "torsional_damping": None}, "[1]: give at least one of stiffness"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("changes", "sentence"), WRONG)
+def test_what_is_wrong_is_said(changes: dict[str, Any], sentence: str) -> None:
+    with pytest.raises(ModelError) as caught:
+        held(replace(ON_LINK, **changes))
+    assert str(caught.value).startswith(f"bushings{sentence}")
+
+
+def test_a_torsional_stiffness_refuses_a_link_that_turns_on() -> None:
+    turning = Bushing("crank", "B", "S", torsional_stiffness=1.0)
+    with pytest.raises(ModelError, match=r"^bushings\[1\]: 'crank' turns against 'frame' beyond"):
+        eq.analyze(held(turning), 90)
