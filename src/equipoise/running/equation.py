@@ -20,7 +20,7 @@ from equipoise.i18n import Note
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.dynamics.forces import massless
 from equipoise.mechanism.dynamics.reduced import reduced_inertia
-from equipoise.mechanism.kinematics.jumps import bends_of_rows, jumps_of_rows
+from equipoise.mechanism.kinematics.jumps import bends_of_rows, jumps_of_rows, resisted_back
 from equipoise.mechanism.kinematics.motion import Motion, move
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.support import Row
@@ -105,7 +105,8 @@ class CrankEquation:
         turns = linkage.cycle.turns
         grid = np.linspace(0.0, self.period, PIECES * turns + 1)
         jumps, bends = jumps_of_rows(linkage), bends_of_rows(self.machine, turns)
-        apart = np.sort(np.concatenate([jumps, bends]))
+        turned = resisted_back(linkage)
+        apart = np.sort(np.concatenate([jumps, bends, turned]))
         apart = apart[np.diff(apart, prepend=-1.0) > CLOSE]
         nearest = np.min(np.abs(np.subtract.outer(grid, apart)), axis=1, initial=np.inf)
         nearest[[0, -1]] = np.inf
@@ -141,11 +142,11 @@ class CrankEquation:
     ) -> Array:
         """Torque (K, ...) of each source, N m, by columns (C, ...) of the table, at speeds.
 
-        driving : torque (...) of the drive.  sense : in which the crank turns, 1 or -1.  Both
-            matter to friction only.
+        driving : torque (...) of the drive, which matters to friction in joints only.
+        sense : in which the crank turns, 1 or -1, which matters to all dry friction.
         """
         each = zip(self.sources, self.slices, strict=True)
-        values = [source.torque(columns[part], speed) for source, part in each
+        values = [source.sliding_torque(columns[part], speed, sense) for source, part in each
                  if source is not self.friction]  # fmt: skip
         if self.friction is not None:
             acting, part = np.asarray(sum(values, start=driving)), self.slices[-1]
@@ -188,10 +189,16 @@ class CrankEquation:
         beyond which it leaves its rest, by the sense.
         """
         values, _ = self.table.at(theta)
-        each = zip(self.sources, self.slices, strict=True)
-        acting = sum(float(source.torque(values[part], np.zeros(())))
-                     for source, part in each if source is not self.friction)  # fmt: skip
-        if self.friction is None:
-            return acting, dict.fromkeys((1.0, -1.0), 0.0)
-        columns = values[self.slices[-1]]
-        return acting, {sense: self.friction.breakaway(columns, sense) for sense in (1.0, -1.0)}
+        others = [(source, values[part])
+                  for source, part in zip(self.sources, self.slices, strict=True)
+                  if source is not self.friction]  # fmt: skip
+        acting = sum(float(source.torque(columns, np.zeros(()))) for source, columns in others)
+        holding = {
+            sense: sum(source.holding(columns, sense) for source, columns in others)
+            for sense in (1.0, -1.0)
+        }
+        if self.friction is not None:
+            columns = values[self.slices[-1]]
+            for sense in holding:
+                holding[sense] += self.friction.breakaway(columns, sense)
+        return acting, holding

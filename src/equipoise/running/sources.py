@@ -56,6 +56,18 @@ class Source(ABC):
     def torque(self, columns: Array, speed: Array) -> Array:
         """Generalized force (...), N m, by these (C, ...) and the crank's speed (...), rad/s."""
 
+    def sliding_torque(self, columns: Array, speed: Array, sense: float) -> Array:
+        """Torque (...) as of `torque`, with dry friction of full size against a sense, 1 or -1, in
+        which the crank turns, or would.
+        """
+        return self.torque(columns, speed)
+
+    def holding(self, columns: Array, sense: float) -> float:
+        """Torque, N m, by which it holds a crank at rest against one that turns it in a sense."""
+        still = np.zeros(())
+        added = self.sliding_torque(columns, still, sense) - self.torque(columns, still)
+        return -sense * float(added)
+
 
 @dataclass(frozen=True)
 class ByAngle(Source):
@@ -120,11 +132,22 @@ class OfRatedElements(Source):
         return [column for motion in motions for column in rated_ways(motion, self.elements)]
 
     def groups(self, count: int) -> list[int]:
-        """A way and its derivative are measured together: either may vanish."""
-        return [number // 2 for number in range(count)]
+        """Ways of an element and their derivatives are measured together: some may vanish, such as
+        the way across its direction.
+        """
+        sizes = [2 * element.freedoms for element in self._each]
+        sizes *= count // sum(sizes)
+        return [number for number, size in enumerate(sizes) for _ in range(size)]
 
     def torque(self, columns: Array, speed: Array) -> Array:
-        return rated_torque([element for *_, element in self.elements], columns, speed)
+        return rated_torque(self._each, columns, speed)
+
+    def sliding_torque(self, columns: Array, speed: Array, sense: float) -> Array:
+        return rated_torque(self._each, columns, speed, sense)
+
+    @property
+    def _each(self) -> list[RatedElement]:
+        return [element for *_, element in self.elements]
 
 
 def sources_of(machine: Machine) -> Iterator[Source]:

@@ -120,15 +120,59 @@ def test_a_run_loses_the_work_of_cuts() -> None:
     assert found.energy_error < 1e-9
 
 
-def test_a_run_against_a_dry_force_alone_slows_as_by_constant_torque() -> None:
-    """A wheel whose rim is rubbed: speed falls by force times radius over inertia."""
+def wheel(**parts: Any) -> eq.Machine:
+    """A wheel whose rim is rubbed by 4 N at 0.3 m."""
     link = eq.Link({"A": (0.0, 0.0), "B": (0.3, 0.0)}, 2.0, (0.0, 0.0), 0.05)
-    rim = Resistance("wheel", "B", "A", force=4.0, speed=1e-6)
-    machine = eq.Machine("wheel", eq.Drive("wheel", 20.0), {"A": (0.0, 0.0)}, {"wheel": link},
-                         gravity=(0.0, 0.0), resistances=(rim,))  # fmt: skip
-    found = eq.run(machine, "0.5 s", speed=20.0)
-    assert found.crank_speed[-1] == pytest.approx(20.0 - 4.0 * 0.3 / 0.05 * 0.5, rel=1e-8)
-    assert found.energy_error < 1e-9
+    rim = Resistance("wheel", "B", "A", force=4.0, speed=1.0)
+    return eq.Machine("wheel", eq.Drive("wheel", 20.0), {"A": (0.0, 0.0)}, {"wheel": link},
+                      gravity=(0.0, 0.0), resistances=(rim,), **parts)  # fmt: skip
+
+
+def test_a_run_against_a_dry_force_alone_slows_as_by_constant_torque_and_stands_still() -> None:
+    """Speed falls by force times radius over inertia, however near to rest."""
+    found = eq.run(wheel(), speed=20.0)
+    slows = 4.0 * 0.3 / 0.05
+    np.testing.assert_allclose(found.crank_speed, 20.0 - slows * found.time, atol=1e-9)
+    assert found.end.kind == "standstill" and found.energy_error < 1e-9
+    assert found.end.time == pytest.approx(20.0 / slows, rel=1e-9)
+    assert found.end.crank_angle == pytest.approx(20.0**2 / (2 * slows), rel=1e-9)
+
+
+@pytest.mark.parametrize(("share", "moves"), [(0.999, False), (1.001, True), (-0.999, False)])
+def test_a_dry_force_holds_a_crank_up_to_its_size(share: float, moves: bool) -> None:
+    load = eq.Load("wheel", torque=share * 4.0 * 0.3)
+    found = eq.run(wheel(loads=(load,)), "1 s", speed=0.0)
+    assert (found.end.kind == "time") == moves
+    if moves:
+        assert found.end.crank_angle == pytest.approx(0.001 * 4.0 * 0.3 / 0.05 / 2, rel=1e-6)
+    else:
+        assert (found.end.kind, found.turned) == ("standstill", 0.0)
+
+
+def test_what_cuts_one_way_holds_one_way() -> None:
+    """The rim at crank angle 0 moves along y: up is resisted, and down is free."""
+    machine = replace(
+        wheel(),
+        resistances=(
+            Resistance("wheel", "B", "A", direction=np.pi / 2, one_way=True, force=4.0, speed=1.0),
+        ),
+    )
+    up, down = (
+        eq.run(replace(machine, loads=(eq.Load("wheel", torque=torque),)), "0.1 s", speed=0.0)
+        for torque in (1.0, -1.0)
+    )
+    assert up.end.kind == "standstill" and up.turned == 0.0
+    assert down.end.crank_angle == pytest.approx(-1.0 / 0.05 * 0.1**2 / 2, rel=1e-8)
+
+
+def test_a_coasting_machine_loses_force_times_way_until_it_stands_still() -> None:
+    """The way of the blade, by sums of its places at crank angles between start and end."""
+    found = eq.run(shear(replace(RUBBED, speed=0.1)), speed=12.0, angle=0.3)
+    assert found.end.kind == "standstill" and found.energy_error < 1e-9
+    angles = np.linspace(0.3, found.end.crank_angle, 200_001)
+    way = np.sum(np.abs(np.diff(eq.move(shear(), angles).points["C"].x)))
+    assert found.work["resistances"][-1] == pytest.approx(-40.0 * way, rel=1e-8)
+    assert 2.0 < found.turned < 200.0
 
 
 def test_it_is_read_written_and_refused() -> None:

@@ -59,7 +59,11 @@ def test_on_a_support_that_stands_still_the_crank_obeys_the_equation_of_a_run(la
     inertia, change = equation.inertia(theta)
     needed = inertia * speed * slope + change * speed**2 / 2 - driving
     pairs = zip(theta.tolist(), speed.tolist(), strict=True)
-    torques = np.array([equation.at(angle, rate)[2] for angle, rate in pairs])
+    torques = np.array([
+        [source.torque(values[part], np.asarray(rate))
+         for source, part in zip(equation.sources, equation.slices, strict=True)]
+        for angle, rate in pairs for values in [equation.table.at(angle)[0]]
+    ])  # fmt: skip
     scale = np.max(np.abs(driving))
     smooth = law in ("linear", "dry")
     np.testing.assert_allclose(

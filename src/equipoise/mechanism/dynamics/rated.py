@@ -30,20 +30,35 @@ def rated_ways(motion: Motion, elements: NumberedElements) -> list[Array]:
     ]
 
 
-def rated_torque(elements: Sequence[RatedElement], columns: Array, speed: Array) -> Array:
-    """Torque (...) on the crank, N m.
+def rated_efforts(
+    elements: Sequence[RatedElement], columns: Array, speed: Array, sense: float | None = None
+) -> tuple[list[Array], list[Array]]:
+    """Efforts (...), N or N m, along each way, and the ways' derivatives (...) by the crank angle.
 
     columns : (C, ...), as of `rated_ways`, of these elements once for each row of the machine.
     speed : of the crank (...), rad/s.
+    sense : 1 or -1, in which the crank turns, or would, against which dry friction has its full
+        size; it changes its sense smoothly, by the law of each element, if None.
     """
-    ways = iter(columns.reshape(-1, 2, *columns.shape[1:]))
-    rows = len(columns) // (2 * sum(element.freedoms for element in elements))
-    total = np.zeros(np.shape(speed))
+    ways = columns.reshape(-1, 2, *columns.shape[1:])
+    rows = len(ways) // sum(element.freedoms for element in elements)
+    efforts: list[Array] = []
     for element in [*elements] * rows:
-        own = [next(ways) for _ in range(element.freedoms)]
-        efforts = element.efforts([(way, slope * speed) for way, slope in own])
-        total = total + sum(effort * slope for effort, (_, slope) in zip(efforts, own, strict=True))
-    return np.asarray(total)
+        own = ways[len(efforts) : len(efforts) + element.freedoms]
+        moving = [(way, slope * speed) for way, slope in own]
+        if sense is None:
+            efforts += element.efforts(moving)
+        else:
+            efforts += element.sliding_efforts(moving, [slope * sense for _, slope in own])
+    return efforts, [*ways[:, 1]]
+
+
+def rated_torque(
+    elements: Sequence[RatedElement], columns: Array, speed: Array, sense: float | None = None
+) -> Array:
+    """Torque (...) on the crank, N m; arguments as of `rated_efforts`."""
+    pairs = zip(*rated_efforts(elements, columns, speed, sense), strict=True)
+    return np.asarray(sum((effort * slope for effort, slope in pairs), np.zeros(np.shape(speed))))
 
 
 def differentiable_torque(elements: Sequence[RatedElement], columns: Array, speed: Array) -> Array:

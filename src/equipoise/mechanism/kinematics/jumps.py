@@ -6,7 +6,7 @@ does so where a joint turns back.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from functools import partial
 from math import pi
@@ -15,9 +15,9 @@ from typing import Any
 import numpy as np
 
 from equipoise.mechanism.assembly.linkage import Linkage
-from equipoise.mechanism.assembly.steps import Array
-from equipoise.mechanism.kinematics.motion import Motion, move, move_again
-from equipoise.mechanism.kinematics.rubbing import RubbingJoint, rubbing_joints
+from equipoise.mechanism.assembly.steps import Array, size_of_links
+from equipoise.mechanism.kinematics.motion import Motion, PlacedBodies, move, move_again
+from equipoise.mechanism.kinematics.rubbing import STILL, rubbing_joints
 from equipoise.mechanism.kinematics.tip import crossings, roots, surface_of
 from equipoise.mechanism.parts.cams import Cam
 from equipoise.mechanism.parts.machine import FRAME, Machine
@@ -130,7 +130,9 @@ def _jumps_on_the_way(linkage: Linkage) -> Iterator[Array]:
         yield from _knots(linkage, cam)
     joints = [joint for joint in rubbing_joints(linkage) if joint.jumps]
     if joints:
-        yield _turned_back(linkage, joints)
+        yield _signs_changed(
+            linkage, lambda motion: np.array([joint.rate(motion) for joint in joints])
+        )
     if machine.planting is not None and machine.planting.soil is not None:
         surface = surface_of(machine)
         for arm in machine.planting.every_arm:
@@ -157,14 +159,38 @@ def _beyond(cam: Cam, knot: float, read: Callable[[Any], Any], motion: Motion) -
     return np.asarray(read(driver - carrier - knot))
 
 
-def _turned_back(linkage: Linkage, joints: Sequence[RubbingJoint]) -> Array:
-    """Crank angles of a cycle at which joints turn back: of all of them from the same motions."""
+def resisted_back(linkage: Linkage) -> Array:
+    """Crank angles (B,) of the first row, rising, rad, at which in any row a point with a dry
+    resistance turns back, or comes to a corner of its force by the way.
+    """
+    machine = linkage.machine
+    dry = [(number, item) for number, item in enumerate(machine.resistances) if item.speed]
+    if not dry:
+        return np.empty(0)
+    still = STILL * size_of_links(machine)
+
+    def signals(motion: Motion) -> Array:
+        turning, values = motion.at(1.0, 0.0), []
+        for number, item in dry:
+            ways = item.ways(PlacedBodies(turning, f"resistances[{number + 1}]"))
+            rates = [rate for _, rate in ways[: 1 if item.axed else 2]]
+            values += [np.where(np.abs(rate) > still, rate, 0.0) for rate in rates]
+            values += [ways[0][0] - place for place in item.positions]
+        return np.array([np.broadcast_to(value, motion.crank_angle.shape) for value in values])
+
+    turns = linkage.cycle.turns
+    return of_rows(machine, _within([_signs_changed(linkage, signals)], turns), turns)
+
+
+def _signs_changed(linkage: Linkage, read: Callable[[Motion], Array]) -> Array:
+    """Crank angles of a cycle at which signals (J, N) that are read of a motion change their signs:
+    of all of them from the same motions.
+    """
     turns = linkage.cycle.turns
     nodes = np.linspace(0.0, 2 * pi * turns, ANGLES * turns + 1)
 
     def rates(theta: Array) -> Array:
-        motion = move(linkage.machine, theta)
-        return np.array([joint.rate(motion) for joint in joints])
+        return read(move(linkage.machine, theta))
 
     back = rates(nodes) < 0
     back[:, -1] = back[:, 0]  # the same instant, whatever rounding says

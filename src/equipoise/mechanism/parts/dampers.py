@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, ClassVar
 
 from equipoise.errors import ModelError
@@ -130,10 +130,10 @@ class Damper(BetweenPoints, Damping):
         length, _, speed = self._line(at)
         return ((length, speed),)
 
-    def actions(self, at: Placed) -> Iterator[Action]:
+    def exerted(self, at: Placed, efforts: Sequence[Any]) -> Iterator[Action]:
         """Force on each end, N, complex; it has no torque."""
-        _, way, speed = self._line(at)
-        force = way * self.resistance(speed)
+        _, way, _ = self._line(at)
+        force = -way * efforts[0]
         yield self.link, self.point, force, 0.0
         yield self.on, self.to, -force, 0.0
 

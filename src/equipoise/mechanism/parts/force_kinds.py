@@ -68,6 +68,24 @@ class RatedElement(ForceElement):
         bodies get.
         """
 
+    def sliding_efforts(
+        self, ways: Sequence[tuple[Any, Any]], senses: Sequence[Any]
+    ) -> tuple[Any, ...]:
+        """Efforts as of `efforts`, but dry friction has its full size however slow the motion is,
+        and where it is about to begin.
+
+        senses : of each way any multiple above 0 of its speed, or of what that will be.
+        """
+        return self.efforts(ways)
+
+    @abstractmethod
+    def exerted(self, at: Placed, efforts: Sequence[Any]) -> Iterator[Action]:
+        """What it exerts on each of its bodies, the frame too, where these are its efforts."""
+
+    def actions(self, at: Placed) -> Iterator[Action]:
+        """What it exerts on each of its bodies, the frame too."""
+        return self.exerted(at, self.efforts(self.ways(at)))
+
 
 @once
 def force_kinds(of: type[Frozen]) -> Mapping[str, type[ForceElement]]:

@@ -17,6 +17,9 @@ from equipoise.mechanism.parts.force_kinds import Action, RatedElement
 from equipoise.mechanism.parts.ramps import ramp_value, ramps_of, wrong_rows
 from equipoise.quantities import Dimension, told
 
+TINY = 1e-300
+"""Of a speed, so that nothing is divided by 0."""
+
 
 @declared
 class Resistance(BetweenPoints, RatedElement):
@@ -142,10 +145,25 @@ class Resistance(BetweenPoints, RatedElement):
             factor = factor + self._dry(position) / (squared + self.speed * self.speed) ** 0.5
         return -factor * along, (0.0 if self.direction is not None else -factor * across)
 
-    def actions(self, at: Placed) -> Iterator[Action]:
+    def sliding_efforts(
+        self, ways: Sequence[tuple[Any, Any]], senses: Sequence[Any]
+    ) -> tuple[Any, ...]:
+        """Force along and across its direction, N, with a dry part of full size."""
+        (position, along), (_, across) = ways
+        first, second = senses
+        if self.one_way:
+            along, first = positive(along), positive(first)
+        if self.direction is not None:
+            across, second = 0.0, 0.0
+        size = (first * first + second * second) ** 0.5
+        dry = self._dry(position) / (size + TINY)
+        factor = 0.0 if self.damping is None else self.damping
+        return -(factor * along + dry * first), -(factor * across + dry * second)
+
+    def exerted(self, at: Placed, efforts: Sequence[Any]) -> Iterator[Action]:
         """Force on the point of the link, N, and its opposite there on the other body."""
-        arm, direction, ways = self._moving(at)
-        along, across = self.efforts(ways)
+        arm, direction, _ = self._moving(at)
+        along, across = efforts
         force = direction * along + 1j * direction * across
         yield self.link, self.point, force, 0.0
         yield self.on, self.to, -force, -cross(arm, force)

@@ -131,10 +131,10 @@ class Stop(BetweenPoints, RatedElement):
         ((gap, opening),) = ways
         return (self.force(gap, opening),)
 
-    def actions(self, at: Placed) -> Iterator[Action]:
+    def exerted(self, at: Placed, efforts: Sequence[Any]) -> Iterator[Action]:
         """Force on the point of the link, N, and its opposite there on the other body."""
-        arm, normal, gap, opening = self._contact(at)
-        force = normal * self.force(gap, opening)
+        arm, normal, _, _ = self._contact(at)
+        force = normal * efforts[0]
         yield self.link, self.point, force, 0.0
         yield self.on, self.to, -force, -cross(arm, force)
 

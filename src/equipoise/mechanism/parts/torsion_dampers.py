@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, ClassVar
 
 from equipoise.errors import ModelError
@@ -106,9 +106,9 @@ class TorsionDamper(BetweenBodies, Damping):
         """Its speed, rad/s; the angle itself does not matter to it."""
         return ((0.0, self._speed(at)),)
 
-    def actions(self, at: Placed) -> Iterator[Action]:
-        """Torque on the link, N m, and its opposite on the other body."""
-        torque = -self.resistance(self._speed(at))
+    def exerted(self, at: Placed, efforts: Sequence[Any]) -> Iterator[Action]:
+        """Torque on each body, N m."""
+        (torque,) = efforts
         yield self.link, None, 0j, torque
         yield self.on, None, 0j, -torque
 
