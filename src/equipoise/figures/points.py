@@ -253,7 +253,10 @@ def outputs_chart(
     x = angle_axis(analysis)
     panels = []
     for entry in ones:
-        drawn = {ALL: over(analysis, _steady(entry.drawn))}
+        theta, values = over(analysis, _steady(entry.drawn))
+        if entry.dimension == "angle" and analysis.motion.whole_cycle:
+            values = _turned_on(values)
+        drawn = {ALL: (theta, values)}
         beside = np.ravel([other.drawn for other in ones if other.dimension == entry.dimension])
         panel = compared(x, "", entry.dimension, drawn, beside=beside)
         panels.append(replace(panel, title=replace(panel.y, label=entry.label()).text))
@@ -265,6 +268,12 @@ def _steady(values: Array) -> Array:
     """Values (N,), or their mean where they swing by rounding alone."""
     swing, most = float(np.ptp(values)), float(np.max(np.abs(values)))
     return np.full_like(values, np.mean(values)) if swing <= STEADY * most else values
+
+
+def _turned_on(values: Array) -> Array:
+    """Angles over a cycle and the first again, (N + 1,), of a link that turns on by its turns."""
+    turns = np.round((values[-2] - values[-1]) / (2 * np.pi))
+    return np.append(values[:-1], values[-1] + 2 * np.pi * turns)
 
 
 def kinematics(analysis: Analysis) -> Iterator[Chart]:

@@ -16,7 +16,7 @@ from equipoise.figures.sheet import Canvas, CanvasStroke, Item, Words, box_of
 from equipoise.figures.style import PAPER, DrawingStyle, look_of
 from equipoise.figures.vector import svg_of
 from equipoise.figures.view import View
-from equipoise.results.charts import Chart
+from equipoise.results.charts import DEGREES, Chart
 
 Fault = tuple[str, str]
 """What is not kept, and where."""
@@ -132,6 +132,8 @@ def runs_back(laid: Laid) -> Iterator[Fault]:
         for curve in view.panel.curves if view.panel.x.scale == "crank" else ():
             if np.any(np.diff(curve.x) < 0):
                 yield "line that runs back", view.panel.y.text
+            if view.panel.y.unit == DEGREES and np.any(np.abs(np.diff(curve.y)) > np.pi):
+                yield "angle that leaps back", view.panel.title or view.panel.y.text
 
 
 def bars_afloat(laid: Laid) -> Iterator[Fault]:

@@ -19,6 +19,7 @@ from equipoise.planting.summary import plant
 from equipoise.present.findings import Findings, ToolFindings
 from equipoise.present.pictures import each
 from equipoise.results.charts import Chart
+from equipoise.results.own_words import in_own_words
 from support.chosen import DISTINCT, few
 from support.found import found
 from support.gallery import Kept, keep
@@ -62,8 +63,9 @@ def of_odd(name: str) -> dict[str, Chart]:
 def test_pictures_of_bundled_models(name: str, tmp_path: Path) -> None:
     """All pictures of a model are kept in the gallery, and in some languages drawn anew."""
     told = found_of(name)
-    drawn = [(picture, Laid.of(picture.draw())) for picture in each(told)]
-    kept = [Kept(picture.name, picture.caption, svg_of(laid.sheet)) for picture, laid in drawn]
+    with in_own_words(told.owner):  # as commands and reports draw them
+        drawn = [(picture, Laid.of(picture.draw())) for picture in each(told)]
+        kept = [Kept(picture.name, picture.caption, svg_of(laid.sheet)) for picture, laid in drawn]
     if isinstance(told, Findings):
         moving = tmp_path / "animation.svg"
         assert run(["animate", name, "--out", str(moving)]) == 0
@@ -71,7 +73,7 @@ def test_pictures_of_bundled_models(name: str, tmp_path: Path) -> None:
     keep(name, kept)
     assert not [(picture.name, *fault) for picture, laid in drawn for fault in laid.faults]
     for language in ("ja", "ko") if name in TRANSLATED else ():
-        with speaking(language):
+        with speaking(language), in_own_words(told.owner):
             for picture in each(told):
                 check(picture.draw())
 

@@ -106,7 +106,7 @@ class Motion(Displayed):
         at, taken = self.sampling.at[places], self.sampling.crank_angle[places]
         period = 2 * np.pi * self.turns
         at = np.where(taken - at > period / 2, at + period, at)  # just before a jump at 0
-        return at, values[places]
+        return np.maximum.accumulate(at), values[places]  # both sides of a jump differ by rounding
 
     def periodic(self, values: Array) -> Periodic:
         """Values (..., N) over a whole cycle by order."""
