@@ -11,8 +11,12 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import UsageError
+from equipoise.mechanism.parts.dampers import Damper
 from equipoise.mechanism.parts.force_elements import Load, Motor
 from equipoise.mechanism.parts.joint_properties import JointProperties
+from equipoise.mechanism.parts.resistances import Resistance
+from equipoise.mechanism.parts.stops import Stop
+from equipoise.mechanism.parts.torsion_dampers import TorsionDamper
 from equipoise.running.blocks import verdict
 from equipoise.running.drivers import Driver
 
@@ -29,6 +33,14 @@ JOINTS = (
                     drag_force=10.0),
 )  # fmt: skip
 WORN = replace(ENGINE, joints=JOINTS)
+ELEMENTS: list[dict[str, Any]] = [
+    {},
+    {"dampers": (Damper("rod", "C", "A", 30.0),),
+     "torsion_dampers": (TorsionDamper("rod", "crank", 0.02),)},
+    {"stops": (Stop("piston", "C", "A", 500.0, -pi / 2, restitution=0.5, speed=2.0),),
+     "resistances": (Resistance("piston", "C", "A", direction=pi / 2, force=60.0, damping=4.0,
+                                speed=1e-7),)},
+]  # fmt: skip
 
 
 def emps(motor: Motor | None = None, **given: Any) -> eq.Machine:
@@ -96,9 +108,16 @@ def test_a_coast_down_loses_its_energy_in_joints(machine: eq.Machine) -> None:
     assert np.all(np.diff(found.work["friction"]) <= 1e-12 * energy[0])
 
 
-def test_the_acceleration_is_that_of_which_inverse_dynamics_needs_no_torque() -> None:
+@pytest.mark.parametrize("elements", ELEMENTS, ids=lambda elements: ", ".join(elements) or "none")
+@pytest.mark.parametrize("rows", [(), (eq.mechanism.Row(), eq.mechanism.Row(phase=2.0))],
+                         ids=["one row", "two rows"])  # fmt: skip
+def test_the_acceleration_is_that_of_which_inverse_dynamics_needs_no_torque(
+    rows: tuple[Any, ...], elements: dict[str, Any]
+) -> None:
     """Inverse dynamics, whose friction knows nothing of runs, asks for what the drive gives."""
-    found = eq.run(WORN, speed=100.0, turns=1)
+    machine = replace(WORN, rows=rows, **elements)
+    found = eq.run(machine, speed=100.0, turns=1)
+    assert found.energy_error < 1e-9
     equation = found.equation
     for k in np.linspace(1, len(found.time) - 2, 15).astype(int):
         angle, speed = float(found.crank_angle[k]), float(found.crank_speed[k])
@@ -106,9 +125,11 @@ def test_the_acceleration_is_that_of_which_inverse_dynamics_needs_no_torque() ->
             continue  # there a slider turns back, and its friction has two values
         inertia, slope, torques = equation.at(angle, speed, 0.0, 1.0)
         rate = (float(np.sum(torques)) - slope * speed**2 / 2) / inertia
-        forces = eq.analyze(WORN, [angle], speed, rate).forces
+        phases = [row.phase for row in rows] or [0.0]
+        alone = replace(machine, rows=())
+        each = [eq.analyze(alone, [angle + phase], speed, rate).forces for phase in phases]
         size = abs(float(torques[-1])) + inertia * abs(rate)
-        assert abs(float(forces.drive_torque[0])) < 1e-9 * size
+        assert abs(sum(float(forces.drive_torque[0]) for forces in each)) < 1e-9 * size
 
 
 def test_a_motor_works_against_friction() -> None:

@@ -7,8 +7,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from equipoise.mechanism.assembly.steps import Array
+from equipoise.mechanism.dynamics.reactions import Demand, demands_of
 from equipoise.mechanism.kinematics.motion import Motion, PlacedBodies
 from equipoise.mechanism.parts.force_kinds import RatedElement
+from equipoise.mechanism.parts.machine import FRAME
 
 NumberedElements = Sequence[tuple[str, int, RatedElement]]
 """Force elements, each with its list in the file and its place there from 0."""
@@ -59,6 +61,18 @@ def rated_torque(
     """Torque (...) on the crank, N m; arguments as of `rated_efforts`."""
     pairs = zip(*rated_efforts(elements, columns, speed, sense), strict=True)
     return np.asarray(sum((effort * slope for effort, slope in pairs), np.zeros(np.shape(speed))))
+
+
+def effort_demands(motion: Motion, elements: NumberedElements) -> list[dict[str, Demand]]:
+    """What holds a unit effort along each way of each element, on both its bodies."""
+    demands = []
+    for table, number, element in elements:
+        placed = PlacedBodies(motion, f"{table}[{number + 1}]")
+        for own in range(element.freedoms):
+            efforts = [float(own == other) for other in range(element.freedoms)]
+            actions = element.exerted(placed, efforts)
+            demands.append(demands_of(motion, (item for item in actions if item[0] != FRAME)))
+    return demands
 
 
 def differentiable_torque(elements: Sequence[RatedElement], columns: Array, speed: Array) -> Array:
