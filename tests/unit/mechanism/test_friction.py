@@ -15,9 +15,11 @@ from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.dynamics import friction
 from equipoise.mechanism.kinematics.jumps import jumps_of
 from equipoise.mechanism.parts.balance import AddedMass, Balance, Objective, Weight
+from equipoise.mechanism.parts.curved_slots import CurvedSlot
 from equipoise.mechanism.parts.force_elements import Load
 from equipoise.mechanism.parts.joint_properties import JointProperties
 from equipoise.mechanism.parts.machine import Row
+from equipoise.mechanism.parts.places import Position
 from laws.subjects import gravity_power, kinetic_power, load_power, spring_power
 from surface.running import equipoise, refused
 from unit.schema.samples import survives
@@ -287,12 +289,91 @@ def test_what_is_no_friction_of_this_joint_is_refused(given: dict[str, Any], sen
     assert str(caught.value).startswith(sentence)
 
 
-def test_a_pin_in_a_slot_has_no_friction_yet() -> None:
-    machine = eq.load("flap-folder")
-    name = next(iter(machine.riders))
-    joint = JointProperties(f"joints.{name}", radius=0.004, friction=0.1)
-    with pytest.raises(ModelError, match=r"^joints\[1\]: friction of a pin in a slot"):
-        assemble(replace(machine, joints=(joint,), balance=None))
+def straight_slot() -> eq.Machine:
+    """A slider-crank whose rod ends in a straight slot of the frame."""
+    crank = eq.Link({"A": (0.0, 0.0), "B": (0.06, 0.0)}, 1.0, (0.01, 0.0), 0.004)
+    rod = eq.Link({"B": (0.0, 0.0), "C": (0.2, 0.0)}, 0.6, (0.09, 0.01), 0.003)
+    return eq.Machine(
+        "slot", eq.Drive("crank", 20.0), {"A": (0.0, 0.0), "S": (0.2, -0.01)},
+        {"crank": crank, "rod": rod}, position=Position(0.0, {"C": (0.2599, -0.01)}),
+        curved_slots=(CurvedSlot("rod", "C", "frame", "S", ((-0.2, 0.0), (0.2, 0.0))),),
+        gravity=(0.0, -9.81), loads=(Load("rod", "C", (-30.0, 12.0)),),
+    )  # fmt: skip
+
+
+def on_a_block(machine: eq.Machine) -> eq.Machine:
+    """The machine with a block without mass that slides instead of the pin in its slot."""
+    block = eq.Link({"C": (0.0, 0.0)}, 0.0, (0.0, 0.0), 0.0)
+    guide = eq.mechanism.Slider("block", "C", "frame", "S", 0.0)
+    return replace(machine, links={**machine.links, "block": block}, curved_slots=(),
+                   sliders=(guide,), assembly={"C": "forward"}, position=None)  # fmt: skip
+
+
+SLIDING = {"friction": 0.15, "damping": 3.0, "drag_force": 2.0}
+
+
+@pytest.mark.parametrize(("speed", "acceleration"), [(20.0, 0.0), (-7.0, 90.0)])
+def test_a_pin_in_a_straight_slot_rubs_as_a_block_on_a_guide(
+    speed: float, acceleration: float
+) -> None:
+    machine = straight_slot()
+    slotted = replace(machine, joints=(JointProperties("joints.C in frame", **SLIDING),))
+    guided = replace(
+        on_a_block(machine), joints=(JointProperties("joints.block on frame", **SLIDING),)
+    )
+    one, other = (eq.analyze(item, ANGLES, speed, acceleration).forces
+                  for item in (slotted, guided))  # fmt: skip
+    plain = eq.analyze(machine, ANGLES, speed, acceleration).forces
+    np.testing.assert_allclose(one.drive_torque, other.drive_torque, rtol=1e-9, atol=1e-10)
+    np.testing.assert_allclose(one.friction_loss, other.friction_loss, rtol=1e-9, atol=1e-10)
+    assert np.max(np.abs(one.drive_torque - plain.drive_torque)) > 0.1
+
+
+@pytest.mark.parametrize("name", ["flap-folder", "baler-pickup"])
+def test_power_of_pins_in_circular_and_curved_slots(name: str) -> None:
+    """Power balance, with the friction and the sliding speed that the outputs say."""
+    bare = replace(eq.load(name), balance=None)
+    joints = [JointProperties(f"joints.{slot}", **SLIDING) for slot in bare.pins_in_slots]
+    found = eq.analyze(replace(bare, joints=tuple(joints)), ANGLES)
+    forces = found.forces
+    rows = [*kinetic_power(forces), *-gravity_power(forces), *-load_power(forces)]
+    rows = [*rows, *-spring_power(forces), forces.friction_loss]
+    size = np.max(np.sum(np.abs(rows), axis=0))
+    np.testing.assert_allclose(forces.power, np.sum(rows, axis=0), atol=1e-11 * size)
+    for slot in bare.pins_in_slots:
+        table = "circular_slots" if bare.circular_slots else "curved_slots"
+        speed = found.motion.element_values(table, 0)["speed"]
+        pressing = np.abs(forces.joints[slot].normal)
+        lost = (0.15 * pressing + 2.0 + 3.0 * np.abs(speed)) * np.abs(speed)
+        np.testing.assert_allclose(forces.frictions[slot].loss, lost, atol=1e-9 * np.max(lost))
+
+
+def test_a_run_slows_down_as_pins_in_slots_rub() -> None:
+    """Inverse dynamics at an instant of the run asks for no torque."""
+    joints = (JointProperties("joints.C in frame", **SLIDING),)
+    machine = replace(straight_slot(), joints=joints, loads=())
+    run = eq.run(machine, speed=20.0, turns=2)
+    assert run.energy_error < 1e-9
+    for angle, speed in zip(run.crank_angle[5:200:40], run.crank_speed[5:200:40], strict=True):
+        inertia, slope, torques = run.equation.at(float(angle), float(speed), 0.0, 1.0)
+        rate = (float(np.sum(torques)) - slope * speed**2 / 2) / inertia
+        forces = eq.analyze(machine, [angle], float(speed), rate).forces
+        assert abs(forces.drive_torque[0]) < 1e-9 * inertia * abs(rate)
+
+
+@pytest.mark.parametrize(
+    ("given", "sentence"),
+    [
+        ({"torsional_damping": 0.1}, "joints[1].torsional_damping: 'joints.C in frame' slides in"),
+        ({"drag_torque": 0.1}, "joints[1].drag_torque: 'joints.C in frame' slides in its slot"),
+        ({"friction": 0.1, "guide_length": 0.1}, "joints[1].guide_length: 'joints.C in frame' is"),
+    ],
+)
+def test_keys_that_a_pin_in_a_slot_lacks(given: dict[str, float], sentence: str) -> None:
+    joint = JointProperties("joints.C in frame", **given)
+    with pytest.raises(ModelError) as caught:
+        assemble(replace(straight_slot(), joints=(joint,)))
+    assert str(caught.value).startswith(sentence)
 
 
 # -- what is not linear any more -------------------------------------------------------------------

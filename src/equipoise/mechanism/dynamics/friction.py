@@ -5,7 +5,8 @@ A joint that turns or slides at the speed v, rad/s or m/s, resists with the torq
     f = -(sign(v) (mu(v) P + D) + c v),    mu(v) = mu + (mu_0 - mu) exp(-(s / v_s)^2)
 
 where s is the sliding speed, D the drag and c the damping.  P presses the surfaces on each other:
-the force of a pin, at its radius; of a slider its normal force N or, with a guide of length l and a
+the force of a pin, at its radius; of a pin in a slot that of the slot; of a slider its normal
+force N or, with a guide of length l and a
 moment M about the slider's point, the sum max(|N|, 2 |M| / l) of the forces at both its ends.
 Gears and belts lose a share mu of what they pass on: P is their tangential force, at the pitch
 radius of the driven one, and v how fast that turns on its carrier.
@@ -25,7 +26,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
 from math import degrees
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -40,7 +41,6 @@ from equipoise.mechanism.dynamics.reactions import (
     JointFriction,
     JointReactions,
     demands_of,
-    full,
     reactions,
 )
 from equipoise.mechanism.formulas.kernels import cross
@@ -93,7 +93,7 @@ class FrictionLaw:
                 mu = mu + (item.static_friction - mu) * np.exp(-(slides**2))
             grip[k] = senses[k] * mu * reach
             drag, damping = item.drag_torque, item.torsional_damping
-            if joint.slider is not None:
+            if joint.slides:
                 drag, damping = item.drag_force, item.damping
             given[k] = senses[k] * drag + damping * rates[k]
         return cls(tuple(joints), rates, grip, given)
@@ -104,7 +104,7 @@ class FrictionLaw:
         rows = []
         for joint in self.joints:
             length = joint.given.guide_length
-            rows.append((1.0, 1.0 if joint.slider is None else 2 / length if length else 0.0))
+            rows.append((1.0, 1.0 if not joint.slides else 2 / length if length else 0.0))
         return np.array(rows)
 
     @cached_property
@@ -112,7 +112,7 @@ class FrictionLaw:
         """Places of joints whose force presses across their guide; that of all others presses
         whatever its direction, and both its parts count as they are.
         """
-        return np.flatnonzero([joint.slider is not None for joint in self.joints])
+        return np.flatnonzero([joint.slides for joint in self.joints])
 
     def pressing(self, parts: Array) -> Array:
         """What presses (J, N), N, by parts (J, 2, N)."""
@@ -357,18 +357,11 @@ def unit_demands(motion: Motion, joints: Sequence[RubbingJoint]) -> list[dict[st
     demands = []
     for joint in joints:
         ends: list[Acting] = [(joint.on, None, 0j, 1.0), (joint.by, None, 0j, -1.0)]  # type: ignore[list-item]
-        if joint.slider is not None:
-            at, along = motion.point(joint.slider.point).place, direction(motion, joint)
+        if joint.slides:
+            at, along = joint.place(motion), joint.direction(motion)
             ends = [(joint.on, at, along, 0.0), (joint.by, at, -along, 0.0)]
         demands.append(demands_of(motion, ends))
     return demands
-
-
-def direction(motion: Motion, joint: RubbingJoint) -> Array:
-    """Unit vector (N,) along the line of a slider, complex."""
-    assert joint.slider is not None
-    line = np.exp(1j * joint.slider.direction)
-    return full(motion, motion.state[f"u({joint.slider.on})"] * line, complex)
 
 
 def pressing_parts(
@@ -383,12 +376,14 @@ def pressing_parts(
             values.append((push, np.zeros(shape)))
             continue
         force = np.broadcast_to(state[reaction.force], shape)
-        if joint.slider is None:
+        if not joint.slides:
             values.append((force.real, force.imag))
             continue
-        arm = state[f"p({reaction.at})"] - motion.point(joint.slider.point).place
-        moment = np.broadcast_to(state[reaction.couple or ""], shape) + cross(arm, force)
-        values.append((cross(direction(motion, joint), force), moment))
+        moment: Any = np.zeros(shape)
+        if reaction.couple is not None:
+            arm = state[f"p({reaction.at})"] - joint.place(motion)
+            moment = np.broadcast_to(state[reaction.couple], shape) + cross(arm, force)
+        values.append((cross(joint.direction(motion), force), moment))
     return np.array(values)
 
 
@@ -423,7 +418,7 @@ def with_friction(
         JointFriction(
             joint.on,
             joint.by,
-            joint.slider is None,
+            not joint.slides,
             efforts[k],
             size[k],
             law.rates[k],

@@ -276,7 +276,10 @@ class JointReactions:
         force = full(self.motion, sign * self.state[reaction.force], complex)
         if rider := self.motion.linkage.joints.riders.get(by):
             normal = self.state[f"u({by})"] * rider.normal
-            return SlotForce(force, on, rider.on, kernels.dot(normal, force))
+            across = kernels.dot(normal, force)
+            if (rubs := self.friction.get(by)) is not None:
+                force = force - 1j * normal * rubs.effort
+            return SlotForce(force, on, rider.on, across)
         if reaction.couple is None:
             return JointForce(force, on, by)
         slider = next(s for s in self.motion.machine.sliders if s.name == reaction.name)

@@ -19,7 +19,6 @@ import numpy as np
 from equipoise.dataclass import dataclass
 from equipoise.mechanism.assembly.steps import Array, p, planar
 from equipoise.mechanism.dynamics import acting
-from equipoise.mechanism.dynamics.friction import direction
 from equipoise.mechanism.dynamics.reactions import PUSH, TORQUE, Acting, JointReactions, full
 from equipoise.mechanism.formulas.kernels import cross
 from equipoise.mechanism.kinematics.motion import Motion
@@ -326,8 +325,8 @@ def _rubbing(motion: Motion, solved: JointReactions) -> Iterator[Acting]:
             continue
         effort = solved.friction[joint.name].effort
         for body, sign in ((joint.on, 1.0), (joint.by, -1.0)):
-            if joint.slider is None:
+            if not joint.slides:
                 yield body, motion.state[f"p({joint.reaction.at})"], NO_FORCE, sign * effort
             else:
-                at = motion.point(joint.slider.point).place
-                yield body, at, sign * effort * direction(motion, joint), 0.0
+                along = joint.direction(motion)
+                yield body, joint.place(motion), sign * effort * along, 0.0

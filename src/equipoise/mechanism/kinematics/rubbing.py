@@ -8,8 +8,10 @@ from equipoise.dataclass import dataclass
 from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.assembly.named_joints import given_properties
 from equipoise.mechanism.assembly.steps import Array, Reaction, planar, size_of_links
+from equipoise.mechanism.formulas.kernels import dot
 from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.parts.couplings import Coupling
+from equipoise.mechanism.parts.joint_kinds import JointKind
 from equipoise.mechanism.parts.joint_properties import JOINTS, JointProperties
 from equipoise.mechanism.parts.machine import Slider
 
@@ -23,7 +25,7 @@ class RubbingJoint:
     """A joint that resists its motion.
 
     name : in outputs.  reaction : its force.  given : what the file says of it.
-    slider : the sliding joint that it is; None of a pin.
+    slider : the sliding joint that it is; None of a pin.  slot : that of a pin in one.
     still : rad or m by rad of the crank, below which it is at rest.
     mesh : the gears or the belt that lose in passing their force on; None of a joint.
     pitch_radius : of the driven one of these, m.
@@ -36,29 +38,37 @@ class RubbingJoint:
     still: float
     mesh: Coupling | None = None
     pitch_radius: float = 0.0
+    slot: JointKind | None = None
 
     @property
     def on(self) -> str:
         """The body whose motion against `by` counts, and on which friction is given."""
         if self.mesh is not None:
             return self.mesh.driven
-        return self.reaction.on if self.slider is None else self.slider.link
+        guide = self.slider or self.slot
+        return self.reaction.on if guide is None else guide.link
 
     @property
     def by(self) -> str:
         """The other body: of gears and belts their carrier."""
         if self.mesh is not None:
             return self.mesh.carrier
-        return self.reaction.by if self.slider is None else self.slider.on
+        guide = self.slider or self.slot
+        return self.reaction.by if guide is None else guide.on
+
+    @property
+    def slides(self) -> bool:
+        """Whether its bodies slide on each other, along a guide or a slot, and do not turn."""
+        return self.slider is not None or self.slot is not None
 
     @property
     def reach(self) -> float:
         """From its turning to its sliding: the radius of a pin, or of the driven gear's pitch
-        circle, m; 1 of a slider.
+        circle, m; 1 of what slides.
         """
         if self.mesh is not None:
             return self.pitch_radius
-        return 1.0 if self.slider is not None else self.given.radius or 0.0
+        return 1.0 if self.slides else self.given.radius or 0.0
 
     @property
     def coefficient(self) -> float:
@@ -74,12 +84,37 @@ class RubbingJoint:
 
     def rate(self, motion: Motion) -> Array:
         """How fast it turns (rad) or slides (m) by rad of the crank (N,); 0 where it rests."""
-        if self.slider is None:
+        if self.slot is not None:
+            rate = self._rate_along(self.slot, motion)
+        elif self.slider is None:
             turns = [motion.state[f"w({body})"] for body in (self.on, self.by)]
             rate = np.broadcast_to(np.asarray(turns[0] - turns[1], float), motion.crank_angle.shape)
         else:
             rate = motion.slider(self.slider).travel_1
         return np.where(np.abs(rate) > self.still, rate, 0.0)
+
+    def place(self, motion: Motion) -> Array:
+        """Where what slides is (N,), m, complex."""
+        guide = self.slider or self.slot
+        assert guide is not None
+        return motion.point(guide.point).place
+
+    def direction(self, motion: Motion) -> Array:
+        """Unit vector (N,) along the line of a slider, or along a slot at its pin, complex."""
+        if self.slot is not None:
+            rider = motion.linkage.joints.riders[self.slot.name]
+            line = motion.state[f"u({self.slot.name})"] * (-1j * rider.normal)
+        else:
+            assert self.slider is not None
+            line = motion.state[f"u({self.slider.on})"] * np.exp(1j * self.slider.direction)
+        return np.asarray(np.broadcast_to(line, motion.crank_angle.shape), complex)
+
+    def _rate_along(self, slot: JointKind, motion: Motion) -> Array:
+        """How fast a pin slides along its slot, m by rad of the crank (N,)."""
+        pin, base = motion.point(slot.point), motion.point(getattr(slot, slot.base))
+        turning = motion.state[f"w({slot.on})"]
+        moving = pin.place_1 - base.place_1 - 1j * turning * (pin.place - base.place)
+        return np.asarray(dot(self.direction(motion), moving))
 
 
 def rubbing_joints(linkage: Linkage) -> tuple[RubbingJoint, ...]:
@@ -102,9 +137,11 @@ def _rubbing(linkage: Linkage) -> list[RubbingJoint]:
     for _, reaction, entry in given_properties(machine, linkage.joints, linkage.reactions):
         if entry.rubs:
             slider = sliders[reaction.name] if reaction.kind == "slider" else None
-            still = STILL * (1.0 if slider is None else size)
+            slot = machine.pins_in_slots.get(reaction.name) if reaction.kind == "pin" else None
+            still = STILL * (1.0 if (slider or slot) is None else size)
             if reaction.kind in JOINTS:
-                result.append(RubbingJoint(names[reaction.force], reaction, entry, slider, still))
+                name = names[reaction.force]
+                result.append(RubbingJoint(name, reaction, entry, slider, still, slot=slot))
                 continue
             mesh = couplings[reaction.kind, reaction.name]
             radius = _pitch_radius(linkage, mesh)

@@ -201,21 +201,32 @@ def wrong_of_kind(
     if in_slot and (properties.bearing or properties.width) is not None:
         note = Note("a pin in a slot has no bearing whose load is computed; leave it out")
         yield ModelError(f"{where}.{'bearing' if properties.bearing else 'width'}", note)
-    if in_slot and properties.rubs:
-        note = Note("friction of a pin in a slot is not computed; leave it out")
-        yield ModelError(where, note)
     if properties.radius is not None and kind != "pin":
         note = Note("{joint!r} is no pin and has no radius; leave it out", joint=properties.joint)
         yield ModelError(f"{where}.radius", note)
-    for names, of in ((OF_PIN[1:], "pin"), (OF_SLIDER, "slider")):
-        for name in names:
-            if getattr(properties, name) and kind != of:
-                what = to_say("{joint!r} is no pin; this key is of pins, leave it out")
-                if of == "slider":
-                    what = to_say("{joint!r} is no slider; this key is of sliders, leave it out")
-                yield ModelError(f"{where}.{name}", Note(what, joint=properties.joint))
+    yield from _wrong_for_motion(where, properties, kind, in_slot)
     if properties.friction is not None and kind not in JOINTS:
         note = Note("{joint!r} is no pin or slider; leave friction out", joint=properties.joint)
         yield ModelError(f"{where}.friction", note)
-    if properties.friction is not None and kind == "pin" and properties.radius is None:
+    lacks_radius = kind == "pin" and not in_slot and properties.radius is None
+    if properties.friction is not None and lacks_radius:
         yield ModelError(f"{where}.radius", Note("missing; friction in a pin acts at its radius"))
+
+
+def _wrong_for_motion(
+    where: str, properties: JointProperties, kind: str, in_slot: bool
+) -> Iterator[ModelError]:
+    """Report keys of what turns where it slides, and the other way round; a pin in a slot rubs as
+    it slides.
+    """
+    turns, slides = kind == "pin" and not in_slot, kind == "slider" or in_slot
+    for name in OF_PIN[1:]:
+        if getattr(properties, name) and not turns:
+            what = to_say("{joint!r} is no pin; this key is of pins, leave it out")
+            if in_slot:
+                what = to_say("{joint!r} slides in its slot; this key is of pins, leave it out")
+            yield ModelError(f"{where}.{name}", Note(what, joint=properties.joint))
+    for name in OF_SLIDER:
+        if getattr(properties, name) and not (slides and (name != "guide_length" or not in_slot)):
+            what = to_say("{joint!r} is no slider; this key is of sliders, leave it out")
+            yield ModelError(f"{where}.{name}", Note(what, joint=properties.joint))
