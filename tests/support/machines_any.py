@@ -527,6 +527,7 @@ def _forces(chance: random.Random, document: Document) -> Files:
         if chance.random() < (0.4 if "force" in load else 0.03):
             load["axes"] = _axes(chance, document, link)
         loads.append(load)
+    tables |= _gas(random.Random(str(loads)), document)
     springs = document.setdefault("springs", [])
     fixed = {*document["frame"]["points"]}
     moving = [
@@ -548,6 +549,19 @@ def _forces(chance: random.Random, document: Document) -> Files:
         ]
         springs.append(spring | chance.choice(laws))
     return tables
+
+
+def _gas(chance: random.Random, document: Document) -> Files:
+    """Pressure on what slides, of every third; chance : of its own, so that machines stay."""
+    if not (sliders := document.get("sliders")) or chance.random() > 0.3:
+        return Files()
+    slider = chance.choice(sliders)
+    load = {"link": slider["link"], "point": slider["point"], "axes": "slider", "bore": "40 mm",
+            "gas": "gas.csv", "outside": chance.choice(["zero", "hold", "wrap"])}  # fmt: skip
+    load |= chance.choice([{}, {"back_pressure": "1 bar"}, {"side": "behind"}])
+    document["loads"].append(load | chance.choice([{}, {"reaction": "frame"}]))
+    end = 360.0 * chance.choice((1, 2))
+    return Files({"gas.csv": columns(chance, "crank_angle [deg],pressure [bar]", end, c1=12.0)})
 
 
 def _planting(chance: random.Random, document: Document) -> Files:

@@ -94,7 +94,7 @@ def scripted(machine: Machine, names: Sequence[str], folder: Path) -> None:
     got = run(script, script.numbers(linkage), found.motion.crank_angle, folder)
     for name, values in zip(names, got, strict=True):
         wanted = found.outputs[name].values
-        np.testing.assert_allclose(values, wanted, atol=1e-12 * np.max(np.abs(wanted)))
+        np.testing.assert_allclose(values, wanted, atol=1e-13 * np.max(np.abs(wanted)))
 
 
 def drawn(machine: Machine, role: str) -> tuple[Scene, list[Any]]:

@@ -221,7 +221,7 @@ def constant_loads(job: Job) -> Iterator[tuple[int, Load]]:
     """Loads that are always the same, by number; others, and soil, are told to be left out."""
     job.leave_out_soil()
     for number, load in enumerate(job.machine.loads, 1):
-        if load.jumps or load.table is not None:
+        if load.jumps or load.rows is not None:
             job.leave_out(f"load {number}, which is not the same all the time")
             continue
         if load.reaction is not None and job.machine.support is not None:

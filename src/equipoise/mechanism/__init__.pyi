@@ -23,6 +23,7 @@ from .parts.field import Planting as Planting
 from .parts.field import PlantingArm as PlantingArm
 from .parts.field import Soil as Soil
 from .parts.field import SoilTable as SoilTable
+from .parts.force_elements import GasTable as GasTable
 from .parts.force_elements import Motor as Motor
 from .parts.force_elements import MotorTable as MotorTable
 from .parts.joint_properties import JointProperties as JointProperties
@@ -37,6 +38,7 @@ from .parts.machine import Position as Position
 from .parts.machine import Slider as Slider
 from .parts.racks import Rack as Rack
 from .parts.resistances import Resistance as Resistance
+from .parts.resistances import ResistanceTable as ResistanceTable
 from .parts.rolling_bearings import RollingBearing as RollingBearing
 from .parts.run_plans import RunPlan as RunPlan
 from .parts.sections import LinkSection as LinkSection

@@ -140,8 +140,9 @@ def _loads(machine: Machine) -> Iterator[tuple[Cell, ...]]:
         place = load.link if load.point is None else f"{load.point} of {load.link}"
         what: str = kind
         ends, beyond = (load.start, load.stop), "zero"
-        if (table := load.table) is not None:
-            what = f"{kind}, {table.file}" if table.file else f"{kind}, table"
+        if (table := load.rows) is not None:
+            what = kind if load.gas is None else f"gas on {told(load.bore or 0.0, 'length')}"
+            what = f"{what}, {table.file}" if table.file else f"{what}, table"
             if load.start is None:
                 ends = (table.crank_angle[0], table.crank_angle[-1])
                 beyond = "" if table.covers else load.outside or ""

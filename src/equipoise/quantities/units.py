@@ -292,7 +292,7 @@ KINDS: dict[Dimension, QuantityKind] = {
         usual=("g/m", "kg/m"),
     ),
     "modulus": QuantityKind(
-        to_say("a stress or modulus of elasticity"),
+        to_say("a pressure, stress or modulus of elasticity"),
         {
             "Pa": "1",
             "kPa": "1000",

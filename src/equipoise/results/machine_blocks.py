@@ -216,6 +216,13 @@ def _parts(machine: Machine) -> Iterator[str]:
     for load in machine.loads:
         if load.point is None:
             yield say("Load: a torque on {link}", link=load.link)
+        elif load.bore is not None:
+            yield say(
+                "Load: gas on {point} of {link}, bore {bore}",
+                point=load.point,
+                link=load.link,
+                bore=told(load.bore, "length"),
+            )
         elif load.axes is None:
             yield say("Load: a force at {point} of {link}", point=load.point, link=load.link)
         elif load.axes == "link":

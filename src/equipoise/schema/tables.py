@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 from equipoise.errors import ModelError, UsageError, at_place
 from equipoise.i18n import Note, any_of
 from equipoise.keys.csv_tables import CsvTable
-from equipoise.mechanism.parts.machine import LoadTable
+from equipoise.mechanism.parts.force_elements import GasTable, LoadTable
 from equipoise.mechanism.parts.support import TIME_IN_PERIOD
 from equipoise.quantities import (
     FACTORS,
@@ -55,6 +55,8 @@ COLUMNS: dict[str, tuple[Dimension, str]] = {
     "force_x": ("force", "N"),
     "force_y": ("force", "N"),
     "torque": ("torque", "N m"),
+    "pressure": ("modulus", "bar"),
+    "position": ("length", "mm"),
     "depth": ("length", "mm"),
     "resistance": ("force", "N"),
     "speed": ("angular speed", "rpm"),
@@ -195,7 +197,7 @@ def header_of(
     for cell in cells:
         match = re.fullmatch(r"(\w+)\s*\[([^\]]*)\]", cell)
         name = match[1] if match else cell
-        if name in TIMES and forms == LoadTable.forms:
+        if name in TIMES and forms in (LoadTable.forms, GasTable.forms):
             raise wrong(
                 line, Note("got the column {name}; {of_time}", name=name, of_time=OF_TIME), name
             )

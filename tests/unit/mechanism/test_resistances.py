@@ -13,7 +13,8 @@ import pytest
 import equipoise as eq
 from equipoise.errors import ModelError, UsageError
 from equipoise.exchange.export import export
-from equipoise.mechanism import Machine, Resistance
+from equipoise.mechanism import Machine, Resistance, ResistanceTable
+from equipoise.schema.writing import Writer, toml_text
 from support.own_kinds import designs_by_numbers, drawn, on_the_page, read_back, scripted
 
 ANY_WAY = Resistance("coupler", "Q", "S", force=25.0, damping=8.0, speed=0.05)
@@ -111,6 +112,26 @@ def test_a_cut_takes_the_area_below_its_force_and_dry_friction_twice_the_stroke(
     assert works[2] - works[0] == pytest.approx(2 * 0.12 * 40.0, rel=1e-4)
 
 
+def test_a_table_is_the_same_as_its_lists(tmp_path: Path) -> None:
+    """Read from CSV in any units, written again, and refused where it is wrong."""
+    listed = replace(CUT, speed=1e-3)
+    file = tmp_path / "cut.toml"
+    text = toml_text(Machine, Writer({}).content(Machine, shear(listed)))
+    lists = 'positions = ["0 mm", "4 mm", "20 mm"]\nforces = ["0 N", "3000 N", "0 N"]\n'
+    assert lists in text
+    file.write_text(text.replace(lists, 'table = "cut.csv"\n'), encoding="utf-8")
+    rows = tmp_path / "cut.csv"
+    rows.write_text("position [cm],force [kN]\n0,0\n0.4,3\n2,0\n", encoding="utf-8")
+    machine = eq.load(file)
+    found, wanted = (eq.analyze(one, 90).forces for one in (machine, shear(listed)))
+    np.testing.assert_allclose(found.drive_torque, wanted.drive_torque, rtol=1e-13, atol=1e-13)
+    eq.save(machine, tmp_path / "again.toml")
+    assert eq.load(tmp_path / "again.toml").resistances == machine.resistances
+    rows.write_text("position [cm],force [kN]\n0,0\n0.4,-3\n", encoding="utf-8")
+    with pytest.raises(ModelError, match=r"resistances\[1\]\.table: a resistance does not push"):
+        eq.load(file)
+
+
 def test_a_run_loses_the_work_of_cuts() -> None:
     """A crank that coasts through one cut: its energy falls by the area below the force."""
     found = eq.run(shear(replace(CUT, speed=1e-3)), "0.6 s", speed=12.0)
@@ -201,7 +222,7 @@ def test_drawings_and_the_page_have_them() -> None:
     assert len(drawn(MACHINE, "resistance")[1]) == 5
     one = replace(ON_LINK, on="frame", to="S")
     keys = ["link", "point", "to", "on", "direction", "one_way", "force", "damping", "positions",
-            "forces", "speed"]  # fmt: skip
+            "forces", "table", "speed"]  # fmt: skip
     on_the_page(resisted(replace(one, force=3.0)), "resistances", keys, ["force", "direction"])
 
 
@@ -218,7 +239,8 @@ WRONG: list[tuple[dict[str, Any], str]] = [
     ({"force": -1.0}, "[1].force: got -1 N"),
     ({"speed": None}, "[1].speed: missing; a dry part goes with the speed"),
     ({"direction": None}, "[1].direction: missing; what acts by the way"),
-    ({"positions": (), "forces": (), "damping": None}, "[1]: give at least one of force"),
+    ({"positions": (), "forces": (), "damping": None}, "[1]: give at least one of force, damping"),
+    ({"table": ResistanceTable((0.0, 0.1), (1.0, 2.0))}, "[1].table: give positions with forces"),
     ({"forces": (1.0, 2.0)}, "[1].positions: got 3 positions and 2 forces"),
     ({"positions": (0.0, -0.1, 0.2)}, "[1].positions: the positions must rise"),
     ({"forces": (0.0, -5.0, 1.0)}, "[1].forces: a resistance does not push"),

@@ -149,10 +149,14 @@ def test_the_page_has_their_form_and_numbers() -> None:
     on_the_page(sprung(PRELOADED), "springs", keys, numbers)
 
 
-def test_a_run_keeps_the_energy() -> None:
+@pytest.mark.parametrize(("numbers", "tolerance"), [((0,), 1e-13), ((0, 1, 2), 1e-9)])
+def test_a_run_keeps_the_energy(numbers: tuple[int, ...], tolerance: float) -> None:
     """Of links that nothing else drives: kinetic energy is what springs gave, by integrals over
-    their length."""
-    machine = replace(MACHINE, gravity=(0.0, 0.0))
+    their length.  A preload is smooth and exact to rounding; in a table's rows the torque has
+    corners, about which pieces are halved 9 times, and misses some 1e-11.
+    """
+    springs = tuple(MACHINE.springs[number] for number in numbers)
+    machine = replace(MACHINE, gravity=(0.0, 0.0), springs=springs)
     found = eq.run(machine, "0.05 s", speed=30.0)
     ends = [eq.move(machine, [found.crank_angle[end]], found.crank_speed[end]) for end in (0, -1)]
     given = 0.0
@@ -160,10 +164,11 @@ def test_a_run_keeps_the_energy() -> None:
         first, last = (float(distance(motion, spring)[0]) for motion in ends)
         rows = [length for length in LENGTHS if min(first, last) < length < max(first, last)]
         given -= quad(lambda length, of=spring: float(pull_of(of, np.array(length))), first, last,
-                      points=rows or None, epsabs=1e-13, epsrel=1e-12)[0]  # fmt: skip
+                      points=rows or None, epsabs=1e-13, epsrel=1e-13)[0]  # fmt: skip
     energies = [_kinetic(machine, motion) for motion in ends]
-    assert energies[1] - energies[0] == pytest.approx(given, rel=1e-7, abs=1e-9 * energies[0])
-    assert found.work["springs"][-1] == pytest.approx(given, rel=1e-7, abs=1e-9 * energies[0])
+    assert energies[1] - energies[0] == pytest.approx(given, rel=tolerance)
+    assert found.work["springs"][-1] == pytest.approx(given, rel=tolerance)
+    assert found.energy_error < 1e-12
     assert abs(given) > 0.01
 
 

@@ -76,7 +76,7 @@ REPEAT = "the-motion-does-not-repeat"
 
 def turns_given(machine: Machine) -> int:
     """Turns of the crank after which all drives and loads of a machine are back."""
-    loads = (load.table.turns for load in machine.loads if load.table is not None)
+    loads = (load.rows.turns for load in machine.loads if load.rows is not None)
     return lcm(*(drive.turns for drive in machine.driven), *loads)
 
 

@@ -30,8 +30,8 @@ def _interpolated(load: Load, table: LoadTable, crank_angle: Array) -> list[Arra
 def load_at(load: Load, crank_angle: Array) -> tuple[Array, Array]:
     """Force (complex, N), in the load's axes, and torque (N m) at crank angles (N,)."""
     zero = np.zeros(len(crank_angle))
-    if load.table is not None:
-        columns = _interpolated(load, load.table, crank_angle)
+    if (rows := load.rows) is not None:
+        columns = _interpolated(load, rows, crank_angle)
     elif load.force is not None:
         columns = [zero + load.force[0], zero + load.force[1]]
     else:
@@ -106,9 +106,9 @@ def _edges(load: Load, turns: int) -> Array:
     """Crank angles of a cycle between which a load and its motion are smooth, from 0 on."""
     cycle = 2 * pi * turns
     values = [np.arange(0.0, cycle, PIECE)]
-    if load.table is not None:
-        again = np.arange(0.0, cycle - 1.0, 2 * pi * load.table.turns)
-        values.append(np.add.outer(again, load.table.crank_angle).ravel())
+    if (rows := load.rows) is not None:
+        again = np.arange(0.0, cycle - 1.0, 2 * pi * rows.turns)
+        values.append(np.add.outer(again, rows.crank_angle).ravel())
     for angle, every in load.jumps:
         values.append(np.arange(0.0, cycle - 1.0, 2 * pi * every) + angle)
     angles = np.concatenate(values)

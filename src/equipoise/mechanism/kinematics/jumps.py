@@ -65,7 +65,7 @@ def of_rows(machine: Machine, jumps: Array, turns: int) -> Array:
 def bends_of(machine: Machine, turns: int) -> Array:
     """Crank angles (B,) of one row, rising, rad, at which the slope of a load's table may jump."""
     every = [np.empty(0)]
-    for table in (load.table for load in machine.loads if load.table is not None):
+    for table in (load.rows for load in machine.loads if load.rows is not None):
         again = 2 * pi * np.arange(0, turns, table.turns)
         every.append(np.add.outer(again, table.crank_angle).ravel())
     return _within(every, turns)

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
+from functools import cached_property
 from itertools import pairwise
 from math import ceil, degrees, pi
 from typing import ClassVar, Literal, Protocol
@@ -44,6 +46,11 @@ MOTOR_KINDS = (
 MEAN_SPEEDS = ("held", "free")
 OUTSIDE = ("zero", "hold", "wrap")
 AXES = ("link", "slider")
+SIDES = ("ahead", "behind")
+OF_GAS = ("bore", "back_pressure", "side")
+"""Keys that go with gas alone."""
+BAR = 1e5
+"""Pa."""
 TURN = 2 * pi * (1 + 1e-12)
 """rad: a whole turn, rounding included."""
 ROUNDING = 1e-9
@@ -106,6 +113,22 @@ class LoadTable(CsvTable):
                 yield from (begin, end)
 
 
+@declared
+class GasTable(CsvTable):
+    """Pressure in a cylinder over one turn of the crank or several, linear between its rows.
+
+    crank_angle : rad, rising.  pressure : Pa, as long as `crank_angle`.
+    file : name of the CSV file that it came from.
+    """
+
+    sort = "gas"
+    forms = (("crank_angle", "pressure"),)
+
+    crank_angle: tuple[float, ...] = inside(ROW)
+    pressure: tuple[float, ...] = inside(ROW)
+    file: str = inside(TextKind(), default="", compare=False)
+
+
 class LoadGuide(Protocol):
     """A slider, as far as a load along it knows it."""
 
@@ -122,17 +145,20 @@ class Load(Frozen):
     """A force at a point of a link, or a torque on a link: from outside the machine, or between the
     link and the frame.
 
-    Exactly one of force, torque and table.  Without `start` and `stop` it acts always.
+    Exactly one of force, torque, table and gas.  Without `start` and `stop` it acts always.
     """
 
     called = to_say("{what} of load {number}")
-    file_order = ("link", "point", "force", "torque", "table", "axes", "outside", "from", "to",
-                  "reaction")  # fmt: skip
+    file_order = ("link", "point", "force", "torque", "table", "gas", "bore", "back_pressure",
+                  "side", "axes", "outside", "from", "to", "reaction")  # fmt: skip
     conditions: ClassVar[Conditions] = {
-        "oneOf": [{"required": [name]} for name in ("force", "torque", "table")],
+        "oneOf": [{"required": [name]} for name in ("force", "torque", "table", "gas")],
         "dependentRequired": {
-            "from": ["to"], "to": ["from"], "force": ["point"], "outside": ["table"],
-            "axes": ["point"],
+            "from": ["to"], "to": ["from"], "force": ["point"], "axes": ["point"],
+            "gas": ["bore", "axes"], **{name: ["gas"] for name in OF_GAS},
+        },
+        "dependentSchemas": {
+            "outside": {"anyOf": [{"required": [name]} for name in ("table", "gas")]},
         },
     }  # fmt: skip
 
@@ -158,6 +184,27 @@ class Load(Frozen):
         default=None,
         example="force.csv",
     )
+    gas: GasTable | None = key(
+        File("gas"),
+        "CSV file beside this one of the pressure on a piston, as an indicator records it, instead "
+        "of a force: `crank_angle [deg],pressure [bar]`",
+        default=None,
+        example="indicator.csv",
+    )
+    bore: float | None = key(
+        "length", "diameter of the area on which `gas` acts", default=None, example="68 mm", above=0
+    )
+    back_pressure: float = key(
+        "modulus",
+        "on the other side of the piston, in the same way absolute or gauge as `gas`",
+        default=0.0,
+        shown="0 bar",
+    )
+    side: Literal["ahead", "behind"] = key(
+        TextKind(SIDES),
+        "where the gas is, from the piston in the direction of its slider: `ahead` it pushes back",
+        default="ahead",
+    )
     outside: Literal["zero", "hold", "wrap"] | None = key(
         TextKind(OUTSIDE),
         "what acts between the last row of a table and its first one in the next turn, where the "
@@ -180,6 +227,15 @@ class Load(Frozen):
         default=None,
     )
 
+    @cached_property
+    def rows(self) -> LoadTable | None:
+        """Its force, in its axes, or torque over the crank angle; None of a constant load."""
+        if self.gas is None or self.bore is None:
+            return self.table
+        area = pi / 4 * self.bore**2 * (-1 if self.side == "ahead" else 1)
+        along = tuple(area * (pressure - self.back_pressure) for pressure in self.gas.pressure)
+        return LoadTable(self.gas.crank_angle, (along, (0.0,) * len(along)), self.gas.file)
+
     def guides(self, sliders: Iterable[LoadGuide]) -> list[LoadGuide]:
         """Sliders in which its link slides: of several those, if any, whose point it acts at."""
         own = [slider for slider in sliders if slider.link == self.link]
@@ -197,7 +253,7 @@ class Load(Frozen):
         """Where it sets in, ends or changes suddenly: crank angle, rad, and the turns of the crank
         after which it does so again.
         """
-        result, table = [], self.table
+        result, table = [], self.rows
         if self.start is not None and self.stop is not None:
             rest = (self.stop - self.start) % (2 * pi)
             if min(rest, 2 * pi - rest) > ROUNDING:
@@ -329,11 +385,15 @@ def wrong_load(where: str, load: Load, bodies: Bodies) -> Iterator[ModelError]:
         return
     if load.point is not None:
         yield from unknown_point(f"{where}.point", load.point, load.link, bodies)
-    given = [load.force is not None, load.torque is not None, load.table is not None]
+    given = [item is not None for item in (load.force, load.torque, load.table, load.gas)]
     if sum(given) != 1:
-        yield ModelError(where, Note("give exactly one of force, torque and table"))
+        yield ModelError(where, Note("give exactly one of force, torque, table and gas"))
         return
-    forces = load.force is not None or (load.table is not None and len(load.table.values) == 2)
+    if problem := [*_wrong_gas(where, load)]:
+        yield from problem
+        return
+    rows = load.rows
+    forces = load.force is not None or (rows is not None and len(rows.values) == 2)
     if forces and load.point is None:
         yield ModelError(f"{where}.point", Note("missing; a force acts at a point of the link"))
     if not forces and load.point is not None:
@@ -348,10 +408,39 @@ def wrong_load(where: str, load: Load, bodies: Bodies) -> Iterator[ModelError]:
         yield ModelError(
             where, Note("from and to must differ, by one turn at most; leave both out for always")
         )
-    if load.table is not None:
-        yield from _wrong_loads(where, load.table, load.outside is not None or _within_rows(load))
-    elif load.outside is not None:
-        yield ModelError(f"{where}.outside", Note("goes with a table; leave it out"))
+    yield from _wrong_table(where, load, forces)
+
+
+def _wrong_table(where: str, load: Load, forces: bool) -> Iterator[ModelError]:
+    """What is wrong with a load's table, of forces, torques or pressures, and with `outside`."""
+    rows = load.rows
+    if rows is None:
+        if load.outside is not None:
+            yield ModelError(f"{where}.outside", Note("goes with a table; leave it out"))
+        return
+    at, unit = "table", "N" if forces else "N m"
+    if load.gas is not None:
+        pressures = tuple(pressure / BAR for pressure in load.gas.pressure)
+        rows, at, unit = replace(rows, values=(pressures,)), "gas", "bar"
+    known = load.outside is not None or _within_rows(load)
+    yield from _wrong_loads(where, f"{where}.{at}", rows, unit, known)
+
+
+def _wrong_gas(where: str, load: Load) -> Iterator[ModelError]:
+    """What is wrong with the keys of the pressure of a gas, in a load by it or in others."""
+    if load.gas is None:
+        beside = load.bore is not None, bool(load.back_pressure), load.side != "ahead"
+        for name, given in zip(OF_GAS, beside, strict=True):
+            if given:
+                yield ModelError(f"{where}.{name}", Note("goes with gas; leave it out"))
+        return
+    if load.bore is None:
+        yield ModelError(f"{where}.bore", Note("missing; gas acts on the area of a bore"))
+    if load.axes != "slider":
+        wrong = Note('gas pushes a piston along its slider; give axes = "slider"')
+        yield ModelError(f"{where}.axes", wrong)
+    if len(load.gas.pressure) != len(load.gas.crank_angle):
+        yield ModelError(f"{where}.gas", Note("the columns differ in length"))
 
 
 def wrong_axes(where: str, load: Load, sliders: Iterable[LoadGuide]) -> Iterator[ModelError]:
@@ -377,15 +466,21 @@ def wrong_axes(where: str, load: Load, sliders: Iterable[LoadGuide]) -> Iterator
 
 def _within_rows(load: Load) -> bool:
     """Whether a load acts nowhere but between the first row of its table and the last."""
-    table, start, stop = load.table, load.start, load.stop
+    table, start, stop = load.rows, load.start, load.stop
     if table is None or start is None or stop is None or not table.crank_angle or table.turns > 1:
         return False
     begin = (start - table.crank_angle[0] + NEARLY) % (2 * pi) - NEARLY
     return begin + (stop - start) % (2 * pi) <= table.span + NEARLY
 
 
-def _wrong_loads(where: str, table: LoadTable, known: bool) -> Iterator[ModelError]:
-    at, angles, named = f"{where}.table", table.crank_angle, table.file or Note("the table")
+def _wrong_loads(
+    where: str, at: str, table: LoadTable, unit: str, known: bool
+) -> Iterator[ModelError]:
+    """What is wrong with a table that stands at a place, whose values are shown in a unit.
+
+    known : whether it is said what acts beyond its rows.
+    """
+    angles, named = table.crank_angle, table.file or Note("the table")
     if not angles:
         yield ModelError(at, Note("the table has no rows"))
     elif any(b <= a for a, b in pairwise(angles)):
@@ -403,7 +498,7 @@ def _wrong_loads(where: str, table: LoadTable, known: bool) -> Iterator[ModelErr
             ),
         )
     elif table.covers:
-        yield from _contradiction(at, table, named)
+        yield from _contradiction(at, table, unit, named)
     elif not known:
         turns = "a turn" if table.turns == 1 else f"{table.turns} turns"
         yield ModelError(
@@ -419,10 +514,9 @@ def _wrong_loads(where: str, table: LoadTable, known: bool) -> Iterator[ModelErr
         )
 
 
-def _contradiction(where: str, table: LoadTable, named: str) -> Iterator[ModelError]:
+def _contradiction(where: str, table: LoadTable, unit: str, named: str) -> Iterator[ModelError]:
     """Complain of a last row that stands at the crank angle of the first one, and differs."""
     largest = max(abs(value) for column in table.values for value in column)
-    unit = "N m" if len(table.values) == 1 else "N"
     for column in table.values:
         if abs(column[-1] - column[0]) > SAME_LOAD * largest:
             yield ModelError(

@@ -8,7 +8,20 @@ from typing import Any, ClassVar
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, to_say
-from equipoise.keys import Conditions, Flag, Listing, Quantity, TextKind, declared, key
+from equipoise.keys import (
+    ROW,
+    Conditions,
+    File,
+    Flag,
+    Listing,
+    Quantity,
+    TextKind,
+    declared,
+    inside,
+    key,
+    lacks,
+)
+from equipoise.keys.csv_tables import CsvTable
 from equipoise.mechanism.checks import FRAME, Bodies
 from equipoise.mechanism.formulas.kernels import cross, positive
 from equipoise.mechanism.parts.between import BetweenPoints
@@ -22,6 +35,23 @@ TINY = 1e-300
 
 
 @declared
+class ResistanceTable(CsvTable):
+    """Dry part of a resistance against the position of its point: linear between rows, and as in
+    the first and last beyond them.
+
+    position : m, rising.  force : N, 0 or more, as long as `position`.
+    file : name of the CSV file that it came from.
+    """
+
+    sort = "resistance"
+    forms = (("position", "force"),)
+
+    position: tuple[float, ...] = inside(ROW)
+    force: tuple[float, ...] = inside(ROW)
+    file: str = inside(TextKind(), default="", compare=False)
+
+
+@declared
 class Resistance(BetweenPoints, RatedElement):
     """A force against the motion of `point` of `link` over the body `on`, which bears its opposite.
 
@@ -30,14 +60,16 @@ class Resistance(BetweenPoints, RatedElement):
 
     called = to_say("{what} of resistance {number}")
     file_order = ("link", "point", "to", "on", "direction", "one_way", "force", "damping",
-                  "positions", "forces", "speed")  # fmt: skip
+                  "positions", "forces", "table", "speed")  # fmt: skip
     conditions: ClassVar[Conditions] = {
-        "anyOf": [{"required": [name]} for name in ("force", "damping", "positions")],
+        "anyOf": [{"required": [name]} for name in ("force", "damping", "positions", "table")],
         "dependentRequired": {
+            "table": ["direction", "speed"],
             "force": ["speed"],
             "positions": ["forces", "direction", "speed"],
             "forces": ["positions"],
         },
+        "dependentSchemas": {"table": lacks("positions", "forces")},
     }
     freedoms = 2
 
@@ -100,6 +132,12 @@ class Resistance(BetweenPoints, RatedElement):
         default=(),
         example=["0 N", "900 N", "0 N"],
     )
+    table: ResistanceTable | None = key(
+        File("resistance"),
+        "CSV file beside this one, instead of these lists: `position [mm],force [N]`",
+        default=None,
+        example="cut.csv",
+    )
     speed: float | None = key(
         "speed",
         "at which a dry part has 71 % of its size, as it changes its sense smoothly: small against "
@@ -115,7 +153,14 @@ class Resistance(BetweenPoints, RatedElement):
 
     @property
     def linear(self) -> bool:
-        return self.force is None and not self.positions and not self.one_way
+        return self.force is None and not self.rows[0] and not self.one_way
+
+    @property
+    def rows(self) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
+        """Positions, m, and forces, N, of a dry part by the way; empty where there is none."""
+        if self.table is not None:
+            return self.table.position, self.table.force
+        return self.positions, self.forces
 
     def _moving(self, at: Placed) -> tuple[Any, Any, tuple[tuple[Any, Any], ...]]:
         """As `relative_motion`, along its direction; of one without, along the other body's x."""
@@ -128,10 +173,11 @@ class Resistance(BetweenPoints, RatedElement):
     def _dry(self, position: Any) -> Any:
         """Size of the dry part at a position along its direction, N."""
         size = 0.0 if self.force is None else self.force
-        if self.positions:
-            first, last = self.positions[0], self.positions[-1]
+        positions, forces = self.rows
+        if positions:
+            first, last = positions[0], positions[-1]
             within = first + positive(position - first) - positive(position - last)
-            size = size + ramp_value(ramps_of(self.positions, self.forces), within)
+            size = size + ramp_value(ramps_of(positions, forces), within)
         return size
 
     def efforts(self, ways: Sequence[tuple[Any, Any]]) -> tuple[Any, ...]:
@@ -188,37 +234,47 @@ class Resistance(BetweenPoints, RatedElement):
 
     def _wrong_law(self, where: str) -> Iterator[ModelError]:
         listed = bool(self.positions or self.forces)
-        if self.force is None and self.damping is None and not listed:
-            wrong = Note("give at least one of force, damping, and positions with forces")
+        by_way = listed or self.table is not None
+        if listed and self.table is not None:
+            wrong = Note("give positions with forces, or a table of both")
+            yield ModelError(f"{where}.table", wrong)
+        if self.force is None and self.damping is None and not by_way:
+            wrong = Note("give at least one of force, damping, table, and positions with forces")
             yield ModelError(where, wrong)
-        if (self.force is not None or listed) and self.speed is None:
+        if (self.force is not None or by_way) and self.speed is None:
             wrong = Note("missing; a dry part goes with the speed near which it changes its sense")
             yield ModelError(f"{where}.speed", wrong)
-        if self.direction is None and (listed or self.one_way):
+        if self.direction is None and (by_way or self.one_way):
             wrong = Note("missing; what acts by the way or one way needs a direction")
             yield ModelError(f"{where}.direction", wrong)
-        if listed:
-            uneven = Note(
-                "got {positions} positions and {forces} forces; give as many of both",
-                positions=len(self.positions),
-                forces=len(self.forces),
-            )
-            falling = Note("the positions must rise from row to row")
-            yield from wrong_rows(
-                f"{where}.positions", self.positions, self.forces, uneven, falling
-            )
-            if any(force < 0 for force in self.forces):
-                wrong = Note("a resistance does not push; give forces of 0 or more")
-                yield ModelError(f"{where}.forces", wrong)
+        if by_way:
+            yield from self._wrong_rows(where)
+
+    def _wrong_rows(self, where: str) -> Iterator[ModelError]:
+        positions, forces = self.rows
+        at, at_forces = (f"{where}.{name}" for name in ("positions", "forces"))
+        if self.table is not None:
+            at = at_forces = f"{where}.table"
+        uneven = Note(
+            "got {positions} positions and {forces} forces; give as many of both",
+            positions=len(positions),
+            forces=len(forces),
+        )
+        falling = Note("the positions must rise from row to row")
+        yield from wrong_rows(at, positions, forces, uneven, falling)
+        if any(force < 0 for force in forces):
+            wrong = Note("a resistance does not push; give forces of 0 or more")
+            yield ModelError(at_forces, wrong)
 
     def demands(self) -> Iterator[Any]:
         """What has to be true of its numbers, or of columns of them."""
-        for size in (self.force, self.damping, *self.forces):
+        positions, forces = self.rows
+        for size in (self.force, self.damping, *forces):
             if size is not None:
                 yield size >= 0
         if self.speed is not None:
             yield self.speed > 0
-        yield from (after > before for before, after in pairwise(self.positions))
+        yield from (after > before for before, after in pairwise(positions))
 
     def sentence(self) -> Note:
         """What it resists, for a report."""
@@ -234,6 +290,6 @@ class Resistance(BetweenPoints, RatedElement):
             parts.append(told(self.force, "force", "N"))
         if self.damping is not None:
             parts.append(told(self.damping, "damping", "N s/m"))
-        if self.positions:
-            parts.append(f"{len(self.positions)} rows")
+        if rows := len(self.rows[0]):
+            parts.append(f"{rows} rows")
         return ", ".join(parts)
