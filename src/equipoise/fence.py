@@ -165,20 +165,20 @@ def _readable_roots() -> tuple[Path, ...] | None:
 # -- opening where something is written ------------------------------------------------------------
 
 
-_held: ContextVar[dict[str, Folder] | None] = ContextVar("_held", default=None)
+_open_folders: ContextVar[dict[str, Folder] | None] = ContextVar("_held", default=None)
 
 
 @contextmanager
 def holding() -> Iterator[None]:
     """Inside, a folder for which a `place` was held once stays the same, whatever comes there."""
-    if _held.get() is not None:
+    if _open_folders.get() is not None:
         yield
         return
-    token = _held.set({})
+    token = _open_folders.set({})
     try:
         yield
     finally:
-        _held.reset(token)
+        _open_folders.reset(token)
 
 
 def hold_place(path: str | os.PathLike[str]) -> None:
@@ -188,9 +188,9 @@ def hold_place(path: str | os.PathLike[str]) -> None:
     ------
     OSError : the folder cannot be opened.
     """
-    held, above = _held.get(), Path(path).absolute().parent
-    if held is not None and str(above) not in held:
-        held[str(above)] = Folder.at(os.path.realpath(above))
+    folders, above = _open_folders.get(), Path(path).absolute().parent
+    if folders is not None and str(above) not in folders:
+        folders[str(above)] = Folder.at(os.path.realpath(above))
 
 
 def hold_folder(path: Path) -> None:
@@ -202,14 +202,14 @@ def hold_folder(path: Path) -> None:
     ------
     UsageError, LinkError, OSError, ValueError : as of `place_of`.
     """
-    held = _held.get()
-    if held is None or _fence.get() is not None or str(path) in held:
+    folders = _open_folders.get()
+    if folders is None or _fence.get() is not None or str(path) in folders:
         return  # a fence opens what is below its own folder, which is held already
     if path.name in {"", ".."}:
-        held[str(path)] = Folder.at(path)
+        folders[str(path)] = Folder.at(path)
     else:
         above, name = place_of(path)
-        held[str(path)] = above.folder(name)
+        folders[str(path)] = above.folder(name)
 
 
 def place_of(path: str | os.PathLike[str], *, links: bool = True) -> tuple[Folder, str]:
@@ -230,10 +230,10 @@ def place_of(path: str | os.PathLike[str], *, links: bool = True) -> tuple[Folde
     if not links:
         _note_written(given)
         return Folder.without_links(given.parent), given.name
-    held = (_held.get() or {}).get(str(given.absolute().parent))
-    if held is not None and _fence.get() is None and not held.has_link(given.name):
-        return held, given.name
-    above = held.path if held is not None else Path(os.path.realpath(given.parent))
+    folder = (_open_folders.get() or {}).get(str(given.absolute().parent))
+    if folder is not None and _fence.get() is None and not folder.has_link(given.name):
+        return folder, given.name
+    above = folder.path if folder is not None else Path(os.path.realpath(given.parent))
     target = Path(os.path.realpath(above / given.name))
     check_written(target)
     if not target.is_relative_to(above):
@@ -241,7 +241,7 @@ def place_of(path: str | os.PathLike[str], *, links: bool = True) -> tuple[Folde
     way = target.relative_to(above).parent.as_posix()
     fence = _fence.get()
     if fence is None:
-        return (held or Folder.at(above)).folder(way), target.name
+        return (folder or Folder.at(above)).folder(way), target.name
     _note_written(target)
     way = target.parent.relative_to(fence.folder).as_posix()
     return Folder.at(fence.folder).folder(way), target.name

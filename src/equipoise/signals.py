@@ -36,7 +36,7 @@ GAUSS_POINTS, LONGEST_PANEL = 16, pi / 4
 """Of a panel between jumps, which is as many steps of the grid long at most: so the sampling has
 about twice as many crank angles as the grid, and polynomials of degree 31 are integrated exactly.
 rad: longer ones miss a quick return's work by 1e-6 of it where the grid is coarse."""
-BESIDE = 2e-8
+JUMP_OFFSET = 2e-8
 """rad in a cycle of one turn: how far before and behind a jump its sides are taken.  Loads and
 motion laws count up to 1e-9 of a cycle before a jump as behind it."""
 STEPS_BETWEEN_BENDS = 4
@@ -59,16 +59,18 @@ def highest_at(values: Array, smooth: bool = True) -> Array:
         high, low = (f(values, axis=-1, keepdims=True) for f in (np.max, np.min))
         low = np.where(np.isfinite(low), low, high)
         rounding = ROUNDING * np.maximum(np.abs(high), np.abs(low))
-        near = values >= high - np.maximum(EQUAL * (high - low), rounding)
+        candidates = values >= high - np.maximum(EQUAL * (high - low), rounding)
         if smooth:  # of the few that are near, those that no neighbour exceeds
-            where = np.nonzero(near)
+            where = np.nonzero(candidates)
             k, count = where[-1], values.shape[-1]
             row, value = where[:-1], values[where]
             before = np.where(k > 0, values[(*row, k - 1)], -np.inf)
             after = np.where(k < count - 1, values[(*row, (k + 1) % count)], -np.inf)
             least, steady = rounding[..., 0][row], (high - low <= rounding)[..., 0][row]
-            near[where] = (value >= np.maximum(before, after) - least) | steady
-    numbers: Array = np.where(near.any(axis=-1), near.argmax(axis=-1), values.argmax(axis=-1))
+            candidates[where] = (value >= np.maximum(before, after) - least) | steady
+    numbers: Array = np.where(
+        candidates.any(axis=-1), candidates.argmax(axis=-1), values.argmax(axis=-1)
+    )
     return numbers
 
 
@@ -197,11 +199,11 @@ class JumpSampling:
         steps : of the grid between so many Gauss points.  With as many the highest third of the
             orders is good to 2e-4 of the largest, with half as many each is to 1e-10.
         """
-        period, beside = 2 * pi * turns, BESIDE * turns
+        period, offset = 2 * pi * turns, JUMP_OFFSET * turns
         if len(bends) * STEPS_BETWEEN_BENDS > len(grid):
             bends = ()
-        jump_ends = _ends_of_pieces(jumps, period, 4 * beside)
-        ends = _ends_of_pieces(np.concatenate([jumps, bends]), period, 4 * beside)
+        jump_ends = _ends_of_pieces(jumps, period, 4 * offset)
+        ends = _ends_of_pieces(np.concatenate([jumps, bends]), period, 4 * offset)
         longest = min(steps * period / len(grid), LONGEST_PANEL)
         counts = np.ceil(np.diff(ends) / longest * (1 - ROUNDING))
         panels = [
@@ -213,10 +215,10 @@ class JumpSampling:
         nodes, weights = _gauss_points()
         inside = (begins[:, None] + widths[:, None] * (1 + nodes) / 2).ravel()
         shares = (widths[:, None] * weights / (2 * period)).ravel()
-        at_zero = np.any(within_period(jumps, period) < beside)
+        at_zero = np.any(within_period(jumps, period) < offset)
         sudden = jump_ends[:-1] if at_zero else jump_ends[1:-1]
-        before = sudden - beside + period * (sudden < beside)
-        theta = np.concatenate([grid, before, sudden + beside, inside])
+        before = sudden - offset + period * (sudden < offset)
+        theta = np.concatenate([grid, before, sudden + offset, inside])
         at = np.concatenate([grid, sudden, sudden, inside])
         whole = np.concatenate([np.zeros(len(theta) - len(inside)), shares])
         order = np.argsort(theta, kind="stable")
@@ -346,8 +348,8 @@ class Periodic(Brief):
         A cycle of many turns has hundreds of them between those of its parts.
         """
         sizes = self.sizes
-        kept = sizes > scale * np.max(sizes, axis=-1, keepdims=True)
-        return Periodic(np.where(kept, self.amplitudes, 0.0), self.turns)
+        significant = sizes > scale * np.max(sizes, axis=-1, keepdims=True)
+        return Periodic(np.where(significant, self.amplitudes, 0.0), self.turns)
 
     def amplitude(self, place: int) -> Array:
         """Complex amplitude (...) of one order by its place; 0 above the last."""

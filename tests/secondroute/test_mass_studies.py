@@ -18,7 +18,7 @@ from equipoise.codegen.gram import MassBatch, can_use
 from equipoise.design.spreads import Range
 from equipoise.design.variables import Variable
 from equipoise.mechanism.kinematics.jumps import resolved
-from equipoise.mechanism.outputs.declared import DECLARED, Found, declared
+from equipoise.mechanism.outputs.declared import DECLARED, OutputSource, declared
 from equipoise.schema.template import Template
 from equipoise.studies.design_space import Output, Sampling
 from equipoise.studies.evaluate import evaluator
@@ -52,7 +52,7 @@ MACHINES = {
 def names_of(machine: eq.Machine) -> list[str]:
     """Every output that an analysis of the machine has."""
     motion = eq.move(machine, ANGLES)
-    found = Found(motion, eq.forces(motion))
+    found = OutputSource(motion, eq.forces(motion))
     return [
         one.named(item)
         for one in DECLARED.values()
@@ -84,7 +84,7 @@ def test_figures_are_those_of_each_design(name: str) -> None:
     assert np.all(reason == COMPUTED)
     for row, one in zip(figures, designs, strict=True):
         motion = resolved(eq.move(one, ANGLES))
-        found, shares = Found(motion, eq.forces(motion)), motion.shares
+        found, shares = OutputSource(motion, eq.forces(motion)), motion.shares
         for figure, value in zip(wanted, row, strict=True):
             output, item = declared(figure.signal) or pytest.fail(figure.signal)
             signal = output.values(found, item)

@@ -116,7 +116,7 @@ def advise(machine: Machine, solve: Solve = balance) -> Balanced:
     return _Adviser(machine.with_balance(None), own, solve).advised()
 
 
-def beside(balanced: Balanced, machine: Machine) -> Balanced:
+def advice_against(balanced: Balanced, machine: Machine) -> Balanced:
     """Advice on a machine without its counterweights, judged beside the machine that has them."""
     advice, aims = balanced.advice, balanced.plan.objectives
     if advice is None:
@@ -174,7 +174,7 @@ class _Adviser:
         if not tried:
             return self.unchanged()
         first = [item for item in tried if item.plan.objectives == tried[0].plan.objectives]
-        best = max(first, key=lambda one: one.gain)
+        best = max(first, key=lambda candidate: candidate.gain)
         return self.with_more_room(replace(best, tried=tuple(tried)))
 
     def with_more_room(self, result: Balanced) -> Balanced:
@@ -256,7 +256,7 @@ class _Adviser:
         comparison = self.comparison(plan, rooms)
         if not comparison.influences:
             return
-        if len(rooms) == 1 and not rooms[0].beside:
+        if len(rooms) == 1 and not rooms[0].neighbors:
             off = (
                 with_hole(self.machine, rooms[0], best_hole) for best_hole in best_holes(comparison)
             )
@@ -333,8 +333,8 @@ class _Adviser:
             for limit in item.limits(balanced.gain, saving.excess, saving.steadies)
             if not limit.objective.output.startswith(GAUGES)
         )
-        kept = (Note("where no headline figure gets worse"),)
-        for asked, scope in ((limits, kept), (self.own.limits, ())):
+        unworsened = (Note("where no headline figure gets worse"),)
+        for asked, scope in ((limits, unworsened), (self.own.limits, ())):
             plan = replace(balanced.plan, limits=asked, added_mass=self.most_mass(balanced.plan))
             try:
                 proof = self.solve(self.machine, plan)
@@ -444,14 +444,14 @@ def _in_whole_degrees(balanced: Balanced) -> Balanced:
 def _twists_of(balanced: Balanced) -> tuple[Limit, ...]:
     """Limits of the couples between the rows that phases make where there were none."""
     assert balanced.advice is not None
-    made = (
+    increases = (
         (Objective(new.output.removeprefix(ROWS)), new)
         for was, new in balanced.advice.worse
         if abs(was.value) <= COUPLE_FROM_NOTHING * abs(new.value)
     )
     return tuple(
         Limit(couple, at_most=LEVEL * abs(new.value))
-        for couple, new in made
+        for couple, new in increases
         if couple.output in OF_ROWS
     )
 
@@ -526,7 +526,7 @@ def running_speeds(machine: Machine, linear: Linear) -> tuple[float, ...]:
     if drive.range is None:
         return (drive.speed,)
     slow, fast = drive.range
-    loud = sorted(resonances(linear, slow, fast), key=lambda one: -one.share)
+    loud = sorted(resonances(linear, slow, fast), key=lambda resonance: -resonance.share)
     speeds = [item.speed for item in loud if item.avoid is not None and item.share >= LOUD]
     result = {drive.speed, slow, (slow + fast) / 2, fast, *speeds[:MOST_RESONANCES]}
     return tuple(sorted((item for item in result if _is_steady(linear, item)), key=abs))

@@ -92,7 +92,7 @@ class MoreRoom:
         "wanted": ResultOutput("how far it would reach", "length"),
         "gain": ResultOutput("share of the aims that is gone then", read="remedy.gain"),
         "changes": ResultOutput(
-            "list of what to change, see below", read=lambda more: _changes(more.remedy)
+            "list of what to change, see below", read=lambda more_room: _changes(more_room.remedy)
         ),
     }
 

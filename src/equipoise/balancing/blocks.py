@@ -183,10 +183,10 @@ def outcome_blocks(balanced: Balanced) -> Iterator[Block]:
         columns = (Column(""), Column(say("speed"), "angular speed", "rpm"))
         yield Table(say("Speed at which it shakes as before"), columns, speeds, detail=True)
     if balanced.planting_kept is not None:
-        kept = say("The planting figures stay as they are.")
+        unchanged = say("The planting figures stay as they are.")
         changed = say("The planting figures have changed.")
         yield Text(
-            kept if balanced.planting_kept else changed, worse_if(not balanced.planting_kept)
+            unchanged if balanced.planting_kept else changed, worse_if(not balanced.planting_kept)
         )
     if balanced.notes:
         yield Notes(balanced.notes)
@@ -312,8 +312,8 @@ def phasing_blocks(phasing: Phasing) -> Iterator[Block]:
     texts = [f"{order:.4g}" for order in phasing.remaining]
     if texts:
         orders = say(", ").join(texts[:MOST_ORDERS])
-        more = len(texts) - MOST_ORDERS
-        orders = say("{orders} and higher ones", orders=orders) if more > 0 else orders
+        omitted = len(texts) - MOST_ORDERS
+        orders = say("{orders} and higher ones", orders=orders) if omitted > 0 else orders
         yield Text(say("Remaining orders of the shaking force: {orders}.", orders=orders))
     else:
         yield Text(say("No order of the shaking force remains."))

@@ -293,9 +293,9 @@ class Bounder:
         bend = np.abs(np.einsum("bj,bjkn->bkn", whole, turned)) @ self._orders**2
         drops = here[..., POINTS // 2] - np.min(here, axis=2) + bend * spacing**2 / 8
         drops[:, 0] = 0.0
-        more = np.abs(turned[:, 1:]) @ self._orders**2 * spacing[:, None] ** 2 / 8
+        curvature = np.abs(turned[:, 1:]) @ self._orders**2 * spacing[:, None] ** 2 / 8
         rise, fall = (
-            np.sum((end(along[:, 1:], axis=3) - middle[:, 1:] + sign * more)[:, :, 1:], axis=2)
+            np.sum((end(along[:, 1:], axis=3) - middle[:, 1:] + sign * curvature)[:, :, 1:], axis=2)
             for end, sign in ((np.max, 1.0), (np.min, -1.0))
         )
         slopes = np.sum(middle[:, 1:], axis=2)
@@ -312,10 +312,10 @@ class Bounder:
         plain = -np.minimum(slopes * low, slopes * high)
         directions, least = self.numbers.directions
         left = slopes - pushed @ directions
-        kept = -np.minimum(left * low, left * high)
+        bounds = -np.minimum(left * low, left * high)
         gained = np.sum(pushed * (least - boxes.numbers @ directions.T), axis=1)
-        better = np.sum(kept, axis=1) - gained < np.sum(plain, axis=1)
-        return np.where(better[:, None], kept, plain), np.where(better, gained, 0.0)
+        better = np.sum(bounds, axis=1) - gained < np.sum(plain, axis=1)
+        return np.where(better[:, None], bounds, plain), np.where(better, gained, 0.0)
 
     # -- readings ----------------------------------------------------------------------------------
 
@@ -323,7 +323,7 @@ class Bounder:
     def _amplitudes(self) -> list[Array]:
         """Of each term as it is, and by each number, (1 + K, V, m, C, N)."""
         pairs = zip(self.cost.measured, self.numbers.columns, strict=True)
-        return [np.concatenate([item.signals.amplitudes[None], more]) for item, more in pairs]
+        return [np.concatenate([item.signals.amplitudes[None], columns]) for item, columns in pairs]
 
     @cached_property
     def _orders(self) -> Array:

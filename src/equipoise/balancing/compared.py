@@ -83,7 +83,7 @@ def worse_of(
             result.append(Worse(item, _group_of(item.output), there, new, weight))
     # to nine digits, so that rounding does not decide between figures that grew alike, as peak and
     # peak to peak of a signal that reaches as far up as down
-    result.sort(key=lambda one: (IMPORTANT.index(one.group), -round(one.growth, 9)))
+    result.sort(key=lambda growth: (IMPORTANT.index(growth.group), -round(growth.growth, 9)))
     worses: dict[tuple[str, tuple[float, ...], str | None], Worse] = {}
     for grown in result:
         aim = grown.objective

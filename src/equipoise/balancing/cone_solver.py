@@ -88,8 +88,8 @@ def clarabel_solver(
     needed = ENTRY * matrix.nnz + 8 * len(cost) ** 2
     check_room(needed, Note(program, rows=len(right), columns=len(cost)))
     nothing = sparse.csc_matrix((len(cost), len(cost)))
-    made = [kinds[kind](size) for kind, size in cones]
-    end = clarabel.DefaultSolver(nothing, cost, matrix, right, made, settings).solve()
+    cone_types = [kinds[kind](size) for kind, size in cones]
+    end = clarabel.DefaultSolver(nothing, cost, matrix, right, cone_types, settings).solve()
     reason = str(end.status)
     status: Status = "stalled"
     if "Infeasible" in reason:

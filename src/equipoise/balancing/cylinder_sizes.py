@@ -127,8 +127,8 @@ def cylinder_for(analysis: Analysis, entries: tuple[FigureAssessment, ...]) -> C
     bore, rod = sizes
     closed, most = float(np.min(length)), float(np.max(length))
     bodies = machine.bodies
-    near, far = (set(bodies[body]) for body in drive.ends(bodies))
-    shared = near & far
+    first_bodies, second_bodies = (set(bodies[body]) for body in drive.ends(bodies))
+    shared = first_bodies & second_bodies
     pivot = next(iter(shared)) if len(shared) == 1 else ""
     levers = [*_longer(analysis, force, drive.between, pivot)] if pivot else []
     built = [item for item, fits in levers if fits]
@@ -137,7 +137,7 @@ def cylinder_for(analysis: Analysis, entries: tuple[FigureAssessment, ...]) -> C
         closed=closed, open=most, pressure=CYLINDER_PRESSURE, bore=bore, rod=rod,
         dead=DEAD_BORES * bore,
         is_buildable=_fits(closed, most, bore), is_slender=rod > _usual_rod(bore),
-        pivot=pivot, lever=min(built, key=lambda one: one.force, default=None),
+        pivot=pivot, lever=min(built, key=lambda lever: lever.force, default=None),
         is_lever_stopped=bool(levers) and not built,
     )  # fmt: skip
 

@@ -107,8 +107,8 @@ class DesignVariables(ABC):
 def with_parameters(machine: Machine, link: str, values: Array) -> Machine:
     """The machine with mass, first moments and inertia of a link about its origin."""
     body = machine.links[link]
-    if body.bodies and (made := _made_of(body, values)) is not None:
-        return machine.with_link(link, bodies=made.bodies)
+    if body.bodies and (new_body := _made_of(body, values)) is not None:
+        return machine.with_link(link, bodies=new_body.bodies)
     mass, x, y, inertia = (float(value) for value in values)
     if mass <= 0:
         return machine.with_link(link, mass=0.0, center_of_mass=(0.0, 0.0), inertia=0.0)
@@ -128,10 +128,12 @@ def _made_of(body: Link, values: Array) -> Link | None:
         return body
     if mass <= SAME * own[0]:
         return None
-    more = inertia - (x * x + y * y) / mass
-    if more < -SAME * values[3]:
+    central_inertia = inertia - (x * x + y * y) / mass
+    if central_inertia < -SAME * values[3]:
         return None
-    return body.with_added(mass, (x / mass, y / mass), more if more > SAME * values[3] else 0.0)
+    return body.with_added(
+        mass, (x / mass, y / mass), central_inertia if central_inertia > SAME * values[3] else 0.0
+    )
 
 
 class MovedCenter(DesignVariables):
@@ -290,7 +292,7 @@ class FreeSpring(DesignVariables):
 
 def with_numbers(machine: Machine, each: Sequence[tuple[DesignVariables, Array]]) -> Machine:
     """The machine with what the numbers of each part make of its link, and with its springs."""
-    springs, beside = list(machine.springs), []
+    springs, other_springs = list(machine.springs), []
     values = dict(zip(machine.links, parameter_values(machine).reshape(-1, 4), strict=True))
     changed: dict[str, Array] = {}
     for part, own in each:
@@ -300,11 +302,11 @@ def with_numbers(machine: Machine, each: Sequence[tuple[DesignVariables, Array]]
             before = changed.get(part.link, values[part.link])
             changed[part.link] = before + own @ part.effect
         else:
-            beside.append((part, own))
+            other_springs.append((part, own))
     added = len(springs) > len(machine.springs)
     for link, parameters in changed.items():
         machine = with_parameters(machine, link, parameters)
-    for part, own in beside:
+    for part, own in other_springs:
         machine = _with_mass_beside(machine, part, own)
     return replace(machine, springs=tuple(springs)) if added else machine
 

@@ -31,7 +31,7 @@ from equipoise.mechanism.dynamics.undecided import refuse_unbounded
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.kinematics.jumps import resolved
 from equipoise.mechanism.kinematics.motion import Motion, move
-from equipoise.mechanism.outputs.declared import Declared, Found, matches
+from equipoise.mechanism.outputs.declared import Declared, OutputSource, matches
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.objectives import balanced_names
 from equipoise.mechanism.parts.places import in_frame
@@ -77,7 +77,7 @@ class Signal:
         """The signal (N,) for numbers (K,)."""
         return np.asarray(self.start + numbers @ self.columns)
 
-    def kept(self, orders: tuple[float, ...]) -> Signal:
+    def with_orders(self, orders: tuple[float, ...]) -> Signal:
         """The signal with these orders of the crank's speed only; all of them if there are none."""
         if not orders:
             return self
@@ -173,7 +173,9 @@ class Effects:
         declared, item = self._declared(output)
         pole = in_frame(self.machine.frame, self.motion.linkage.pivot if about is None else about)
         start, columns = (
-            declared.component(declared.vector(Found(self.motion, forces_of(self, pole)), item))
+            declared.component(
+                declared.vector(OutputSource(self.motion, forces_of(self, pole)), item)
+            )
             for forces_of in (Baseline, UnitResponse)
         )
         return Signal(start, self.full(columns), self.motion.turns, self.motion.sampling)

@@ -97,7 +97,7 @@ class GearSearch(DesignProblem):
             for k, gearing in enumerate(self.gearings)
             for name, limits in gearing.ranges.items()
         ]
-        self.found: list[tuple[Choice, Solution]] = []
+        self.solutions: list[tuple[Choice, Solution]] = []
         self.costs: dict[Choice, float] = {}
         self.problems: list[UsageError] = []
         self.most = 0
@@ -130,7 +130,7 @@ class GearSearch(DesignProblem):
             (choice,) = product(*self.options)
             return self._with(choice).solved(self.progress)
         solve(self)
-        if not self.found:
+        if not self.solutions:
             raise self.problems[0]
         options = [set(own) for own in self.options]
         tried = sum(all(map(set.__contains__, options, choice)) for choice in self.costs)
@@ -148,7 +148,9 @@ class GearSearch(DesignProblem):
         for (k, name, *_), number in zip(self.ranges, numbers, strict=True):
             here[k][name] = float(number)
         each = list(zip(self.gearings, start, here, strict=True))
-        choice = tuple(gearing.near(mesh, own) if own else mesh for gearing, mesh, own in each)
+        choice = tuple(
+            gearing.with_numbers(mesh, own) if own else mesh for gearing, mesh, own in each
+        )
         clear = all(
             gearing.is_clear(mesh)
             for gearing, mesh, own in zip(self.gearings, choice, here, strict=True)
@@ -158,26 +160,26 @@ class GearSearch(DesignProblem):
 
     def cost(self, choice: Choice) -> float:
         """Cost with these gears, not closely where others cost less; infinite where none do."""
-        least = min((item.best.value for _, item in self.found), default=LARGE)
+        least = min((item.best.value for _, item in self.solutions), default=LARGE)
         try:
             solution = self._with(choice).solved(None, least)
         except UsageError as error:
             self.problems.append(error)
             self.costs[choice] = inf
             return inf
-        self.found.append((choice, solution))
+        self.solutions.append((choice, solution))
         if self.progress is not None:
-            self.most = max(self.most, len(self.found))
-            self.progress(len(self.found), self.most)
+            self.most = max(self.most, len(self.solutions))
+            self.progress(len(self.solutions), self.most)
         self.costs[choice] = solution.best.value
         return solution.best.value
 
     def _lightest(self) -> Solution:
         """The lightest of those that cost least."""
-        least = min(item.best.value for _, item in self.found)
+        least = min(item.best.value for _, item in self.solutions)
         ties = {
             choice: item.problem.mass_added(item.numbers)
-            for choice, item in self.found
+            for choice, item in self.solutions
             if item.best.value <= least + TIE
         }
         equal = sorted(ties, key=lambda choice: [(item.ratio, item.direction) for item in choice])
@@ -185,17 +187,17 @@ class GearSearch(DesignProblem):
         tried = dict.fromkeys([*equal[:: max(1, len(equal) // MOST_TIES)], *light])
         lightest = min(
             (self._with(choice).solved() for choice in tried),
-            key=lambda one: one.problem.mass_added(one.numbers),
+            key=lambda solution: solution.problem.mass_added(solution.numbers),
         )
         method = Note(
             "{method}, for each of {count} choices of gears",
             method=lightest.method,
-            count=len(self.found),
+            count=len(self.solutions),
         )
         return replace(
             lightest,
             method=method,
-            best=replace(lightest.best, nodes=sum(item.best.nodes for _, item in self.found)),
+            best=replace(lightest.best, nodes=sum(item.best.nodes for _, item in self.solutions)),
             ties=len(equal),
             weighed=len(tried),
         )
@@ -215,11 +217,11 @@ class GearGrid:
         problem.most = len(choices) + BEST_CHOICES * MOST_STEPS * ranged
         for choice in choices:
             problem.cost(choice)
-        if problem.found and len(choices) < prod(map(len, problem.options)):
+        if problem.solutions and len(choices) < prod(map(len, problem.options)):
             problem.most += BEST_CHOICES * sum(map(len, problem.options))
             for choice in _best_choices(problem):
                 _try_by_turns(problem, choice)
-        if problem.found and problem.ranges:
+        if problem.solutions and problem.ranges:
             for choice in _best_choices(problem):
                 _follow(problem, choice)
         return DesignSolution(np.empty((0, len(problem.spreads))))
@@ -227,12 +229,12 @@ class GearGrid:
 
 def _first_choices(options: list[list[Mesh]]) -> list[Choice]:
     """All choices; of several shafts with too many together, some of each."""
-    kept = options
-    several = sum(len(own) > 1 for own in kept) > 1
-    while several and prod(map(len, kept)) > MOST_CHOICES:
-        longest = max(map(len, kept))
-        kept = [_some(own, min(len(own), longest - 1)) for own in options]
-    return list(product(*kept))
+    choices = options
+    several = sum(len(own) > 1 for own in choices) > 1
+    while several and prod(map(len, choices)) > MOST_CHOICES:
+        longest = max(map(len, choices))
+        choices = [_some(own, min(len(own), longest - 1)) for own in options]
+    return list(product(*choices))
 
 
 def _best_choices(problem: GearSearch) -> list[Choice]:

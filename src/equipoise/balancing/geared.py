@@ -175,7 +175,7 @@ class Gearing:
         fractions = {Fraction(p, q) for q in bottoms for p in range(1, int(high * q) + 1)}
         return sorted(float(f) for f in fractions if low <= f <= high)
 
-    def near(self, start: Mesh, numbers: dict[str, float]) -> Mesh:
+    def with_numbers(self, start: Mesh, numbers: dict[str, float]) -> Mesh:
         """A choice of gears with another ratio or direction; teeth stay as they are."""
         if start.teeth is not None:
             return replace(start, direction=numbers["direction"])
@@ -203,15 +203,15 @@ class Gearing:
         """What is wrong with where the shaft is, if anything is."""
         axis, room = self.axis(mesh), max(self.geared.weight.radius, mesh.shaft)
         for link in self.geared.clear_of:
-            near = nearest(self.motion, link, axis)
-            if near < room:
+            distance = nearest(self.motion, link, axis)
+            if distance < room:
                 return Note(
                     "the {name} would run into {link}, which comes within {distance:.4g} mm of "
                     "its shaft, while it needs {room:.4g} mm; give it less room, another "
                     "place, or another plane (leave the link out of clear_of)",
                     name=self.geared.name,
                     link=link,
-                    distance=near * 1e3,
+                    distance=distance * 1e3,
                     room=room * 1e3,
                 )
         return None

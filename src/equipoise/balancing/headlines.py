@@ -103,8 +103,8 @@ class AssessedMachine:
         """Moments that were as good as nothing, and are larger now than what is saved."""
         for new in after.headline:
             if new.is_shaking and new.dimension == "torque":
-                was, made = (_rms(item.analysis, new.output) for item in (self, after))
-                if was <= COUPLE_FROM_NOTHING * made and made - was > saving.moment_against(new):
+                was, now = (_rms(item.analysis, new.output) for item in (self, after))
+                if was <= COUPLE_FROM_NOTHING * now and now - was > saving.moment_against(new):
                     yield _before(self.headline, new), new
 
     def aims(self, objectives: Iterable[Objective]) -> Iterator[tuple[Objective, FigureAssessment]]:
@@ -195,8 +195,8 @@ def allowed_ratios(
     steadies : whether they are of a torque, for which nothing that shakes may grow.
     """
     excess = 0.0 if steadies and was.is_shaking else excess
-    beside = was.excess + GROWTH_OF_GAIN * gain * min(was.excess, excess)
-    grown = np.maximum(growth * was.excess, beside)
+    permitted = was.excess + GROWTH_OF_GAIN * gain * min(was.excess, excess)
+    grown = np.maximum(growth * was.excess, permitted)
     small = np.minimum(SMALL_FIGURE, was.excess + GROWTH_OF_SAVED * gain * excess)
     return np.asarray(np.maximum(np.maximum(grown, small) * was.large_from, TRIFLE))
 

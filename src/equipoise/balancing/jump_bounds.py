@@ -159,8 +159,8 @@ class JumpBounds:
         size = parts.shape[3]
         places = np.argmax(parts, axis=3) + size * np.arange(SEGMENTS)
         theta = (places + 0.5) * spacing
-        beside = theta[..., None] + spacing * np.array([-1.0, 0.0, 1.0])  # (B, k, S, 3)
-        at = beside[..., None] + ahead[:, :, None, None, :]
+        neighbors = theta[..., None] + spacing * np.array([-1.0, 0.0, 1.0])  # (B, k, S, 3)
+        at = neighbors[..., None] + ahead[:, :, None, None, :]
         row = np.broadcast_to(np.arange(ahead.shape[2]), at.shape)
         before, top, after = np.moveaxis(sign * np.sum(self.pieces.values(row, at), axis=4), 3, 0)
         bend = before - 2 * top + after

@@ -225,8 +225,8 @@ class JumpReadings:
     def _topped(self, leader: Array, angles: Array, ahead: Array, shares: Array) -> Array:
         """Crank angles (B, A) led to the tops of parabolas."""
         width = self.pieces.period / self._bins
-        beside = np.concatenate([angles - width, angles, angles + width], axis=1)
-        heights = self._sum(np.tile(leader, 3), beside, ahead, shares)
+        neighbors = np.concatenate([angles - width, angles, angles + width], axis=1)
+        heights = self._sum(np.tile(leader, 3), neighbors, ahead, shares)
         before, top, after = np.split(heights, 3, axis=1)
         bend = before - 2 * top + after
         way = np.divide(before - after, 2 * bend, out=np.zeros_like(bend), where=bend < 0)
@@ -305,8 +305,8 @@ class JumpReadings:
         each = np.arange(len(ahead))[:, None]
         far = reach[each, leader]  # (B, A, m)
         own = np.arange(ahead.shape[2]) == leader[..., None]
-        beside = (far + SLACK)[..., None, None]
-        least, most = self.pieces.extremes(which, where - beside, where + beside)
+        margin = (far + SLACK)[..., None, None]
+        least, most = self.pieces.extremes(which, where - margin, where + margin)
         least, most = (np.where(own[..., None, None], here, item) for item in (least, most))
         total = np.einsum("bamjc,bj->bac", here, shares)
         along = np.full_like(total, sign)

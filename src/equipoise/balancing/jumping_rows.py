@@ -20,9 +20,9 @@ from equipoise.signals import STEPS_BETWEEN_BENDS, Array, JumpSampling
 SPACING = pi / 720
 """rad, between the nodes of splines, and between samples among which tops are looked for: values
 are exact to 1e-9 of a signal of ten orders, and tops to 1e-8 after a step to a parabola's."""
-BESIDE = 2e-8
+JUMP_OFFSET = 2e-8
 """rad in a cycle of one turn, from a jump to its sides; as in `signals.JumpSampling`."""
-NEAR, CLOSER = 0.05, 2
+SAMPLE_MISS, CLOSER = 0.05, 2
 """Share of the range by which a sample may miss its top; steps to the tops of parabolas."""
 AT_ONCE = 200_000
 """Values of one row that are held at a time."""
@@ -54,17 +54,17 @@ class JumpingRows:
         """
         from scipy.interpolate import CubicSpline, PPoly
 
-        period, beside = 2 * pi * turns, BESIDE * turns
+        period, offset = 2 * pi * turns, JUMP_OFFSET * turns
         if len(bends) * STEPS_BETWEEN_BENDS > period / SPACING:
             bends = np.empty(0)
-        bends = bends[np.all(np.abs(np.subtract.outer(bends, jumps)) > 4 * beside, axis=1)]
+        bends = bends[np.all(np.abs(np.subtract.outer(bends, jumps)) > 4 * offset, axis=1)]
         starts = np.unique(np.concatenate([jumps, bends, [0.0]]))
         ends = np.append(starts[1:], period)
         pieces = [
             np.linspace(a, b, max(4, ceil((b - a) / SPACING)) + 1)
             for a, b in zip(starts, ends, strict=True)
         ]
-        inside = [np.clip(x, x[0] + beside, x[-1] - beside) for x in pieces]
+        inside = [np.clip(x, x[0] + offset, x[-1] - offset) for x in pieces]
         values = np.moveaxis(read(np.concatenate(inside)), -1, 0)  # (N, m, C)
         parts = np.split(values, np.cumsum([len(x) for x in pieces])[:-1])
         splines = [CubicSpline(x, y) for x, y in zip(pieces, parts, strict=True)]
@@ -98,7 +98,7 @@ class JumpingRows:
     def edges(self, phases: Array) -> Array:
         """Crank angles (..., 2 m (J + B)) beside jumps and bends of all rows at phases (..., m)."""
         at = np.concatenate([self.jumps, self.bends]) - phases[..., None]
-        sides = at[..., None] + BESIDE * self.turns * np.array([-1.0, 1.0])
+        sides = at[..., None] + JUMP_OFFSET * self.turns * np.array([-1.0, 1.0])
         return sides.reshape(*phases.shape[:-1], -1)
 
     def values(self, phases: Array, measure: str) -> Array:
@@ -145,7 +145,9 @@ class JumpingRows:
         np.maximum.at(best, owner, tops)
         return np.asarray(best)
 
-    def tops(self, phases: Array, sign: float, near: float = NEAR) -> tuple[Array, Array, Array]:
+    def tops(
+        self, phases: Array, sign: float, miss: float = SAMPLE_MISS
+    ) -> tuple[Array, Array, Array]:
         """Tops between jumps at phases (B, m): of which, where, rad, and the values, (T,) each.
 
         near : share of the range by which a sample may be lower than the highest; 1 for all.
@@ -156,14 +158,14 @@ class JumpingRows:
         values = self._sum(phases, grid, sign)
         self._skip_jumps(phases, values)
         best, least = np.max(values, axis=1), np.min(values, axis=1)
-        top = values >= (best - near * (best - least))[:, None]
+        top = values >= (best - miss * (best - least))[:, None]
         top &= (values >= np.roll(values, 1, axis=1)) & (values >= np.roll(values, -1, axis=1))
         owner, place = np.nonzero(top)
         theta, reached = place * spacing, values[owner, place]
         for k in range(CLOSER):
             width = spacing / 8**k
-            beside = theta[:, None] + width * np.array([-1.0, 0.0, 1.0])
-            before, here, after = self._sum(phases[owner], beside, sign).T
+            neighbors = theta[:, None] + width * np.array([-1.0, 0.0, 1.0])
+            before, here, after = self._sum(phases[owner], neighbors, sign).T
             bend = before - 2 * here + after
             way = np.divide(before - after, 2 * bend, out=np.zeros_like(bend), where=bend < 0)
             moved = theta + width * np.clip(way, -1.0, 1.0)
@@ -196,7 +198,7 @@ class JumpingRows:
     @property
     def _within(self) -> float:
         """rad, from a jump, where no side of it is."""
-        return BESIDE * self.turns / 2
+        return JUMP_OFFSET * self.turns / 2
 
     # -- followed while phases change --------------------------------------------------------------
 

@@ -27,7 +27,7 @@ from equipoise.mechanism.dynamics.parameters import (
     regressor,
 )
 from equipoise.mechanism.kinematics.motion import move
-from equipoise.mechanism.outputs.declared import DECLARED, Found
+from equipoise.mechanism.outputs.declared import DECLARED, OutputSource
 from equipoise.mechanism.parts.machine import Machine, unknown
 from equipoise.quantities import Dimension, display
 from equipoise.results.blocks import Block, Column, Facts, Table, Text, Value
@@ -148,7 +148,7 @@ class ParameterEffects:
     """
 
     machine: Machine
-    regressor: Found
+    regressor: OutputSource
     turns: int
 
     @classmethod
@@ -156,7 +156,7 @@ class ParameterEffects:
         """Compute the effects of a machine; raises what `conditions` does."""
         turns = assemble(machine).cycle.turns
         motion = move(machine, max(LEAST_ANGLES, min(ANGLES, MOST_ANGLES // turns)), 1.0, 0.0)
-        return cls(machine, Found(motion, regressor(motion)), turns)
+        return cls(machine, OutputSource(motion, regressor(motion)), turns)
 
     def conditions(self, kind: Kind, outputs: Sequence[str]) -> Conditions:
         """Conditions under which outputs vanish or are pure sines, as `conditions` returns them."""
@@ -224,27 +224,27 @@ def _grouped(matrix: Array, scale: Array) -> tuple[list[int], Array]:
     sizes = np.linalg.norm(matrix, axis=0)
     sizes[sizes == 0] = 1.0
     columns = (matrix / sizes)[:, order]
-    kept, grouping = independent_columns(columns, RANK)
+    independent, grouping = independent_columns(columns, RANK)
     rows = np.zeros_like(grouping)
-    rows[:, order] = _without_noise(columns[:, kept], grouping, columns)
-    leading = [int(order[k]) for k in kept]
+    rows[:, order] = _without_noise(columns[:, independent], grouping, columns)
+    leading = [int(order[k]) for k in independent]
     factor = (scale / sizes)[leading]
     return leading, rows * factor[:, None] * (sizes / scale)
 
 
-def _without_noise(kept: Array, grouping: Array, columns: Array) -> Array:
+def _without_noise(independent: Array, grouping: Array, columns: Array) -> Array:
     """Factors (B, P) of columns = kept @ factors, without those that only rounding has made.
 
     Where the kept columns are nearly dependent, rounding makes factors that cancel each other.
     Small ones are left out together, the others fitted anew, and this is taken where nothing is
     lost by it.
     """
-    noise = ROUNDING * np.linalg.norm(pinv(kept), axis=1)
+    noise = ROUNDING * np.linalg.norm(pinv(independent), axis=1)
     values = grouping.copy()
     for k, column in enumerate(columns.T):
         used = np.abs(grouping[:, k]) > noise
-        fitted: Any = lstsq(kept[:, used], column, rcond=None)[0] if np.any(used) else []
-        if np.linalg.norm(kept[:, used] @ fitted - column) <= ROUNDING:
+        fitted: Any = lstsq(independent[:, used], column, rcond=None)[0] if np.any(used) else []
+        if np.linalg.norm(independent[:, used] @ fitted - column) <= ROUNDING:
             values[:, k] = 0.0
             values[used, k] = fitted
     return values
@@ -267,7 +267,7 @@ SHOWN: dict[str, tuple[Dimension, str]] = {
 """SI unit of a combination -> what it is, and the unit in which it is usually shown."""
 
 
-def conditions_blocks(*found: Conditions, verdict: Sequence[str] = ()) -> Iterator[Block]:
+def conditions_blocks(*conditions: Conditions, verdict: Sequence[str] = ()) -> Iterator[Block]:
     """Conditions, one table for each kind, and whether they can be met."""
     yield Text(
         say(
@@ -275,7 +275,7 @@ def conditions_blocks(*found: Conditions, verdict: Sequence[str] = ()) -> Iterat
             "of the link"
         )
     )
-    for item in found:
+    for item in conditions:
         yield _conditions(item)
     if verdict:
         title = say("By the links' own masses, none of them lighter than now")

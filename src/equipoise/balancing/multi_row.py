@@ -42,7 +42,7 @@ OF_ALL = ("forces", "drives", "rows", "gauges")
 """Groups of outputs to which every row adds."""
 AREA_SAMPLES = 1440
 """In a turn, from which an area is summed."""
-SAMPLES, NEAR, NEWTON_ROUNDS, REACH = 360, 0.03, 4, 0.03
+SAMPLES, SAMPLE_MISS, NEWTON_ROUNDS, REACH = 360, 0.03, 4, 0.03
 """In a turn, among which tops are looked for; share of the range by which a sample may miss its
 top; steps of Newton's method from there, and how far they may lead, rad."""
 PENALTY = 1e3
@@ -70,7 +70,7 @@ class RowSignals:
         """Order of each amplitude, events in one turn of the crank, (K + 1,)."""
         return np.arange(self.amplitudes.shape[-1]) / self.turns
 
-    def kept(self, orders: Sequence[float]) -> RowSignals:
+    def with_orders(self, orders: Sequence[float]) -> RowSignals:
         """The same with these orders only; with all of them if there are none."""
         if not orders:
             return self
@@ -127,10 +127,10 @@ class PhasedRows:
         if output.startswith(GAUGES):
             row_signals = self._gauge(output.removeprefix(GAUGES), objective.speeds)
         else:
-            rows, signal = rows_of(self.machine), self._alike(output) or self._one
+            rows, signal = rows_of(self.machine), self._alike(output) or self._single_row
             levers = np.ones((len(rows), 1, 1))
             read: Callable[[Motion], Array] = partial(self._read, output)
-            if signal is self._one:
+            if signal is self._single_row:
                 about, motion, read = objective.about, self._motion, signals_of_row
                 levers = np.array([lever(motion, output, row, about) for row in rows])
             amplitudes, jumping = (levers @ signal.amplitudes)[None], None
@@ -142,14 +142,14 @@ class PhasedRows:
                 bends = bends_of(self.machine, signal.turns)
                 jumping = JumpingRows.of(at, jumps, signal.turns, bends)
             row_signals = RowSignals(amplitudes, signal.turns, jumping)
-        return row_signals.kept(objective.orders)
+        return row_signals.with_orders(objective.orders)
 
     @cached_property
     def _motion(self) -> Motion:
         return motion_of(self.machine)
 
     @cached_property
-    def _one(self) -> Periodic:
+    def _single_row(self) -> Periodic:
         """Signals of one row (8, K + 1), each cut off where its own rounding begins."""
         motion = self._motion
         rows = signals_of_row(motion)
@@ -372,12 +372,12 @@ def highest(signal: Periodic, sign: int) -> Array:
     highest sample need not lie at the highest top.
     """
     flat = Periodic(sign * signal.amplitudes.reshape(-1, signal.amplitudes.shape[-1]), signal.turns)
-    owner, start, best = tops(flat, NEAR)
+    owner, start, best = tops(flat, SAMPLE_MISS)
     np.maximum.at(best, owner, _at(flat, owner, followed(flat, owner, start, REACH)))
     return best.reshape(signal.amplitudes.shape[:-1])
 
 
-def tops(flat: Periodic, near: float) -> tuple[Array, Array, Array]:
+def tops(flat: Periodic, miss: float) -> tuple[Array, Array, Array]:
     """Tops among samples of signals (B,): of which signal, and where, rad, (T,) each; and the
     highest sample (B,) of every signal.
 
@@ -386,7 +386,7 @@ def tops(flat: Periodic, near: float) -> tuple[Array, Array, Array]:
     count = max(SAMPLES * flat.turns, 8 * flat.amplitudes.shape[-1])
     values = flat.samples(count)
     best, least = np.max(values, axis=1), np.min(values, axis=1)
-    top = values >= (best - near * (best - least))[:, None]
+    top = values >= (best - miss * (best - least))[:, None]
     top &= (values >= np.roll(values, 1, axis=1)) & (values >= np.roll(values, -1, axis=1))
     owner, place = np.nonzero(top)
     return owner, place * (flat.period / count), best

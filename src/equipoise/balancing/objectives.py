@@ -61,7 +61,7 @@ def signals_of(effects: Effects, objective: Objective, point: LinearizationPoint
         signals = [of_all_rows(effects, output, objective.about)]
     else:
         signals = [effects.signal(output, objective.about)]
-    return [signal.kept(objective.orders) for signal in signals]
+    return [signal.with_orders(objective.orders) for signal in signals]
 
 
 def of_all_rows(effects: Effects, output: str, about: str | None = None) -> Signal:
@@ -138,16 +138,16 @@ def read(
     wrench = _wrench(effects.at(speed), linear, rows)  # (6, 1 + K, orders)
     frequency = wrench.orders[1:] * speed
     along = np.broadcast_to(row[:, None], (len(frequency), len(row), 1))
-    seen = np.linalg.solve(linear.impedance(frequency), along)[..., 0]
+    transfer = np.linalg.solve(linear.impedance(frequency), along)[..., 0]
     free = wrench.amplitudes[linear.body.free][..., 1:]
     amplitudes = np.zeros(wrench.amplitudes.shape[1:], complex)
-    amplitudes[:, 1:] = np.einsum("nd,dkn->kn", seen, free)
+    amplitudes[:, 1:] = np.einsum("nd,dkn->kn", transfer, free)
     if numbers is not None and len(numbers):
         whole = (free[:, 0] + np.einsum("k,dkn->dn", numbers, free[:, 1:])).T
         there = np.linalg.solve(linear.impedance(frequency), whole[..., None])[..., 0]
         mass, stiffness = _by_numbers(effects, linear)
         impedance = stiffness[:, None] - frequency[:, None, None] ** 2 * mass[:, None]
-        bent = np.einsum("nd,knde,ne->kn", seen, impedance, there)
+        bent = np.einsum("nd,knde,ne->kn", transfer, impedance, there)
         amplitudes[1:, 1:] -= bent
         amplitudes[0, 1:] += numbers @ bent
     samples = Periodic(amplitudes, wrench.turns).samples(SAMPLES * wrench.turns)
@@ -314,14 +314,17 @@ def bound_measure(
     value = Affine(signal.columns.T, numbers, signal.start)
     if measure in {"rms", "ripple"}:
         matrix, vector = mean_square_rows(signal, measure)
-        rows = _beside(bound, 1, Affine(matrix, numbers, vector))
+        rows = _bounded_cones(bound, 1, Affine(matrix, numbers, vector))
         program.cones(rows, len(vector) + 1, name, Affine.fixed(np.eye(1, len(vector) + 1)[0]))
     elif measure == "peak" and np.iscomplexobj(signal.start):
         parts, starts = (
             np.stack([both.real, both.imag], axis=-1) for both in (signal.columns, signal.start)
         )
         inner = Affine(parts.reshape(len(parts), -1).T, numbers, starts.ravel())
-        rows, slope = _beside(bound, count, inner), Affine.fixed(np.tile([1.0, 0.0, 0.0], count))
+        rows, slope = (
+            _bounded_cones(bound, count, inner),
+            Affine.fixed(np.tile([1.0, 0.0, 0.0], count)),
+        )
         program.gradually(ConeRows("second-order", rows, 3, name, slope))
     elif measure == "peak":
         for sign in (1.0, -1.0):
@@ -343,7 +346,7 @@ def bound_measure(
         program.nonnegative(bound - Affine.of(sizes, signal.angles), name, fixed)
 
 
-def _beside(bound: Affine, count: int, inner: Affine) -> Affine:
+def _bounded_cones(bound: Affine, count: int, inner: Affine) -> Affine:
     """The bound as first row of each of `count` cones, followed by that cone's share of `inner`."""
     columns = np.concatenate([bound.columns, inner.columns])
     split = len(bound.columns)

@@ -52,8 +52,8 @@ def helps_told(balanced: Balanced) -> Iterator[str]:
         yield from nothing_told(balanced)
         return
     yield from first_sentences(balanced)
-    for made in balanced.changes:
-        first, *pieces = sentences(made)
+    for own_change in balanced.changes:
+        first, *pieces = sentences(own_change)
         whole = balanced.advice is not None or len(pieces) > 1  # two points cannot be left out
         yield say("{sentence}.", sentence="; ".join([first, *pieces]) if whole else first)
     yield from _heavy(balanced)
@@ -295,7 +295,9 @@ def large_besides(balanced: Balanced) -> Iterator[str]:
 def _left(advice: Advice) -> list[FigureAssessment]:
     """What is large after a change, the largest first, against the yardstick before."""
     left = (_against(new, was) for was, new in _before_and_after(advice))
-    return sorted((item for item in left if item.is_large), key=lambda one: -one.excess)
+    return sorted(
+        (item for item in left if item.is_large), key=lambda comparison: -comparison.excess
+    )
 
 
 def _before_and_after(advice: Advice) -> Iterator[tuple[FigureAssessment, FigureAssessment]]:
@@ -356,9 +358,9 @@ def remedy_named(balanced: Balanced) -> str:
         return say("phases {phases} of the rows", phases=phases[0])
     remedy = listed(freedoms(balanced.plan))
     for kind in ("beside", "beside_links"):
-        beside = {name: None for item in balanced.changes for name in item.values.get(kind, ())}
-        if beside:
-            return in_its_plane(remedy, {kind: beside})
+        neighbors = {name: None for item in balanced.changes for name in item.values.get(kind, ())}
+        if neighbors:
+            return in_its_plane(remedy, {kind: neighbors})
     return remedy
 
 
@@ -370,8 +372,8 @@ def why_not(balanced: Balanced) -> str:
         return ""
     mounts, arms = advice.beyond.mounts, advice.beyond.spaced
     figures = [_from_to(*pair) for pair in advice.worse[:MOST_WORSE]]
-    if more := len(advice.worse) - len(figures):
-        figures.append(say("{count} more", count=more))
+    if omitted := len(advice.worse) - len(figures):
+        figures.append(say("{count} more", count=omitted))
     if balanced.gain < LEAST_GAIN:
         reason = say("that is too little")
     elif mounts is not None and not outweighs(balanced.gain, mounts):

@@ -31,7 +31,7 @@ Progress = Callable[[int, int], None]
 
 POINTS = 21
 """Of a front between two objectives, both ends among them: twenty steps of the first."""
-SAME, HELD = 1e-7, 3e-9
+SAME, CONSTRAINT_TOLERANCE = 1e-7, 3e-9
 """Over the value before: less than this between the ends is no trade-off; how exactly the least
 second objective is held while the first is made small."""
 TOUCH = 1e-4
@@ -146,7 +146,7 @@ def _least_of_both(machine: Machine, plan: Balance, first: Objective, least: Bal
     """Of all with the least second objective, the one with the least first, if it is found."""
     (second,) = least.plan.objectives
     before, after = least.objectives[second.name]
-    limit = Limit(second, at_most=after + HELD * before)
+    limit = Limit(second, at_most=after + CONSTRAINT_TOLERANCE * before)
     try:
         result = balance(machine, replace(plan, objectives=(first,), limits=(*plan.limits, limit)))
     except UsageError:  # as near to the least as that, there may be no room to move

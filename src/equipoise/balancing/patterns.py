@@ -232,13 +232,13 @@ def pattern_blocks(machine: Machine, rows: int, spacing: float) -> Iterator[Bloc
     columns = (
         Column(output_named(name), "torque" if name in OF_ROWS else "force") for name in outputs
     )
-    together = replace(patterns[0], name=say("all in phase"), parts=((0, 1),) * rows)
+    in_phase = replace(patterns[0], name=say("all in phase"), parts=((0, 1),) * rows)
     figures: tuple[tuple[Cell, ...], ...] = tuple(
         (
             pattern.name,
             *(_of_all(arranged(machine, pattern, spacing), output) for output in outputs),
         )
-        for pattern in (together, *patterns)
+        for pattern in (in_phase, *patterns)
     )
     yield Table(say("Figures of this machine; RMS"), (Column(""), *columns), figures)
 

@@ -35,7 +35,7 @@ SAMPLES = 96
 """In a turn, on which peaks are judged until they are polished."""
 FEWEST = 4
 """Phases in a turn below which a grid tells nothing."""
-KEPT = 3_000
+MOST_CANDIDATES = 3_000
 """Best arrangements among which different ones are looked for."""
 SAME = 1e-12
 """Over the largest amplitude: a difference of two rows that is rounding."""
@@ -104,8 +104,8 @@ class PhaseGrid:
         for chunk in self._chunks(few if sampled else CHUNK):
             value = self.cost.of([judge(chunk) for judge in judges])
             levels, costs = np.vstack([levels, chunk]), np.concatenate([costs, value])
-            if len(costs) > KEPT:
-                best = np.argpartition(costs, KEPT)[:KEPT]
+            if len(costs) > MOST_CANDIDATES:
+                best = np.argpartition(costs, MOST_CANDIDATES)[:MOST_CANDIDATES]
                 levels, costs = levels[best], costs[best]
             done += len(chunk)
             progress(done)
@@ -168,13 +168,13 @@ class PhaseGrid:
         return judge
 
 
-def alike(cost: Cost, more: Sequence[Array] = ()) -> list[list[int]]:
+def alike(cost: Cost, amplitudes: Sequence[Array] = ()) -> list[list[int]]:
     """Rows that do the same to every objective, by groups; what does not vary is left out.
 
     more : amplitudes (K, V, m, C, N) in which they must be alike as well.
     """
     signals = [term.signals.amplitudes[..., 1:] for term in cost.measured]
-    signals += [item[..., 1:] for each in more for item in each]
+    signals += [item[..., 1:] for each in amplitudes for item in each]
     tops = [np.max(np.abs(a)) for a in signals]
     groups: list[list[int]] = []
     for k in range(cost.rows):
@@ -200,21 +200,21 @@ def sorted_choices(levels: int, count: int) -> Array:
     return values
 
 
-def distinct(found: Array, period: float, apart: Sequence[float], most: int) -> Array:
+def distinct(candidates: Array, period: float, apart: Sequence[float], most: int) -> Array:
     """The first arrangements (R, m) that differ from all before them, (S, m).
 
     apart : distances in the phase of some row, rad, the widest first; `most` of each.
     """
-    kept: list[int] = []
+    chosen: list[int] = []
     for distance in apart:
-        wanted = len(kept) + most
-        for k, phases in enumerate(found):
-            if len(kept) >= wanted:
+        wanted = len(chosen) + most
+        for k, phases in enumerate(candidates):
+            if len(chosen) >= wanted:
                 break
-            off = np.abs((found[kept] - phases + period / 2) % period - period / 2)
-            if not kept or np.min(np.max(off, axis=1)) > distance * (1 + 1e-9):
-                kept.append(k)
-    return found[kept]
+            off = np.abs((candidates[chosen] - phases + period / 2) % period - period / 2)
+            if not chosen or np.min(np.max(off, axis=1)) > distance * (1 + 1e-9):
+                chosen.append(k)
+    return candidates[chosen]
 
 
 def coarsened(cost: Cost, levels: int) -> PhaseGrid | None:

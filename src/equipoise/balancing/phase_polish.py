@@ -71,8 +71,8 @@ def polished(cost: Cost, phases: Array, step: float, after: Step = lambda: None)
     return _better(cost, phases, newton)
 
 
-def _better(cost: Cost, phases: Array, found: Array) -> Array:
-    return found if cost.values(found) < cost.values(phases) else phases
+def _better(cost: Cost, phases: Array, candidate: Array) -> Array:
+    return candidate if cost.values(candidate) < cost.values(phases) else phases
 
 
 # -- jumps -----------------------------------------------------------------------------------------
@@ -219,7 +219,7 @@ def _step(cost: Cost, phases: Array, region: float) -> tuple[Array, float]:
         np.concatenate([np.zeros(free), weights * unit]),
         rows,
         -np.concatenate([values for values, _ in items]),
-        bounds=[(-1.0, 1.0)] * free + _kept(cost, unit),
+        bounds=[(-1.0, 1.0)] * free + _peak_bounds(cost, unit),
     )
     if result.x is None:
         return np.zeros(free), 0.0
@@ -269,7 +269,7 @@ def _curved(cost: Cost, phases: Array, after: Step) -> Array:
         np.concatenate([np.zeros(free), np.maximum(now, _least(cost)) / unit]),
         jac=total_slope,
         method="SLSQP",
-        bounds=[(-LEAP, LEAP)] * free + _kept(cost, unit),
+        bounds=[(-LEAP, LEAP)] * free + _peak_bounds(cost, unit),
         constraints={"type": "ineq", "fun": room, "jac": slopes},
         options={"ftol": 1e-16, "maxiter": CURVED_ROUNDS},
         callback=lambda _: after(),
@@ -302,7 +302,7 @@ def _least(cost: Cost) -> Array:
     return np.array([0.0] * len(cost.terms) + [limit.scale for limit in cost.limits])
 
 
-def _kept(cost: Cost, unit: Array) -> list[tuple[float, None]]:
+def _peak_bounds(cost: Cost, unit: Array) -> list[tuple[float, None]]:
     """Ends of the numbers that are the largest values, over their units."""
     return [(float(least), None) for least in _least(cost) / unit]
 

@@ -240,10 +240,10 @@ class PhaseSearch:
 
     def _snapped(self, phases: Array) -> Array:
         """Phases on the grid where they are there but for rounding."""
-        near = np.round(phases / self.step) * self.step
-        near = np.where(np.abs(near - phases) < 1e-6, near, phases)
-        as_good = self.cost.values(near) <= self.cost.values(phases) + NOTHING * self._alone
-        return np.asarray((near if as_good else phases) % self.cost.period)
+        snapped = np.round(phases / self.step) * self.step
+        snapped = np.where(np.abs(snapped - phases) < 1e-6, snapped, phases)
+        as_good = self.cost.values(snapped) <= self.cost.values(phases) + NOTHING * self._alone
+        return np.asarray((snapped if as_good else phases) % self.cost.period)
 
     @cached_property
     def _alone(self) -> float:

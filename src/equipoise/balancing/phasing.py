@@ -22,7 +22,7 @@ from equipoise.mechanism.parts.objectives import OF_ROWS
 from equipoise.results.result import Result
 from equipoise.signals import Array
 
-KEPT = 1e-6
+LIMIT_TOLERANCE = 1e-6
 """Share of a limit by which it may be passed."""
 SURVIVES = 1e-9
 """Share of the largest amplitude of all rows in phase, above which an order is left."""
@@ -158,7 +158,7 @@ def choose_phases(
     else:
         best, proof = solution.details
     for term in search.cost.limits:
-        if term.value_at(best) > term.scale * (1 + KEPT):
+        if term.value_at(best) > term.scale * (1 + LIMIT_TOLERANCE):
             least = f"{term.value_at(best):.4g} {unit_of(term.objective, machine)}"
             raise UsageError(
                 Note(
@@ -170,18 +170,18 @@ def choose_phases(
     return phasing_of(search, best, proof)
 
 
-def phasing_of(search: PhaseSearch, found: Array, proof: PhaseProof) -> Phasing:
+def phasing_of(search: PhaseSearch, phases: Array, proof: PhaseProof) -> Phasing:
     """What phases (m,) relative to row 1 bring."""
     present, cost, grid, force = search.present, search.cost, search.grid, search.force
-    moved = not np.all(found == search.present)
-    placed = with_phases(search.machine, found, search.cost.period) if moved else search.machine
+    moved = not np.all(phases == search.present)
+    placed = with_phases(search.machine, phases, search.cost.period) if moved else search.machine
     varying = (Objective(output, "ripple") for output in OF_ROWS)
     lateral = [PhaseObjective(wish, search.rows.signals(wish)) for wish in varying]
     before, after = (
-        {term.objective.name: term.value_at(at) for term in cost.terms} for at in (present, found)
+        {term.objective.name: term.value_at(at) for term in cost.terms} for at in (present, phases)
     )
-    left = np.max(np.abs(force.total(found)[0]), axis=0)[1:]
-    loudest = float(np.max(np.abs(force.amplitudes), initial=0.0)) * len(found)
+    left = np.max(np.abs(force.total(phases)[0]), axis=0)[1:]
+    loudest = float(np.max(np.abs(force.amplitudes), initial=0.0)) * len(phases)
     return Phasing(
         machine=placed,
         phases=tuple(row.phase for row in placed.rows),
@@ -190,19 +190,19 @@ def phasing_of(search: PhaseSearch, found: Array, proof: PhaseProof) -> Phasing:
         combined=(float(cost.of([*before.values()])), float(cost.of([*after.values()]))),
         remaining=tuple(force.orders[1:][left > SURVIVES * loudest].tolist()),
         lateral={
-            item.objective.output: (item.value_at(present), item.value_at(found))
+            item.objective.output: (item.value_at(present), item.value_at(phases))
             for item in lateral
         },
         combinations=0 if grid is None else grid.count,
         step=search.step if grid is None else grid.step,
         bound=proof.bound,
         looked_at=proof.boxes,
-        notes=tuple(_notes(search, found, proof.complete)),
+        notes=tuple(_notes(search, phases, proof.complete)),
     )
 
 
-def _notes(search: PhaseSearch, found: Array, complete: bool) -> Iterator[Note]:
-    if np.all(found == search.present):
+def _notes(search: PhaseSearch, phases: Array, complete: bool) -> Iterator[Note]:
+    if np.all(phases == search.present):
         yield Note("no phases were found that are better than the present ones")
     grid = search.grid
     if grid is None:

@@ -95,7 +95,7 @@ class ConsistentMasses:
         massless = [link for link, own in zip(self.links, self.mass, strict=True) if own == 0]
         traces = [link for link in massless if SMALL < added[link] <= TRACE]
         least = TRACE if traces else SMALL
-        by_name = {link: more * self.unit for link, more in added.items() if more > least}
+        by_name = {link: mass * self.unit for link, mass in added.items() if mass > least}
         return by_name | dict.fromkeys(sorted(traces), 0.0)
 
     def by_points(self) -> bool:
@@ -338,9 +338,9 @@ def _possible(what: str, added: Mapping[str, float]) -> str:
         return f"The {what} can be made zero, with every mass as it is."
     unit = display("mass", [*added.values()])
     where = ", ".join(
-        f"{f'{unit.factor * more:.4g} {unit.unit}' if more else 'some mass, however little,'} "
+        f"{f'{unit.factor * mass:.4g} {unit.unit}' if mass else 'some mass, however little,'} "
         f"on {link}"
-        for link, more in added.items()
+        for link, mass in added.items()
     )
     return f"The {what} can be made zero, but not with every mass as it is: it takes {where}."
 

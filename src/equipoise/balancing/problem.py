@@ -68,13 +68,13 @@ class Problem:
         machine: Machine,
         plan: Balance,
         with_shafts: Machine | None = None,
-        more: Sequence[DesignVariables] = (),
+        shaft_variables: Sequence[DesignVariables] = (),
     ) -> Problem:
         """From a plan; `with_shafts` is the machine with geared shafts, whose parts are `more`."""
         base = machine if with_shafts is None else with_shafts
         parts: list[DesignVariables] = [MovedCenter(base, move) for move in plan.moves]
         parts += [AddedWeight(base, m.link, m.at, m.weight) for m in plan.masses]
-        parts += [*more, *(FreeSpring(base, choice) for choice in plan.springs)]
+        parts += [*shaft_variables, *(FreeSpring(base, choice) for choice in plan.springs)]
         _name_apart(parts)
         start = base
         for move in plan.moves:
@@ -85,7 +85,7 @@ class Problem:
         """Each part, and its numbers."""
         return zip(self.parts, numbers, strict=True)
 
-    def near(self, numbers: list[Array]) -> Problem:
+    def linearized_at(self, numbers: list[Array]) -> Problem:
         """The same, with gauges read as they are near the machine of some numbers."""
         close, effects = (
             LinearizationPoint(self.machine_with(numbers), np.concatenate(numbers)),
@@ -109,7 +109,11 @@ class Problem:
             return ()
         asked = dict.fromkeys(item.output for item in self.asked)
         known = ((name, declared(name)) for name in asked)
-        return tuple(name for name, one in known if one is not None and one[0].by_friction)
+        return tuple(
+            name
+            for name, declaration in known
+            if declaration is not None and declaration[0].by_friction
+        )
 
     @cached_property
     def supports_more(self) -> bool:
@@ -131,7 +135,7 @@ class Problem:
         if self.counts is not None:
             return self.counts
         values = self.values_of(self.machine, self.asked)
-        return {one.name: value for one, value in zip(self.asked, values, strict=True)}
+        return {objective.name: value for objective, value in zip(self.asked, values, strict=True)}
 
     @staticmethod
     def value_of(machine: Machine, objective: Objective) -> float:
@@ -141,11 +145,11 @@ class Problem:
     @staticmethod
     def values_of(machine: Machine, objectives: Sequence[Objective]) -> list[float]:
         """The same of several, in their order."""
-        effects, near = Effects(machine, ()), LinearizationPoint(machine)
+        effects, point = Effects(machine, ()), LinearizationPoint(machine)
         return [
             max(
-                measured(found.start, objective.measure, found.sampling)
-                for found in signals_of(effects, objective, near)
+                measured(signal.start, objective.measure, signal.sampling)
+                for signal in signals_of(effects, objective, point)
             )
             for objective in objectives
         ]
@@ -154,7 +158,7 @@ class Problem:
         """What is to become small, for a machine; 1 for each unit of weight before."""
         values = self.values_of(machine, self.plan.objectives)
         pairs = zip(values, self.plan.objectives, strict=True)
-        return self.plan.combined([value / self.scale(one) for value, one in pairs])
+        return self.plan.combined([value / self.scale(objective) for value, objective in pairs])
 
     @property
     def whole(self) -> float:
@@ -168,7 +172,7 @@ class Problem:
             (objective.measure, self.signals[objective.name]) for objective in self.plan.objectives
         )
         return self.plan.combined(
-            [max(measured(s.at(x), how, s.sampling) for s in found) for how, found in each]
+            [max(measured(s.at(x), how, s.sampling) for s in signals) for how, signals in each]
         )
 
     def scale(self, objective: Objective) -> float:
@@ -194,7 +198,10 @@ class Problem:
     def unscaled(self) -> dict[str, list[Signal]]:
         """Signals of each objective and limit, in SI units."""
         unique = {item.name: item for item in self.asked}
-        return {name: signals_of(self.effects, one, self.close) for name, one in unique.items()}
+        return {
+            name: signals_of(self.effects, objective, self.close)
+            for name, objective in unique.items()
+        }
 
     def moves(self, objective: Objective) -> bool:
         """Whether an objective is something, and something that is free has an effect on it."""
@@ -205,31 +212,31 @@ class Problem:
     def check_influence(self) -> None:
         """Refuse an objective that is 0 already, or that nothing free can change."""
         turns = self.effects.motion.turns
-        for one in self.asked:
-            for order in one.orders:
+        for objective in self.asked:
+            for order in objective.orders:
                 whole = abs(order * turns - round(order * turns)) < 1e-9
                 if order > HIGHEST or not whole:
                     raise UsageError(
                         Note(
                             "the {name}: there is no order {order:g}; orders are whole "
                             "numbers{parts} up to {highest}",
-                            name=one.name,
+                            name=objective.name,
                             order=order,
                             parts=Note(" over {turns}", turns=turns) if turns > 1 else "",
                             highest=HIGHEST,
                         )
                     )
-        for one in self.plan.objectives:
-            if self._is_nothing(one):
+        for objective in self.plan.objectives:
+            if self._is_nothing(objective):
                 raise UsageError(
-                    Note("the {name} is 0 already; choose another objective", name=one.name)
+                    Note("the {name} is 0 already; choose another objective", name=objective.name)
                 )
-            if self._effect(one) < WITHOUT_EFFECT * self.scale(one):
+            if self._effect(objective) < WITHOUT_EFFECT * self.scale(objective):
                 raise UsageError(
                     Note(
                         "none of the permitted changes affects the {name}; permit another "
                         "change, or choose another objective",
-                        name=one.name,
+                        name=objective.name,
                     )
                 )
         for limit in self.plan.limits:
@@ -283,12 +290,12 @@ class Problem:
 
     def added_masses(self, places: list[Array]) -> tuple[Array, Array]:
         """Places of the numbers that are added masses, and a unit of each, kg."""
-        found = [
+        mass_units = [
             (at[part.mass_place], part.mass_unit)
             for part, at in self.with_numbers(places)
             if part.mass_place is not None
         ]
-        masses, units = zip(*found, strict=True) if found else ((), ())
+        masses, units = zip(*mass_units, strict=True) if mass_units else ((), ())
         return np.array(masses, dtype=int), np.array(units)
 
     def _term(self, program: Program, numbers: Array, objective: Objective) -> int:

@@ -207,11 +207,11 @@ class Program:
 
     def without(self, names: set[str]) -> Program:
         """The program without some of its named limits."""
-        kept, waiting = (
+        blocks_left, waiting = (
             [block for block in blocks if block.name not in names]
             for blocks in (self.blocks, self.waiting)
         )
-        return replace(self, blocks=kept, waiting=waiting, cost=dict(self.cost))
+        return replace(self, blocks=blocks_left, waiting=waiting, cost=dict(self.cost))
 
     def without_squares(self, lifts: set[int]) -> Program:
         """A copy in which some lifts are not kept above their squares."""

@@ -177,8 +177,8 @@ class Comparison:
         costs = [self._values(goal, numbers) / self.problem.scale(goal) for goal in goals]
         whole = np.array(self.plan.factors)[:, None] * np.array(costs)
         squares = self.plan.combine == "squares"
-        together = np.hypot.reduce(whole) if squares else np.sum(whole, axis=0)
-        return np.asarray(1 - together / self.problem.whole)
+        combined = np.hypot.reduce(whole) if squares else np.sum(whole, axis=0)
+        return np.asarray(1 - combined / self.problem.whole)
 
     @cached_property
     def _of_aim(self) -> HeadlineLimit | None:
@@ -310,11 +310,11 @@ def _ranked(
     free = np.ones(len(shapes), bool)
     for room, own in zip(comparison.rooms, each, strict=True):
         free &= _free(room, own)
-    kept = [[item for item, fits in zip(own, free, strict=True) if fits] for own in each]
-    if not kept[0]:
+    free_remedies = [[item for item, fits in zip(own, free, strict=True) if fits] for own in each]
+    if not free_remedies[0]:
         return []
-    ranked = comparison.ranked([sectors(own) for own in kept], most_mass)
-    return [(score, tuple(own[k] for own in kept)) for score, k in ranked]
+    ranked = comparison.ranked([sectors(own) for own in free_remedies], most_mass)
+    return [(score, tuple(own[k] for own in free_remedies)) for score, k in ranked]
 
 
 def _free(room: Room, shapes: list[Sector]) -> Array:
@@ -401,7 +401,7 @@ def with_sectors(
 
 def _passing(room: Room, shape: Sector) -> dict[str, object]:
     """Pins, or links where no pin is, for which a sector needs the plane of its own."""
-    for kind, ways in (("beside", room.beside), ("beside_links", room.beside_links)):
+    for kind, ways in (("beside", room.neighbors), ("beside_links", room.beside_links)):
         matching_ways = [name for name, way in ways.items() if way < shape.outer + room.clearance]
         if matching_ways:
             return {kind: matching_ways}
@@ -508,12 +508,14 @@ def with_hole(
     drilled = Hole((at.real, at.imag), hole.radius)
     bodies[hole.body] = replace(body, holes=(*body.holes, drilled))
     new = machine.with_link(room.link, bodies=tuple(bodies))
-    more = {"body": hole.body + 1, "shape": body.shape, "hole_radius": hole.radius}
-    return new, (_taken_off(room, at, hole.place, -float(_taken(link, [hole]).mass[0]), more),)
+    hole_values = {"body": hole.body + 1, "shape": body.shape, "hole_radius": hole.radius}
+    return new, (
+        _taken_off(room, at, hole.place, -float(_taken(link, [hole]).mass[0]), hole_values),
+    )
 
 
 def _taken_off(
-    room: Room, at: complex, place: complex, mass: float, more: Mapping[str, object]
+    room: Room, at: complex, place: complex, mass: float, hole_values: Mapping[str, object]
 ) -> Change:
     values = {
         "at": room.at,
@@ -523,7 +525,7 @@ def _taken_off(
         "moment": mass * abs(place),
         "direction": float(np.angle(place)),
     }
-    return Change("removed mass", room.link, values | dict(more))
+    return Change("removed mass", room.link, values | dict(hole_values))
 
 
 # -- mass that a link has too much of --------------------------------------------------------------

@@ -131,11 +131,11 @@ def _loud_beside(
     slowest, fastest = min(map(abs, speeds)), max(map(abs, speeds))
     pairs = []
     for item in loud:
-        near = speeds[int(np.argmin([abs(np.log(speed / item.speed)) for speed in speeds]))]
+        nearest = speeds[int(np.argmin([abs(np.log(speed / item.speed)) for speed in speeds]))]
         inside = slowest <= abs(item.speed) <= fastest
         edges = _amplified_between(linear.modes[item.mode - 1].damping_ratio, times)
-        if edges is not None and (inside or edges[0] < near / item.speed < edges[1]):
-            pairs.append((item, near))
+        if edges is not None and (inside or edges[0] < nearest / item.speed < edges[1]):
+            pairs.append((item, nearest))
     return pairs
 
 
@@ -202,7 +202,7 @@ def mount_sentences(mounts: ResonantMounts, comes_first: bool) -> Iterator[str]:
     comes_first : whether other mounts bring more than the change of masses, if there is one.
     """
     low, high = sorted(map(abs, mounts.avoid))
-    beside = to_say(
+    advice = to_say(
         "First move the resonance at {speed} rpm (keep away from {low} to {high} rpm), beside "
         "which it runs at {near} rpm"
     )
@@ -213,7 +213,7 @@ def mount_sentences(mounts: ResonantMounts, comes_first: bool) -> Iterator[str]:
     above, below = to_say("run above {away} rpm"), to_say("run below {away} rpm")
     is_within = low <= mounts.near <= high
     first = say(
-        beside if is_within else amplifies if comes_first else besides,
+        advice if is_within else amplifies if comes_first else besides,
         speed=brief(mounts.speed / PER_RPM),
         low=number(low / PER_RPM),
         high=number(high / PER_RPM),

@@ -74,7 +74,7 @@ class Room:
     most_thick: float
     clearance: float
     assumed: float
-    beside: Mapping[str, float] = field(default_factory=dict)
+    neighbors: Mapping[str, float] = field(default_factory=dict)
     beside_links: Mapping[str, float] = field(default_factory=dict)
 
     @property
@@ -120,7 +120,7 @@ def rooms_about(machine: Machine, link: str, larger: float = 1.0) -> Iterator[Ro
     yield room_about(machine, link, larger=larger)
     if not machine.has_planes:
         apart = room_in_own_plane(machine, link, larger)
-        if apart.beside:
+        if apart.neighbors:
             yield apart
 
 
@@ -140,9 +140,9 @@ def room_about(
     names = sorted(_joined(machine) & own.points.keys() - {around.at}) if plane is None else []
     center = complex(*own.points[around.at])
     own_pins = np.array([complex(*own.points[pin]) - center for pin in names], complex)
-    near = np.minimum(around.clearance, np.abs(own_pins) / 2)
+    near_pins = np.minimum(around.clearance, np.abs(own_pins) / 2)
     apart = _from_pins(around.motion)
-    own_clear = np.array([apart.get(pin, near[k]) for k, pin in enumerate(names)])
+    own_clear = np.array([apart.get(pin, near_pins[k]) for k, pin in enumerate(names)])
     known = machine.has_planes
     passing = () if known else _nearer(around.slots(), around.pivot, float(np.max(reach)))
     return around.room(
@@ -168,7 +168,7 @@ def room_in_own_plane(machine: Machine, link: str, larger: float = 1.0) -> Room:
     pins = [(pin, points[pin].place) for pin in around.pins if pin not in fixed]
     return around.room(
         reach,
-        beside=_nearer(pins, around.pivot, most),
+        neighbors=_nearer(pins, around.pivot, most),
         beside_links=_nearer(around.bodies(None), around.pivot, most),
     )
 
@@ -223,11 +223,11 @@ class _Surroundings:
         own_wheels, wheels = _wheels(motion, self.link, self.at)
         free = np.minimum(free, min(own_wheels, default=np.inf))
         apart = _from_pins(motion)
-        kept = [(motion.points[pin].place, apart.get(pin, self.clearance)) for pin in pins]
-        kept += [(track, self.clearance) for track in (*bodies, *wheels)]
-        for places, clear in kept:
-            seen = (np.broadcast_to(places, turn.shape) - self.pivot) * turn
-            _keep_clear(free, seen, clear)
+        obstacles = [(motion.points[pin].place, apart.get(pin, self.clearance)) for pin in pins]
+        obstacles += [(track, self.clearance) for track in (*bodies, *wheels)]
+        for places, clear in obstacles:
+            relative = (np.broadcast_to(places, turn.shape) - self.pivot) * turn
+            _keep_clear(free, relative, clear)
         return np.asarray(np.maximum(free, 0.0))
 
     def room(
@@ -236,7 +236,7 @@ class _Surroundings:
         plane: float | None = None,
         own_pins: Array | None = None,
         own_clearances: Array | None = None,
-        beside: Mapping[str, float] | None = None,
+        neighbors: Mapping[str, float] | None = None,
         beside_links: Mapping[str, float] | None = None,
     ) -> Room:
         """The room of a reach (360,)."""
@@ -250,7 +250,7 @@ class _Surroundings:
             self.thick,
             self.clearance,
             self.most,
-            beside or {},
+            neighbors or {},
             beside_links or {},
         )
 
@@ -308,10 +308,12 @@ def rooms_of_planes(machine: Machine) -> Iterator[tuple[Room, Room]]:
         planes = sorted({*machine.links[link].planes.values(), *_planes_at(machine, link)})
         if len(planes) < 2:
             continue
-        held = [bearing.plane for bearing in machine.bearings.values() if bearing.link == link]
+        bearing_planes = [
+            bearing.plane for bearing in machine.bearings.values() if bearing.link == link
+        ]
         gap = min(b - a for a, b in pairwise(planes)) / 2
-        low = max((z for z in held if z < planes[0]), default=planes[0] - 2 * gap)
-        high = min((z for z in held if z > planes[-1]), default=planes[-1] + 2 * gap)
+        low = max((z for z in bearing_planes if z < planes[0]), default=planes[0] - 2 * gap)
+        high = min((z for z in bearing_planes if z > planes[-1]), default=planes[-1] + 2 * gap)
         ends = ((planes[0] + low) / 2, (planes[-1] + high) / 2)
         most = min(planes[0] - low, high - planes[-1]) / 2
         rooms = [room_about(machine, link, plane) for plane in ends]
@@ -327,16 +329,16 @@ def _planes_at(machine: Machine, link: str) -> Iterator[float]:
                 yield other.plane_of(point)
 
 
-def _keep_clear(reach: Array, seen: Array, clearance: float) -> None:
+def _keep_clear(reach: Array, relative: Array, clearance: float) -> None:
     """Cut the room where something comes, at places seen from the pivot (N,), m.
 
     Between two crank angles it is no farther from one of them than half of its way.
     """
-    step = float(np.max(np.abs(np.diff(np.append(seen, seen[0])))))
+    step = float(np.max(np.abs(np.diff(np.append(relative, relative[0])))))
     clear = clearance + step / 2
-    seen = seen[np.abs(seen) - clear < np.max(reach)]  # others cut nothing
-    away = np.abs(seen)
-    ahead = np.degrees(np.angle(seen)) % 360
+    relative = relative[np.abs(relative) - clear < np.max(reach)]  # others cut nothing
+    away = np.abs(relative)
+    ahead = np.degrees(np.angle(relative)) % 360
     half = np.degrees(np.arcsin(np.minimum(1.0, clear / np.maximum(away, clear))))
     half = np.where(away > clear, half, 180.0)
     apart = np.abs((np.arange(DIRECTIONS)[:, None] - ahead + 180) % 360 - 180)
@@ -395,8 +397,8 @@ def _slots(motion: Motion, link: str) -> list[Array]:
         if slider.on != link:
             continue
         turned = np.exp(1j * (motion.links[link].angle + slider.direction))
-        seen = motion.points[slider.point].place - motion.points[slider.through].place
-        along = np.real(seen / turned)
+        offset = motion.points[slider.point].place - motion.points[slider.through].place
+        along = np.real(offset / turned)
         way = np.exp(1j * slider.direction)
         start = complex(*motion.machine.links[link].points[slider.through])
         ends = (complex(start + way * end) for end in (np.min(along), np.max(along)))

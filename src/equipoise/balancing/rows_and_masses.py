@@ -85,10 +85,10 @@ class JointPhaseMassOptimizer:
         alone = pool = self.search.pool(progress)
         if first is not None:
             after = replace(self.search, machine=first.machine)
-            more = after.pool(progress)
-            best = more[np.argmin(after.cost.values(more))]
+            new_pool = after.pool(progress)
+            best = new_pool[np.argmin(after.cost.values(new_pool))]
             self._offer(best, replace(first, problem=self.problem))
-            pool = np.vstack([best, more[:1], pool, more])
+            pool = np.vstack([best, new_pool[:1], pool, new_pool])
         order = np.argsort(self.search.cost.values(pool[2:]), kind="stable") + 2
         pool = np.vstack([pool[:2], pool[order]])
         count = FEW if self._bent else BEGINNINGS
@@ -233,7 +233,7 @@ class JointPhaseMassOptimizer:
             *(o for o in limits if not o.output.startswith(WITHIN)),
         ]
 
-    def _amplitudes(self, near: Machine) -> list[Array]:
+    def _amplitudes(self, machine: Machine) -> list[Array]:
         """Of each: of rows in phase 0 as they are, and by each number, (1 + K, V, m, C, N).
 
         near : whose mass the support has to carry.
@@ -241,7 +241,7 @@ class JointPhaseMassOptimizer:
         if not self._bent:
             return self._of_any
         return [
-            of_each_row(self.problem.effects, item, LinearizationPoint(near))
+            of_each_row(self.problem.effects, item, LinearizationPoint(machine))
             for item in self._measured
         ]
 
@@ -365,7 +365,7 @@ def of_each_row(effects: Effects, objective: Objective, point: LinearizationPoin
         each = [[read(effects, linear, row, v, None, [item]) for item in rows] for v in speeds]
     else:
         each = [of_rows_alone(effects, objective.output, objective.about)]
-    values = [[row.kept(objective.orders) for row in rows] for rows in each]
+    values = [[row.with_orders(objective.orders) for row in rows] for rows in each]
     samples = np.array([[np.vstack([row.start, row.columns]) for row in rows] for rows in values])
     parts = [samples.real, samples.imag] if np.iscomplexobj(samples) else [samples]
     whole = np.moveaxis(np.stack(parts, axis=2), 3, 0)

@@ -21,7 +21,7 @@ from equipoise.mechanism.dynamics.parameters import ACROSS, QUANTITIES, regresso
 from equipoise.mechanism.kinematics.jumps import resolved
 from equipoise.mechanism.kinematics.motion import Motion, move
 from equipoise.mechanism.kinematics.tip import roots
-from equipoise.mechanism.outputs.declared import DECLARED, Found
+from equipoise.mechanism.outputs.declared import DECLARED, OutputSource
 from equipoise.mechanism.parts.machine import Link, Machine, unknown
 from equipoise.mechanism.parts.planes import moments_across
 from equipoise.quantities import Dimension, angle, display, fixed
@@ -41,7 +41,7 @@ CHANGES: dict[str, tuple[Dimension, str, str]] = {
 unit in which it is usually shown, and what it is called.  z matters to rocking moments alone."""
 NOTHING = 1e-10
 """Share of the largest effect below which there is none."""
-BESIDE, JUMP = 1e-8, 1e-4
+SIGN_OFFSET, JUMP = 1e-8, 1e-4
 """rad, beside a change of sign; share of the largest effect below which a smooth one is there."""
 LEAST_ANGLES = 8
 """Crank angles below which a mean over a turn tells nothing."""
@@ -99,7 +99,7 @@ class Sensitivities(Result):
     def ranked(self) -> tuple[Sensitivity, ...]:
         """Those with an effect, the largest of a change of 1 % first."""
         values = [item for item in self.by_name.values() if item.has_effect]
-        return tuple(sorted(values, key=lambda one: -one.percent))
+        return tuple(sorted(values, key=lambda sensitivity: -sensitivity.percent))
 
     def __getitem__(self, name: str) -> Sensitivity:
         """One of them, by a name such as ``coupler.center_x``."""
@@ -205,17 +205,17 @@ def _derivatives(motion: Motion, output: str) -> Array:
 def _derivatives_of(motion: Motion, output: str) -> Array:
     """Derivatives as of `_derivatives`, at all crank angles at once."""
     item, links = DECLARED[output], motion.machine.links
-    columns = item.component(item.vector(Found(motion, regressor(motion))))
+    columns = item.component(item.vector(OutputSource(motion, regressor(motion))))
     flat, across = np.split(columns, [len(QUANTITIES) * len(links)])
     of_links = flat.reshape(len(links), len(QUANTITIES), -1)
     async_iterator = list(map(_by_change, links.values(), of_links))
     if len(across):
-        beside = across.reshape(len(links), len(ACROSS), -1)
-        async_iterator = list(map(_beside, links.values(), async_iterator, beside))
+        out_of_plane = across.reshape(len(links), len(ACROSS), -1)
+        async_iterator = list(map(_with_out_of_plane, links.values(), async_iterator, out_of_plane))
     return np.concatenate(async_iterator)
 
 
-def _beside(link: Link, flat: Array, columns: Array) -> Array:
+def _with_out_of_plane(link: Link, flat: Array, columns: Array) -> Array:
     """Derivatives (5, N), with the centre's z, from those (4, N) of masses in the plane 0 and those
     by mass times plane, and that times x and y (3, N); more mass lies as it does already.
     """
@@ -264,7 +264,7 @@ def _sign_changes(motion: Motion, output: str, values: Array) -> list[Array]:
 
     low = k * step
     root = roots(signal, low[None], low[None] + step)[0]
-    sides = [np.abs(signal(root[None] + way)[0]) for way in (-BESIDE, BESIDE)]
+    sides = [np.abs(signal(root[None] + way)[0]) for way in (-SIGN_OFFSET, SIGN_OFFSET)]
     smooth = np.minimum(*sides) <= JUMP * np.max(np.abs(values), axis=1)[which]
     root = np.mod(root, period)
     return [np.sort(root[smooth & (which == row)]) for row in range(len(values))]

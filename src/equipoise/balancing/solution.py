@@ -74,14 +74,14 @@ def solve_problem(
         return solution
     cost, limits_gauges = problem.cost_of(solution.machine), bool(_gauged(problem))
     for _ in range(ROUNDS):
-        near = problem.near(solution.numbers)
-        towards = _solve_once(near, progress)
+        linearized = problem.linearized_at(solution.numbers)
+        towards = _solve_once(linearized, progress)
         if limits_gauges:  # which are kept where they are read, not a step before
             pairs = zip(solution.numbers, towards.numbers, strict=True)
             apart = max(float(np.max(np.abs(a - b), initial=0.0)) for a, b in pairs)
             better = towards if apart > SETTLED else None
         else:
-            better = _on_the_way(near, solution, towards, cost)
+            better = _on_the_way(linearized, solution, towards, cost)
         if better is None:
             return replace(solution, best=towards.best)
         solution, cost = better, problem.cost_of(better.machine)
@@ -100,7 +100,7 @@ def _begun(problem: Problem) -> Problem:
     objectives = tuple(item.objective for item in gauged)
     plan = replace(problem.plan, objectives=objectives, limits=others)
     first = replace(problem, plan=plan, counts=None, known=None)
-    return problem.near(solve_problem(first).numbers)
+    return problem.linearized_at(solve_problem(first).numbers)
 
 
 def _gauged(problem: Problem) -> list[Limit]:

@@ -48,7 +48,7 @@ def capital(text: str) -> str:
 
 def worse_told(balanced: Balanced) -> Iterator[str]:
     """Every figure that got larger by more than 1 %, a sentence for each group of outputs."""
-    for group, ones in groupby(balanced.worse, key=lambda one: one.group):
+    for group, ones in groupby(balanced.worse, key=lambda growth: growth.group):
         figures = say("; ").join(_grown(balanced, item) for item in ones)
         yield say(
             "In exchange these become larger, {group}: {figures}.",
@@ -63,11 +63,11 @@ MOST_WORST = 3
 
 def worst_told(balanced: Balanced) -> Iterator[str]:
     """In one sentence the figures that grew most."""
-    worse = sorted(balanced.worse, key=lambda one: -one.growth)
+    worse = sorted(balanced.worse, key=lambda growth: -growth.growth)
     if worse:
         figures = [_grown(balanced, item) for item in worse[:MOST_WORST]]
-        if more := len(worse) - len(figures):
-            figures.append(say("and {count} more", count=more))
+        if omitted := len(worse) - len(figures):
+            figures.append(say("and {count} more", count=omitted))
         yield say("In exchange these become larger: {figures}.", figures=say("; ").join(figures))
 
 

@@ -267,8 +267,8 @@ class AddedWeight(DesignVariables):
         cuts, moment = Program(), Affine(np.eye(2), places[1:], np.zeros(2))
         # Tangents a width apart miss by the bend times its square over 8.
         width = sqrt(8 * missed / max(self._bend(m), self._bend(self._full / 2)))
-        for near in np.clip(m + width * np.linspace(-1, 1, AROUND), 0.0, self._full):
-            self._add_tangent(cuts, int(places[0]), moment, float(near))
+        for mass in np.clip(m + width * np.linspace(-1, 1, AROUND), 0.0, self._full):
+            self._add_tangent(cuts, int(places[0]), moment, float(mass))
         return [replace(block, local=f"sector {places[0]}") for block in cuts.blocks]
 
     def _bend(self, m: float) -> float:

@@ -158,7 +158,7 @@ def sentences(change: Change) -> Iterator[str]:
             yield say(
                 "{link}, made as: {piece}",
                 link=link,
-                piece=_made(piece, place_told(values["center"])),
+                piece=_describe(piece, place_told(values["center"])),
             )
     elif change.kind == "removed mass":
         yield _taken_off(link, values)
@@ -181,7 +181,7 @@ def in_short(change: Change) -> Iterator[str]:
         yield from sentences(change) if len(pieces) > 1 else [first]
         return
     for piece in pieces:
-        what = say("{link}: add a {piece}", link=link, piece=_made(piece, values["at"]))
+        what = say("{link}: add a {piece}", link=link, piece=_describe(piece, values["at"]))
         yield in_its_plane(what, values)
 
 
@@ -249,7 +249,7 @@ def _hole_of(mass: float) -> tuple[float, float]:
     return diameter, 4 * volume / (pi * diameter**2)
 
 
-def _made(piece: Piece, center: str) -> str:
+def _describe(piece: Piece, center: str) -> str:
     """A piece in words; rings and sectors are told about the centre of their room."""
     shape = piece["shape"]
     sizes = ("radius", "outer_radius", "thickness")

@@ -201,15 +201,15 @@ def _refuse(error: Exception) -> int:
     sentence, lines = str(error), tuple[str, ...]()
     if isinstance(error, EquipoiseError):
         sentence, lines = error.sentence, error.lines
-    more = _more(error) if isinstance(error, EquipoiseError) else ()
+    hints = _hints(error) if isinstance(error, EquipoiseError) else ()
     if lines:  # which are pasted with all that stands below them
-        more = tuple(f"# {line}" for line in more)
+        hints = tuple(f"# {line}" for line in hints)
     said = f"equipoise: {_one_line(sentence)}"
-    print(said, *map(_one_line, lines), *more, sep="\n", file=sys.stderr)
+    print(said, *map(_one_line, lines), *hints, sep="\n", file=sys.stderr)
     return 2
 
 
-def _more(error: EquipoiseError) -> tuple[str, ...]:
+def _hints(error: EquipoiseError) -> tuple[str, ...]:
     """The command that explains an error; nothing where there is no more to say."""
     command = error.explained_by
     return (f"more: {command}",) if command else ()

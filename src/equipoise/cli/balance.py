@@ -84,7 +84,7 @@ def balance(
     for option, path in {"--out": out, "--drawing": drawing}.items():
         if path is not None and not balanced.helps:
             _refuse(balanced, option)
-    sheets = None if drawing is None else _drawn(balanced, drawing)
+    sheets = None if drawing is None else _drawing_content(balanced, drawing)
 
     def save() -> Iterator[str]:
         if out is not None:
@@ -95,12 +95,12 @@ def balance(
     return replace(CommandResult.of(balanced), save=save)
 
 
-def _refuse(found: Balanced, option: str) -> None:
+def _refuse(balanced: Balanced, option: str) -> None:
     """Write no machine that is not better."""
     from equipoise.balancing.outcome import nothing_told
 
-    if found.advice is not None:
-        reason = next(nothing_told(found)).removesuffix(".")
+    if balanced.advice is not None:
+        reason = next(nothing_told(balanced)).removesuffix(".")
         raise UsageError(
             at_place(
                 option,
@@ -122,12 +122,12 @@ def _check_drawing(path: str) -> None:
             raise UsageError(what)
 
 
-def _drawn(found: Balanced, path: str) -> tuple[Job, str | bytes]:
+def _drawing_content(balanced: Balanced, path: str) -> tuple[Job, str | bytes]:
     """A drawing's content, before anything is written, since there may be nothing to draw."""
-    from equipoise.exchange.export import format_of, made
+    from equipoise.exchange.export import export_content, format_of
 
     with error_in_option("--drawing"):
-        return made(found, format_of(path))
+        return export_content(balanced, format_of(path))
 
 
 def _save_drawing(path: str, job: Job, data: str | bytes) -> Iterator[str]:
@@ -139,16 +139,16 @@ def _save_drawing(path: str, job: Job, data: str | bytes) -> Iterator[str]:
     yield wrote(path)
 
 
-def _save(found: Balanced, out: str) -> list[str]:
+def _save(balanced: Balanced, out: str) -> list[str]:
     """Write the new machine, with what was changed in its description."""
     from equipoise.balancing.workshop import sentences
 
     def origin() -> str:
-        lines = (line for change in found.changes for line in sentences(change))
+        lines = (line for change in balanced.changes for line in sentences(change))
         changes = " ".join(say("{sentence}.", sentence=line) for line in lines)
         return say("Changed by equipoise balance: {changes}", changes=changes)
 
-    return write_model(found.machine, out, Note(", balanced"), origin)
+    return write_model(balanced.machine, out, Note(", balanced"), origin)
 
 
 @app.command

@@ -25,9 +25,9 @@ from equipoise.cli.options import (
 )
 from equipoise.cli.outputs import (
     Drawings,
-    Drawn,
     Length,
     Outputs,
+    PlottedOutput,
     Printed,
     check_new,
     write_model,
@@ -205,19 +205,21 @@ class Asked:
         from equipoise.figures import tool_designs, tool_shaft, tool_side, tool_speeds
         from equipoise.handheld.studies import determinant_chart
 
-        drawn: dict[str, Picture] = {}
+        pictures_by_name: dict[str, Picture] = {}
         if "modes" in names:
             highest = float(self.modes.planes[0].parameter[-1])
-            drawn |= tool_side.mode_pictures(self.modes)
+            pictures_by_name |= tool_side.mode_pictures(self.modes)
             chart = determinant_chart(self.tool, 1.1 * highest)
-            drawn |= tool_designs.determinant_charts(chart, self.modes)
+            pictures_by_name |= tool_designs.determinant_charts(chart, self.modes)
         if "respond" in names and self.respond.transmissions is not None:
-            drawn |= tool_speeds.transmission_charts(self.respond.transmissions, self.modes)
+            pictures_by_name |= tool_speeds.transmission_charts(
+                self.respond.transmissions, self.modes
+            )
         if "respond" in names and self.respond.response is not None:
-            drawn |= tool_shaft.response_charts(self.respond.response)
+            pictures_by_name |= tool_shaft.response_charts(self.respond.response)
         if "exposure" in names:
-            drawn |= tool_speeds.exposure_charts(self.exposure)
-        return drawn
+            pictures_by_name |= tool_speeds.exposure_charts(self.exposure)
+        return pictures_by_name
 
 
 def _result(
@@ -254,7 +256,7 @@ def _result(
 
 
 @app.command
-@command(Drawn)
+@command(PlottedOutput)
 def vary(
     tool: ToolFile,
     change: Annotated[str, Parameter(name="CHANGE")],
@@ -354,7 +356,7 @@ def sensitivities(
 
 
 @app.command
-@command(Drawn, long=True)
+@command(PlottedOutput, long=True)
 def design(
     tool: DesignFile,
     /,

@@ -28,10 +28,12 @@ class Laid:
         """Print the line that tells what follows what."""
         self._usual.render_usage(console, options, usage)
 
-    def render_description(self, console: Console, options: ConsoleOptions, told: Any) -> None:
+    def render_description(
+        self, console: Console, options: ConsoleOptions, description: Any
+    ) -> None:
         """Print what a command does."""
-        _unfold(told)
-        self._usual.render_description(console, options, told)
+        _unfold(description)
+        self._usual.render_description(console, options, description)
 
     @property
     def _usual(self) -> Any:
@@ -47,9 +49,9 @@ def _entry(entry: HelpEntry) -> HelpEntry:
     return entry.copy(metavar=metavar, default=None if entry.default == "False" else entry.default)
 
 
-def _unfold(told: Any) -> None:
+def _unfold(description: Any) -> None:
     """Paragraphs as one line each."""
-    text = getattr(told, "primary_renderable", None)
+    text = getattr(description, "primary_renderable", None)
     if text is not None and hasattr(text, "plain"):
         parts = (map(str.strip, part.split("\n")) for part in text.plain.split("\n\n"))
         text.plain = "\n\n".join(map(" ".join, parts))

@@ -35,9 +35,9 @@ from equipoise.cli.options import (
     wants,
 )
 from equipoise.cli.outputs import (
-    Drawn,
     Length,
     Outputs,
+    PlottedOutput,
     Printed,
     check_new,
     write_model,
@@ -130,7 +130,7 @@ def analyze(
 # -- on the support --------------------------------------------------------------------------------
 
 
-@command(Drawn)
+@command(PlottedOutput)
 def modes(machine: SupportFile, /, *, model: Model | None = None) -> Result:
     """Natural frequencies, damping and shapes of a machine on its support.
 
@@ -214,20 +214,20 @@ def respond(
     )
 
 
-def _others(machine: Machine, found: Response) -> dict[str, Response | None]:
+def _others(machine: Machine, response: Response) -> dict[str, Response | None]:
     """The response by every model that costs little, for comparison; None where there is none."""
     from equipoise.vibration.forced import models_of
     from equipoise.vibration.forced import respond as solve
     from equipoise.vibration.response import swings_in_a_turn
 
-    swings = swings_in_a_turn(found.modes, found.speed)
+    swings = swings_in_a_turn(response.modes, response.speed)
     others: dict[str, Response | None] = {}
     for model in models_of(machine):
-        if model == found.model:
-            others[model] = found
+        if model == response.model:
+            others[model] = response
         elif model != "exact" or swings < QUICK:
             try:
-                others[model] = solve(machine, found.speed, model)
+                others[model] = solve(machine, response.speed, model)
             except EquipoiseError:
                 others[model] = None
     return others

@@ -22,7 +22,7 @@ from equipoise.cli.options import (
     time_a_day,
     wants,
 )
-from equipoise.cli.outputs import Drawn
+from equipoise.cli.outputs import PlottedOutput
 from equipoise.cli.runner import CommandResult, command
 from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError, at_place
@@ -52,7 +52,7 @@ def _stiffness(option: str, text: str) -> tuple[float, bool, str]:
     return value, torsional, text
 
 
-@command(Drawn)
+@command(PlottedOutput)
 def decay(
     csv: Annotated[str, Parameter(name="CSV")],
     /,
@@ -194,7 +194,7 @@ def _acceleration(option: str, text: str) -> float:
 Acceleration = Annotated[float | None, read_by(_acceleration, ACCELERATION)]
 
 
-@command(Drawn)
+@command(PlottedOutput)
 def exposure(
     *inputs: Annotated[str, Parameter(name="INPUT")],
     duration: Annotated[Many, SIGNED, wants('"2.5 h"')] = None,
@@ -244,7 +244,7 @@ def exposure(
         "bands": bands,
         "periodic": periodic,
     }
-    values = [each for text in inputs for each in _told(text, options, gauge or ())]
+    values = [each for text in inputs for each in _parse_tasks(text, options, gauge or ())]
     if idle is not None and racing is not None:
         values.append(TaskInput("idling and racing", equivalent(idle, racing)))
     if not values:
@@ -255,13 +255,13 @@ def exposure(
     return _answer(_timed(values, duration or []))
 
 
-def _answer(told: list[TaskInput]) -> CommandResult:
+def _answer(tasks: list[TaskInput]) -> CommandResult:
     from equipoise.exposure.blocks import told_blocks
     from equipoise.figures import measured as pictures
 
-    day = _day(told)
-    measured = [(each.name, each.weighted) for each in told if each.weighted is not None]
-    tools = [(each.name, each.a_hv) for each in told]
+    day = _day(tasks)
+    measured = [(each.name, each.weighted) for each in tasks if each.weighted is not None]
+    tools = [(each.name, each.a_hv) for each in tasks]
     return CommandResult(
         lambda: told_blocks(measured, tools, day),
         lambda: _values(measured, tools, day),
@@ -287,7 +287,7 @@ def _values(
     return {"measured": files, "tasks": tasks, "a_hv": a_hv, "a8": None}
 
 
-def _told(text: str, options: Mapping[str, bool], gauges: Sequence[str]) -> list[TaskInput]:
+def _parse_tasks(text: str, options: Mapping[str, bool], gauges: Sequence[str]) -> list[TaskInput]:
     """Tasks that an argument stands for: one value, one file of accelerations, or one of tasks."""
     from equipoise.schema.records import Accelerations, read_accelerations
 
@@ -309,22 +309,22 @@ def _told(text: str, options: Mapping[str, bool], gauges: Sequence[str]) -> list
     return [TaskInput(task.name, task.acceleration, task.duration) for task in accelerations]
 
 
-def _weighted(path: str, found: Accelerations, options: Mapping[str, bool]) -> Weighted:
+def _weighted(path: str, record: Accelerations, options: Mapping[str, bool]) -> Weighted:
     from equipoise.exposure.spectra import weigh_signal, weigh_spectrum
     from equipoise.schema.files import printable
 
-    single = options["single_axis"] and len(found.axes) < 3
-    shared: Any = {"axes": found.axes, "single_axis": single, "weighted": options["weighted"]}
+    single = options["single_axis"] and len(record.axes) < 3
+    shared: Any = {"axes": record.axes, "single_axis": single, "weighted": options["weighted"]}
     with error_in_option(printable(path)):
-        if found.kind == "time":
-            periodic = found.periodic or options["periodic"]
-            return weigh_signal(found.at, found.values, periodic=periodic, **shared)
-        return weigh_spectrum(found.at, found.values, bands=options["bands"], **shared)
+        if record.kind == "time":
+            periodic = record.periodic or options["periodic"]
+            return weigh_signal(record.at, record.values, periodic=periodic, **shared)
+        return weigh_spectrum(record.at, record.values, bands=options["bands"], **shared)
 
 
-def _check_options(told: list[TaskInput], options: Mapping[str, bool]) -> None:
+def _check_options(tasks: list[TaskInput], options: Mapping[str, bool]) -> None:
     """An option that would do nothing is told, not passed over."""
-    files = [each.weighted for each in told if each.weighted is not None]
+    files = [each.weighted for each in tasks if each.weighted is not None]
     of_use = {
         "weighted": bool(files),
         "single_axis": any(file.single_axis for file in files),
@@ -343,10 +343,10 @@ def _check_options(told: list[TaskInput], options: Mapping[str, bool]) -> None:
             )
 
 
-def _timed(told: list[TaskInput], durations: list[str]) -> list[TaskInput]:
+def _timed(tasks: list[TaskInput], durations: list[str]) -> list[TaskInput]:
     """With the times of exposure that are given by an option."""
     times = [time_a_day("--duration", text) for text in durations]
-    open_ended = [each for each in told if each.duration is None]
+    open_ended = [each for each in tasks if each.duration is None]
     if times and not open_ended:
         raise UsageError(
             Note("--duration belongs to a signal, a spectrum, or --idle and --racing; leave it out")
@@ -368,18 +368,18 @@ def _timed(told: list[TaskInput], durations: list[str]) -> list[TaskInput]:
     rest = iter(times)
     return [
         each if each.duration is not None else replace(each, duration=next(rest, None))
-        for each in told
+        for each in tasks
     ]
 
 
-def _day(told: list[TaskInput]) -> Exposure | None:
+def _day(inputs: list[TaskInput]) -> Exposure | None:
     """The exposure of a day; None if no time is told."""
     from equipoise.exposure.daily import Task, daily_exposure
 
-    known = [each for each in told if each.duration is not None]
+    known = [each for each in inputs if each.duration is not None]
     if not known:
         return None
-    for each in told:
+    for each in inputs:
         if each.duration is None:
             raise UsageError(
                 at_place(

@@ -40,7 +40,7 @@ Drawings = Callable[[], "Mapping[str, Picture]"]
 """Results are made when they are asked for: what is not wanted is not computed."""
 
 
-MORE = to_say("--full prints all tables, --json every number.")
+FULL_HINT = to_say("--full prints all tables, --json every number.")
 """Below what stands first of a result."""
 BRIEF = 15
 """Lines of what stands first, on a terminal that is 80 signs wide."""
@@ -83,7 +83,7 @@ class Length:
 
 @Parameter(name="*")
 @dataclass(frozen=True)
-class Drawn(Printed):
+class PlottedOutput(Printed):
     """What a command prints and draws."""
 
     plot: NewFolder = None
@@ -116,7 +116,7 @@ class Pictures(Shown):
 
 @Parameter(name="*")
 @dataclass(frozen=True)
-class Outputs(Drawn):
+class Outputs(PlottedOutput):
     """What a command prints, draws and writes as columns."""
 
     csv: NewFile = None
@@ -218,13 +218,15 @@ def write_model(
             rest = say("Started from: {before}", before=before)
         return f"{start} {rest}".strip()
 
-    made: Any = replace(
+    new_model: Any = replace(
         model,
-        title=in_each(model.title, lambda one: f"{one.removesuffix(said(title))}{said(title)}"),
+        title=in_each(
+            model.title, lambda own_title: f"{own_title.removesuffix(said(title))}{said(title)}"
+        ),
         description=in_each(model.description, described),
     )
-    save(made, path)
-    return [wrote(" and ".join(map(os.fspath, files_of(made, path))) + what_next)]
+    save(new_model, path)
+    return [wrote(" and ".join(map(os.fspath, files_of(new_model, path))) + what_next)]
 
 
 # -- where results may go --------------------------------------------------------------------------

@@ -115,7 +115,7 @@ def plot(
     )
 
 
-def _outputs(found: Any, names: Sequence[str]) -> list[LazyPicture]:
+def _outputs(result: Any, names: Sequence[str]) -> list[LazyPicture]:
     """Outputs over crank angle, in one picture."""
     from functools import partial
 
@@ -124,9 +124,9 @@ def _outputs(found: Any, names: Sequence[str]) -> list[LazyPicture]:
 
     names = list(dict.fromkeys(names))
     with error_in_option("--output"):
-        caption = ", ".join(item.label() for item in found.analysis.outputs.chosen(names))
+        caption = ", ".join(item.label() for item in result.analysis.outputs.chosen(names))
     return [
-        LazyPicture("outputs", "motion", caption, partial(outputs_chart, found.analysis, names))
+        LazyPicture("outputs", "motion", caption, partial(outputs_chart, result.analysis, names))
     ]
 
 

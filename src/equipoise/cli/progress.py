@@ -124,8 +124,8 @@ class _Log:
             return
         self.wait()
         statement = step()
-        more = (f"{name}: {text}" for name, text in statement.more.items() if text)
-        line = "; ".join([", ".join(filter(None, [statement.share, statement.at])), *more])
+        statements = (f"{name}: {text}" for name, text in statement.more.items() if text)
+        line = "; ".join([", ".join(filter(None, [statement.share, statement.at])), *statements])
         with suppress(OSError):  # who does not want to read it gets the result all the same
             print(line, file=sys.stderr)
 
@@ -216,11 +216,11 @@ class Watched:
     """
 
     def __init__(
-        self, study: Study, told: Callable[[Progress], None], computers: Computers
+        self, study: Study, report: Callable[[Progress], None], computers: Computers
     ) -> None:
         from equipoise.studies.outcomes import Tally
 
-        self.study, self.told, self.computers = study, told, computers
+        self.study, self.told, self.computers = study, report, computers
         self.tally = Tally(study.outputs, 0)
         self.compute: PooledEvaluator[Outcome] | None = None
 

@@ -74,12 +74,12 @@ async def _serve(folder: Path) -> None:
     async with workers_in(folder) as workers, stdio_server() as (read, write):
         server = server_of(workers)
         async with anyio.create_task_group() as tasks:
-            heard, passed = anyio.create_memory_object_stream[Any](0)
+            incoming, passed = anyio.create_memory_object_stream[Any](0)
 
             async def pass_on() -> None:
-                async with heard, read:
+                async with incoming, read:
                     async for message in read:
-                        await heard.send(message)
+                        await incoming.send(message)
                 tasks.cancel_scope.cancel()  # calls under way too: nobody waits for them
 
             tasks.start_soon(pass_on)
@@ -244,11 +244,11 @@ async def _end(process: Process) -> None:
 def _pictures(written: tuple[Path, ...]) -> list[ImageContent]:
     from mcp import types
 
-    drawn = [path for path in written if path.suffix.lower() in PICTURES][:MOST_PICTURES]
+    picture_files = [path for path in written if path.suffix.lower() in PICTURES][:MOST_PICTURES]
     return [
         types.ImageContent(
             data=b64encode(Folder.without_links(path.parent).read(path.name)).decode(),
             mime_type=PICTURES[path.suffix.lower()],
         )
-        for path in drawn
+        for path in picture_files
     ]

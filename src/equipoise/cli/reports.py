@@ -203,11 +203,11 @@ def _tool_in_mode(file: str, mode: int | None, seconds: float, width: int) -> st
         return flipped(in_mode(modes, 1 if mode is None else mode, TOOL_FRAMES), seconds, width)
 
 
-def _swinging(found: Analysis, factor: float | None) -> tuple[Scene, list[str]]:
+def _swinging(analysis: Analysis, factor: float | None) -> tuple[Scene, list[str]]:
     """What moves at speed, its support too, as far as that can be computed, and what is not."""
     from equipoise.figures.swing import moving
 
-    scene, problem = moving(found, factor)
+    scene, problem = moving(analysis, factor)
     if problem is not None and factor is not None:
         raise problem
     still = [] if problem is None else [f"the support is drawn standing still: {problem}"]
@@ -286,7 +286,7 @@ def report(
     check(paths, language)
 
     result = find(file, speed=rate)
-    document = build(result, language, _command(file, language, speed), together=True)
+    document = build(result, language, _command(file, language, speed), parallel=True)
     write_document(document, paths)
 
     def lines() -> Iterator[str]:

@@ -34,14 +34,14 @@ from equipoise.cli.options import (
 )
 from equipoise.cli.outputs import (
     BRIEF,
-    MORE,
+    FULL_HINT,
     Blocks,
     Chosen,
     Columns,
     Drawings,
-    Drawn,
     Length,
     Outputs,
+    PlottedOutput,
     Printed,
     Shown,
     Values,
@@ -182,7 +182,7 @@ class FinishedCommand:
             from equipoise.schema.files import csv_text
 
             yield from write_text(outputs.csv, csv_text(answer.columns()))
-        if isinstance(outputs, Drawn) and outputs.plot is not None:
+        if isinstance(outputs, PlottedOutput) and outputs.plot is not None:
             with self._showing():
                 kind = outputs.format or "svg"
                 yield from write_pictures(answer.pictures(), outputs.plot, kind)
@@ -197,7 +197,7 @@ class FinishedCommand:
             first += answer.headline(not self.length.full)
         yield from first
         if first and self.length is not None and not self.length.full:
-            yield Text(say(MORE))
+            yield Text(say(FULL_HINT))
         else:
             yield from answer.blocks() if answer.blocks is not None else ()
 

@@ -18,7 +18,7 @@ from equipoise.cli.options import (
     blaming_by_place,
     count,
 )
-from equipoise.cli.outputs import Drawn
+from equipoise.cli.outputs import PlottedOutput
 from equipoise.cli.progress import Watched, swept
 from equipoise.cli.runner import CommandResult, command
 from equipoise.errors import UsageError, at_place
@@ -32,11 +32,11 @@ if TYPE_CHECKING:
     from equipoise.studies.store import Store
 
 MOST_DESIGNS = 10_000_000
-TOLD = 3
+LISTED_DESIGNS = 3
 """Designs that are told in the end."""
 
 
-@command(Drawn, long=True)
+@command(PlottedOutput, long=True)
 def sweep(
     study: StudyFile, /, *, out: Out = None, computers: Computers = Computers()
 ) -> CommandResult:
@@ -59,7 +59,7 @@ def sweep(
     return _computed(partial(sweep, study, out, **vars(computers)), out, units_of(study))
 
 
-@command(Drawn, long=True)
+@command(PlottedOutput, long=True)
 def resume(store: OpenedStore, /, *, computers: Computers = Computers()) -> CommandResult:
     """Compute the designs that are missing in a store, and continue an interrupted sweep."""
     from equipoise.schema import study_units
@@ -105,7 +105,7 @@ def _charts(store: Store, units: dict[str, Unit]) -> Mapping[str, Picture]:
     from equipoise.studies.selection import best
 
     aimed = any(output.make for output in store.wishes)
-    result = best(store, TOLD, None if aimed else {store.outputs[0]: None}, nearest=True)
+    result = best(store, LISTED_DESIGNS, None if aimed else {store.outputs[0]: None}, nearest=True)
     owner = owner_of(store)
     own = None if owner is None else own_of(owner)
     return best_charts(result, store.title, units, store, own, aimed)
@@ -131,11 +131,11 @@ def _summary(store: Store, last: Progress) -> Summary:
     outputs, title = store.wishes, store.title
     aimed = any(output.make for output in outputs)
     try:
-        result = best(store, TOLD, None if aimed else {store.numbers[0]: None})
+        result = best(store, LISTED_DESIGNS, None if aimed else {store.numbers[0]: None})
     except NothingBestError as error:  # no design keeps every limit, or none has figures
         return Summary(title, store, outputs, last.failures, 0, None, error.reason)
-    kept = result.kept
-    return Summary(title, store, outputs, last.failures, kept, result if aimed else None, "")
+    feasible = result.kept
+    return Summary(title, store, outputs, last.failures, feasible, result if aimed else None, "")
 
 
 def _values(summary: Summary, last: Progress) -> dict[str, Any]:
@@ -156,7 +156,7 @@ def _values(summary: Summary, last: Progress) -> dict[str, Any]:
 # -- tolerances ------------------------------------------------------------------------------------
 
 
-@command(Drawn, long=True)
+@command(PlottedOutput, long=True)
 def tolerance(
     study: TolerancedFile,
     /,

@@ -164,9 +164,9 @@ class CommandTool:
 
     def _usual(self, given: Mapping[str, Any]) -> dict[str, str]:
         """What is meant where nothing is given; a kind of pictures only where some are drawn."""
-        drawn = "plot" in given or "plot" not in self.arguments
+        plots = "plot" in given or "plot" not in self.arguments
         named = ((key, self.arguments.get(key), value) for key, value in USUAL.items())
-        return {key: value for key, item, value in named if drawn and item and _allows(item, value)}
+        return {key: value for key, item, value in named if plots and item and _allows(item, value)}
 
 
 def tools() -> dict[str, CommandTool]:
@@ -187,47 +187,49 @@ def _below(words: tuple[str, ...], command: App) -> Iterator[CommandTool]:
             yield from _below((*words, name), command[name])
 
 
-def _allows(one: Argument, value: str) -> bool:
-    return value in (one.get_choices() or ())
+def _allows(argument: Argument, value: str) -> bool:
+    return value in (argument.get_choices() or ())
 
 
 def _line(text: str) -> str:
     return " ".join(text.split())
 
 
-def _is_positional(one: Argument) -> bool:
-    return not one.name.startswith("-")
+def _is_positional(argument: Argument) -> bool:
+    return not argument.name.startswith("-")
 
 
-def _schema(one: Argument) -> Schema:
+def _schema(argument: Argument) -> Schema:
     """Of one value, or of several where it may be repeated."""
-    several = get_origin(one.hint) in {list, tuple} or any(
-        get_origin(part) is list for part in get_args(one.hint)
+    several = get_origin(argument.hint) in {list, tuple} or any(
+        get_origin(part) is list for part in get_args(argument.hint)
     )
-    schema: Schema = {"description": _line(one.parameter.help)} if one.parameter.help else {}
-    default = one.field_info.default
+    schema: Schema = (
+        {"description": _line(argument.parameter.help)} if argument.parameter.help else {}
+    )
+    default = argument.field_info.default
     if isinstance(default, str | int | float) and default is not False:
         schema["default"] = default
-    value = _value(one)
+    value = _value(argument)
     return {**({"type": "array", "items": value} if several else value), **schema}
 
 
-def _value(one: Argument) -> Schema:
+def _value(argument: Argument) -> Schema:
     """What is read by a function of its own is a text, such as a quantity with its unit."""
-    metavar = one.parameter.metavar or ""
-    if choices := one.get_choices():
+    metavar = argument.parameter.metavar or ""
+    if choices := argument.get_choices():
         return {"type": "string", "enum": [*choices]}
-    for mark in get_args(one.field_info.annotation)[1:]:
+    for mark in get_args(argument.field_info.annotation)[1:]:
         if isinstance(mark, LoadedFile) and mark.example:
             return {"type": "string", "examples": [mark.example]}
     if metavar.startswith('"'):
         return {"type": "string", "examples": [metavar.strip('"')]}
-    if one.parameter.converter and metavar != "NUMBER":
+    if argument.parameter.converter and metavar != "NUMBER":
         return {"type": "string"}
-    kinds = {one.hint, *get_args(one.hint)}
+    kinds = {argument.hint, *get_args(argument.hint)}
     for kind, name in ((bool, "boolean"), (int, "integer"), (float, "number")):
         if kind in kinds:
-            return {"type": [name, "string"] if one.parameter.converter else name}
+            return {"type": [name, "string"] if argument.parameter.converter else name}
     return {"type": "string"}
 
 
@@ -240,12 +242,14 @@ def _short(values: dict[str, Any]) -> dict[str, Any]:
         if isinstance(value, dict):
             short = {key: item for key, item in value.items() if _size(item) <= MOST}
             left += len(value) - len(short)
-            kept = {key: (item, cut(item)) for key, item in short.items()}
-            return {key: new for key, (item, new) in kept.items() if new != {} or item == {}}
+            shortened = {key: (item, cut(item)) for key, item in short.items()}
+            return {key: new for key, (item, new) in shortened.items() if new != {} or item == {}}
         return [cut(item) for item in value] if isinstance(value, list) else value
 
-    kept: dict[str, Any] = cut(values)
-    return kept | ({"left_out": f"{left} lists of more than {MOST}; ask with json"} if left else {})
+    shortened: dict[str, Any] = cut(values)
+    return shortened | (
+        {"left_out": f"{left} lists of more than {MOST}; ask with json"} if left else {}
+    )
 
 
 def _size(value: Any) -> int:

@@ -79,9 +79,9 @@ def bearing_force(trace: Trace, bearing: str, exerted: Callable[[str], Any]) -> 
     exerted : the force in a joint or mesh, by name.
     """
     given = trace.machine.bearings
-    held = [name for name in given if given[name].link == given[bearing].link]
-    first = held.index(bearing)
-    own, other = (_bearing_plane(trace, held[k]) for k in (first, 1 - first))
+    on_link = [name for name in given if given[name].link == given[bearing].link]
+    first = on_link.index(bearing)
+    own, other = (_bearing_plane(trace, on_link[k]) for k in (first, 1 - first))
     solved = statics(trace.linkage)
     number, pin = solved.pin_of(given[bearing].link)
     needed, by_plane = solved.factors(number)

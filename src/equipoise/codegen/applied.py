@@ -25,14 +25,14 @@ from equipoise.mechanism.parts.force_kinds import ForceElement
 from equipoise.mechanism.parts.joint_kinds import joint_kinds
 from equipoise.mechanism.parts.machine import FRAME, Load
 
-NEAR = 0.4
+ANGLE_MARGIN = 0.4
 """Added to the cosine of an angle, which is watched as that of a running angle is: beyond 154 deg
 from its middle a design is computed by itself."""
-Held = tuple[str, Any, Any]
+HoldingWrench = tuple[str, Any, Any]
 """Link, and force and moment that hold something against it."""
 
 
-def trace_load(trace: Trace, number: int, load: Load) -> Held:
+def trace_load(trace: Trace, number: int, load: Load) -> HoldingWrench:
     """What holds the load of this number, from 1 on."""
     parts = (
         trace.row(f"load {number} {key}", partial(_part_of_load, load, key))
@@ -44,12 +44,12 @@ def trace_load(trace: Trace, number: int, load: Load) -> Held:
         force = force * trace.state[u(load.link)[0]]
     if load.axes == "slider":
 
-        def turn(found: Linkage) -> Any:
-            machine = found.machine
+        def turn(linkage: Linkage) -> Any:
+            machine = linkage.machine
             return np.exp(1j * machine.loads[number - 1].axes_angle(machine.sliders))
 
         force = force * trace.slot(f"load {number} axes", turn, vector=True)
-    return _held(trace, load.link, load.point, force, torque)
+    return _holding_wrench(trace, load.link, load.point, force, torque)
 
 
 def _part_of_load(load: Load, key: str, theta: Array) -> Array:
@@ -82,7 +82,7 @@ class TracedBodies:
         """Angle of a body from the x axis of another, within half a turn of `middle`."""
         turn, other = (self.trace.state[u(item)[0]] for item in (body, on))
         away = turn * other.conjugate() * rotation(middle).conjugate()
-        self.trace.running[f"{self.name}, {body} on {on}"] = away.real + NEAR
+        self.trace.running[f"{self.name}, {body} on {on}"] = away.real + ANGLE_MARGIN
         return middle + angle_of(away)
 
     def turn(self, body: str) -> Any:
@@ -132,7 +132,7 @@ def trace_limits(trace: Trace) -> None:
             element.values(at)
 
 
-def trace_element(trace: Trace, table: str, number: int) -> Iterator[Held]:
+def trace_element(trace: Trace, table: str, number: int) -> Iterator[HoldingWrench]:
     """What holds a force element at each of its ends on a link.
 
     table, number : its list in the file, and its place there from 0.
@@ -140,7 +140,7 @@ def trace_element(trace: Trace, table: str, number: int) -> Iterator[Held]:
     element, at = traced_element(trace, table, number)
     assert isinstance(element, ForceElement)
     for link, point, force, torque in element.on_links(at):
-        yield _held(trace, link, point, force, torque)
+        yield _holding_wrench(trace, link, point, force, torque)
 
 
 def traced_element(trace: Trace, table: str, number: int) -> tuple[Element, TracedBodies]:
@@ -170,7 +170,7 @@ def traced_element(trace: Trace, table: str, number: int) -> tuple[Element, Trac
     return element, TracedBodies(trace, name)
 
 
-def trace_preload(trace: Trace, number: int) -> Iterator[Held]:
+def trace_preload(trace: Trace, number: int) -> Iterator[HoldingWrench]:
     """What holds the preload of the coupling of this number, if it has one."""
     coupling = trace.machine.couplings[number]
     if not coupling.preload:
@@ -186,10 +186,12 @@ def trace_preload(trace: Trace, number: int) -> Iterator[Held]:
     force = (ends[1] - ends[0]) * trace.slot(f"preload rate({number})", rate)
     for link, pin, pulled in ((coupling.driver, driver, force), (coupling.driven, driven, -force)):
         if link != FRAME:
-            yield _held(trace, link, pin, pulled, 0.0)
+            yield _holding_wrench(trace, link, pin, pulled, 0.0)
 
 
-def _held(trace: Trace, link: str, point: str | None, force: Any, torque: Any) -> Held:
+def _holding_wrench(
+    trace: Trace, link: str, point: str | None, force: Any, torque: Any
+) -> HoldingWrench:
     """What holds a force at a point of a link, and a torque on it."""
     anchor = trace.body(link)[0]
     at = anchor if point is None else trace.point(link, point)[0]

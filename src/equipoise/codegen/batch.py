@@ -339,12 +339,12 @@ class Batch:
             )
         return np.concatenate(list(done))
 
-    def _figures(self, found: Array, count: int) -> Array:
-        columns = [self.gathered.figure(found, f, self._total(count)) for f in self.wanted]
-        return np.column_stack(columns) if columns else np.empty((len(found), 0))
+    def _figures(self, columns_read: Array, count: int) -> Array:
+        columns = [self.gathered.figure(columns_read, f, self._total(count)) for f in self.wanted]
+        return np.column_stack(columns) if columns else np.empty((len(columns_read), 0))
 
     def _still(
-        self, now: Array, before: Array, found: Array, count: int, sizes: Mapping[str, Any]
+        self, now: Array, before: Array, columns_read: Array, count: int, sizes: Mapping[str, Any]
     ) -> Array:
         """Designs (P,) none of whose figures has moved."""
         still = np.ones(len(now), dtype=bool)
@@ -354,29 +354,29 @@ class Batch:
                 period = 2 * pi * self.turns
                 still &= np.minimum(step, period - step) <= self.tolerance * 2 * pi
             else:
-                rms = self.gathered.rms(found, figure.signal, self._total(count))
+                rms = self.gathered.rms(columns_read, figure.signal, self._total(count))
                 share = self.tolerance if figure.name in SMOOTH else self.tolerance / 2
                 still &= step <= share * rms + ROUNDING * sizes[figure.signal]
         return still
 
     # -- designs that fail -------------------------------------------------------------------------
 
-    def _reasons(self, table: Array, found: Array, count: int) -> Array:
+    def _reasons(self, table: Array, columns_read: Array, count: int) -> Array:
         """Why designs (P,) cannot be moved through the cycle; `COMPUTED` where they can.
 
         Of several dyads that fail it is the first that tells, as those behind it have no place.
         """
-        reason = np.zeros(len(found), dtype=np.uint8)
-        reason[np.any(found[:, self.source.nearest] < FAR, axis=1)] = NOT_COMPUTED
-        weakest = found[:, self.source.weakest].copy()
-        strongest = found[:, self.source.strongest].copy()
+        reason = np.zeros(len(columns_read), dtype=np.uint8)
+        reason[np.any(columns_read[:, self.source.nearest] < FAR, axis=1)] = NOT_COMPUTED
+        weakest = columns_read[:, self.source.weakest].copy()
+        strongest = columns_read[:, self.source.strongest].copy()
         self._look_closer(table, weakest, strongest, count)
         dyads = [*zip(weakest.T, strongest.T, strict=True)][: len(set(self.source.watched))]
         groups = [group.margin for group in self.base.groups if not group.through]
         for margin in reversed(groups):
             if margin is None:
                 if self.march:
-                    self.march.reasons(reason, found)
+                    self.march.reasons(reason, columns_read)
                 continue
             low, high = dyads.pop()
             reason[low < full_turn.CHANGE_POINT] = CHANGE_POINT
@@ -388,9 +388,9 @@ class Batch:
         """Find how low and high dyads' numbers come between the crank angles, near zero."""
         while True:
             reach = (self.slope * pi / count) ** 2
-            near = (weakest >= -full_turn.CHANGE_POINT) & (weakest < reach)
-            near |= (strongest <= 0) & (strongest > -reach)
-            some = np.flatnonzero(near.any(axis=1))
+            doubtful = (weakest >= -full_turn.CHANGE_POINT) & (weakest < reach)
+            doubtful |= (strongest <= 0) & (strongest > -reach)
+            some = np.flatnonzero(doubtful.any(axis=1))
             count *= DENSER
             if not some.size or count > MOST_LOOKED_AT:
                 break
@@ -398,7 +398,7 @@ class Batch:
             weakest[some] = result[:, self.source.weakest]
             strongest[some] = result[:, self.source.strongest]
         for k in some:
-            for dyad in {self.source.watched[column] for column in np.flatnonzero(near[k])}:
+            for dyad in {self.source.watched[column] for column in np.flatnonzero(doubtful[k])}:
                 low, high = (self._extreme(table[k : k + 1], dyad, sign) for sign in (1, -1))
                 weakest[k, dyad] = min(weakest[k, dyad], low)
                 strongest[k, dyad] = max(strongest[k, dyad], -high)

@@ -83,7 +83,7 @@ def trace_coupling(trace: Trace, step: KernelCall) -> None:
     else:
         turn = trace.slot(
             f"start({link})",
-            lambda found: np.exp(1j * (_coupling(found, link).start - start)),
+            lambda linkage: np.exp(1j * (_coupling(linkage, link).start - start)),
             vector=True,
         )
         trace.state[f"u({link})"] = rotation(angle) * turn
@@ -188,10 +188,10 @@ def _displaced(
 def curve_value(trace: Trace, curve: PeriodicCurve, angle: Any) -> tuple[Any, Any, Any]:
     """A curve, and its two derivatives, at an angle that is each design's own."""
     curve, counted = _from_the_start(_rested(curve))
-    near, length = ROUNDING * curve.length, curve.length
-    rounds = floor((angle + near) * (1 / length))
+    tolerance, length = ROUNDING * curve.length, curve.length
+    rounds = floor((angle + tolerance) * (1 / length))
     since = angle - rounds * length
-    pieces = Pieces(trace, curve, since + near)
+    pieces = Pieces(trace, curve, since + tolerance)
     way = since if counted else since - pieces.beginning()
     powers = [pieces.value(values) for values in curve.powers.T]
     amplitude, rate, phase = (pieces.value(values) for values in _waves(curve).T)
@@ -204,9 +204,9 @@ def _rested(curve: PeriodicCurve) -> PeriodicCurve:
     """A curve with one piece for each rest, whatever law the rest is given by."""
     still = ~np.any(curve.powers[:, 1:], axis=1) & (curve.waves[:, 0] == 0)
     same = np.abs(np.diff(curve.powers[:, 0])) <= ALIKE * np.max(np.abs(curve.powers[:, 0]))
-    kept = np.append(True, ~(still[1:] & still[:-1] & same))
-    knots = np.append(curve.knots[:-1][kept], curve.knots[-1])
-    return PeriodicCurve(knots, curve.powers[kept], curve.waves[kept])
+    pieces = np.append(True, ~(still[1:] & still[:-1] & same))
+    knots = np.append(curve.knots[:-1][pieces], curve.knots[-1])
+    return PeriodicCurve(knots, curve.powers[pieces], curve.waves[pieces])
 
 
 def _from_the_start(curve: PeriodicCurve) -> tuple[PeriodicCurve, bool]:
@@ -241,8 +241,8 @@ def _alike(values: list[float]) -> list[float]:
     least = ALIKE * max(map(abs, values))
     numbers: list[float] = []
     for value in values:
-        near = (item for item in numbers if abs(item - value) <= least)
-        numbers.append(next(near, value))
+        close = (item for item in numbers if abs(item - value) <= least)
+        numbers.append(next(close, value))
     return numbers
 
 

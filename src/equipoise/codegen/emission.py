@@ -98,12 +98,12 @@ class Lines:
 
     def write(self, masks: Collection[int], needed: Iterable[Any] = ()) -> Iterator[str]:
         """Lines for terms that depend on one of these, and are needed, or used more than once."""
-        kept = {item for item in needed if type(item) is Term}
+        used = {item for item in needed if type(item) is Term}
         for term in self.terms:
             if term.mask not in masks or term in self.names:
                 continue
             depth = 1 + max((self._depths.get(arg, 0) for arg in term.args), default=0)
-            if self._uses[term] > 1 or term in kept or depth > DEEPEST:
+            if self._uses[term] > 1 or term in used or depth > DEEPEST:
                 text, depth = self.text(term), 0
                 self.names[term] = name = f"v{len(self.names)}"
                 yield self.language.line.format(name, text)

@@ -135,9 +135,9 @@ class Signals:
             return self.trace.rate(name)
         return self.demands[name] if name in self.demands else self.forces[name]
 
-    def of_member(self, item: str, name: str, *more: str) -> Any:
+    def of_member(self, item: str, name: str, *names: str) -> Any:
         """A value of one of the members of a family."""
-        return OF_MEMBERS[name](self, item, *more)
+        return OF_MEMBERS[name](self, item, *names)
 
     def position(self, item: str, order: int = 0) -> Any:
         """A point, or its first or second derivative by time."""

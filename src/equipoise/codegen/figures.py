@@ -135,38 +135,40 @@ class Gathered:
     def signals(self) -> tuple[str, ...]:
         return tuple(dict.fromkeys(signal for signal, _ in self.columns))
 
-    def column(self, found: Array, signal: str, kind: str) -> Array:
+    def column(self, gathered: Array, signal: str, kind: str) -> Array:
         """One column (P,) of what was gathered (P, R)."""
-        column: Array = found[:, self.columns.index((signal, kind))]
+        column: Array = gathered[:, self.columns.index((signal, kind))]
         return column
 
-    def joined(self, one: Array, other: Array) -> Array:
+    def joined(self, first_part: Array, other: Array) -> Array:
         """What was gathered at two sets of crank angles, together."""
-        result = np.empty_like(one)
+        result = np.empty_like(first_part)
         for k, (signal, kind) in enumerate(self.columns):
             if (join := KINDS[kind].joined) is not None:
-                result[:, k] = join(one[:, k], other[:, k])
+                result[:, k] = join(first_part[:, k], other[:, k])
                 continue
             extreme = kind.removesuffix("_at")
             sign = 1 if extreme == "highest" else -1
-            first, second = (sign * self.column(result, signal, extreme) for result in (one, other))
+            first, second = (
+                sign * self.column(result, signal, extreme) for result in (first_part, other)
+            )
             equal = np.abs(second - first) <= ROUNDING * np.abs(first)
-            later = np.where(second > first, other[:, k], one[:, k])
-            result[:, k] = np.where(equal, np.minimum(one[:, k], other[:, k]), later)
+            later = np.where(second > first, other[:, k], first_part[:, k])
+            result[:, k] = np.where(equal, np.minimum(first_part[:, k], other[:, k]), later)
         return result
 
-    def figure(self, found: Array, figure: Figure, count: int) -> Array:
+    def figure(self, gathered: Array, figure: Figure, count: int) -> Array:
         """A figure (P,) from what was gathered (P, R) at `count` crank angles; 1 where these have
         shares.
         """
 
         def column(kind: str) -> Array:
-            return self.column(found, figure.signal, kind)
+            return self.column(gathered, figure.signal, kind)
 
         if figure.name == "mean":
             return column("sum") / count
         if figure.name == "rms":
-            return self.rms(found, figure.signal, count)
+            return self.rms(gathered, figure.signal, count)
         if figure.name in ("max", "min", "max_at", "min_at"):
             return column(figure.name.replace("max", "highest").replace("min", "lowest"))
         high, low = column("highest"), column("lowest")
@@ -177,7 +179,7 @@ class Gathered:
         places = column("highest_at"), column("lowest_at")
         return place_of_peak(high, low, *places)
 
-    def rms(self, found: Array, signal: str, count: int) -> Array:
+    def rms(self, gathered: Array, signal: str, count: int) -> Array:
         """Root of the mean square (P,) of a signal."""
-        root: Array = np.sqrt(self.column(found, signal, "squares") / count)
+        root: Array = np.sqrt(self.column(gathered, signal, "squares") / count)
         return root

@@ -31,7 +31,7 @@ from equipoise.mechanism.dynamics.parameters import (
 )
 from equipoise.mechanism.kinematics.jumps import resolved
 from equipoise.mechanism.kinematics.motion import move
-from equipoise.mechanism.outputs.declared import Declared, Found, declared
+from equipoise.mechanism.outputs.declared import Declared, OutputSource, declared
 from equipoise.mechanism.parts.machine import Machine, size_of
 from equipoise.quantities.units import HUGE, TINY
 
@@ -159,7 +159,7 @@ class MassBatch:
         """
         machine = self.base.machine
         motion = resolved(move(machine, count))
-        unit, whole = Found(motion, regressor(motion)), Found(motion, forces(motion))
+        unit, whole = OutputSource(motion, regressor(motion)), OutputSource(motion, forces(motion))
         varied = [k for k, (link, _) in enumerate(parameter_names(machine)) if link in self.links]
         own = parameter_values(machine)[varied]
         arrays = []
@@ -183,8 +183,8 @@ class MassBatch:
             return mean
         count = len(samples) // (2 if output[0].is_vector else 1)
         _, singular, rows = svd(samples * self.scale, full_matrices=False)
-        kept = singular > RANK * singular[0]
-        factor: Array = (singular[:, None] * rows)[kept] / (self.scale * np.sqrt(count))
+        significant = singular > RANK * singular[0]
+        factor: Array = (singular[:, None] * rows)[significant] / (self.scale * np.sqrt(count))
         return factor
 
 
@@ -195,19 +195,19 @@ def _scales(machine: Machine, links: int) -> Array:
     return np.tile([mass, mass * size, mass * size, mass * size**2], links)
 
 
-def _components(declared: Declared, item: str, found: Found) -> Array:
+def _components(declared: Declared, item: str, source: OutputSource) -> Array:
     """The one or two components of an output, (1 or 2, ..., N)."""
-    if item not in declared.items_of(found):
+    if item not in declared.items_of(source):
         raise UsageError(
             Note("got {named!r}; the machine has no such signal", named=declared.named(item))
         )
-    whole = declared.component(declared.vector(found, item))
+    whole = declared.component(declared.vector(source, item))
     return np.stack([whole.real, whole.imag] if declared.is_vector else [whole.real])
 
 
-def _alike(one: Array, other: Array, tolerance: float) -> bool:
+def _alike(first_samples: Array, other: Array, tolerance: float) -> bool:
     """Whether the Gram matrices of samples at two numbers of crank angles agree."""
-    first, second = (samples.T @ samples / len(samples) for samples in (one, other))
+    first, second = (samples.T @ samples / len(samples) for samples in (first_samples, other))
     sizes = np.sqrt(np.diag(second))
     sizes = np.maximum(sizes, NOTHING * np.max(sizes))
     close = np.abs(first - second) <= tolerance * np.outer(sizes, sizes)

@@ -141,7 +141,7 @@ class _Writer:
         ]
         setting = [*given, *script.write((DESIGN,), self.own)]
         parts = self._parts()
-        makers = {item: k for k, (_, _, made) in enumerate(parts) for item in made}
+        makers = {item: k for k, (_, _, terms) in enumerate(parts) for item in terms}
         crossing = {
             fromkey: row
             for row, fromkey in enumerate(
@@ -172,13 +172,13 @@ class _Writer:
         script = self.script
         parts: list[tuple[list[str], list[Term], list[Term]]] = [([], [], [])]
 
-        def put(line: str, made: Sequence[Term]) -> None:
+        def put(line: str, terms: Sequence[Term]) -> None:
             if len(parts[-1][0]) == MOST_LINES:
                 parts.append(([], [], []))
             part, used, named = parts[-1]
             part.append(line)
             used += sorted(script.used, key=lambda item: item.order)
-            named += made
+            named += terms
             script.used.clear()
 
         script.used.clear()
@@ -196,13 +196,13 @@ class _Writer:
         number: int,
         lines: list[str],
         used: list[Term],
-        made: list[Term],
+        terms: list[Term],
         crossing: dict[Term, int],
     ) -> list[str]:
         script, needed = self.script, dict.fromkeys(used)
         own = [k for k, item in enumerate(self.own) if item in needed]
         rows = [k for k, item in enumerate(self.by_angle) if item in needed]
-        taken = [item for item in crossing if item in needed and item not in made]
+        taken = [item for item in crossing if item in needed and item not in terms]
         return [
             f"function part{number}(own, grid, work, angles, out) {{",
             *(f"    const {script.names[self.own[k]]} = own[{k}];" for k in own),
@@ -216,7 +216,7 @@ class _Writer:
             *(
                 f"        work[{row} * angles + k] = {script.names[item]};"
                 for item, row in crossing.items()
-                if item in made
+                if item in terms
             ),
             "    }",
             "}",

@@ -99,7 +99,9 @@ class TracedGroup:
         def parts(key: str) -> Any:
             read = attrgetter(key)
             name = f"{key} {number}"
-            return self.slotted(getattr(group, key), name, lambda found: read(found.motion[number]))
+            return self.slotted(
+                getattr(group, key), name, lambda linkage: read(linkage.motion[number])
+            )
 
         self.group = replace(group, tree=parts("tree"), equations=parts("equations"))
         self.size = trace.slot("size", lambda linkage: size_of_bodies(linkage.machine))
@@ -316,18 +318,18 @@ class Minors:
         return result
 
 
-def _minor(rows: list[list[Any]], columns: tuple[int, ...], found: dict[Any, Any]) -> Any:
+def _minor(rows: list[list[Any]], columns: tuple[int, ...], minors: dict[Any, Any]) -> Any:
     """Determinant of these columns of as many rows; those that were found are kept."""
-    if columns not in found:
+    if columns not in minors:
         row = len(columns) - 1
         total: Any = 0.0
         for k, column in enumerate(columns):
             entry = rows[row][column]
             if isinstance(entry, Term) or entry != 0:
-                value = entry * _minor(rows, (*columns[:k], *columns[k + 1 :]), found)
+                value = entry * _minor(rows, (*columns[:k], *columns[k + 1 :]), minors)
                 total = total - value if (row + k) % 2 else total + value
-        found[columns] = total
-    return found[columns]
+        minors[columns] = total
+    return minors[columns]
 
 
 def _turned(rotation: Any, angle: Any) -> Any:

@@ -75,17 +75,17 @@ class March:
         march = (np.diff(ways, prepend=0.0), place == ARRIVALS - 1, place >= ARRIVALS - 1)
         return number, angles, {k: v.astype(float) for k, v in zip(MARCH, march, strict=True)}
 
-    def unsettled(self, found: Array) -> Array:
+    def unsettled(self, gathered: Array) -> Array:
         """Designs (K,), of those gathered (P, R), that have not stayed on their branch."""
-        return np.flatnonzero(~np.all(found[:, self.source.ends["loose"]] <= SETTLED, axis=1))
+        return np.flatnonzero(~np.all(gathered[:, self.source.ends["loose"]] <= SETTLED, axis=1))
 
-    def reasons(self, reason: Array, found: Array) -> None:
+    def reasons(self, reason: Array, gathered: Array) -> None:
         """Fill in why designs (P,) failed of which this much was gathered (P, R).
 
         Those that did not arrive, or came back elsewhere, may do otherwise from the position in the
         file, or after further turns.
         """
-        ends = {key: found[:, columns] for key, columns in self.source.ends.items()}
+        ends = {key: gathered[:, columns] for key, columns in self.source.ends.items()}
         reason[~np.all(ends["open"] <= JUMP**2, axis=1)] = NOT_COMPUTED
-        reason[self.unsettled(found)] = NO_FULL_TURN
+        reason[self.unsettled(gathered)] = NO_FULL_TURN
         reason[~np.all(ends["astray"] <= SETTLED, axis=1)] = NOT_COMPUTED

@@ -272,8 +272,8 @@ def _march(source: TermSource, lines: Lines) -> Iterator[str]:
     yield f"            for lane in range({LANES}):"
     yield from _indented(4, get(given))
     yield from _indented(4, going)
-    kept = zip([*signals.values(), *before], results, strict=True)
-    yield from _indented(4, (f"{at[name]} = {value}" for name, value in kept))
+    assignments = zip([*signals.values(), *before], results, strict=True)
+    yield from _indented(4, (f"{at[name]} = {value}" for name, value in assignments))
     yield "            if place >= 0.0:"
     yield f"                for lane in range({LANES}):"
     yield from _indented(5, get([*signals.values(), *columns.values()]))

@@ -14,7 +14,13 @@ from typing import Any
 import numpy as np
 
 from equipoise.codegen.across import trace_across
-from equipoise.codegen.applied import Held, trace_element, trace_limits, trace_load, trace_preload
+from equipoise.codegen.applied import (
+    HoldingWrench,
+    trace_element,
+    trace_limits,
+    trace_load,
+    trace_preload,
+)
 from equipoise.codegen.coupled import (
     trace_coupling,
     trace_displacement,
@@ -161,9 +167,9 @@ def trace_demands(trace: Trace) -> None:
     moving, weights = _inertia(trace)
     loads = [trace_load(trace, k, load) for k, load in enumerate(machine.loads, 1)]
     springs = [
-        held
+        wrench
         for table, number, _ in machine.force_elements
-        for held in trace_element(trace, table, number)
+        for wrench in trace_element(trace, table, number)
     ]
     springs += [held for k in range(len(machine.couplings)) for held in trace_preload(trace, k)]
     if machine.has_planes:
@@ -181,7 +187,7 @@ def trace_demands(trace: Trace) -> None:
         state["drive torque"] = sum(_drive_torques(trace))
 
 
-def _inertia(trace: Trace) -> tuple[list[Held], list[Held]]:
+def _inertia(trace: Trace) -> tuple[list[HoldingWrench], list[HoldingWrench]]:
     """What moves every link, and what holds its weight."""
     speed, acceleration = trace.rate("speed"), trace.rate("acceleration")
     gravity = trace.slot("gravity", lambda linkage: planar(linkage.machine.gravity), vector=True)
@@ -204,7 +210,7 @@ def _inertial(trace: Trace, link: str, place: int) -> Read:
     return lambda linkage: inertia_moved(linkage.machine, link, anchor)[place]
 
 
-def _on_frame(trace: Trace, what: str, demands: list[Held]) -> None:
+def _on_frame(trace: Trace, what: str, demands: list[HoldingWrench]) -> None:
     """Force and moment, about the drive's pivot, that these demands exert on the frame."""
     pivot = trace.state[f"p({trace.linkage.pivot})"]
     trace.state[f"{what} force"] = -sum(force for _, force, _ in demands)

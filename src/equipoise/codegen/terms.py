@@ -240,14 +240,14 @@ def _in_order(a: Real, b: Real) -> tuple[Real, Real]:
     return (a, b) if _order(a) <= _order(b) else (b, a)
 
 
-def _made(op: str, *args: Real) -> Term:
+def _term(op: str, *args: Real) -> Term:
     return next(arg for arg in args if isinstance(arg, Term)).graph.make(op, *args)
 
 
 def _operation(op: str, *args: Any) -> Any:
     """An operation on real numbers, carried out where all are plain."""
     if any(type(arg) is Term for arg in args):
-        return _made(op, *args)
+        return _term(op, *args)
     return FOLDED[op](*args)
 
 
@@ -255,7 +255,7 @@ def negative(a: Any) -> Any:
     if type(a) is not Term:
         return -a
     term, minus = _without_sign(a)
-    return term if minus else _made("-", term)
+    return term if minus else _term("-", term)
 
 
 def add(a: Any, b: Any) -> Any:  # noqa: PLR0911
@@ -272,7 +272,7 @@ def add(a: Any, b: Any) -> Any:  # noqa: PLR0911
         return negative(add(x, y))
     if minus or less:
         return subtract(a, y) if less else subtract(b, x)
-    return multiply(2.0, a) if a is b else _made("+", *_in_order(a, b))
+    return multiply(2.0, a) if a is b else _term("+", *_in_order(a, b))
 
 
 def subtract(a: Any, b: Any) -> Any:  # noqa: PLR0911
@@ -289,7 +289,7 @@ def subtract(a: Any, b: Any) -> Any:  # noqa: PLR0911
         return add(a, y)
     if minus:
         return negative(add(x, b))
-    return _made("-", a, b) if _order(a) < _order(b) else negative(_made("-", b, a))
+    return _term("-", a, b) if _order(a) < _order(b) else negative(_term("-", b, a))
 
 
 def multiply(a: Any, b: Any) -> Any:
@@ -311,12 +311,12 @@ def multiply(a: Any, b: Any) -> Any:
 def _positive_product(a: Any, b: Any) -> Any:
     """Product of two numbers without a sign; only the first may be plain."""
     if type(a) is Term:
-        return _made("*", a, b)
+        return _term("*", a, b)
     if a in (0, 1):
         return b if a else 0.0
     if b.op == "*" and type(b.args[0]) is not Term:
         return _positive_product(a * b.args[0], b.args[1])
-    return _made("*", a, b)
+    return _term("*", a, b)
 
 
 def inverse(a: Any) -> Any:
@@ -326,7 +326,7 @@ def inverse(a: Any) -> Any:
     if type(a) is not Term:
         return _reciprocal(a)
     term, minus = _without_sign(a)
-    return negative(_made("inverse", term)) if minus else _made("inverse", term)
+    return negative(_term("inverse", term)) if minus else _term("inverse", term)
 
 
 def divide(a: Any, b: Any) -> Any:
@@ -368,7 +368,7 @@ def select(x: Any, y: Any, yes: Any, no: Any) -> Any:
 
 def pick(table: Term, place: Any) -> Any:
     """A number of a table, by its place from 0 on; the first or last where there is no such."""
-    return _made("pick", table, place)
+    return _term("pick", table, place)
 
 
 def rotation(angle: Any) -> VectorTerm:

@@ -34,7 +34,7 @@ FORBIDDEN = re.compile(r'[<>/\\":;?*|=`,]')
 """Signs that names of layers must not have."""
 
 
-def made(job: Job) -> str:
+def export_bytes(job: Job) -> str:
     """The file's text."""
     drawing = needed("ezdxf", "DXF").new("R2010", units=4)
     space = drawing.modelspace()
@@ -97,8 +97,8 @@ def _linkage(space: Any, scene: Scene) -> None:
             layer = _layer(table, mark.body)
             space.add_lwpolyline(corners, close=mark.shape.closed, dxfattribs=layer)
     for name, spot in zip(at, _points(at.values()), strict=True):
-        held = FRAME if name in scene.frame else "points"
-        space.add_point(spot, dxfattribs=_layer(held))
+        layer_name = FRAME if name in scene.frame else "points"
+        space.add_point(spot, dxfattribs=_layer(layer_name))
         space.add_text(name, height=letter, dxfattribs=_layer("names")).set_placement(spot)
 
 

@@ -76,7 +76,7 @@ def export(
     if angles is not None and crank_angle is not None:
         raise UsageError(Note("crank_angle and angles were given; give one of them"))
     with speaking(language):
-        job, data = made(what, item, crank_angle, link, angles)
+        job, data = export_content(what, item, crank_angle, link, angles)
     write(path, data)
     return tuple(job.left_out)
 
@@ -112,7 +112,7 @@ def check_link_loads(file_format: Format, *, prefix: str = "", **options: object
             )
 
 
-def made(
+def export_content(
     what: Machine | Balanced,
     file_format: Format,
     crank_angle: float | None = None,
@@ -140,7 +140,7 @@ def made(
                 job.leave_out(f"{lost}, which its pins bear")
     if machine.pushers:
         job.leave_out("what pushes the machine, and its stroke")
-    data: str | bytes = import_module(file_format.maker).made(job)
+    data: str | bytes = import_module(file_format.maker).export_bytes(job)
     return job, data
 
 

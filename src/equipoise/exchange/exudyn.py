@@ -37,7 +37,7 @@ LISTS = (
 EMPTY = "MODEL: Data = {}"
 
 
-def made(job: Job) -> str:
+def export_bytes(job: Job) -> str:
     """The file's text."""
     script = files("equipoise.exchange").joinpath("exudyn_script.py").read_text("utf-8")
     before, _, after = script.partition(EMPTY)
@@ -52,7 +52,7 @@ def _model(job: Job) -> Data:
     ------
     UsageError : it does not move, or something has no place in a planar model of Exudyn.
     """
-    machine, drawn = weighed(job.machine), trees(job)
+    machine, trees_of_links = weighed(job.machine), trees(job)
     if not machine.drive.speed:
         raise UsageError(
             Note("the drive stands still, and a script runs for a turn; give it a speed")
@@ -67,16 +67,18 @@ def _model(job: Job) -> Data:
         "bodies": {} if support is None else {BASE: _support(machine, support)},
         **{kind: [] for kind in LISTS},
     }
-    for tree in drawn:
-        _row(model, tree, job, machine.drive.flywheel if tree is drawn[0] else 0.0)
+    for tree in trees_of_links:
+        _row(model, tree, job, machine.drive.flywheel if tree is trees_of_links[0] else 0.0)
     if support is not None:
-        held = (number for number, name in enumerate(PLANAR) if name not in support.coordinates)
+        constrained = (
+            number for number, name in enumerate(PLANAR) if name not in support.coordinates
+        )
         model["mounts"] = _mounts(machine, support)
-        model["held"] = [(BASE, number) for number in held]
+        model["held"] = [(BASE, number) for number in constrained]
         if support.pivot is not None:
             model["pins"].append([(GROUND, list(support.pivot)), _on_base(machine, support.pivot)])
             model["held"] = []
-    crank, *others = (f"{machine.drive.link}{tree.suffix}" for tree in drawn)
+    crank, *others = (f"{machine.drive.link}{tree.suffix}" for tree in trees_of_links)
     model["drive"] = {"body": crank, "on": base, "speed": machine.drive.speed, "others": others}
     return model
 

@@ -66,13 +66,13 @@ class Build:
             "mounts": self.mount,
         }
 
-    def marker(self, made: Any) -> int:
+    def marker(self, item: Any) -> int:
         """Add a marker."""
-        return int(self.system.AddMarker(made))
+        return int(self.system.AddMarker(item))
 
-    def add(self, made: Any) -> int:
+    def add(self, item: Any) -> int:
         """Add an object."""
-        return int(self.system.AddObject(made))
+        return int(self.system.AddObject(item))
 
     def body(
         self, name: str, mass: float, inertia: float, pose: list[float], velocity: list[float]
@@ -104,9 +104,9 @@ class Build:
             item.MarkerNodeCoordinate(nodeNumber=self.nodes[body], coordinate=number)
         )
 
-    def pair(self, one: str, other: str, number: int = 2) -> list[int]:
+    def pair(self, first: str, other: str, number: int = 2) -> list[int]:
         """Mark the same coordinate of two bodies."""
-        return [self.coordinate(one, number), self.coordinate(other, number)]
+        return [self.coordinate(first, number), self.coordinate(other, number)]
 
     def geared(self, driven: str, by: str, factor: float) -> None:
         """Turn a body so many times as fast as another."""
@@ -266,11 +266,11 @@ def simulate(turns: float = 1.0, steps_per_turn: int = 2000, model: Data | None 
     built = Build(MODEL if model is None else model)
     system, speed = built.system, abs(built.model["drive"]["speed"])
     kinds = exudyn.OutputVariableType
-    kept: Data = {"storeInternal": True, "writeToFile": False}
-    torque = item.SensorObject(objectNumber=built.drive, outputVariableType=kinds.Force, **kept)
+    settings: Data = {"storeInternal": True, "writeToFile": False}
+    torque = item.SensorObject(objectNumber=built.drive, outputVariableType=kinds.Force, **settings)
     sensors = {"": system.AddSensor(torque)}
     for name, node in built.nodes.items():
-        sensor = item.SensorNode(nodeNumber=node, outputVariableType=kinds.Coordinates, **kept)
+        sensor = item.SensorNode(nodeNumber=node, outputVariableType=kinds.Coordinates, **settings)
         sensors[name] = system.AddSensor(sensor)
     system.Assemble()
     chosen = exudyn.SimulationSettings()
@@ -290,7 +290,7 @@ def simulate(turns: float = 1.0, steps_per_turn: int = 2000, model: Data | None 
 
 
 if __name__ == "__main__":
-    found = simulate()
+    samples = simulate()
     print("crank_angle [rad],drive_torque [N m]")
-    for angle, torque in zip(found["crank_angle"], found["drive_torque"], strict=True):
+    for angle, torque in zip(samples["crank_angle"], samples["drive_torque"], strict=True):
         print(f"{float(angle)!r},{float(torque)!r}")

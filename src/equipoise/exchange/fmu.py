@@ -38,7 +38,7 @@ SYSTEMS = {"linux": ("linux64", ".so"), "darwin": ("darwin64", ".dylib")}
 """Where the binary of a system stands, and how its name ends."""
 
 
-def made(job: Job) -> bytes:
+def export_bytes(job: Job) -> bytes:
     """The file's content."""
     machine = replace(job.machine, loads=tuple(load for _, load in constant_loads(job)),
                       planting=None, balance=None)  # fmt: skip

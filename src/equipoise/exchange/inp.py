@@ -30,7 +30,7 @@ MOST_STEPS = 9999
 """Crank angles in a file, each of which has a line for every load at every node."""
 
 
-def made(job: Job) -> str:
+def export_bytes(job: Job) -> str:
     """The file's text."""
     link = link_of(job)
     section = job.machine.links[link].section

@@ -53,7 +53,7 @@ def analysis_of(job: Job) -> Analysis:
     return analyze(job.machine, job.angles)
 
 
-def made(job: Job) -> str:
+def export_bytes(job: Job) -> str:
     """Loads and stress in every cut at every crank angle, a row each."""
     link = link_of(job)
     analysis = analysis_of(job)

@@ -21,7 +21,7 @@ LONGEST = 60
 """Signs of a name, of 63 that MATLAB knows."""
 
 
-def made(job: Job) -> bytes:
+def export_bytes(job: Job) -> bytes:
     """The file's content."""
     from scipy.io import savemat
 

@@ -48,30 +48,30 @@ FAR = 1e30
 """Of a force: no limit."""
 
 
-def made(job: Job) -> str:
+def export_bytes(job: Job) -> str:
     """The file's text."""
     machine = weighed(job.machine)
-    drawn = trees(job)
+    trees_of_links = trees(job)
     root = ET.Element("mujoco", model=str(machine.title))
     _options(root, machine)
     world = ET.SubElement(root, "worldbody")
     base = world if machine.support is None else _support(world, machine, machine.support)
     for name, (x, y) in machine.frame.items():
-        for tree in drawn:
+        for tree in trees_of_links:
             dx, dy = tree.row.offset
             _site(base, f"{FRAME} {name}{tree.suffix}", (x + dx, y + dy, tree.row.lateral))
-    for tree in drawn:
-        _links(base, tree, job, machine.drive.flywheel if tree is drawn[0] else 0.0)
-        _held(root, tree)
+    for tree in trees_of_links:
+        _links(base, tree, job, machine.drive.flywheel if tree is trees_of_links[0] else 0.0)
+        _constraints(root, tree)
         _springs(root, tree, job)
         _dampers(root, tree, job)
         _resistances(root, tree, job)
         _loads(root, world, tree, job)
-    _shaft(root, drawn)
+    _shaft(root, trees_of_links)
     if machine.support is not None:
         _mounts(root, world, base, machine)
-    _drive(root, drawn[0], job)
-    _start(root, drawn, machine)
+    _drive(root, trees_of_links[0], job)
+    _start(root, trees_of_links, machine)
     ET.indent(root)
     return ET.tostring(root, encoding="unicode") + "\n"
 
@@ -203,7 +203,7 @@ def _part(root: ET.Element, name: str) -> ET.Element:
     return ET.SubElement(root, name) if result is None else result
 
 
-def _held(root: ET.Element, tree: Tree) -> None:
+def _constraints(root: ET.Element, tree: Tree) -> None:
     """Pins that close loops, and gears: sums of angles that stay what they are."""
     for loop in tree.loops:
         plane = _plane(tree, loop.other, loop.pin)
@@ -211,7 +211,9 @@ def _held(root: ET.Element, tree: Tree) -> None:
         sites = {f"site{number}": name for number, name in enumerate(ends, 1)}
         ET.SubElement(_part(root, "equality"), "connect", sites)
     for gear, factors in tree.proportions:
-        _kept(root, f"{gear}{tree.suffix}", {f"{k}{tree.suffix}": v for k, v in factors.items()})
+        _constant_sum(
+            root, f"{gear}{tree.suffix}", {f"{k}{tree.suffix}": v for k, v in factors.items()}
+        )
 
 
 def _place(tree: Tree, body: str, point: str) -> str:
@@ -239,7 +241,7 @@ def _in_plane(root: ET.Element, tree: Tree, body: str, point: str, plane: float)
     return other
 
 
-def _kept(root: ET.Element, name: str, factors: Mapping[str, float]) -> None:
+def _constant_sum(root: ET.Element, name: str, factors: Mapping[str, float]) -> None:
     """A sum of coordinates of joints that stays what it is."""
     tendon = ET.SubElement(_part(root, "tendon"), "fixed", name=name)
     for joint, factor in factors.items():
@@ -265,8 +267,8 @@ def _springs(root: ET.Element, tree: Tree, job: Job) -> None:
         if torsion.stiffness is None:
             job.leave_out("torsion springs with a table")
             continue
-        drawn = float(motion.element_values("torsion_springs", number)["angle"][0])
-        rest = torsion.angle + torsion.preload / torsion.stiffness - drawn
+        start_angle = float(motion.element_values("torsion_springs", number)["angle"][0])
+        rest = torsion.angle + torsion.preload / torsion.stiffness - start_angle
         rates = {"stiffness": repr(torsion.stiffness), "springlength": _row((rest, rest))}
         _turning(root, tree, (torsion.link, torsion.on), rates)
 
@@ -380,7 +382,7 @@ def _shaft(root: ET.Element, trees: Sequence[Tree]) -> None:
     """Cranks of all rows turn together."""
     first, *others = (f"{tree.machine.drive.link}{tree.suffix}" for tree in trees)
     for crank in others:
-        _kept(root, f"shaft to {crank}", {crank: 1.0, first: -1.0})
+        _constant_sum(root, f"shaft to {crank}", {crank: 1.0, first: -1.0})
 
 
 def _mounts(root: ET.Element, world: ET.Element, base: ET.Element, machine: Machine) -> None:

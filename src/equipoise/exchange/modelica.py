@@ -106,7 +106,7 @@ class Flat:
             self.acting[body][2].append(f"+ {couple}")
 
 
-def made(job: Job) -> str:
+def export_bytes(job: Job) -> str:
     """The file's text."""
     machine = weighed(job.machine)
     for what, given in (("the support", machine.support), ("all rows but one", machine.rows[1:])):

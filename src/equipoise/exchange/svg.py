@@ -14,7 +14,7 @@ MARGIN, LETTER = 10.0, 4.0
 LINE = {"fill": "none", "stroke": "black", "stroke-width": "0.1"}
 
 
-def made(job: Job) -> str:
+def export_bytes(job: Job) -> str:
     """The file's text."""
     root = ET.Element("svg", xmlns="http://www.w3.org/2000/svg")
     ET.SubElement(root, "title").text = str(job.machine.title)

@@ -257,11 +257,11 @@ def _edges(machine: Machine) -> Iterator[TreeJoint]:
 def _spanned(machine: Machine) -> tuple[list[TreeJoint], tuple[LoopClosure, ...]]:
     """Joints that hold every link once, and the pins that are left over."""
     group = {body: body for body in machine.bodies}
-    held, loose = [], []
+    spanning, loose = [], []
     for edge in _edges(machine):
         item, other = group[edge.one], group[edge.other]
         if item != other:
-            held.append(edge)
+            spanning.append(edge)
             group = {body: item if root == other else root for body, root in group.items()}
         elif edge.slider is None:
             loose.append(LoopClosure(edge.pin, edge.one, edge.other))
@@ -273,7 +273,7 @@ def _spanned(machine: Machine) -> tuple[list[TreeJoint], tuple[LoopClosure, ...]
                     name=edge.slider.name,
                 )
             )
-    return held, tuple(loose)
+    return spanning, tuple(loose)
 
 
 def _outwards(joints: list[TreeJoint]) -> Iterator[tuple[str, str, TreeJoint]]:

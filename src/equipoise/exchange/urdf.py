@@ -21,12 +21,12 @@ EFFORT = 1e6
 """N or N m: URDF wants a limit of what slides."""
 
 
-def made(job: Job) -> str:
+def export_bytes(job: Job) -> str:
     """The file's text."""
-    machine, drawn = weighed(job.machine), trees(job)
+    machine, trees_of_links = weighed(job.machine), trees(job)
     root = ET.Element("robot", name=str(machine.title))
     ET.SubElement(root, "link", name=FRAME)
-    for tree in drawn:
+    for tree in trees_of_links:
         for link in tree.links:
             _link(root, tree, link)
             _joint(root, tree, link)

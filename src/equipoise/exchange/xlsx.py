@@ -28,19 +28,19 @@ LARGE = 1_000_000
 """Numbers of signals beyond which rows go to the disk as they are written, since each takes some
 hundred bytes; then columns keep their usual widths.
 """
-BESIDE, HIGH = 8, 16
+WIDE, HIGH = 8, 16
 """Columns and rows that a chart takes."""
 
 
-def made(job: Job) -> bytes:
+def export_bytes(job: Job) -> bytes:
     """The file's content."""
     data = io.BytesIO()
     analysis = analyze(job.machine)
     columns = analysis.outputs.arrays
     rows = len(analysis.crank_angle)
     _check_size(rows, 1 + len(columns), analysis.motion.turns)
-    kept = {"constant_memory": True} if rows * len(columns) > LARGE else {"in_memory": True}
-    book = needed("xlsxwriter", "Excel").Workbook(data, kept)
+    options = {"constant_memory": True} if rows * len(columns) > LARGE else {"in_memory": True}
+    book = needed("xlsxwriter", "Excel").Workbook(data, options)
     book.set_properties({"title": str(job.machine.title)})
     job.leave_out_forces()
     _sheet(book, "Summary", _summary(analysis))
@@ -135,7 +135,7 @@ def _signals(book: Any, analysis: Analysis, columns: Iterable[AnalysisOutput]) -
 def _charts(book: Any, sheet: Any, columns: Sequence[AnalysisOutput], count: int) -> None:
     """Signals of one group and unit in one chart; they are drawn from the sheet of signals."""
     numbered = sorted(enumerate(columns, 1), key=lambda item: (item[1].group, item[1].unit))
-    kinds = groupby(numbered, key=lambda one: (one[1].group, one[1].unit))
+    kinds = groupby(numbered, key=lambda column: (column[1].group, column[1].unit))
     for place, ((group, unit), members) in enumerate(kinds):
         chart = book.add_chart({"type": "scatter", "subtype": "straight"})
         for column, _ in members:
@@ -148,4 +148,4 @@ def _charts(book: Any, sheet: Any, columns: Sequence[AnalysisOutput], count: int
             )
         chart.set_title({"name": f"{group} [{unit}]" if unit else group})
         chart.set_x_axis({"name": "crank_angle [rad]", "min": 0})
-        sheet.insert_chart(place // 2 * HIGH, place % 2 * BESIDE, chart)
+        sheet.insert_chart(place // 2 * HIGH, place % 2 * WIDE, chart)

@@ -24,8 +24,8 @@ from equipoise.errors import UsageError, at_place
 from equipoise.exposure.daily import SINGLE_AXIS, total_value
 from equipoise.exposure.weighting import (
     AXES,
+    BAND_TOLERANCE,
     EDGES,
-    NEAR,
     NUMBERS,
     Kind,
     Weighted,
@@ -361,7 +361,7 @@ def _on_bands(frequency: Array, bands: bool) -> Iterator[str]:
         )
     elif not bands and len(frequency) >= LOOKS_LIKE_BANDS and frequency[0] > 0:
         number = 10 * np.log10(frequency)
-        if np.all(np.abs(number - np.rint(number)) < NEAR):
+        if np.all(np.abs(number - np.rint(number)) < BAND_TOLERANCE):
             yield (
                 "the frequencies are middles of one-third-octave bands; say so (bands), and they "
                 "count with the factors of the exact middles"

@@ -199,7 +199,7 @@ MIDDLES = 10 ** (np.array(NUMBERS) / 10)
 EDGES = 10 ** ((np.arange(8, 33) - 0.5) / 10)
 """Hz, (25,): band k reaches from edge k to edge k + 1."""
 
-NEAR = 0.06
+BAND_TOLERANCE = 0.06
 """Bands, by which a nominal frequency may miss the exact one: 31.5 Hz misses it by 0.02."""
 
 
@@ -218,7 +218,7 @@ def exact_middles(frequency: Array) -> Array:
     with np.errstate(divide="ignore"):
         number = 10 * np.log10(frequency)
     nearest = np.clip(np.nan_to_num(np.rint(number)), NUMBERS[0], NUMBERS[-1])
-    for given in frequency[np.abs(number - nearest) > NEAR]:
+    for given in frequency[np.abs(number - nearest) > BAND_TOLERANCE]:
         raise UsageError(
             at_place(
                 "frequency",

@@ -44,7 +44,7 @@ MOST_OF_HALF = 4
 """Panels side by side and below each other that are seen in half of the width of a page."""
 
 
-def drawn(picture: Chart) -> tuple[str, bool]:
+def standalone_svg(picture: Chart) -> tuple[str, bool]:
     """The picture as SVG for a page that tells its heading beside it; whether it is a wide one."""
     from equipoise.figures.layout import HALF, WIDE, lay_out
     from equipoise.figures.vector import svg_of

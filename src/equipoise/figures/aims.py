@@ -160,5 +160,5 @@ def aims(balanced: Balanced) -> Iterator[Chart]:
         if any(aim.output.is_vector for aim in some):
             text += "; " + say("orders of forces: both components together")
         panels = [panel for aim in some for panel in aim.panels(last, len(speeds) > 1)]
-        drawn = keys(*(aim.pair for aim in some))
-        yield Chart(f"aims{suffix}", balanced.original.title, text, tuple(panels), 2, keys=drawn)
+        legend = keys(*(aim.pair for aim in some))
+        yield Chart(f"aims{suffix}", balanced.original.title, text, tuple(panels), 2, keys=legend)

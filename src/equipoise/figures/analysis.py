@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from equipoise.results.analysis import Analysis
 
 
-ONE, ALL = "one", "all"
+SINGLE, ALL = "one", "all"
 """Roles of one row, and of all of them together."""
 NOTHING = 1e-11
 """Over what each link needs: less is rounding."""
@@ -131,7 +131,7 @@ def each(analysis: Analysis, output: str) -> Mapping[str, Array]:
         least = force if output == "drive_force" else moment
     if not analysis.together:
         return {ALL: settled(own, least)}
-    return {ONE: settled(own, least), ALL: settled(analysis.together[output], least)}
+    return {SINGLE: settled(own, least), ALL: settled(analysis.together[output], least)}
 
 
 def row_keys(analysis: Analysis) -> tuple[tuple[str, str], ...]:
@@ -139,7 +139,7 @@ def row_keys(analysis: Analysis) -> tuple[tuple[str, str], ...]:
     if not analysis.together:
         return ()
     count = len(analysis.machine.rows)
-    return (ONE, say("one row")), (ALL, say("all {count} rows", count=count))
+    return (SINGLE, say("one row")), (ALL, say("all {count} rows", count=count))
 
 
 # -- joints ----------------------------------------------------------------------------------------
@@ -206,14 +206,14 @@ def joints(analysis: Analysis) -> Iterator[Chart]:
 
 def _over_angle(analysis: Analysis, joint: JointCurve, every: Iterable[JointCurve]) -> Panel:
     """One of several joints, whose forces have one unit."""
-    beside = np.concatenate([item.values for item in every if item.couple == joint.couple])
+    same_kind = np.concatenate([item.values for item in every if item.couple == joint.couple])
     if joint.couple:
         values, most = joint.values, 2
-        y = Axis.of(say("couple"), "torque", beside, room=ROOM)
+        y = Axis.of(say("couple"), "torque", same_kind, room=ROOM)
     else:
         values, most = np.abs(joint.values), 1
         unit = display_of_joints(analysis).unit
-        y = Axis.of(say("force"), "force", beside, unit, low=0.0, room=ROOM)
+        y = Axis.of(say("force"), "force", same_kind, unit, low=0.0, room=ROOM)
     places = sampled_extremes(*over(analysis, values))[:most]
     return Panel(
         angle_axis(analysis),

@@ -109,13 +109,13 @@ def laid_out(
     behind: list[MovingGroup] = []
     before: list[MovingGroup] = []
     for piece in pieces(scene, names):
-        held = piece.hold, piece.still
-        if held not in moves:  # pieces that are held alike share their moves
+        hold = piece.hold, piece.still
+        if hold not in moves:  # pieces that are held alike share their moves
             track = piece.track(scene, stage.unit / stage.scale)
-            moves[held] = None if track is None else stage.moves(track)
-        origin = stage.origin if moves[held] is None else 0
+            moves[hold] = None if track is None else stage.moves(track)
+        origin = stage.origin if moves[hold] is None else 0
         strokes = tuple(_stroke(stage, shape, origin) for shape in piece.shapes)
-        part = MovingGroup(strokes, moves[held])
+        part = MovingGroup(strokes, moves[hold])
         (behind if piece.layer in BEHIND else before).append(part)
     behind.append(MovingGroup((*_paths(stage, names), _ruler(stage))))
     return Moving(stage, tuple(behind), captions(stage, names), (*before, *_force(stage)))
@@ -294,7 +294,7 @@ def _group(part: MovingGroup, numbers: dict[int, int]) -> str:
 
 
 def _strokes(strokes: tuple[PixelPath, ...]) -> Iterator[str]:
-    for (role, round_), run in groupby(strokes, lambda one: (one.role, one.radius > 0)):
+    for (role, round_), run in groupby(strokes, lambda stroke: (stroke.role, stroke.radius > 0)):
         if not round_:
             yield f'<path class="{role}" d="{"".join(map(_path, run))}"/>'
             continue
@@ -350,8 +350,8 @@ def _sizes_where_narrow(stage: Stage) -> tuple[float, float]:
     longest = max((width_of(words, 1.0) for words, _ in stage.lines), default=0.0)
     fitting = min(larger, stage.row / 1.05, room / max(longest, 1e-9))
     if stage.lines and stage.lines[0][0]:  # which stands beside the ruler and its length
-        beside = (1 - RULER) * stage.width - 36 * stage.unit
-        fitting = min(fitting, beside / width_of(stage.lines[0][0] + "500 mm ", 1.0))
+        width = (1 - RULER) * stage.width - 36 * stage.unit
+        fitting = min(fitting, width / width_of(stage.lines[0][0] + "500 mm ", 1.0))
     return larger, max(stage.size_of_type, fitting) if len(stage.lines) > 1 else larger
 
 

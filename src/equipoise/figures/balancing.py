@@ -49,7 +49,7 @@ PUSHED = "torque", ("drive_force", to_say("Drive force"), to_say("drive force"))
 """What stands in the place of the torque where a force drives."""
 SAMPLES, SAMPLES_OF_ROWS = 360, 720
 """Crank angles in a turn from which it is told what is rounding, and of rows together."""
-NEAR = 0.015
+LABEL_DISTANCE = 0.015
 """Over the size of a hodograph: numbers after that are nearer to those before are left out."""
 IN_LINE = 6
 """Dials side by side."""
@@ -63,15 +63,15 @@ def charts(balanced: Balanced) -> dict[str, Chart]:
     ``rows`` where phases of rows are chosen.  What did not change is left out.
     """
     of_linkage = any(change.kind != "phases" for change in balanced.changes)
-    drawn = by_name(aims(balanced)) | (signals(balanced) if of_linkage else {})
+    result = by_name(aims(balanced)) | (signals(balanced) if of_linkage else {})
     if balanced.phasing is not None:
-        drawn |= row_charts(balanced.original, balanced.machine)
-    return drawn
+        result |= row_charts(balanced.original, balanced.machine)
+    return result
 
 
 def row_charts(original: Machine | None, machine: Machine) -> dict[str, Chart]:
     """``phases`` and ``rows``; phases alone do not know the machine before."""
-    return by_name([phases(original, machine), together(original, machine)])
+    return by_name([phases(original, machine), combined(original, machine)])
 
 
 # -- before and after ------------------------------------------------------------------------------
@@ -85,22 +85,22 @@ def signals(balanced: Balanced) -> dict[str, Chart]:
     columns = {name: values for name, _, values in balanced.columns()}
     angles, drive = columns["crank_angle"], balanced.original.drive
     least_force, least_moment = rounding(analyze(balanced.original, SAMPLES))
-    title, when = balanced.original.title, _told(balanced)
+    title, when = balanced.original.title, _caption(balanced)
 
     def pair_of(output: str, least: float) -> Pair:
         return paired(columns[f"{output}.before"], columns[f"{output}.after"], least)
 
     force = {axis: pair_of(f"shaking_force.{axis}", least_force) for axis in ("x", "y")}
     moved = {axis: pair for axis, pair in force.items() if changed(pair)}
-    drawn: dict[str, Chart] = {}
+    result: dict[str, Chart] = {}
     if moved:
         panels = tuple(
             compare(drive, angles, pair, say("along {axis}", axis=axis), "force")
             for axis, pair in moved.items()
         )
         what = f"{say('Shaking force')}, {when}"
-        drawn["force"] = Chart("force", title, what, panels, keys=keys(*moved.values()))
-        drawn["polar"] = polar(balanced, angles, force)
+        result["force"] = Chart("force", title, what, panels, keys=keys(*moved.values()))
+        result["polar"] = polar(balanced, angles, force)
     aimed = (
         {objective.output for objective in balanced.plan.objectives}
         if len(balanced.original.rows) < 2
@@ -112,11 +112,11 @@ def signals(balanced: Balanced) -> dict[str, Chart]:
         pair = pair_of(output, least_force if kind == "force" else least_moment)
         if changed(pair) and output not in aimed:
             panel = compare(drive, angles, pair, say(label), kind)
-            drawn[name] = Chart(name, title, f"{say(text)}, {when}", (panel,), keys=keys(pair))
-    return drawn
+            result[name] = Chart(name, title, f"{say(text)}, {when}", (panel,), keys=keys(pair))
+    return result
 
 
-def _told(balanced: Balanced) -> str:
+def _caption(balanced: Balanced) -> str:
     """What is shown of a signal, in words."""
     of_one = say("of one row") + ", " if len(balanced.original.rows) > 1 else ""
     speed = told_speed(balanced.original.drive.speed)
@@ -134,12 +134,12 @@ def polar(balanced: Balanced, angles: Array, force: Mapping[str, Pair]) -> Chart
         if np.any(values):
             marks += numbers(at, values, role, size)
         apart = np.abs(ends["before"] - ends["after"])
-        at = {angle: k for angle, k in at.items() if apart[k] > NEAR * size}
+        at = {angle: k for angle, k in at.items() if apart[k] > LABEL_DISTANCE * size}
     every = np.concatenate([*ends.values()])
     x, y = (Axis.of(say("shaking force along {axis}", axis=a), "force", every) for a in ("x", "y"))
     message = "" if np.any(every) else say("zero at every crank angle")
     panel = Panel(x, y, tuple(curves), tuple(marks), message=message, equal=True)
-    what = f"{say('Shaking force')}, {_told(balanced)}; {say('numbers: crank angle, deg')}"
+    what = f"{say('Shaking force')}, {_caption(balanced)}; {say('numbers: crank angle, deg')}"
     return Chart("polar", balanced.original.title, what, (panel,), keys=keys(ends))
 
 
@@ -181,7 +181,7 @@ def _dial(hands: Mapping[str, Machine], machine: Machine, k: int) -> Panel:
     )
 
 
-def together(original: Machine | None, machine: Machine) -> Chart:
+def combined(original: Machine | None, machine: Machine) -> Chart:
     """Components of the shaking force of all rows together over crank angle."""
     text = {"count": len(machine.rows), "speed": told_speed(machine.drive.speed)}
     what = say("Shaking force of {count} rows together, at {speed}", **text)
@@ -224,17 +224,17 @@ def front(result: Front) -> Chart:
     names = [objective_named(item, len(result.original.rows)) for item in both]
     low, high = np.min(values, axis=0), np.max(values, axis=0)
     room = SENSIBLE * (high - low)
-    seen = bool(np.all((before <= high + room) & (before >= low - room)))
-    held = np.vstack([values, before]) if seen else values
+    shows_before = bool(np.all((before <= high + room) & (before >= low - room)))
+    shown_values = np.vstack([values, before]) if shows_before else values
     x, y = (
         _objective_axis(short(name, most), unit, column)
         for name, most, (_, unit, _), column in zip(
-            names, (60, 46), result.columns()[:2], held.T, strict=True
+            names, (60, 46), result.columns()[:2], shown_values.T, strict=True
         )
     )
     label = f"{x.quantity(before[0])}, {y.quantity(before[1])}"
     marks, remark = [], say("as it is, far off: {places}", places=label)
-    if seen:
+    if shows_before:
         text, remark = say("as it is: {places}", places=label), ""
         marks.append(Mark.of(complex(*before), text, "own", 90.0))
     for k, wish in ((0, 20.0), (len(values) - 1, 110.0)):

@@ -191,7 +191,7 @@ def make_room(cell: Cell, over: float) -> None:
     )
     above = max(NUMBERS - (high - top) / rate, 0.0) if matching_bars else 0.0
     longest = max((width_of(word, NORMAL) for word in panel.y.text.split()), default=0.0)
-    more = max(longest - over - cell.height - above, 0.0)
-    below = 0.0 if panel.bars else more / 2
-    cell.height += above + more
-    cell.y_ends = (low - below * rate, high + (above + more - below) * rate)
+    extra = max(longest - over - cell.height - above, 0.0)
+    below = 0.0 if panel.bars else extra / 2
+    cell.height += above + extra
+    cell.y_ends = (low - below * rate, high + (above + extra - below) * rate)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from equipoise.dataclass import dataclass
-from equipoise.figures.linkage import drawn, joint_names, plane_axes, told_angle
+from equipoise.figures.linkage import joint_names, panel_content, plane_axes, told_angle
 from equipoise.figures.style import short
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.kinematics.motion import Motion, move
@@ -41,7 +41,7 @@ NO_LENGTH = 1e-6
 """mm."""
 FULL = 1e-6
 """rad: a sector that lacks less than this is a ring."""
-FAR, NEAR = 3.0, 0.02
+FAR, COINCIDENT = 3.0, 0.02
 """Over the size of the machine: rooms that are larger do not set the scale; dots that are nearer to
 each other look like one."""
 NAMES = {
@@ -259,19 +259,19 @@ def _gears(posed: Posed, change: Change) -> Iterator[Addition]:
 def _rooms(posed: Posed, plan: Balance) -> Iterator[Addition]:
     """The rooms that masses and centres of mass have."""
     links = posed.machine.links
-    held = [
+    weights = [
         (mass.link, links[mass.link].points[mass.at], mass.weight.radius) for mass in plan.masses
     ]
-    held += [
+    weights += [
         (geared_weight.name, (0.0, 0.0), geared_weight.weight.radius)
         for geared_weight in plan.geared
     ]
     for shaft in plan.shafts:
-        held += [(f"{shaft.name}-{k}", (0.0, 0.0), shaft.weight.radius) for k in (1, 2)]
+        weights += [(f"{shaft.name}-{k}", (0.0, 0.0), shaft.weight.radius) for k in (1, 2)]
     for moved in plan.moves:
         if moved.center is not None and moved.radius is not None:
-            held.append((moved.link, moved.center, moved.radius))
-    for link, center, radius in held:
+            weights.append((moved.link, moved.center, moved.radius))
+    for link, center, radius in weights:
         if isfinite(radius):
             yield Addition("room", circle(posed.at(link, center), MM * radius))
     for moved in plan.moves:
@@ -289,7 +289,7 @@ def grams(mass: float) -> str:
 
 
 def _panel(scene: Scene, k: int, new: list[Addition]) -> Panel:
-    shapes = drawn(scene, k)
+    shapes = panel_content(scene, k)
     machine = np.concatenate([scene.corners_at(k), *(shape.places for shape in shapes["signs"])])
     size = _size(machine)
     outlines = [
@@ -309,7 +309,7 @@ def _panel(scene: Scene, k: int, new: list[Addition]) -> Panel:
             for item in new
             if item.kind in ("room", "gear") or (item.kind == "cut" and len(item.outline) > 1)
         ),
-        (*_dots(new), *_texts(new, NEAR * size), *joint_names(scene, k, optional=True)),
+        (*_dots(new), *_texts(new, COINCIDENT * size), *joint_names(scene, k, optional=True)),
         arrows=tuple(Arrow(complex(old), complex(at), "move") for old, at in moves if old != at),
         outlines=tuple(
             Outline(item.outline, "added mass", say(NAMES["mass"]), item.holes)
@@ -342,13 +342,13 @@ def _dots(new: list[Addition]) -> Iterator[Mark]:
             yield Mark.of(item.outline[1], "", "move", label=say(NAMES["move"]))
 
 
-def _texts(new: list[Addition], near: float) -> Iterator[Mark]:
+def _texts(new: list[Addition], distance: float) -> Iterator[Mark]:
     """What each is; several that are alike and at one place share it."""
     left = [item for item in new if item.text]
     while left:
         first = left[0]
         alike = [
-            item for item in left if item.text == first.text and abs(item.at - first.at) < near
+            item for item in left if item.text == first.text and abs(item.at - first.at) < distance
         ]
         left = [item for item in left if item not in alike]
         text = first.text if len(alike) == 1 else f"{len(alike)} × {first.text}"

@@ -135,8 +135,8 @@ def keys_for(designs: CloudDesigns, pairs: Iterable[Pair] = ()) -> tuple[tuple[s
     if not cloud.kept:
         keys.append((f"beyond{sign}", say("all designs, none of which keeps every limit")))
     elif cloud.beyond:
-        kept, others = say("designs that keep every limit"), say("others")
-        keys += [(f"kept{sign}", kept), (f"beyond{sign}", others)]
+        feasible, others = say("designs that keep every limit"), say("others")
+        keys += [(f"kept{sign}", feasible), (f"beyond{sign}", others)]
     else:
         keys.append((f"kept{sign}", say("all designs")))
     if any(len(cloud.lost.get(first, ())) for first, _ in pairs):

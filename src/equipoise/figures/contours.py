@@ -44,12 +44,14 @@ def draw_surface(view: View, surface: Surface) -> None:
         return  # the same everywhere: there is no line to draw
     x, y, smooth = finer(surface.x, surface.y, values)
     places = (view.x.at(x), view.y.at(y))
-    drawn = contour_generator(*places, np.ma.masked_invalid(smooth), fill_type="OuterOffset")
+    generator = contour_generator(*places, np.ma.masked_invalid(smooth), fill_type="OuterOffset")
     ends = [min(float(np.nanmin(smooth)), levels[0]) - 1e-300, *levels]
     for number, (low, high) in enumerate(zip(ends, [*ends[1:], np.inf], strict=True)):
         share = number / max(len(ends) - 2, 1)
         color = mixed(DARK, 1.0 - min(share, 1.0))
-        columns: Any = drawn.filled(low, high)  # points, and where the lines in them begin and end
+        columns: Any = generator.filled(
+            low, high
+        )  # points, and where the lines in them begin and end
         for points, parts in zip(*columns, strict=True):
             lines = tuple(thinned(points[a:b]) for a, b in pairwise(parts.tolist()))
             view.sheet.add(
@@ -57,7 +59,7 @@ def draw_surface(view: View, surface: Surface) -> None:
             )
     text = []
     for level in levels:
-        every: Any = drawn.lines(level)
+        every: Any = generator.lines(level)
         lines = tuple(line for line in map(thinned, every) if len(line) > 1)
         if lines:
             view.sheet.add(CanvasStroke(lines, INK, 0.8, clip=view.box), 2.0)

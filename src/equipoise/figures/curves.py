@@ -62,15 +62,15 @@ def draw_curve(view: View, curve: Curve, number: int) -> None:
 
 def thinned(places: Array) -> Array:
     """A line (N, 2) without the places in which it hardly turns."""
-    kept: Array = np.round(places, 1)
-    new = np.concatenate([[True], np.any(np.diff(kept, axis=0) != 0, axis=1)])
-    kept = kept[new]
-    if len(kept) < 3:
-        return kept
-    before, after = np.diff(kept[:-1], axis=0), np.diff(kept[1:], axis=0)
+    points: Array = np.round(places, 1)
+    new = np.concatenate([[True], np.any(np.diff(points, axis=0) != 0, axis=1)])
+    points = points[new]
+    if len(points) < 3:
+        return points
+    before, after = np.diff(points[:-1], axis=0), np.diff(points[1:], axis=0)
     turned = np.abs(before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]) > 1e-9
     ahead = np.sum(before * after, axis=1) > 0
-    return np.asarray(kept[np.concatenate([[True], turned | ~ahead, [True]])])
+    return np.asarray(points[np.concatenate([[True], turned | ~ahead, [True]])])
 
 
 def _spaced(places: Array, number: int, box: Box) -> Array:
@@ -200,11 +200,11 @@ def draw_arrow(view: View, tail: complex, head: complex, look: DrawingStyle) -> 
         return
     length = min(max(4.0 + 2.2 * look.width, 5.5), size)
     along = way / size
-    foot, beside = end - length * along, 0.4 * length * np.array([-along[1], along[0]])
+    foot, half_width = end - length * along, 0.4 * length * np.array([-along[1], along[0]])
     if look.width and size > length:
         shaft = np.array([start, foot + 0.3 * length * along])
         view.sheet.add(CanvasStroke((shaft,), look.color, look.width), 3.5)
-    corners = np.array([end, foot + beside, foot - beside])
+    corners = np.array([end, foot + half_width, foot - half_width])
     view.sheet.add(CanvasStroke((corners,), fill=look.color, closed=True), 3.6)
     view.labels.avoid(np.array([start, end]))
 
@@ -248,7 +248,7 @@ def draw_shapes(
     """Draw shapes, the first of them lowest, in the looks of their roles; size : of signs."""
     groups = [
         (*key, list(run))
-        for key, run in groupby(shapes, lambda one: (one.role, one.radius > 0, one.closed))
+        for key, run in groupby(shapes, lambda shape: (shape.role, shape.radius > 0, shape.closed))
     ]
     for number, (role, to_scale, closed, run) in enumerate(groups):
         look, above = looks.LOOKS[role], order + RANGES.get(order, 0.4) * number / len(groups)

@@ -132,7 +132,7 @@ def _against(designs: CloudDesigns, pair: Pair, alone: bool = False) -> Panel:
     if designs.model:
         at = (designs.model[first], designs.model[second])
         marks.append(Mark(*at, say("model"), "own", optional=not alone))
-    for k in _told(designs, columns[first], alone):
+    for k in _labelled(designs, columns[first], alone):
         text = say("design {name}", name=designs.labels[k])
         at = (float(columns[first][k]), float(columns[second][k]))
         marks.append(Mark(*at, text, "stress", 60.0, sign=False, optional=not alone))
@@ -142,14 +142,14 @@ def _against(designs: CloudDesigns, pair: Pair, alone: bool = False) -> Panel:
     if first in cloud.lost and len(cloud.lost[first]):
         below = np.full(len(cloud.lost[first]), cloud.spreads[second].at(BELOW))
         points.append(Curve(cloud.lost[first], below, "", "failed"))
-    drawn = (*points, *curves)
+    content = (*points, *curves)
     height = 250.0 if alone else 118.0
     return Panel(
-        x, y, drawn, tuple(marks), (), tuple(lines), cells=cells, height=height, zero=False
+        x, y, content, tuple(marks), (), tuple(lines), cells=cells, height=height, zero=False
     )
 
 
-def _told(designs: CloudDesigns, column: Array, alone: bool) -> Sequence[int]:
+def _labelled(designs: CloudDesigns, column: Array, alone: bool) -> Sequence[int]:
     """Which of the chosen designs are named: the ends of a front, the nearest to broken limits."""
     if not len(column):
         return ()

@@ -26,7 +26,7 @@ from equipoise.symbols.shapes import Array
 if TYPE_CHECKING:
     from equipoise.symbols.scene import Scene
 
-Told = Callable[[int, int], None]
+FrameProgress = Callable[[int, int], None]
 
 MOST_PIXELS = 600_000_000
 """In all frames of a film, each taken as square."""
@@ -48,7 +48,7 @@ def gif(
     width: int = 640,
     arrow: ForceArrow | None = None,
     dark: bool = False,
-    told: Told | None = None,
+    progress: FrameProgress | None = None,
 ) -> bytes:
     """The whole cycle as a GIF that begins anew for ever.
 
@@ -73,7 +73,7 @@ def gif(
     check_frames(count, width)
     shades = Shades(moving, colors)
     pictures = []
-    for frame in _counted(_cycle(moving, colors), count, told):
+    for frame in _counted(_cycle(moving, colors), count, progress):
         picture = Image.fromarray(shades.numbers(frame))
         picture.putpalette(shades.palette.tobytes())
         pictures.append(picture)
@@ -93,7 +93,7 @@ def mp4(
     width: int = 640,
     arrow: ForceArrow | None = None,
     dark: bool = False,
-    told: Told | None = None,
+    progress: FrameProgress | None = None,
 ) -> bytes:
     """A film as MP4 (H.264); needs the extra `video`.
 
@@ -116,7 +116,7 @@ def mp4(
         stream.width, stream.height, stream.pix_fmt = width, moving.stage.height, "yuv420p"
         for name in ("colorspace", "color_primaries", "color_trc"):
             setattr(stream.codec_context, name, BT_709)
-        for number, frame in enumerate(_counted(frames, count, told)):
+        for number, frame in enumerate(_counted(frames, count, progress)):
             picture = av.VideoFrame.from_ndarray(frame, "rgb24")
             picture = picture.reformat(format="yuv420p", dst_colorspace=BT_709)
             picture.pts = number
@@ -165,11 +165,13 @@ def _cycle(moving: Moving, colors: Colors) -> Iterator[Array]:
     return iter(there + there[-2:0:-1])
 
 
-def _counted(frames: Iterator[Array], count: int, told: Told | None) -> Iterator[Array]:
+def _counted(
+    frames: Iterator[Array], count: int, progress: FrameProgress | None
+) -> Iterator[Array]:
     for done, frame in enumerate(frames, 1):
         yield frame
-        if told is not None:
-            told(done, count)
+        if progress is not None:
+            progress(done, count)
 
 
 # -- colours of a GIF ------------------------------------------------------------------------------

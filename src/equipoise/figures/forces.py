@@ -10,7 +10,7 @@ import numpy as np
 
 from equipoise.figures.analysis import (
     ALL,
-    ONE,
+    SINGLE,
     about,
     angle_axis,
     each,
@@ -69,13 +69,13 @@ def over_crank(
     """
     x = angle_axis(analysis)
     every = [(dimension, [*signals.values()]) for _, dimension, signals in panels]
-    drawn = [
+    result = [
         compared(
             x,
             label,
             dimension,
             {role: over(analysis, values) for role, values in signals.items()},
-            beside=np.concatenate(
+            extent=np.concatenate(
                 [v for item, values in every if item == dimension for v in values]
             ),
             low=0.0 if label == say("size") else None,
@@ -83,7 +83,7 @@ def over_crank(
         )
         for label, dimension, signals in panels
     ]
-    return Chart(name, analysis.machine.title, what, tuple(drawn), keys=row_keys(analysis))
+    return Chart(name, analysis.machine.title, what, tuple(result), keys=row_keys(analysis))
 
 
 def _unit(analysis: Analysis, dimension: Dimension | None) -> str | None:
@@ -116,7 +116,7 @@ def moment(analysis: Analysis) -> Chart:
     signals = each(analysis, "shaking_moment")
     panels: list[Signals] = [(say("shaking moment"), "torque", signals)]
     if analysis.machine.has_planes:
-        rocking, role = analysis.forces.across.rocking_moment, ONE if analysis.together else ALL
+        rocking, role = analysis.forces.across.rocking_moment, SINGLE if analysis.together else ALL
         parts = {f"rocking_moment.{axis}": getattr(rocking, axis) for axis in "xy"}
         least = rounding(analysis)[1]
         panels += [
@@ -285,7 +285,7 @@ def spectrum(analysis: Analysis) -> Chart:
     return Chart("spectrum", analysis.machine.title, what, panels, keys=keys)
 
 
-BAR_ROLES = {ONE: "bar before", ALL: "bar after"}
+BAR_ROLES = {SINGLE: "bar before", ALL: "bar after"}
 Read = Mapping[str, tuple[Array, Array]]
 """Role -> orders, and the size of each in SI units."""
 MATTERS, VISIBLE = 0.01, 0.004
@@ -311,7 +311,7 @@ def last_order(read: Read) -> int:
 
 
 def order_panel(
-    told: str,
+    name: str,
     dimension: Dimension | None,
     read: Read,
     last: int,
@@ -327,17 +327,17 @@ def order_panel(
     wide = BAR_WIDE * finest / len(read)
     bars = []
     for number, (role, (orders, sizes)) in enumerate(read.items()):
-        seen = (orders <= last) & np.isclose(np.mod(orders / finest + 0.5, 1), 0.5)
-        at = orders[seen] + (number - (len(read) - 1) / 2) * wide
+        visible = (orders <= last) & np.isclose(np.mod(orders / finest + 0.5, 1), 0.5)
+        at = orders[visible] + (number - (len(read) - 1) / 2) * wide
         told_too = last / finest <= most_told
-        bars.append(Bars(at, sizes[seen], wide, role, told=told_too))
+        bars.append(Bars(at, sizes[visible], wide, role, told=told_too))
     ticks = tuple((float(k), f"{k}" if k else say("mean")) for k in range(last + 1))
     label, room = say("order: events in one turn of the crank"), 0.7 * finest
     x = Axis(label, low=-room, high=last + room, ticks=ticks)
     every = np.concatenate([sizes for _, sizes in read.values()])
     y = Axis.of(say("amplitude"), dimension, every, unit, low=0.0, room=0.2)
     message = "" if largest else say("zero at every order")
-    return Panel(x, y, bars=tuple(bars), title=told, message=message)
+    return Panel(x, y, bars=tuple(bars), title=name, message=message)
 
 
 def _finest(read: Read, least: float) -> float:

@@ -88,8 +88,8 @@ def _panels(sheet: Canvas, chart: Chart, top: float) -> float:
         _sides(cell)
     one_scale = cells[0].panel.equal  # and so one width
     for column in range(columns):
-        beside = cells if one_scale else cells[column::columns]
-        left, right = max(cell.left for cell in beside), max(cell.right for cell in beside)
+        aligned = cells if one_scale else cells[column::columns]
+        left, right = max(cell.left for cell in aligned), max(cell.right for cell in aligned)
         for cell in cells[column::columns]:
             cell.left, cell.right = left, right
             _settle(cell, inner - left - right, most, small=columns > 1)

@@ -34,7 +34,7 @@ MOST = 24
 """Crank angles in one picture."""
 MANY, SMALLER = 3, 0.75
 """Panels beside each other in which signs are smaller, and how much."""
-BESIDE = 24.0
+SIGN_DISTANCE = 24.0
 """Units from a mount or gauge to the middle of its sign."""
 STILL = 1e-9
 """Over the size of the machine: what is less stands still."""
@@ -116,7 +116,7 @@ def plane_axes(scene: Scene) -> tuple[Axis, Axis]:
     return x, y
 
 
-def drawn(scene: Scene, k: int) -> dict[str, Any]:
+def panel_content(scene: Scene, k: int) -> dict[str, Any]:
     """A machine at the k-th crank angle, as a panel has it: what curves are drawn on, and signs."""
     every = pieces(scene)
     ground = [piece for piece in every if piece.layer in GROUND]
@@ -141,7 +141,7 @@ def _panel(scene: Scene, k: int, paths: tuple[Curve, ...], title: str, whole: Sc
     """A scene on the axes of the whole one; with a crank angle as its title without names of links,
     for which it has no room.
     """
-    parts = drawn(scene, k)
+    parts = panel_content(scene, k)
     named = title != told_pose(scene, k)
     return Panel(
         *plane_axes(whole),
@@ -193,7 +193,7 @@ def _other_names(scene: Scene, k: int) -> Iterator[Mark]:
             if scene.shows(place):
                 text = "\n".join(short(name, 20) for name in names)
                 way = carrier.way(items[names[0]])
-                at = place + BESIDE * scene.unit * way  # not where joints have their names
+                at = place + SIGN_DISTANCE * scene.unit * way  # not where joints have their names
                 optional = items is support.mounts
                 yield Mark.of(at, text, color, 20.0, False, optional, near=10.0)
 
@@ -227,8 +227,8 @@ def rolling(analysis: Analysis) -> list[str]:
     machine = analysis.machine
     if not analysis.motion.whole_cycle:
         return []
-    held = {machine.drive.link, *pinned(machine)}
-    free = [link for link in machine.links if link not in held]
+    pinned_links = {machine.drive.link, *pinned(machine)}
+    free = [link for link in machine.links if link not in pinned_links]
     turning = {name for name in free if np.ptp(analysis.motion.links[name].angle) > STILL}
     return [name for name in free if name in turning and f"{name}/{FRAME}" in pairs(machine)]
 
@@ -265,7 +265,7 @@ def centrodes(analysis: Analysis, links: Sequence[str] | None = None) -> Chart:
             equal=True,
             zero=False,
             sign_size=1.0 if len(names) == 1 else SMALLER,
-            **drawn(scene, k),
+            **panel_content(scene, k),
         )
         panels.append(panel)
     text = {"link": short(analysis.machine.drive.link), "angle": told_pose(scene, k)}

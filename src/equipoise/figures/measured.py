@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 RATE = Display("m/s^2", 1.0)
-TOLD = (8.0, 16.0, 31.5, 63.0, 125.0, 250.0, 500.0, 1000.0)
+LABELLED_BANDS = (8.0, 16.0, 31.5, 63.0, 125.0, 250.0, 500.0, 1000.0)
 """Hz: bands that are named below the picture."""
 DEEPEST = 1e-4
 """Of the highest band: what is lower is not drawn."""
@@ -70,7 +70,8 @@ def spectrum(weighted: Weighted, title: str) -> Chart:
     label = say("weighted, total value a_hv = {value} m/s²", value=shown(weighted.a_hv))
     curves.append(_stairs(after, low, "weighted", label))
     ticks = tuple(
-        (float(10 ** (0.1 * round(10 * np.log10(item)))), decimals(f"{item:g}")) for item in TOLD
+        (float(10 ** (0.1 * round(10 * np.log10(item)))), decimals(f"{item:g}"))
+        for item in LABELLED_BANDS
     )
     first, last = float(EDGES[0]), float(EDGES[-1])
     x = Axis(say("frequency"), Display("Hz", 1.0), "log", first, last, ticks=ticks)

@@ -66,7 +66,7 @@ UNDAMPED, NOTHING = 1e-9, 1e-4
 """Damping ratio that is rounding; part of a shape, over its largest, that counts as none."""
 MOST_NAMES, SMALLER = 16, 0.8
 """Mounts and gauges that are named in a view; size of signs in one of three views."""
-ASIDE, BESIDE = 2.0, 4.0
+ASIDE, NAME_GAP = 2.0, 4.0
 """Units by which the middle of a sign is off its place where it has a direction; points from its
 end to its name."""
 
@@ -136,11 +136,11 @@ class ModeShape:
     def path(self, point: Array, view: View) -> Array:
         """Where a point (3,) goes in a cycle, complex, m."""
         moved = self._moved(self.motion, point[None])[0]
-        return seen(point + np.outer(PHASES, moved).real, view)
+        return projected(point + np.outer(PHASES, moved).real, view)
 
     def outline(self, view: View, phase: complex = 0.0) -> Array:
         """Closed outline in a view, complex, m: a line drawn tightly around discs at corners."""
-        corners = hull(seen(self.displaced(self.corners, phase), view))
+        corners = hull(projected(self.displaced(self.corners, phase), view))
         disc = ROUND * self.size * np.exp(2j * np.pi * np.arange(DIRECTIONS) / DIRECTIONS)
         around = hull((corners[:, None] + disc).ravel())
         return np.append(around, around[0])
@@ -152,7 +152,7 @@ class ModeShape:
         return low, complex(np.max(every.real), np.max(every.imag))
 
 
-def seen(points: Any, view: View) -> Array:
+def projected(points: Any, view: View) -> Array:
     """Points (..., 3) or directions in a view, complex, m."""
     sight, points = VIEWS[view], np.asarray(points)
     return np.asarray(points[..., sight.right] + 1j * sight.sense * points[..., sight.up])
@@ -214,7 +214,7 @@ def _panel(shape: ModeShape, view: View, views: list[View]) -> Panel:
     Where it is the only one it names all; else each thing is named where it acts.
     """
     alone = len(views) == 1
-    low, high = _held(shape, view, views)
+    low, high = _corners(shape, view, views)
     ticks = (None, _downward(low, high) if view == "top" else None)
     x, y = (
         Axis.of(say(name), "length", [shape.size], room=0.0, ticks=tick)
@@ -237,7 +237,7 @@ def _panel(shape: ModeShape, view: View, views: list[View]) -> Panel:
     )
 
 
-def _held(shape: ModeShape, view: View, views: list[View]) -> tuple[complex, complex]:
+def _corners(shape: ModeShape, view: View, views: list[View]) -> tuple[complex, complex]:
     """Corners of what is shown: of all views as wide, and as high of those side by side."""
     low, high = shape.extent(view)
     if len(views) == 1:
@@ -245,8 +245,8 @@ def _held(shape: ModeShape, view: View, views: list[View]) -> tuple[complex, com
     every = {view: shape.extent(view) for view in VIEWS}
     wide = max((end[1] - end[0]).real for end in every.values())
     middle = (low.real + high.real) / 2
-    beside = [every[item] for item in VIEWS if VIEWS[item].up == VIEWS[view].up]
-    ends = min(end[0].imag for end in beside), max(end[1].imag for end in beside)
+    same_height = [every[item] for item in VIEWS if VIEWS[item].up == VIEWS[view].up]
+    ends = min(end[0].imag for end in same_height), max(end[1].imag for end in same_height)
     return complex(middle - wide / 2, ends[0]), complex(middle + wide / 2, ends[1])
 
 
@@ -281,21 +281,21 @@ def view_of(item: Mount | Gauge) -> View:
 
 def _signs(shape: ModeShape, view: View) -> Iterator[Shape]:
     """Joints of the linkages, the centre of mass, the pivot, gauges and mounts, at rest."""
-    for place in np.unique(np.round(seen(shape.linkages, view), 9)):
+    for place in np.unique(np.round(projected(shape.linkages, view), 9)):
         yield shapes.circle("dot", complex(place), grown=2.4)
     support = shape.support
-    reference = complex(seen(shape.reference, view))
+    reference = complex(projected(shape.reference, view))
     if support.pivot is not None and view == "side":
         yield from shapes.pivot(reference)
         yield shapes.circle("pin", reference, grown=shapes.PIN)
     for _, _, sign in _items(shape, view):
         yield from sign
-    yield from shapes.mass(complex(seen(support.center_of_mass, view)))
+    yield from shapes.mass(complex(projected(support.center_of_mass, view)))
 
 
 def _items(shape: ModeShape, view: View) -> Iterator[tuple[str, complex, list[Shape]]]:
     """Gauges and mounts that are seen in a view: name, place in m, and sign."""
-    reference, ring = complex(seen(shape.reference, view)), 0
+    reference, ring = complex(projected(shape.reference, view)), 0
     center = complex(np.mean(shape.outline(view)))
     for name, item in shape.items:
         gauge = isinstance(item, Gauge)
@@ -304,8 +304,8 @@ def _items(shape: ModeShape, view: View) -> Iterator[tuple[str, complex, list[Sh
                 yield name, reference, carrier.turning(reference, ring, gauge)
                 ring += 1
             continue
-        place = complex(seen(item.point, view))
-        way = complex(seen(unit_vector(item.direction), view))
+        place = complex(projected(item.point, view))
+        way = complex(projected(unit_vector(item.direction), view))
         if isinstance(item, Gauge):
             yield name, place, carrier.gauge(place, way)
         else:
@@ -325,7 +325,7 @@ def _names(shape: ModeShape, view: View, named: Collection[str], size: float) ->
         way = middle / abs(middle) if abs(middle) > ASIDE else np.exp(0.25j * np.pi)
         end = UNIT * size * float(np.max(np.abs(offsets))) * complex(way)
         wish = float(np.degrees(np.angle(way)))
-        yield Mark.of(place, short(name, 20), "ink", wish, False, near=BESIDE, off=end)
+        yield Mark.of(place, short(name, 20), "ink", wish, False, near=NAME_GAP, off=end)
 
 
 def _keys(shape: ModeShape) -> Iterator[tuple[str, str]]:

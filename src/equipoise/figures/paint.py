@@ -103,12 +103,12 @@ def fonts_for(signs: frozenset[str]) -> tuple[tuple[str, ...], str]:
             if left & _signs_of(path):
                 fonts.addfont(path)
         every = {font.name: font.fname for font in reversed(fonts.ttflist)}
-    more: list[str] = []
+    fallbacks: list[str] = []
     for name in sorted(every):
         if left & _signs_of(every[name]) and not name.startswith(LAST_RESORT):
-            more.append(name)
+            fallbacks.append(name)
             left -= _signs_of(every[name])
-    return tuple(more), "".join(sorted(map(chr, left)))
+    return tuple(fallbacks), "".join(sorted(map(chr, left)))
 
 
 def unwritten(sheet: Canvas) -> str:

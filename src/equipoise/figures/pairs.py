@@ -19,7 +19,7 @@ Pair = Mapping[str, Array]
 """``before`` and ``after``, or the latter alone."""
 
 WHEN = {"before": to_say("before"), "after": to_say("after"), "unchanged": to_say("unchanged")}
-NOTHING, SEEN = 1e-9, 4e-3
+NOTHING, VISIBLE = 1e-9, 4e-3
 """Over the largest value before: what is left after is rounding; what differs can be seen."""
 
 
@@ -38,7 +38,7 @@ def changed(pair: Pair) -> bool:
     if "before" not in pair:
         return True
     largest = float(np.max(np.abs(pair["before"]), initial=0.0))
-    return bool(np.any(np.abs(pair["after"] - pair["before"]) > SEEN * largest))
+    return bool(np.any(np.abs(pair["after"] - pair["before"]) > VISIBLE * largest))
 
 
 def roles_of(pair: Pair) -> dict[str, Array]:
@@ -48,8 +48,8 @@ def roles_of(pair: Pair) -> dict[str, Array]:
 
 def keys(*pairs: Pair) -> tuple[tuple[str, str], ...]:
     """What the lines of some pairs are, for a legend."""
-    drawn = {role for pair in pairs for role in roles_of(pair)}
-    return tuple((role, say(name)) for role, name in WHEN.items() if role in drawn)
+    roles = {role for pair in pairs for role in roles_of(pair)}
+    return tuple((role, say(name)) for role, name in WHEN.items() if role in roles)
 
 
 def compare(

@@ -233,14 +233,14 @@ def _bar_numbers(view: View) -> None:
     largest = factor * max(float(np.max(bars.size, initial=0.0)) for bars in matching_bars)
     if not largest:
         return
-    seen = [
+    numbers = [
         (size, at, look_of(bars.role).ink)
         for bars in matching_bars
         for at, size in zip(bars.at.tolist(), (factor * bars.size).tolist(), strict=True)
         if size > VISIBLE * largest
     ]
     if scale is view.x:
-        for size, at, _ in seen:
+        for size, at, _ in numbers:
             text = decimals(f"{size:.1f} {scale.axis.unit_name}")
             view.write(float(scale.of(size)) + 4, float(view.y.at(at)), text, color=INK)
         return
@@ -250,7 +250,7 @@ def _bar_numbers(view: View) -> None:
     for fewer in range(most, -1, -1):
         texts = [
             (decimals(f"{size:.{fewer}f}"), float(view.x.at(at)), float(scale.of(size)), color)
-            for size, at, color in seen
+            for size, at, color in numbers
             if round(size, fewer)
         ]
         clear = _clear(texts)
@@ -263,7 +263,7 @@ def _bar_numbers(view: View) -> None:
 def _clear(texts: list[Number]) -> list[Number]:
     """Those that lie on no number of a higher bar."""
     clear: list[Number] = []
-    for item in sorted(texts, key=lambda one: one[2]):
+    for item in sorted(texts, key=lambda number: number[2]):
         text, x, y, _ = item
         half = width_of(text, SMALL) / 2
         if all(

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from equipoise.figures.linkage import drawn
+from equipoise.figures.linkage import panel_content
 from equipoise.figures.shared import angle_step
 from equipoise.figures.style import short
 from equipoise.figures.tip_paths import INSTANTS, PathInstant, Paths
@@ -40,11 +40,13 @@ def path(figures: PlantingFigures) -> Chart:
     if paths.drives and figures.planting.units_per_turn > 1:
         what += "; " + say("dashed: other units")
     draw = (_machine_panel, _ground_panel)
-    panels = tuple(item(paths, held) for item, held in zip(draw, _held(paths), strict=False))
+    panels = tuple(
+        item(paths, corners) for item, corners in zip(draw, _corners(paths), strict=False)
+    )
     return Chart("path", figures.machine.title, what, panels, stacked=False)
 
 
-def _held(paths: Paths) -> list[tuple[complex, complex]]:
+def _corners(paths: Paths) -> list[tuple[complex, complex]]:
     """Corners of what each panel shows, m: of one size, so that both have one scale."""
     every = [paths.on_machine(paths.cycle, arm) for arm in range(len(paths.curve.arms))]
     places = np.concatenate([*every, paths.scene.corners_at(-1), paths.tray, [1j * paths.level]])
@@ -62,7 +64,7 @@ def _axis(label: str) -> Axis:
     return Axis.of(label, "length", [0.5], "cm", room=0.0)
 
 
-def _machine_panel(paths: Paths, held: tuple[complex, complex]) -> Panel:
+def _machine_panel(paths: Paths, corners: tuple[complex, complex]) -> Panel:
     instants, ticks = list(paths.instants(over_ground=False)), list(_ticks(paths))
     across = [np.array([item.place + out, item.place - out, np.nan]) for item, out in ticks]
     marks = [Mark.of(instant.place, "", f"instant {instant.name}") for instant in instants]
@@ -71,7 +73,7 @@ def _machine_panel(paths: Paths, held: tuple[complex, complex]) -> Panel:
         for name, place in paths.scene.places.items()
     ]
     # a little lower than they are, so that a point at the same place keeps its own name
-    marks += _names(instants, 0.006 * (held[1] - held[0]).imag)
+    marks += _names(instants, 0.006 * (corners[1] - corners[0]).imag)
     if paths.tray.size:
         marks.append(Mark.of(complex(np.mean(paths.tray)), say("tray"), "ink", 0.0, False))
     marks += [
@@ -90,13 +92,13 @@ def _machine_panel(paths: Paths, held: tuple[complex, complex]) -> Panel:
         arrows=tuple(_senses(paths, over_ground=False)),
         equal=True,
         zero=False,
-        held=held,
+        held=corners,
         sign_size=SMALLER,
-        **drawn(paths.scene, -1),
+        **panel_content(paths.scene, -1),
     )
 
 
-def _ground_panel(paths: Paths, held: tuple[complex, complex]) -> Panel:
+def _ground_panel(paths: Paths, corners: tuple[complex, complex]) -> Panel:
     places = paths.over_ground(paths.ways)
     instants = list(paths.instants(over_ground=True))
     ahead = paths.figures["forward_speed"] > 0
@@ -105,11 +107,11 @@ def _ground_panel(paths: Paths, held: tuple[complex, complex]) -> Panel:
     for number, place in enumerate(paths.crossings()):
         text = say("crossing of the loop") if number == 0 else ""
         marks.append(Mark.of(place, text, "crossing", 0.0, near=9.0))
-    spacing, arrows, lines = _hill_spacing(paths, held)
+    spacing, arrows, lines = _hill_spacing(paths, corners)
     way = say("machine drives")
-    over = held[1].real - held[0].real
-    ends = held[0].real - over, held[1].real + over
-    bottom = held[0].imag - over
+    over = corners[1].real - corners[0].real
+    ends = corners[0].real - over, corners[1].real + over
+    bottom = corners[0].imag - over
     return Panel(
         _axis(say("distance over ground")),
         _axis(say("height y in the frame")),
@@ -124,7 +126,7 @@ def _ground_panel(paths: Paths, held: tuple[complex, complex]) -> Panel:
         title=f"{way} →" if ahead else f"← {way}",
         equal=True,
         zero=False,
-        held=held,
+        held=corners,
         ground=tuple(soil(*ends, paths.level, bottom, paths.scene.unit)),
     )
 
@@ -190,16 +192,16 @@ def _ticks(paths: Paths) -> Iterator[tuple[PathInstant, complex]]:
 
 
 def _hill_spacing(
-    paths: Paths, held: tuple[complex, complex]
+    paths: Paths, corners: tuple[complex, complex]
 ) -> tuple[Mark, list[Arrow], list[Curve]]:
     """A dimension between the first hill and the next, below the path."""
     spacing = paths.figures["hill_spacing"] * float(np.sign(paths.figures["forward_speed"]))
     deep = float(np.min(paths.over_ground(paths.ways).imag))
-    room = deep - held[0].imag
+    room = deep - corners[0].imag
     y, top = deep - 0.5 * room, deep - 0.15 * room
     text = say("hill spacing {spacing}", spacing=quantity(abs(spacing), "length", "cm"))
-    whole = held[0].real < spacing < held[1].real and paths.curve.turns == 1
-    x = spacing / 2 if whole else (held[0].real + held[1].real) / 2
+    whole = corners[0].real < spacing < corners[1].real and paths.curve.turns == 1
+    x = spacing / 2 if whole else (corners[0].real + corners[1].real) / 2
     mark = Mark(x, y, text, "ink", -90.0, sign=False, near=3.0)
     if not whole:
         return mark, [], []

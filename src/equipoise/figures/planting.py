@@ -56,13 +56,13 @@ def charts(figures: PlantingFigures) -> dict[str, Chart]:
     same of ``acceleration``, for a further arm such as ``velocity-x-Q``; ``torque`` and ``joints``
     where there are forces in the soil.
     """
-    drawn: dict[str, Chart] = {}
+    result: dict[str, Chart] = {}
     for link in figures.machine.links:
         if link != figures.machine.drive.link:
-            name = free_name(f"ratio-{link}", drawn)
-            drawn[name] = ratio(figures, link).named(name)
+            name = free_name(f"ratio-{link}", result)
+            result[name] = ratio(figures, link).named(name)
     of_soil = (torque, joints) if figures.forces is not None else ()
-    return drawn | by_name([*tips(figures), *(draw(figures) for draw in of_soil)])
+    return result | by_name([*tips(figures), *(draw(figures) for draw in of_soil)])
 
 
 # -- over crank angle, with the stay in the soil ---------------------------------------------------

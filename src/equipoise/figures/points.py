@@ -79,7 +79,7 @@ def followed(motion: Motion) -> list[str]:
     return _tips(motion)[:MOST_PATHS] or traced(motion)[:MOST_PATHS]
 
 
-def _together(motion: Motion, names: Sequence[str]) -> list[list[str]]:
+def _coincident(motion: Motion, names: Sequence[str]) -> list[list[str]]:
     """Points whose paths are one curve, which they may pass at different times, together."""
     groups: list[list[str]] = []
     for name in names:
@@ -93,12 +93,12 @@ def _together(motion: Motion, names: Sequence[str]) -> list[list[str]]:
     return groups
 
 
-def _coincide(one: Array, other: Array) -> bool:
+def _coincide(first: Array, other: Array) -> bool:
     """Whether two paths (N,) lie on each other but for a thousandth of their size."""
-    size = float(np.ptp(one.real) + np.ptp(one.imag))
-    if abs(np.mean(one) - np.mean(other)) > ALIKE * size:  # most differ by that already
+    size = float(np.ptp(first.real) + np.ptp(first.imag))
+    if abs(np.mean(first) - np.mean(other)) > ALIKE * size:  # most differ by that already
         return False
-    apart = np.abs(one[:, None] - other)
+    apart = np.abs(first[:, None] - other)
     return float(max(np.max(np.min(apart, axis=0)), np.max(np.min(apart, axis=1)))) <= ALIKE * size
 
 
@@ -118,8 +118,8 @@ def curves(analysis: Analysis, points: Sequence[str] | None = None) -> Chart:
     frame = {name: complex(*place) for name, place in analysis.machine.frame.items()}
     every = [motion.points[name].place for name in (*names, *others)]
     size = extent(*every, np.array([*frame.values()]))
-    groups, other_groups = _together(motion, names), _together(motion, others)
-    drawn = [
+    groups, other_groups = _coincident(motion, names), _coincident(motion, others)
+    lines = [
         Curve.of(over(analysis, motion.points[group[0]].place)[1], "", "faint")
         for group in other_groups
     ]
@@ -133,7 +133,7 @@ def curves(analysis: Analysis, points: Sequence[str] | None = None) -> Chart:
         name = group[0]
         role, path = f"several {number}", motion.points[name].place
         label = say("path of {point}", point=_names_of(group))
-        drawn.append(Curve.of(over(analysis, path)[1], label, role))
+        lines.append(Curve.of(over(analysis, path)[1], label, role))
         arrows += _sense(analysis, name, role, size)
         if motion.whole_cycle:
             ways = np.arange(0, 360 * motion.turns, angle_step(motion.turns))
@@ -150,7 +150,7 @@ def curves(analysis: Analysis, points: Sequence[str] | None = None) -> Chart:
     panel = Panel(
         x,
         y,
-        tuple(drawn),
+        tuple(lines),
         (*marks, *dots, *numbered),
         arrows=tuple(arrows),
         message="" if names else say("no point moves"),
@@ -217,13 +217,13 @@ def _ends(
     if analysis.motion.whole_cycle:
         counts = told_angles(analysis.crank_angle)
         counts = {a: k for a, k in counts.items() if len(values) < 2 or a in FEW}
-    drawn, marks = [], [Mark(0.0, 0.0, "", "pivot")]
+    lines, marks = [], [Mark(0.0, 0.0, "", "pivot")]
     for number, (name, value) in enumerate(zip(names, values, strict=True), 1):
         role = f"several {number}"
-        drawn.append(Curve.of(over(analysis, value)[1], short(name, 14), role))
+        lines.append(Curve.of(over(analysis, value)[1], short(name, 14), role))
         marks += numbers(counts, value, role, extent(whole))
     message = "" if names else say("no point moves")
-    return Panel(x, y, tuple(drawn), tuple(marks), message=message, equal=True)
+    return Panel(x, y, tuple(lines), tuple(marks), message=message, equal=True)
 
 
 # -- any output ------------------------------------------------------------------------------------
@@ -256,9 +256,11 @@ def outputs_chart(
         theta, values = over(analysis, _steady(entry.drawn))
         if entry.dimension == "angle" and analysis.motion.whole_cycle:
             values = _turned_on(values)
-        drawn = {ALL: (theta, values)}
-        beside = np.ravel([other.drawn for other in ones if other.dimension == entry.dimension])
-        panel = compared(x, "", entry.dimension, drawn, beside=beside)
+        same_dimension = np.ravel(
+            [other.drawn for other in ones if other.dimension == entry.dimension]
+        )
+        lines = {ALL: (theta, values)}
+        panel = compared(x, "", entry.dimension, lines, extent=same_dimension)
         panels.append(replace(panel, title=replace(panel.y, label=entry.label()).text))
     text = what or say(", ").join(item.label() for item in ones)
     return Chart(name, analysis.machine.title, title(analysis, text), tuple(panels))

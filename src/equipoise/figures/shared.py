@@ -15,7 +15,7 @@ from equipoise.i18n import decimals, say
 from equipoise.quantities import Dimension
 from equipoise.results.charts import DEGREES, RPM, Array, Axis, Chart, Curve, Mark, Panel, shown
 
-One = TypeVar("One")
+Item = TypeVar("Item")
 
 ROOM = 0.17
 """Share of what is drawn that stays free above and below for the numbers at extremes."""
@@ -113,7 +113,7 @@ def continued(names: Sequence[Any], every: Sequence[Any]) -> str:
     return " " + say("({first} to {last} of {count})", first=first, last=last, count=len(every))
 
 
-def groups(names: Sequence[One], most: int = MOST_PANELS) -> Iterator[tuple[str, Sequence[One]]]:
+def groups(names: Sequence[Item], most: int = MOST_PANELS) -> Iterator[tuple[str, Sequence[Item]]]:
     """Names by so many for each picture, with what is added to the name of the picture."""
     for number, start in enumerate(range(0, len(names), most), 1):
         yield f"-{number}" if number > 1 else "", names[start : start + most]
@@ -155,9 +155,9 @@ def compared(
     x: Axis,
     label: str,
     dimension: Dimension | None,
-    drawn: Mapping[str, tuple[Array, Array]],
+    lines: Mapping[str, tuple[Array, Array]],
     low: float | None = None,
-    beside: Any = (),
+    extent: Any = (),
     unit: str | None = None,
     **rest: Any,
 ) -> Panel:
@@ -167,12 +167,12 @@ def compared(
     beside : values of the same quantity in other panels, so that all have one unit.
     unit : as of `Axis.of`.  rest : of the panel.
     """
-    every = np.concatenate([values for _, values in drawn.values()])
-    axis = Axis.of(label, dimension, np.append(every, beside), unit, room=ROOM, low=low)
+    every = np.concatenate([values for _, values in lines.values()])
+    axis = Axis.of(label, dimension, np.append(every, extent), unit, room=ROOM, low=low)
     marks: list[Mark] = []
-    for role, (theta, values) in reversed(tuple(drawn.items())):
+    for role, (theta, values) in reversed(tuple(lines.items())):
         marks += extremes(axis, values, sampled_extremes(theta, values), role)
-    curves = tuple(Curve(theta, values, "", role) for role, (theta, values) in drawn.items())
+    curves = tuple(Curve(theta, values, "", role) for role, (theta, values) in lines.items())
     if not np.any(every):
         rest["message"] = say("zero at every crank angle")
     return Panel(x, axis, curves, tuple(marks), **rest)
@@ -189,11 +189,11 @@ def told_angles(angles: Array) -> dict[int, int]:
     return {angle: round(angle * each) for angle in range(0, 360 * turns, step)}
 
 
-def numbers(told: Mapping[int, int], values: Array, role: str, size: float) -> tuple[Mark, ...]:
+def numbers(labelled: Mapping[int, int], values: Array, role: str, size: float) -> tuple[Mark, ...]:
     """Marks at crank angles of a path (N,), complex, of some size; of several at one place one."""
     marks: dict[complex, Mark] = {}
     middle = complex(np.mean(values))
-    for angle, k in told.items():
+    for angle, k in labelled.items():
         place = complex(values[k])
         if all(abs(place - other) > ALIKE * size for other in marks):
             wish = float(np.degrees(np.angle(place - middle)))
@@ -255,18 +255,18 @@ def curves_of(
         if stable is None or np.all(stable):
             curves.append(Curve(x, y, label, role))
             continue
-        near = np.convolve(~stable, np.ones(3), "same") > 0
+        near_unstable = np.convolve(~stable, np.ones(3), "same") > 0
         curves.append(Curve(x, np.where(stable, y, np.nan), label, role))
-        curves.append(Curve(x, np.where(near, y, np.nan), "", role, dashed=True))
+        curves.append(Curve(x, np.where(near_unstable, y, np.nan), "", role, dashed=True))
     return tuple(curves)
 
 
 def log_ends(
-    curves: Sequence[SpeedCurve], below: float, above: float, more: Any = ()
+    curves: Sequence[SpeedCurve], below: float, above: float, extra: Any = ()
 ) -> tuple[float, float]:
     """Ends of a log axis that holds curves and some more values, with room as factors."""
-    every = np.concatenate([*(bounded(item.values) for item in curves), np.asarray(more, float)])
-    heard = every[np.isfinite(every) & (every > 0)]
-    high = float(np.max(heard, initial=0.0)) or 1.0
-    low = max(float(np.min(heard, initial=high)), high * 1e-6)
+    every = np.concatenate([*(bounded(item.values) for item in curves), np.asarray(extra, float)])
+    finite = every[np.isfinite(every) & (every > 0)]
+    high = float(np.max(finite, initial=0.0)) or 1.0
+    low = max(float(np.min(finite, initial=high)), high * 1e-6)
     return low / below, high * above

@@ -274,12 +274,12 @@ class Labels:
             self._lead(np.array([x, y]), offsets[best], size)
         return True
 
-    def _choices(self, at: Array, size: Array, wish: float, near: float) -> tuple[Array, Array]:
+    def _choices(self, at: Array, size: Array, wish: float, gap: float) -> tuple[Array, Array]:
         """Offsets (M, 2) of a text's middle from its point, and what each costs (M,)."""
         turned = np.radians(np.array([wish, *AROUND]))
         ways = np.column_stack([np.cos(turned), -np.sin(turned)])
         support = np.abs(ways) @ size / 2
-        offsets = np.concatenate([ways * (near * far + support)[:, None] for far in DISTANCES])
+        offsets = np.concatenate([ways * (gap * far + support)[:, None] for far in DISTANCES])
         bend = np.degrees(np.abs(np.angle(np.exp(1j * (turned - turned[0]))))) / 30
         costs = np.concatenate([TURNED * bend + FARTHER * step for step in range(len(DISTANCES))])
         least, most = self.frame[:2] + size / 2 + EDGE, self.frame[2:] - size / 2 - EDGE
@@ -288,7 +288,7 @@ class Labels:
         apart = (self.boxes[:, None, :2] >= high) | (self.boxes[:, None, 2:] <= low)
         costs += TEXT_ON_TEXT * np.sum(~np.any(apart, axis=2), axis=0)
         costs += COVERED * self._covered(low, high)
-        on_point = np.all(np.abs(offsets) < size / 2 + near / 2, axis=1)
+        on_point = np.all(np.abs(offsets) < size / 2 + gap / 2, axis=1)
         return offsets, costs + ON_POINT * on_point
 
     def _covered(self, low: Array, high: Array) -> Any:
@@ -299,10 +299,12 @@ class Labels:
             self._pieces = [np.concatenate(self._pieces)]
             self._weights = [np.concatenate(self._weights)]
         pieces, weights = self._pieces[0], self._weights[0]
-        near = np.all((pieces >= np.min(low, axis=0)) & (pieces <= np.max(high, axis=0)), axis=1)
-        pieces = pieces[near]
+        overlapping = np.all(
+            (pieces >= np.min(low, axis=0)) & (pieces <= np.max(high, axis=0)), axis=1
+        )
+        pieces = pieces[overlapping]
         inside = (pieces[:, None] >= low) & (pieces[:, None] <= high)
-        return weights[near] @ np.all(inside, axis=2)
+        return weights[overlapping] @ np.all(inside, axis=2)
 
     def _lead(self, at: Array, offset: Array, size: Array) -> None:
         """A thin line from a point to the nearest place of its text's box."""

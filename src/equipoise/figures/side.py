@@ -141,9 +141,9 @@ class _View:
     def _loose(self) -> Iterator[complex]:
         """Centres of masses of which no outline is known."""
         for name, link in self.machine.links.items():
-            drawn = [bool(outlines(body, link.points)) for body in link.bodies] or [False]
-            for (own, center, z), seen in zip(masses_of(link), drawn, strict=False):
-                if own and not seen:
+            has_outline = [bool(outlines(body, link.points)) for body in link.bodies] or [False]
+            for (own, center, z), outlined in zip(masses_of(link), has_outline, strict=False):
+                if own and not outlined:
                     yield complex(z, self._seen(name, np.array([center]))[0])
 
     def _bars(self, name: str, role: str) -> Iterator[Shape]:

@@ -193,8 +193,8 @@ class Stage:
             parts = wrap(words, max(1, int((self.width - 24 * self.unit) / size)))
             result += [(part, color) for part in parts]
         size = self.size_of_type if len(result) > 1 else self.size_where_narrow
-        beside = (1 - RULER) * self.width - 36 * self.unit - width_of("500 mm ", size)
-        if result and width_of(result[-1][0], size) > beside:
+        width = (1 - RULER) * self.width - 36 * self.unit - width_of("500 mm ", size)
+        if result and width_of(result[-1][0], size) > width:
             result.append(("", "ink"))
         return result[::-1]
 

@@ -94,9 +94,9 @@ def _histogram(scatter: Scatter, unit: Unit, designs: int) -> Panel:
     lines = [Line(limit, "bound") for limit in _limits(scatter)]
     if np.isfinite(scatter.base):
         lines.append(Line(scatter.base, "model"))
-    held = [*(line.at for line in lines), float(edges[0]), float(edges[-1])]
-    room = NARROW * (max(held) - min(held)) or 0.05 * abs(held[0]) or 1.0
-    x = Axis(unit.called, unit_of(unit), low=min(held) - room, high=max(held) + room)
+    places = [*(line.at for line in lines), float(edges[0]), float(edges[-1])]
+    room = NARROW * (max(places) - min(places)) or 0.05 * abs(places[0]) or 1.0
+    x = Axis(unit.called, unit_of(unit), low=min(places) - room, high=max(places) + room)
     bars = Bars((edges[:-1] + edges[1:]) / 2, shares, np.diff(edges), roles=roles)
     title = ""
     if scatter.within is not None:
@@ -125,8 +125,12 @@ def shares(tolerances: Tolerances, units: Units) -> Iterator[Chart]:
     """Share of each tolerance in the variance of each figure, each with its 95 % interval."""
     causes = tolerances.causes
     every = [name for name in tolerances.scatters if name in causes[0].effects]
-    together = say("including interactions with others")
-    keys = (("part", say("by itself")), ("whole", together), ("interval", say("95 % interval")))
+    with_interactions = say("including interactions with others")
+    keys = (
+        ("part", say("by itself")),
+        ("whole", with_interactions),
+        ("interval", say("95 % interval")),
+    )
     rows = np.arange(len(causes))
     kinds = (("first", "part", -THIN / 2), ("total", "whole", THIN / 2))
     estimates = (getattr(cause.effects[n], kind) for n in every for cause in causes
@@ -138,8 +142,8 @@ def shares(tolerances: Tolerances, units: Units) -> Iterator[Chart]:
         for name in names:
             effects = [cause.effects[name] for cause in causes]
             bars = tuple(
-                _shares([getattr(effect, kind) for effect in effects], rows + beside, role)
-                for kind, role, beside in kinds
+                _shares([getattr(effect, kind) for effect in effects], rows + offset, role)
+                for kind, role, offset in kinds
             )
             panels.append(_bars_of(causes, units, bars, x, title=unit_in(units, name).called))
         what = say("What causes the scatter of each figure") + continued(names, every)
@@ -148,8 +152,8 @@ def shares(tolerances: Tolerances, units: Units) -> Iterator[Chart]:
 
 def _shares(estimates: Sequence[IntervalEstimate], rows: Array, role: str) -> Bars:
     """Estimates that may come out below 0 within their interval, as bars from 0."""
-    told = [(estimate.value, estimate.low, estimate.high) for estimate in estimates]
-    size, low, high = np.maximum(np.array(told).T, 0.0)
+    intervals = [(estimate.value, estimate.low, estimate.high) for estimate in estimates]
+    size, low, high = np.maximum(np.array(intervals).T, 0.0)
     return Bars(rows, size, THIN, role, across="y", interval=(low, high))
 
 
@@ -211,12 +215,12 @@ def landscape(result: Landscape) -> Chart:
         for path, values in zip(result.paths, (result.x, result.y), strict=True)
     )
     unit = typeset(result.unit)
-    told = f"{x.quantity(result.best[0])}, {y.quantity(result.best[1])}"
-    places = {"least": (result.best, f"{shown(result.least)} {unit}\n{told}", say("least"))}
+    place = f"{x.quantity(result.best[0])}, {y.quantity(result.best[1])}"
+    places = {"least": (result.best, f"{shown(result.least)} {unit}\n{place}", say("least"))}
     if result.start is not None and not np.isnan(result.before):
         inside = (
-            values[0] <= one <= values[-1]
-            for values, one in zip((result.x, result.y), result.start, strict=True)
+            values[0] <= coordinate <= values[-1]
+            for values, coordinate in zip((result.x, result.y), result.start, strict=True)
         )
         if all(inside):
             places["own"] = (result.start, f"{shown(result.before)} {unit}", say("as it is"))

@@ -194,16 +194,16 @@ def _panel(
     sweep: Sweep, label: str, quantity: str, rotation: bool, curves: Sequence[SpeedCurve]
 ) -> Panel:
     """Curves over one axis; where it is a quantity, with their highest peaks."""
-    heard = np.concatenate([bounded(item.values) for item in curves])
+    bounded_values = np.concatenate([bounded(item.values) for item in curves])
     speed = np.abs(sweep.speed)
     y = Axis(label)
     if quantity:
-        usual = np.quantile(heard, MOST_SPEEDS) if heard.size else 0.0
+        usual = np.quantile(bounded_values, MOST_SPEEDS) if bounded_values.size else 0.0
         y = read_axis(label, quantity, rotation, usual)
     lines = [Line(abs(r.speed), "loud" if r.is_loud else "quiet") for r in sweep.resonances]
     parts: dict[str, Any] = {"bands": bands(sweep), "keyed": True}
     parts["lines"] = (*lines, *own_speed(sweep))
-    if not np.any(heard > 0):
+    if not np.any(bounded_values > 0):
         y = replace(y, low=0.0, high=1.0 / y.unit.factor, ticks=())
         return Panel(speed_axis(sweep), y, message=say("nothing moves"), **parts)
     low, high = log_ends(curves, 1.6, 3.0)

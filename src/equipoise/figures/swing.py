@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from equipoise.vibration.free import FreeVibration
     from equipoise.vibration.response import Mode, Response
 
-SEEN = 0.04
+LARGEST = 0.04
 """Largest displacement that is drawn, over the size of the drawing."""
 LEAST = 0.01
 """Share of the largest displacement below which one is not told."""
@@ -49,7 +49,7 @@ def swinging(scene: Scene, response: Response, factor: float | None = None) -> S
     values = values - response.motion.amplitudes[:, :1].real
     reach = _reach(scene, values)
     if factor is None:
-        factor = _round(SEEN * _size(scene) / reach) if reach else 1.0
+        factor = _round(LARGEST * _size(scene) / reach) if reach else 1.0
     texts = [say("movement of the support {factor} times as large", factor=shown(factor))]
     if factor == 1:
         texts = [say("movement of the support to scale")]
@@ -100,12 +100,14 @@ class ModeSwing:
         planar = [*map(FREEDOMS.index, PLANAR)]
         in_plane = np.zeros_like(values)
         in_plane[planar] = values[planar]
-        seen = _reach(scene, in_plane) > LEAST * reach
+        is_visible = _reach(scene, in_plane) > LEAST * reach
         texts = [say("Mode {number}: {told}", number=number, told=described(mode))]
         if across:
             names = ", ".join(say(ACROSS[name]) for name in across)
             texts.append(say("across the drawing, not shown: {sizes}", sizes=names))
-        return cls(whole * (SEEN * _size(scene) / reach), tuple(across), seen, tuple(texts))
+        return cls(
+            whole * (LARGEST * _size(scene) / reach), tuple(across), is_visible, tuple(texts)
+        )
 
 
 def _phases(instants: int) -> Array:
@@ -147,10 +149,10 @@ def in_mode(free: FreeVibration, number: int, instants: int = INSTANTS) -> Scene
     return _with(scene, values, [*mode.told])
 
 
-def _with(scene: Scene, values: Array, told: list[str]) -> Scene:
+def _with(scene: Scene, values: Array, remarks: list[str]) -> Scene:
     """A scene whose support has six displacements (6, N), m and rad."""
     surge, heave, pitch = (values[FREEDOMS.index(name)] for name in PLANAR)
-    return replace(scene, swing=SupportSwing(surge + 1j * heave, pitch, tuple(told)))
+    return replace(scene, swing=SupportSwing(surge + 1j * heave, pitch, tuple(remarks)))
 
 
 def _size(scene: Scene) -> float:

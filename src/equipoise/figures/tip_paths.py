@@ -135,8 +135,8 @@ class Paths:
 
     def place_and_away(self, way: float, over_ground: bool) -> tuple[complex, float]:
         """Where the tip is, and the direction (deg) that points out of its path."""
-        near = np.array([way, way + 1e-3])
-        here, then = (self.over_ground if over_ground else self.on_machine)(near)
+        interval = np.array([way, way + 1e-3])
+        here, then = (self.over_ground if over_ground else self.on_machine)(interval)
         away = (then - here) * 1j * (1 if over_ground else self._turning)
         return complex(here), float(np.degrees(np.angle(away)))
 

@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 MM = 1000.0
 MOST_MODES, MOST_SHAPES, MOST_NAMES, LONGEST = 24, 6, 24, 20
 """Natural frequencies that are marked; shapes in a picture; stations named; signs of a name."""
-BESIDE, BEFORE = 0.02, 1e-9
+OVERHANG, BEFORE = 0.02, 1e-9
 """Share of the shaft that the axis goes on beyond its ends; m before a station, where the moment is
 that at its left."""
 REACH, LETTERS = 1.42, 18
@@ -77,7 +77,7 @@ def kind_of(station: Station) -> str:
 
 def shaft_axis(tool: Tool) -> Axis:
     """Places along the shaft."""
-    beyond = BESIDE * tool.shaft.length
+    beyond = OVERHANG * tool.shaft.length
     label = say("place on the shaft from its left end")
     return Axis.of(label, "length", [0.1], low=-beyond, high=tool.shaft.length + beyond)
 
@@ -95,7 +95,7 @@ def station_flags(tool: Tool) -> tuple[PlaceLabel, ...]:
         return kind_of(station) != "station", is_so, station.mass
 
     chosen = sorted(tool.stations, key=weight, reverse=True)[:MOST_NAMES]
-    ranked = sorted(chosen, key=lambda one: one.position)
+    ranked = sorted(chosen, key=lambda station: station.position)
     return tuple(
         PlaceLabel(
             item.position, (short(item.name, LONGEST),), 1.0 + len(chosen) - chosen.index(item)
@@ -270,12 +270,12 @@ def _moments(tool: Tool, places: Array, line: ShaftLine, loudest: list[int]) -> 
     )
 
 
-def _shapes_of_orders(tool: Tool, places: Array, found: Mapping[tuple[int, int], Array]) -> Panel:
-    every = np.array([*found.values()]) if found else np.zeros((1, len(places)))
+def _shapes_of_orders(tool: Tool, places: Array, shapes: Mapping[tuple[int, int], Array]) -> Panel:
+    every = np.array([*shapes.values()]) if shapes else np.zeros((1, len(places)))
     y = Axis.of(say("displacement"), "length", [*every.ravel(), 0.0], room=0.12)
     curves = tuple(
         Curve(places, shape, "", ORDER_ROLES[number], dashed=bool(plane))
-        for (number, plane), shape in found.items()
+        for (number, plane), shape in shapes.items()
     )
     curves = curves or (Curve(places, every[0], "", "faint"),)
     return Panel(shaft_axis(tool), y, curves, lines=shaft_lines(tool), height=150.0)

@@ -231,8 +231,8 @@ def _of_hands(
     )
     above = Area(speed, np.minimum(allowed["limit"], high), np.full(len(speed), high), "forbidden")
     marks = (*hand_peaks(tool, speed, curves, y), *work_mark(work, y, above=False))
-    drawn = (*curves_of(speed, curves), *limits)
-    panel = Panel(x, y, drawn, marks, lines=work, areas=(above,), height=245.0)
+    content = (*curves_of(speed, curves), *limits)
+    panel = Panel(x, y, content, marks, lines=work, areas=(above,), height=245.0)
     hours = say("{hours} h a day", hours=shown(duration_of(exposure) / 3600))
     return Chart(name, tool.title, f"{what}, {hours}", (panel,))
 

@@ -87,7 +87,7 @@ def sampled(signal: Periodic) -> tuple[Array, Array]:
     return np.linspace(0.0, signal.period, count + 1), np.append(values, values[0])
 
 
-def told(signal: Periodic) -> tuple[Array, Array, list[tuple[float, float]]]:
+def plotted(signal: Periodic) -> tuple[Array, Array, list[tuple[float, float]]]:
     """The same, a constant where it varies by no more than rounding, and its extremes."""
     theta, values = sampled(signal)
     if float(np.ptp(values)) <= VARIES * float(np.max(np.abs(values))):
@@ -115,7 +115,7 @@ def gauge(response: Response, name: str) -> Chart:
     read = response.gauges[name]
     panels = []
     for quantity, name_of in QUANTITIES.items():
-        theta, values, places = told(getattr(read, quantity))
+        theta, values, places = plotted(getattr(read, quantity))
         label = say("rotation") if read.rotation and quantity == "displacement" else say(name_of)
         y = read_axis(label, quantity, read.rotation, values, room=ROOM)
         marks = extremes(y, values, places, "main")
@@ -145,7 +145,7 @@ def _with_mean(
     response: Response, signal: Periodic, figures: Figures, y: Axis, **rest: Any
 ) -> Panel:
     """A signal over a period, marked at its extremes, with a dashed line at its mean."""
-    theta, values, places = told(signal)
+    theta, values, places = plotted(signal)
     lines: tuple[Line, ...] = ()
     if varies(values):
         mean = 0.0 if abs(figures.mean) <= VARIES * float(np.ptp(values)) else figures.mean
@@ -193,9 +193,9 @@ def _bars(signals: GaugeSignals, name: str, last: float) -> Panel:
     title = short(name, 44)
     if not largest:
         return Panel(x, y, title=title, message=say("does not move"), height=SMALL)
-    heard, loudest = sizes > largest * MATTERS, int(np.argmax(sizes))
+    significant, loudest = sizes > largest * MATTERS, int(np.argmax(sizes))
     mark = Mark(float(orders[loudest]), largest, y.told(largest), sign=False, near=3.0)
-    bars = Bars(orders[heard], sizes[heard], 0.62 / signal.turns)
+    bars = Bars(orders[significant], sizes[significant], 0.62 / signal.turns)
     return Panel(x, y, marks=(mark,), bars=(bars,), title=title, height=SMALL)
 
 
@@ -240,7 +240,7 @@ def _mount(response: Response, name: str, rest: float, largest: Mapping[bool, fl
     assert response.machine.support is not None
     mount, model = response.mounts[name], response.machine.support.mounts[name]
     rotation = model.axis is not None
-    theta, values, places = told(mount.force)
+    theta, values, places = plotted(mount.force)
     lifted = off_ground(mount) if model.one_sided else []
     if lifted and response.model == "exact":  # the sum of its orders swings about 0
         values, places = np.maximum(values, 0.0), places[:1]

@@ -28,7 +28,7 @@ Ticks = list[tuple[float, str]]
 
 TURN = (15, 30, 45, 60, 90, 180, 360, 720, 1440, 3600)
 """Degrees between crank angles that are numbered."""
-UP, BESIDE, NARROW = 22.0, 12.0, 4.0
+UP, SIDE_GAP, NARROW = 22.0, 12.0, 4.0
 """Points between numbers above each other; free between those side by side, and at least."""
 NEAREST = 11.0
 """Points between the middles of two numbers at least."""
@@ -118,15 +118,15 @@ def ticks_of(scale: AxisScale, upright: bool = False) -> Ticks:
 
 def _apart(scale: AxisScale, ticks: Ticks) -> Ticks:
     """Those of words side by side that do not touch."""
-    kept: Ticks = []
+    clear: Ticks = []
     end = -np.inf
     for place, text in ticks:
         half = width_of(text, SMALL) / 2
         x = float(scale.of(place))
         if x - half > end + 3:
-            kept.append((place, text))
+            clear.append((place, text))
             end = x + half
-    return kept
+    return clear
 
 
 def steps_of(scale: AxisScale, digits: tuple[float, ...]) -> Iterator[float]:
@@ -144,7 +144,7 @@ def steps_of(scale: AxisScale, digits: tuple[float, ...]) -> Iterator[float]:
 def _round_ticks(scale: AxisScale, upright: bool) -> Ticks:
     """Numbers as near to each other as they have room, but not fewer than three."""
     fewer: Ticks = []
-    for digits, free in ((ROUND, BESIDE), (ROUNDISH, NARROW)):
+    for digits, free in ((ROUND, SIDE_GAP), (ROUNDISH, NARROW)):
         for step in steps_of(scale, digits):
             first, last = ceil(scale.low / step - 1e-6), floor(scale.high / step + 1e-6)
             if last - first > MOST or step / (scale.high - scale.low) * scale.length < NEAREST:
@@ -163,7 +163,7 @@ def _fits(scale: AxisScale, ticks: Ticks, upright: bool, free: float) -> bool:
         return True
     gap = abs(float(scale.of(ticks[1][0]) - scale.of(ticks[0][0])))
     if upright:
-        return gap >= (UP if free == BESIDE else SMALL + NARROW)
+        return gap >= (UP if free == SIDE_GAP else SMALL + NARROW)
     return gap >= max(width_of(text, SMALL) for _, text in ticks) + free
 
 
@@ -194,7 +194,7 @@ def _log_fits(scale: AxisScale, ticks: Ticks, upright: bool) -> bool:
     gaps = np.abs(np.diff([float(scale.of(place)) for place, _ in ticks]))
     least = 0.7 * UP
     if not upright:
-        least = max(width_of(text, SMALL) for _, text in ticks) + BESIDE / 2
+        least = max(width_of(text, SMALL) for _, text in ticks) + SIDE_GAP / 2
     return bool(np.all(gaps >= least))
 
 

@@ -37,7 +37,7 @@ LOWEST = 45.0
 """mm on paper from the lower edge of the sheet to the part's middle, beside half its room."""
 
 
-def made(job: Job) -> bytes:
+def export_bytes(job: Job) -> bytes:
     """The file's content, in the language that is spoken; in English where no font of this computer
     has its letters.
     """

@@ -50,10 +50,10 @@ UNITS: dict[Dimension, str] = {
 SIDES = {"vertical": to_say("vertical"), "lateral": to_say("lateral")}
 
 
-def cell(value: float, dimension: str, **more: Any) -> Value:
+def cell(value: float, dimension: str, **options: Any) -> Value:
     """A number of a dimension, in the unit that is usual of tools."""
     kind: Dimension = dimension  # type: ignore[assignment]
-    return Value(value, dimension=kind, unit=UNITS.get(kind), **more)
+    return Value(value, dimension=kind, unit=UNITS.get(kind), **options)
 
 
 def column(label: str, dimension: Dimension, at: tuple[Dimension, str] = RPM) -> Column:

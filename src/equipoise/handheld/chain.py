@@ -242,18 +242,18 @@ def solve(carried: CondensedStiffness, loads: Sequence[NodePair | None]) -> Stat
     """
     z, chain = carried.stiffness, carried.chain
     g = _less(NodePair(0.0, 0.0), loads[0])
-    held = [g]
+    condensed = [g]
     for over, load, after, station in zip(
         chain.segments, loads[1:], z[1:], chain.stations[1:], strict=True
     ):
         g = _less(_carry_load(over, after, station, g), load)
-        held.append(g)
+        condensed.append(g)
     last = z[-1]
     determinant = last.aa * last.tt - last.at * last.at
     across = (last.at * g.turning - last.tt * g.across) / determinant
     motion = [NodePair(across, (last.at * g.across - last.aa * g.turning) / determinant)]
     force = [NodePair(0.0 * g.across, 0.0 * g.turning)]
-    for step, before, g in zip(carried.steps[::-1], z[-2::-1], held[-2::-1], strict=True):
+    for step, before, g in zip(carried.steps[::-1], z[-2::-1], condensed[-2::-1], strict=True):
         q = _back(step, motion[-1], g)
         motion.append(q)
         across = before.aa * q.across + before.at * q.turning + g.across

@@ -33,7 +33,7 @@ from equipoise.results.result import Result
 from equipoise.sequences import sobol
 from equipoise.signals import Array
 
-Told = Callable[[int, int], None]
+SearchProgress = Callable[[int, int], None]
 """Is called with how many searches are done, and how many there are."""
 TRIED, FOLLOWED = 256, 8
 """Designs spread over the room, and how many of the best are followed downhill."""
@@ -62,7 +62,7 @@ class Search(DesignProblem):
         tool: Tool,
         design: DesignPlan,
         speed: Array,
-        report: Told = lambda done, total: None,
+        report: SearchProgress = lambda done, total: None,
         starts: Array | None = None,
     ) -> None:
         self.solvers = (QuadraticPrograms(report, starts),)
@@ -88,8 +88,8 @@ class Search(DesignProblem):
             if not slopes:
                 return pair
             self._seen = (key, pair)
-        kept: tuple[Dual, Dual] = self._seen[1]
-        return kept
+        pair_at: tuple[Dual, Dual] = self._seen[1]
+        return pair_at
 
     def _at(self, values: Array, slopes: bool) -> tuple[Dual, Dual]:
         felt = self.band.felt(self.numbers, values, self.held, slopes)
@@ -141,7 +141,7 @@ class QuadraticPrograms:
     starts : places (K, d) that are followed instead.
     """
 
-    told: Told
+    told: SearchProgress
     starts: Array | None = None
     name: ClassVar[str] = "sequential quadratic programs"
 
@@ -277,20 +277,22 @@ class ToolDesign(Result):
     def days(self) -> tuple[Exposure, Exposure] | None:
         """The day of the hand that gets most, before and after; None where no work is given."""
         each = [days_of(item, self.tool.work) for item in (self.tool, self.better)]
-        before, after = (max(day.values(), key=lambda one: one.a8, default=None) for day in each)
+        before, after = (
+            max(day.values(), key=lambda day_values: day_values.a8, default=None) for day in each
+        )
         return None if before is None or after is None else (before, after)
 
     def to_dict(self) -> dict[str, Any]:
         """As plain values in SI units."""
         a8 = (None, None) if self.days is None else tuple(day.a8 for day in self.days)
 
-        def told(rows: Iterable[Before]) -> dict[str, Any]:
+        def as_dict(rows: Iterable[Before]) -> dict[str, Any]:
             return {row.name: {"before": row.before, "after": row.after} for row in rows}
 
         names = [row.name for row in self.variables]
         return {
-            "variables": told(self.variables),
-            "figures": told(self.figures),
+            "variables": as_dict(self.variables),
+            "figures": as_dict(self.figures),
             "edges": dict(zip(names, self.edges, strict=True)),
             "solver": self.solver,
             "proved": self.proved,
@@ -304,7 +306,7 @@ class ToolDesign(Result):
         }
 
 
-def design_tool(tool: Tool, told: Told | None = None) -> ToolDesign:
+def design_tool(tool: Tool, progress: SearchProgress | None = None) -> ToolDesign:
     """Change what the tool's [design] allows so that the hands feel least over its band.
 
     Designs spread over the whole room are tried, and the best of them followed downhill with exact
@@ -321,22 +323,22 @@ def design_tool(tool: Tool, told: Told | None = None) -> ToolDesign:
     if design is None:
         raise ModelError("design", NO_DESIGN)
     count, starts = SPEEDS, None
-    seen = []
-    tell = told or (lambda done, total: None)
+    rounds = []
+    tell = progress or (lambda done, total: None)
     for _ in range(DOUBLINGS + 1):
         search = Search(tool, design, np.linspace(*design.speeds, count), tell, starts)
         solution = solve(search)
         best = solution.places[0]
-        seen.append(solution)
+        rounds.append(solution)
         fine = Search(tool, design, np.linspace(*design.speeds, FINER * (count - 1) + 1))
         coarse, exact = search.measure(best), fine.measure(best)
         if abs(exact - coarse) <= STILL * exact:
             break
         count, starts = 2 * count - 1, best[None]
-    return _found(fine, best, seen[0])
+    return _tool_design(fine, best, rounds[0])
 
 
-def _found(search: Search, best: Array, solution: DesignSolution) -> ToolDesign:
+def _tool_design(search: Search, best: Array, solution: DesignSolution) -> ToolDesign:
     """The result, from the tool that the best numbers make, found first by a solution."""
     arrived, searches = solution.details or (1, 1)
     tool, design = search.tool, search.design
@@ -402,8 +404,8 @@ def _figures(search: Search, better: Tool) -> Iterable[Before]:
             said = Note(both, what=what, measure=Note(measure))
             yield _before(said, "acceleration", *(item[name] for item in result))
     for name in search.held:
-        shaken = (respond_tool(item, search.band.speed) for item in (search.tool, better))
-        forces = (float(np.max(rms_over_time(item.whole_force(name)))) for item in shaken)
+        responses = (respond_tool(item, search.band.speed) for item in (search.tool, better))
+        forces = (float(np.max(rms_over_time(item.whole_force(name)))) for item in responses)
         what = Note(to_say("force at {station}"), station=name)
         yield _before(Note(both, what=what, measure=Note(top)), "force", *forces)
     yield _before(Note(to_say("mass")), "mass", search.tool.mass, better.mass)

@@ -172,39 +172,39 @@ def unknown_station(where: str, name: str, stations: Sequence[Station]) -> Itera
 
 
 def wrong_design(
-    design: DesignPlan, stations: Sequence[Station], length: float, shaken: bool
+    design: DesignPlan, stations: Sequence[Station], length: float, is_excited: bool
 ) -> Iterator[ModelError]:
     """Everything that is wrong with a plan for a tool.
 
     length : of its shaft, m.  shaken : whether anything shakes it.
     """
-    held = [station.name for station in stations if station.hand is not None]
+    hand_names = [station.name for station in stations if station.hand is not None]
     yield from wrong_speeds("design.speeds", design.speeds)
     if design.measure not in MEASURES:
         yield ModelError("design.measure", unknown(design.measure, MEASURES, "measure"))
     if not design.variables:
         yield ModelError("design.variables", Note("there is nothing to change; give at least one"))
-    if not shaken:
+    if not is_excited:
         yield ModelError("design", Note("nothing shakes the tool; give [[excitations]]"))
-    if not held:
+    if not hand_names:
         yield ModelError("design", Note("no hand holds the tool; give a station a hand"))
     for number, name in enumerate(design.hands, 1):
-        yield from _not_held(f"design.hands[{number}]", name, held)
-    seen = set()
+        yield from _not_a_hand(f"design.hands[{number}]", name, hand_names)
+    used = set()
     for where, variable in numbered("design.variables", design.variables):
         yield from _wrong_variable(where, variable, stations, length)
-        if (variable.station, variable.key) in seen:
+        if (variable.station, variable.key) in used:
             yield ModelError(
                 where, Note("{name!r} is given twice; give one of both", name=variable.name)
             )
-        seen.add((variable.station, variable.key))
+        used.add((variable.station, variable.key))
     for where, limit in numbered("design.limits", design.limits):
-        yield from _wrong_limit(where, limit, stations, held)
+        yield from _wrong_limit(where, limit, stations, hand_names)
 
 
-def _not_held(where: str, name: str, held: Sequence[str]) -> Iterator[ModelError]:
-    if name not in held:
-        yield ModelError(where, unknown(name, held, "station with a hand"))
+def _not_a_hand(where: str, name: str, hand_names: Sequence[str]) -> Iterator[ModelError]:
+    if name not in hand_names:
+        yield ModelError(where, unknown(name, hand_names, "station with a hand"))
 
 
 def _wrong_variable(
@@ -239,7 +239,7 @@ def _wrong_variable(
 
 
 def _wrong_limit(
-    where: str, limit: DesignLimit, stations: Sequence[Station], held: Sequence[str]
+    where: str, limit: DesignLimit, stations: Sequence[Station], hand_names: Sequence[str]
 ) -> Iterator[ModelError]:
     if limit.output not in OUTPUTS:
         yield ModelError(f"{where}.output", unknown(limit.output, OUTPUTS, "output"))
@@ -261,7 +261,7 @@ def _wrong_limit(
             f"{where}.station", Note("missing; give that of the {output}", output=limit.output)
         )
     elif limit.output == "acceleration":
-        yield from _not_held(f"{where}.station", limit.station, held)
+        yield from _not_a_hand(f"{where}.station", limit.station, hand_names)
     else:
         touching = [station.name for station in stations if station.hand or station.harness]
         if limit.station not in touching:

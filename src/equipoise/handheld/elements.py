@@ -84,7 +84,7 @@ def matrices(layout: Layout, plane: int, number: int) -> tuple[Array, Array, Arr
         if station.absorber is not None and station.absorber.mass
     ]
     size = 2 * len(nodes) + len(own)
-    mass, damping, held, shaft = (np.zeros((size, size)) for _ in range(4))
+    mass, damping, restraint, shaft = (np.zeros((size, size)) for _ in range(4))
     for k, (left, right) in enumerate(pairwise(nodes)):
         middle = (left + right) / 2
         section = next(item for _, stop, item in tool.shaft.pieces if middle <= stop)
@@ -95,7 +95,7 @@ def matrices(layout: Layout, plane: int, number: int) -> tuple[Array, Array, Arr
         at = int(np.argmin(np.abs(np.array(nodes) - station.position)))
         bare = [replace(station, absorber=None)]
         still = layout.sitting(bare, 0.0, 0.0, "free")  # affine in s and in its square
-        for matrix, s, square in ((held, 0.0, 0.0), (damping, 1.0, 0.0), (mass, 0.0, 1.0)):
+        for matrix, s, square in ((restraint, 0.0, 0.0), (damping, 1.0, 0.0), (mass, 0.0, 1.0)):
             sits = layout.sitting(bare, s, square, "free")
             for row, value, stiff in zip((2 * at, 2 * at + 1), sits, still, strict=True):
                 change = value - stiff if s or square else value
@@ -106,9 +106,9 @@ def matrices(layout: Layout, plane: int, number: int) -> tuple[Array, Array, Arr
             mass[last, last] = absorber.mass
             between = np.zeros(size)
             between[[2 * at, last]] = 1.0, -1.0
-            held += absorber.stiffness[plane] * np.outer(between, between)
+            restraint += absorber.stiffness[plane] * np.outer(between, between)
             damping += absorber.damping[plane] * np.outer(between, between)
-    return mass, damping, held, shaft
+    return mass, damping, restraint, shaft
 
 
 def rough_eigenvalues(
@@ -126,8 +126,8 @@ def rough_eigenvalues(
     """
     from scipy.linalg import eigh, eigvals
 
-    mass, damping, held, shaft = matrices(layout, plane, number)
-    inverse, modes = eigh(mass, held + shaft + lowest**2 * mass)
+    mass, damping, restraint, shaft = matrices(layout, plane, number)
+    inverse, modes = eigh(mass, restraint + shaft + lowest**2 * mass)
     inverse, modes = inverse[::-1], modes[:, ::-1] / np.sqrt(inverse[::-1])
     squares = np.maximum(1 / inverse - lowest**2, 0.0)
     squares[:rigid] = 0.0

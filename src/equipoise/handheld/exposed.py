@@ -249,7 +249,7 @@ class SpeedBand:
         self,
         numbers: Sequence[Number],
         values: Array | None = None,
-        held: Sequence[str] = (),
+        force_names: Sequence[str] = (),
         slopes: bool = True,
     ) -> BandFigures:
         """What the hands get with some numbers (P,) of the tool changed.
@@ -266,11 +266,11 @@ class SpeedBand:
         loads = loads_on(layout, self.shakes, self.orders, self.speed)
         field = HarmonicField(layout, s, solve(carried, loads))
         names = [grip.name for grip in self.tool.grips]
-        by = Reciprocal(field, carried, [*names, *held], numbers if slopes else ())
+        by = Reciprocal(field, carried, [*names, *force_names], numbers if slopes else ())
         squares = {name: weighted_squares(self.frequency, by.moved(name)) for name in names}
         hands = {name: self._over_orders(square) for name, square in squares.items()}
         forces = {}
-        for name in held:  # mean square of the force on all that holds the station
+        for name in force_names:  # mean square of the force on all that holds the station
             force = by.holding(name) * by.moved(name)
             forces[name] = self._over_orders(force * force.conj() * 0.5)
         return BandFigures(hands, forces)

@@ -281,10 +281,10 @@ def _overdamped(layout: Layout, plane: int, rough: Array, radii: tuple[float, fl
         return np.empty(0)
     low, high = radii
     size = np.abs(rough)
-    near = np.sort(-rough.real[(np.abs(rough.imag) <= BARELY * size) & (rough.real < 0)])
+    real_rates = np.sort(-rough.real[(np.abs(rough.imag) <= BARELY * size) & (rough.real < 0)])
     swings = np.abs(rough.imag) > REAL * size
     just = -rough.real[swings & (np.abs(rough.imag) <= BARELY * size)]
-    sizes = np.unique(np.concatenate([np.sqrt(near[1:] * near[:-1]), just, near]))
+    sizes = np.unique(np.concatenate([np.sqrt(real_rates[1:] * real_rates[:-1]), just, real_rates]))
     sizes = np.concatenate([[low], sizes[(sizes > low) & (sizes < high)], [high]])
     up = _positive(layout, plane, sizes)
     where = np.flatnonzero(up[1:] != up[:-1])

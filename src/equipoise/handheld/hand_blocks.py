@@ -143,7 +143,9 @@ def design_blocks(design: ToolDesign, judged: bool = True) -> Iterator[Block]:
     for variable, edge in zip(design.variables, design.edges, strict=True):
         text = say(EDGES[edge]) if edge in EDGES else ""
         rows.append((figure_named(variable), *_pair(variable), text))
-    rows += [(figure_named(figure), *_pair(figure, told=True), "") for figure in design.figures]
+    rows += [
+        (figure_named(figure), *_pair(figure, marks_worse=True), "") for figure in design.figures
+    ]
     labels = ("", say("before"), say("after"), say("change"), "")
     title = say(
         "What to change, and what that brings at {low} to {high} rpm", **ends_told(design.speed)
@@ -173,8 +175,8 @@ def _verdict(design: ToolDesign) -> Iterator[Text]:
     yield Text(say(template, **values, **words), limit_broken(after.a8))
 
 
-def _pair(before: Before, told: bool = False) -> tuple[Cell, ...]:
-    worse = told and before.dimension != "mass" and before.after > 1.001 * before.before
+def _pair(before: Before, marks_worse: bool = False) -> tuple[Cell, ...]:
+    worse = marks_worse and before.dimension != "mass" and before.after > 1.001 * before.before
     pair = (cell(before.before, before.dimension), cell(before.after, before.dimension))
     return (*pair, RelativeChange(before.before, before.after, worse_if(worse)))
 
@@ -211,11 +213,11 @@ def variation_blocks(variation: Variation) -> Iterator[Block]:
 
 
 def sensitivity_blocks(
-    tool: Tool, found: Mapping[tuple[str, str], float], ends: tuple[float, float]
+    tool: Tool, sensitivities: Mapping[tuple[str, str], float], ends: tuple[float, float]
 ) -> Iterator[Block]:
     """What each number of the tool does to the hands over a band of speeds, the strongest first."""
     rows = []
-    for (station, key), slope in found.items():
+    for (station, key), slope in sensitivities.items():
         value = number_of(tool, station, key)
         step = 0.01 * (tool.shaft.length if key == "position" else value)
         effect = Value(1e3 * slope * step, digits=3)

@@ -323,16 +323,16 @@ def _problems(tool: Tool) -> Iterator[ModelError]:
 
 def _wrong_names(named: Mapping[str, Sequence[Any]]) -> Iterator[ModelError]:
     for part, items in named.items():
-        seen: set[str] = set()
+        used: set[str] = set()
         for where, item in numbered(part, items):
             name = item.name
             at = f"{where}.name"
             yield from wrong_text(at, name)
             if not name.strip():
                 yield ModelError(at, Note("is empty; give a name"))
-            if name in seen:
+            if name in used:
                 yield ModelError(at, Note("{name!r} is given twice; give another name", name=name))
-            seen.add(name)
+            used.add(name)
 
 
 def _wrong_excitation(where: str, excitation: Excitation, tool: Tool) -> Iterator[ModelError]:

@@ -31,7 +31,7 @@ from equipoise.signals import Array, highest_at
 POINTS = 401
 """Places at which a shape is told."""
 
-BESIDE, ASIDE, LOUDER = 1e-9, 1e-3, 100.0
+LOAD_OFFSET, ASIDE, LOUDER = 1e-9, 1e-3, 100.0
 """Shares of an eigenvalue by which a load shakes beside it to bring out the shape, and further off;
 how many times as loud it must be at the first."""
 SAME = 1e-9
@@ -310,9 +310,9 @@ def shapes_beside(layout: Layout, s: Array, places: Array, kind: Kind) -> tuple[
     Its answer close beside each to a load that knows no symmetry; nothing where that is no louder
     than far beside, as the shaft then is at rest while something on it swings.
     """
-    near, far = (_loaded(layout, s * (1 + share), places, kind) for share in (BESIDE, ASIDE))
-    still = np.max(np.abs(near[0]), axis=0) < LOUDER * np.max(np.abs(far[0]), axis=0)
-    return np.where(still, 0.0, near[0]), np.where(still, 0.0, near[1])
+    close, far = (_loaded(layout, s * (1 + share), places, kind) for share in (LOAD_OFFSET, ASIDE))
+    still = np.max(np.abs(close[0]), axis=0) < LOUDER * np.max(np.abs(far[0]), axis=0)
+    return np.where(still, 0.0, close[0]), np.where(still, 0.0, close[1])
 
 
 def _loaded(layout: Layout, s: Array, places: Array, kind: Kind) -> tuple[Array, Array]:

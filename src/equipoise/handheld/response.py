@@ -89,8 +89,8 @@ def _of_linkage(excitation: Excitation, machine: Machine) -> Iterable[HarmonicFo
     backward = (excitation.ratio > 0) != (machine.drive.speed > 0)
     sizes = np.max(force.sizes, axis=0)
     largest = float(np.max(sizes[1:], initial=0.0))
-    kept = [k for k in range(1, len(sizes)) if sizes[k] > LEAST * largest]
-    for k in sorted(kept, key=lambda k: -sizes[k])[:MOST_ORDERS]:
+    significant = [k for k in range(1, len(sizes)) if sizes[k] > LEAST * largest]
+    for k in sorted(significant, key=lambda k: -sizes[k])[:MOST_ORDERS]:
         order = float(force.orders[k])
         both = excitation.ratio**2 * force.amplitudes[:, k] * np.exp(1j * order * excitation.phase)
         both = np.conj(both) if backward else both
@@ -274,7 +274,7 @@ def respond_tool(tool: Tool, speed: float | Iterable[float] | Array) -> ToolResp
     ends = float(orders[0] * np.min(speeds)), float(orders[-1] * np.max(speeds))
     check_coverage(tool, *ends)
     layout = Layout(tool, ends[1])
-    field = shaken(layout, all_shakes, orders, speeds)
+    field = excited_field(layout, all_shakes, orders, speeds)
     _check_finite(field, orders, speeds)
     return ToolResponse(tool, speeds, orders, all_shakes, field)
 
@@ -311,7 +311,7 @@ def checked_speeds(speed: float | Iterable[float] | Array) -> Array:
     return speeds
 
 
-def shaken(
+def excited_field(
     layout: Layout, all_shakes: Sequence[HarmonicForce], orders: Array, speeds: Array
 ) -> HarmonicField:
     """The field of a layout under what shakes, at all orders and speeds."""

@@ -106,9 +106,11 @@ MATERIALS = {
 """The usual values of their alloys."""
 
 
-def _key(kind: Dimension | Number | TextKind, text: str, default: Any = None, **more: Any) -> Key:
+def _key(
+    kind: Dimension | Number | TextKind, text: str, default: Any = None, **options: Any
+) -> Key:
     of = Quantity(dimension=kind) if isinstance(kind, str) else kind
-    return Key("", of, text, default=default, **more)
+    return Key("", of, text, default=default, **options)
 
 
 PROFILE: Keys = {

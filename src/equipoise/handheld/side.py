@@ -71,5 +71,5 @@ def _tubes(shaft: Shaft) -> list[TubeSign]:
     values = [(a, b, own.get((a, b), shaft.profile)) for a, b, _ in shaft.pieces]
     wide = [item.outer_diameter if isinstance(item, Tube) else 0.0 for *_, item in values]
     both = [max(wide[max(k - 1, 0) : k + 2]) for k in range(len(wide))]
-    sizes = (own or beside for own, beside in zip(wide, both, strict=True))
+    sizes = (own or neighbor for own, neighbor in zip(wide, both, strict=True))
     return [TubeSign(a, b, size) for (a, b, _), size in zip(values, sizes, strict=True)]

@@ -36,7 +36,7 @@ AROUND = (0.5, 1.25)
 """Range about the working speed, as shares of it, where the tool tells none."""
 SPEEDS = 400
 """Equally spaced speeds in a range, if not told otherwise."""
-BESIDE = np.array([-0.03, -0.01, -0.003, 0.003, 0.01, 0.03])
+RESONANCE_OFFSETS = np.array([-0.03, -0.01, -0.003, 0.003, 0.01, 0.03])
 """Shares of a resonance without damping beside which it is looked at."""
 HALF = np.array([0.2, 0.4, 0.6, 0.8, 1, 1.3, 1.7, 2.3, 3, 4, 6, 9, 14, 22, 35])
 WIDTHS = np.concatenate([-HALF, [0.0], HALF])
@@ -59,13 +59,13 @@ SPEED = ResultOutput("speed of the engine", "angular speed", along="speed", colu
 
 
 def _planes(
-    key: str, meaning: str, dimension: Dimension | None, read: str, **more: Any
+    key: str, meaning: str, dimension: Dimension | None, read: str, **options: Any
 ) -> dict[str, ResultOutput]:
     """An output of the vertical plane, and that of the lateral one.
 
     read : attribute with both.  column : of the CSV file, where there is one.
     """
-    column = more.pop("column", None)
+    column = options.pop("column", None)
     return {
         key + ("_lateral" if plane else ""): ResultOutput(
             f"{meaning}, {side}",
@@ -73,7 +73,7 @@ def _planes(
             read=lambda item, plane=plane: getattr(item, read)[plane],  # type: ignore[misc]
             column=column and f"{column}_{side}",
             rank=plane,
-            **more,
+            **options,
         )
         for plane, side in enumerate(PLANES)
     }
@@ -160,7 +160,7 @@ def source_of(tool: Tool) -> str:
     return min(tool.stations, key=lambda item: item.position).name
 
 
-def held(tool: Tool) -> list[Station]:
+def restrained_stations(tool: Tool) -> list[Station]:
     """Stations at which the body or the ground holds the tool."""
     return [
         station for station in tool.stations if station.hand or station.harness or station.grounded
@@ -174,7 +174,7 @@ def transmit(tool: Tool, speed: Array, source: str | None = None) -> Transmissio
     """
     speed = checked_speeds(speed)
     source = source_of(tool) if source is None else tool.station(source).name
-    names = [item.name for item in held(tool)]
+    names = [item.name for item in restrained_stations(tool)]
     if not names:
         raise ModelError("shaft.stations", Note("nothing holds the tool; give a hand or a harness"))
 
@@ -303,8 +303,8 @@ class ToolSweep(Result):
         """Largest RMS bending moment (S,), N m, and where in the shaft it is, m."""
         length = self.tool.shaft.length
         stations = np.array([station.position for station in self.tool.stations])
-        beside = np.concatenate([stations, np.nextafter(stations, 0.0)])  # where it may jump
-        where = np.unique(np.concatenate([np.linspace(0, length, PLACES), beside]))
+        both_sides = np.concatenate([stations, np.nextafter(stations, 0.0)])  # where it may jump
+        where = np.unique(np.concatenate([np.linspace(0, length, PLACES), both_sides]))
         moment = self.places(where).moment
         at = highest_at(moment.T)
         return moment[at, np.arange(len(self.speed))], where[at]
@@ -400,7 +400,7 @@ def sweep_tool(tool: Tool, speed: Array, further: Sequence[float] = ()) -> ToolS
     ------
     ModelError : nothing holds it and nothing shakes it; as `respond_tool`.
     """
-    transmissions = transmit(tool, speed) if held(tool) else None
+    transmissions = transmit(tool, speed) if restrained_stations(tool) else None
     response = respond_tool(tool, speed) if tool.excitations else None
     if transmissions is None and response is None:
         raise ModelError(
@@ -440,9 +440,9 @@ def speeds_between(tool: Tool, low: float, high: float, count: int = SPEEDS) -> 
     values = swinging_below(tool, max(orders) * high)
     wide = np.abs(values.real) > NARROW * values.imag
     about = [
-        (values.imag[~wide, None] * (1 + BESIDE)).ravel(),
+        (values.imag[~wide, None] * (1 + RESONANCE_OFFSETS)).ravel(),
         (values.imag[wide, None] + np.abs(values.real[wide, None]) * WIDTHS).ravel(),
     ]
-    beside = [part / order for order in orders for part in about]
-    speeds = np.unique(np.concatenate([np.linspace(low, high, count), *beside]))
+    near_resonances = [part / order for order in orders for part in about]
+    speeds = np.unique(np.concatenate([np.linspace(low, high, count), *near_resonances]))
     return np.asarray(speeds[(speeds >= low) & (speeds <= high)])

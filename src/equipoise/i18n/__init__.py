@@ -79,9 +79,9 @@ class Note(str):
 
     def __new__(cls, template: str, /, **values: Any) -> Self:
         with speaking("en"), wording({}), key_words(str):
-            made = super().__new__(cls, _said(template, values))
-        made.template, made.values = template, values
-        return made
+            note = super().__new__(cls, _said(template, values))
+        note.template, note.values = template, values
+        return note
 
     def __getnewargs_ex__(self) -> tuple[tuple[str], dict[str, Any]]:
         return (self.template,), dict(self.values)
@@ -126,9 +126,9 @@ class Worded(str):
 
     def __new__(cls, texts: Mapping[str, str]) -> Self:
         own = {code: texts[code] for code in LANGUAGES if code in texts}
-        made = super().__new__(cls, next(iter(own.values())))
-        made.texts = own
-        return made
+        text = super().__new__(cls, next(iter(own.values())))
+        text.texts = own
+        return text
 
     def __getnewargs__(self) -> tuple[Any]:
         return (dict(self.texts),)

@@ -28,8 +28,8 @@ class CsvTable(Frozen):
     kinds: ClassVar[dict[str, Any]] = {}
     """All of them, by their sort."""
 
-    def __init_subclass__(cls, **more: Any) -> None:
-        super().__init_subclass__(**more)
+    def __init_subclass__(cls, **options: Any) -> None:
+        super().__init_subclass__(**options)
         if cls.sort:
             CsvTable.kinds[cls.sort] = cls
 

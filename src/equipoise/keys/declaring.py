@@ -112,7 +112,7 @@ def key(
     factory: Callable[[], Any] | None = None,
     compare: bool = True,
     kw_only: bool = False,
-    **more: Any,
+    **options: Any,
 ) -> Any:
     """Declare a field that is a key of the file; `kind` may be the dimension of a quantity.
 
@@ -120,23 +120,23 @@ def key(
     """
     kind = Quantity(dimension=kind) if isinstance(kind, str) else kind  # type: ignore[arg-type]
     standing = factory() if factory is not None else default
-    declaration = Key(name, kind, text, default=standing, **more)
+    declaration = Key(name, kind, text, default=standing, **options)
     given: dict[str, Any] = {} if default is REQUIRED else {"default": default}
     if factory is not None:
         given = {"default_factory": factory}
     return field(metadata={_KEY: declaration}, compare=compare, kw_only=kw_only, **given)
 
 
-def inside(kind: Kind | str, **more: Any) -> Any:
+def inside(kind: Kind | str, **options: Any) -> Any:
     """Declare a field that no file has a key for; it is checked all the same, as of `key`."""
-    return key(kind, inside=True, **more)
+    return key(kind, inside=True, **options)
 
 
 @dataclass_transform(frozen_default=True, field_specifiers=(key, inside, field))
 def declared(cls: Class) -> Class:
     """Make a frozen dataclass of a class with keys."""
-    made: Class = keyworded(dataclass(frozen=True)(cls))
-    return made
+    declared_class: Class = keyworded(dataclass(frozen=True)(cls))
+    return declared_class
 
 
 def once(compute: Callable[[type[Frozen]], Result]) -> Callable[[type[Frozen]], Result]:
@@ -228,8 +228,8 @@ class Frozen(TableRecord):
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         for key, value in state.items():
-            held = MappingProxyType(value) if isinstance(value, dict) else value
-            object.__setattr__(self, key, held)
+            readonly = MappingProxyType(value) if isinstance(value, dict) else value
+            object.__setattr__(self, key, readonly)
 
 
 ROW = Listing(Number())
@@ -335,10 +335,10 @@ def changed(
     if isinstance(value, Mapping):
         return {**value, step: changed(value[step], rest, change, make)}
     item = keys_of(type(value))[str(step)]
-    held = getattr(value, item.field)
-    if isinstance(item.kind, KeyTable) and not isinstance(held, Frozen):
+    old_value = getattr(value, item.field)
+    if isinstance(item.kind, KeyTable) and not isinstance(old_value, Frozen):
         rest = rest[1:]  # a table with one key, which the object has without it
-    new = {item.field: changed(held, rest, change, make)}
+    new = {item.field: changed(old_value, rest, change, make)}
     return make(value, **value.following(new))
 
 
@@ -351,8 +351,8 @@ def _coordinate(step: str) -> int:
 def with_fields(value: Given, **changes: Any) -> Given:
     """A frozen value with fields changed, unchecked; what was kept with it is left behind."""
     result = object.__new__(type(value))
-    kept = {k: v for k, v in vars(value).items() if not k.startswith("_") and k != MEMORY}
-    _set(result, kept | changes)
+    values = {k: v for k, v in vars(value).items() if not k.startswith("_") and k != MEMORY}
+    _set(result, values | changes)
     if isinstance(value, Frozen) and isinstance(result, Frozen):
         _set(result, result.dependent_fields())
         if shared := value.handed_on & vars(value).get(MEMORY, {}).keys():

@@ -104,8 +104,8 @@ class RequirementKeys(Mapping[str, Key]):
     more : of each key, as of `Key`.
     """
 
-    def __init__(self, table: str, value: Kind, needed: bool = False, **more: Any) -> None:
-        self.table, self.value, self.needed, self.more = table, value, needed, more
+    def __init__(self, table: str, value: Kind, needed: bool = False, **options: Any) -> None:
+        self.table, self.value, self.needed, self.more = table, value, needed, options
 
     def __iter__(self) -> Iterator[str]:
         return (key for key, kind in REQUIREMENT_KINDS.items() if self.table in kind.tables)

@@ -101,10 +101,10 @@ def _is_usual(value: float, of: Key | None) -> bool:
 
 def _parts_are_sound(value: Any, finished: bool) -> bool:
     """Whether an object's fields are; one that is finished is looked at once, whoever has it."""
-    kept = vars(value)
-    if "sound" in kept.get(MEMORY, {}):
+    values = vars(value)
+    if "sound" in values.get(MEMORY, {}):
         return bool(value.memory["sound"])
-    sound = all(_is_sound(kept[name], item, names) for name, item, names in _limits(type(value)))
+    sound = all(_is_sound(values[name], item, names) for name, item, names in _limits(type(value)))
     if finished:
         value.memory["sound"] = sound
     return sound

@@ -276,7 +276,9 @@ def fit_whole(record: Record, turns: Turns, line: Constants, confidence: float) 
         least_squares(left, guess / unit, "3-point", x_scale="jac", max_nfev=200)
         for guess in _first_guesses(turns, line)
     ]
-    done = min((item for item in tried if item.success), key=lambda one: one.cost, default=tried[0])
+    done = min(
+        (item for item in tried if item.success), key=lambda result: result.cost, default=tried[0]
+    )
     result = motion(done.x)
     if not done.success or not result.damped > 0:
         raise UsageError(

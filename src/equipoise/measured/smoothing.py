@@ -100,10 +100,10 @@ def fitted(samples: Samples, at: float, width: float, still: bool = False, side:
     return Local(at, float(coefficients[0]), spread, noise, coefficients, width)
 
 
-def top(samples: Samples, near: float, half: float) -> Local:
+def top(samples: Samples, guess: float, half: float) -> Local:
     """The turning point near a time; half : a half-period, s."""
     width = half / 3
-    place = fitted(samples, near, width)
+    place = fitted(samples, guess, width)
     for _ in range(2):
         place = fitted(samples, place.at + width * _level(place.powers), width)
     return place
@@ -114,8 +114,8 @@ def _level(powers: Array) -> float:
     slope = np.trim_zeros(np.polynomial.polynomial.polyder(powers), "b")
     roots = np.polynomial.polynomial.polyroots(slope) if slope.size else np.empty(0)
     real = roots.real[np.abs(roots.imag) < 1e-9]
-    near = real[np.abs(real) <= 1.0]
-    return float(near[np.argmin(np.abs(near))]) if near.size else 0.0
+    inside = real[np.abs(real) <= 1.0]
+    return float(inside[np.argmin(np.abs(inside))]) if inside.size else 0.0
 
 
 def steepest_time(

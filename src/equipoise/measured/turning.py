@@ -80,9 +80,9 @@ def find_turns(record: Record) -> Turns:
     if np.ptp(whole.values) <= 1e-9 * np.max(np.abs(whole.values)):
         raise UsageError(Note("the displacement does not change; give a record of a free decay"))
     half = _half_swing(whole)
-    places = _seen([top(whole, at, half) for at in _swings(whole, half)])
+    places = _visible([top(whole, at, half) for at in _swings(whole, half)])
     half, places = _even(whole, places)
-    places = _seen(places)
+    places = _visible(places)
     first, last = (_end(whole, places, half, sense) for sense in (-1, 1))
     places = [place for place in (first, *places, last) if place is not None]
     if len(places) <= NEEDED:
@@ -95,13 +95,13 @@ def find_turns(record: Record) -> Turns:
     return Turns(time, displacement, spread, passed, passed_spread, _noise(whole, half))
 
 
-def _seen(places: list[Local]) -> list[Local]:
+def _visible(places: list[Local]) -> list[Local]:
     """Those before the first that a gap in the record hides."""
     hidden = [place.spread == inf for place in places]
-    kept = hidden.index(True) if True in hidden else len(places)
-    if kept < 2:
-        raise _too_few(kept - 1)
-    return places[:kept]
+    count = hidden.index(True) if True in hidden else len(places)
+    if count < 2:
+        raise _too_few(count - 1)
+    return places[:count]
 
 
 def _even(whole: Samples, tops: list[Local]) -> tuple[float, list[Local]]:
@@ -222,8 +222,8 @@ def _swings(whole: Samples, half: float) -> list[float]:
     first = int(np.argmax(heights >= AS_LARGE * np.max(heights) - least))
     places = rough.time[turns[first + 1 :]]
     uneven = _uneven(places, half)
-    kept = int(np.argmax(uneven)) + 1 if uneven.any() else len(places)
-    if kept < 2:
+    count = int(np.argmax(uneven)) + 1 if uneven.any() else len(places)
+    if count < 2:
         if first >= 2 and not _uneven(rough.time[turns[1:]], half).any():
             raise UsageError(
                 Note(
@@ -232,7 +232,7 @@ def _swings(whole: Samples, half: float) -> list[float]:
                 )
             )
         raise _too_few(len(turns))
-    return [float(at) for at in places[:kept]]
+    return [float(at) for at in places[:count]]
 
 
 def _uneven(times: Array, half: float) -> Array:

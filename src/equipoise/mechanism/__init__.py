@@ -8,12 +8,12 @@ from equipoise.guarding import attach
 from equipoise.mechanism.parts import commanded
 
 
-def _found(machine: Any) -> Any:
+def _pushed_angles(machine: Any) -> Any:
     """The angles of links that are pushed."""
     from equipoise.mechanism.kinematics import cylinders, pushed_together
 
     return (pushed_together if machine.drives else cylinders).commanded(machine)
 
 
-commanded.finders.append(_found)
+commanded.finders.append(_pushed_angles)
 __getattr__, __dir__, __all__ = attach(__name__, __file__)

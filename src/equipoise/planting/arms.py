@@ -9,7 +9,7 @@ import numpy as np
 
 from equipoise.mechanism.kinematics.tip import TipCurve
 from equipoise.planting.figures import tip_figures
-from equipoise.planting.names import SHAKEN
+from equipoise.planting.names import SHAKING_FIGURES
 from equipoise.planting.shaking import shaking
 from equipoise.planting.stroke import Figures, release, soil_crossings
 from equipoise.signals import Array
@@ -20,7 +20,7 @@ OF_DRIVE = ("speed", "forward_speed", "hill_spacing", "planting_frequency")
 """Figures of the machine that follow from its drive."""
 SHARED = ("surface", *OF_DRIVE)
 """Figures that are the same of all arms."""
-SHAKING = {name.partition(".")[0] for name in SHAKEN}
+SHAKING = {name.partition(".")[0] for name in SHAKING_FIGURES}
 """First parts of the names of what inertia does."""
 
 

@@ -93,8 +93,8 @@ class Designs:
             "either": size if values[-1] >= 0 else -size,
         }[self.sense]
         drive = replace(machine.drive, speed=speed)
-        made = with_lifts(machine, [*zip(self.lifts, values, strict=False)], drive=drive)
-        return kept_alike(made, self.twins)
+        new_machine = with_lifts(machine, [*zip(self.lifts, values, strict=False)], drive=drive)
+        return kept_alike(new_machine, self.twins)
 
 
 def _range(lift: Lift, low: float, high: float) -> Range:

@@ -158,8 +158,8 @@ def _slow_bend(curve: TipCurve, drive: Any, slope: Signal) -> Array:
 
     value, slowest = smallest(rate2, rising, curve.theta, rate2(curve.grid.theta))
     at = slowest[:, None]
-    near = 0.5 * np.sqrt(value)[:, None] / np.abs(curve.at(at).place_2)
-    width = np.fmin(near, curve.theta[1])  # near is 0 over 0 where the tip dwells
+    half_width = 0.5 * np.sqrt(value)[:, None] / np.abs(curve.at(at).place_2)
+    width = np.fmin(half_width, curve.theta[1])  # near is 0 over 0 where the tip dwells
     return np.asarray(roots(slope, at - width, at + width)[:, 0])
 
 

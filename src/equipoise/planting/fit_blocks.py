@@ -38,7 +38,7 @@ def fit_blocks(fit: Fit) -> Iterator[Block]:
         yield Notes(tuple(notes))
 
 
-def _told(figures: PlantingFigures | None, name: str) -> Cell:
+def _figure_cell(figures: PlantingFigures | None, name: str) -> Cell:
     value = None if figures is None else figures.get(name)
     return say("none") if value is None else _figure(value, name)
 
@@ -55,7 +55,7 @@ def _goals(fit: Fit) -> Table:
         name, met = goal.figure, fit.met.get(goal.figure)
         limits = (goal.target, goal.at_least, goal.at_most)
         wanted = (None if value is None else _figure(value, name) for value in limits)
-        before, after = _told(fit.before, name), _told(fit.after, name)
+        before, after = _figure_cell(fit.before, name), _figure_cell(fit.after, name)
         if met is False and isinstance(after, Value):  # stands out
             after = replace(after, emphasis="broken")
         rows.append((figure_named(name), goal.make or "", *wanted, before, after, words[met]))
@@ -85,6 +85,8 @@ def _figures(fit: Fit) -> Table:
     for name in (*FIGURES, *OTHERS):
         known = any(f.get(name) is not None for f in (fit.before, fit.after) if f is not None)
         if name not in asked and known:
-            rows.append((figure_named(name), _told(fit.before, name), _told(fit.after, name)))
+            rows.append(
+                (figure_named(name), _figure_cell(fit.before, name), _figure_cell(fit.after, name))
+            )
     columns = (Column(""), Column(say("before")), Column(say("after")))
     return Table(say("Other figures"), columns, tuple(rows))

@@ -28,7 +28,7 @@ from equipoise.signals import Array
 
 GRID = 180
 """Crank angles between which instants of designs are looked for."""
-TOGETHER = 64
+BATCH = 64
 """Designs that are sent to a process together: 15 at a time took 1.4 times as long as 60."""
 OPEN = 1e-4
 """Squared sine of the smallest transmission angle (0.6 deg) below which a design counts as open."""
@@ -70,8 +70,8 @@ class GoalOutcome:
     @property
     def kept(self) -> Array:
         """Whether a design can turn and keeps every limit (P,)."""
-        kept: Array = (self.worst > OPEN) & np.all(self.slack >= 0, axis=1)
-        return kept & np.isfinite(self.cost)
+        met: Array = (self.worst > OPEN) & np.all(self.slack >= 0, axis=1)
+        return met & np.isfinite(self.cost)
 
     @cached_property
     def cost(self) -> Array:
@@ -114,7 +114,7 @@ class PlantingProblem(DesignProblem):
         ]
         make = partial(_judging, *designs.given, self.goals)
         self.pooled = PooledEvaluator(
-            self.judge_here, make, GoalOutcome.joined, workers, together=TOGETHER
+            self.judge_here, make, GoalOutcome.joined, workers, together=BATCH
         )
 
     def __enter__(self) -> Self:

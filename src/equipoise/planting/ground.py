@@ -138,8 +138,8 @@ class GroundPath:
         """Ways over two cycles at which the path is sampled: crowded where it is slow."""
         step = max(self.samples[1], 2 * self.curve.period / MOST_NODES)
         once = np.arange(0.0, self.curve.period, step)
-        near = np.mod(_crowded(self.slow, step), self.curve.period)
-        once = np.unique(np.concatenate([once, near]))
+        nodes = np.mod(_crowded(self.slow, step), self.curve.period)
+        once = np.unique(np.concatenate([once, nodes]))
         return np.concatenate([once, once + self.curve.period])
 
     def _polished(self, ways: Array) -> Array:
@@ -242,16 +242,16 @@ class GroundPath:
 
 def _among(pairs: list[tuple[float, float]], first: float, second: float) -> bool:
     """Whether one of some rising pairs is this one, but for rounding."""
-    near = takewhile(lambda pair: first - pair[0] < 1e-9, reversed(pairs))
-    return any(first - a + abs(second - b) < 1e-9 for a, b in near)
+    close = takewhile(lambda pair: first - pair[0] < 1e-9, reversed(pairs))
+    return any(first - a + abs(second - b) < 1e-9 for a, b in close)
 
 
 def _crowded(middles: Array, step: float) -> Array:
     """Ways about each of some ways, at distances halved again and again."""
     distances = step * 0.5 ** np.arange(NEAREST)
     offsets = np.concatenate([-distances, [0.0], distances])
-    near: Array = (middles[:, None] + offsets).ravel()
-    return near
+    nodes: Array = (middles[:, None] + offsets).ravel()
+    return nodes
 
 
 def _crossing_pairs(nodes: Array, places: Array, cycle: int) -> Array:

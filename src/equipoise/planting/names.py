@@ -80,7 +80,7 @@ FIGURES = {
     **SOIL,
     **{f"{name}.value": extreme for name, extreme in EXTREMES.items()},
 }
-SHAKEN = {
+SHAKING_FIGURES = {
     "shaking_force.rms": NamedFigure(to_say("RMS of the shaking force"), "force"),
     "shaking_force.peak": NamedFigure(to_say("largest shaking force"), "force"),
     "shaking_moment.rms": NamedFigure(to_say("RMS of the shaking moment"), "torque"),
@@ -94,7 +94,7 @@ OF_INSTANTS = ("crank_angle", "velocity.size", "acceleration.size", "attitude")
 OTHERS = (
     *(f"{name}.{key}" for name in ("pick_up", "entry", "lowest", "exit") for key in OF_INSTANTS),
     *LINKAGE,
-    *SHAKEN,
+    *SHAKING_FIGURES,
 )
 """Further ones that a search tells before and after."""
 DIMENSIONS: dict[str, Dimension] = {
@@ -125,7 +125,7 @@ def dimension_of(figure: str) -> Dimension | None:
         return "angle"
     if first == "clearance" and last == "value":
         return "length"
-    known = (FIGURES | LINKAGE | SHAKEN).get(figure)
+    known = (FIGURES | LINKAGE | SHAKING_FIGURES).get(figure)
     if first in INSTANTS:
         known = OF_AN_INSTANT.get(rest.removeprefix("ground_"))
     if known is not None:
@@ -137,7 +137,7 @@ def figure_named(name: str) -> str:
     """A figure, such as ``pick_up.velocity.size``, in words, where there are any."""
     if arm := ARM.match(name):
         return say("{what}, tip {tip}", what=figure_named(name[arm.end() :]), tip=arm["tip"])
-    known = FIGURES | LINKAGE | SHAKEN
+    known = FIGURES | LINKAGE | SHAKING_FIGURES
     if name in known:
         return say(known[name].words)
     instant, _, key = name.partition(".")

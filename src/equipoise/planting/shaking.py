@@ -70,10 +70,10 @@ class _Parts:
             pull, turning = kernels.inertia_demand(
                 p1, p2, rotation, w, a, speed2, acceleration, mass, first, inertia
             )
-            carried, held = kernels.weight_demand(rotation, mass, first, self.gravity)
+            carried, weight_moment = kernels.weight_demand(rotation, mass, first, self.gravity)
             force = force + pull
             moment = moment + turning + kernels.cross(place - pivot, pull)
-            torque = torque + kernels.drive_torque(p1, w, pull + carried, turning + held)
+            torque = torque + kernels.drive_torque(p1, w, pull + carried, turning + weight_moment)
         return {
             "shaking_force": np.abs(force),
             "shaking_moment": np.abs(moment),

@@ -282,7 +282,7 @@ def printed(text: str) -> str:
     """A text as print has it: true minus, raised powers, no line that ends before a unit."""
     text = _POWER.sub(lambda result: typeset(f"{result[0]}"), text)
     text = _MINUS.sub("\N{MINUS SIGN}", text)
-    text = _RAISED.sub(lambda found: typeset(found[0]), text)
+    text = _RAISED.sub(lambda match: typeset(match[0]), text)
     return bound(text)
 
 

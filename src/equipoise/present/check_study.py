@@ -68,22 +68,22 @@ def study_blocks(study: Study, units: Units, file: str) -> Iterator[Block]:
 def _times(study: Study, compute: Evaluator) -> Iterator[str]:
     """How long each command that takes the study needs at most, and what that was taken from."""
     route = Route(study)
-    found = estimated(route, study.size, route.chunk, processors())
+    estimate = estimated(route, study.size, route.chunk, processors())
     yield say(
         "time for all: {total} on {processors}; measured: {rate} on one, with {designs}",
-        total=_about(found.seconds),
-        processors=say("{count} processors", count=found.workers),
-        rate=rate_told(found.rate),
-        designs=say("{count} designs", count=found.designs),
+        total=_about(estimate.seconds),
+        processors=say("{count} processors", count=estimate.workers),
+        rate=rate_told(estimate.rate),
+        designs=say("{count} designs", count=estimate.designs),
     )
 
-    def drawn(designs: range) -> Outcome:
+    def sample_outcome(designs: range) -> Outcome:
         return compute(samples(study, designs.start, len(designs)))
 
     if _is_searched(study) and study.size >= LEAST_POPULATION:
         population, generations = search_size(study)
         most = population * generations
-        seconds = estimated(drawn, most, population, 1).seconds
+        seconds = estimated(sample_outcome, most, population, 1).seconds
         seconds += generations * breeding_time(study, population)
         yield say(
             "time for a search of at most {count} designs, {generations} generations of "
@@ -95,8 +95,8 @@ def _times(study: Study, compute: Evaluator) -> Iterator[str]:
         )
     if _is_tolerance(study):
         most = machines_of(study)
-        found = estimated(drawn, study.size, min(study.chunk, SLOW_CHUNK), 1)
-        seconds = found.seconds * most / study.size
+        estimate = estimated(sample_outcome, study.size, min(study.chunk, SLOW_CHUNK), 1)
+        seconds = estimate.seconds * most / study.size
         template = to_say("time for equipoise tolerance, of {count} machines: {time}")
         yield say(template, count=most, time=_about(seconds))
 
@@ -115,10 +115,10 @@ def _is_tolerance(study: Study) -> bool:
 
 
 def _varied(study: Study, units: Units, own: Array) -> Iterator[tuple[Cell, ...]]:
-    for one, value in zip(study.vary, own.tolist(), strict=True):
-        unit = unit_in(units, one.path)
-        spread = spread_told(one.spread, unit)
-        yield labelled(unit), one.path, in_unit(value, unit), spread
+    for variable, value in zip(study.vary, own.tolist(), strict=True):
+        unit = unit_in(units, variable.path)
+        spread = spread_told(variable.spread, unit)
+        yield labelled(unit), variable.path, in_unit(value, unit), spread
 
 
 def _computed(study: Study, units: Units, outcome: Outcome) -> Iterator[tuple[Cell, ...]]:

@@ -213,8 +213,8 @@ def _drive_train(machine: Machine) -> Iterator[str]:
     if machine.rows:
         unit = display("angle")
         shown = [unit.text(row.phase) for row in machine.rows[:MOST_SHOWN]]
-        more = len(machine.rows) - len(shown)
-        phases = f"{', '.join(shown)} and {more} more" if more else _listed(shown)
+        omitted = len(machine.rows) - len(shown)
+        phases = f"{', '.join(shown)} and {omitted} more" if omitted else _listed(shown)
         yield f"rows: {len(machine.rows)} on one shaft, ahead by {unit.with_unit(phases)}"
 
 

@@ -79,7 +79,7 @@ def build(
     findings: Findings | ToolFindings,
     language: str = "en",
     command: str = "",
-    together: bool = False,
+    parallel: bool = False,
 ) -> ReportDocument:
     """Everything that a report tells, in a language.
 
@@ -95,34 +95,34 @@ def build(
             of_tool = _of_tool(findings, language, command)
         else:
             check_whole_cycle(findings)
-            of_tool = _of_linkage(findings, language, command, together)
+            of_tool = _of_linkage(findings, language, command, parallel)
         return replace(of_tool, units=chosen_units())
 
 
-def _of_linkage(findings: Findings, language: str, command: str, together: bool) -> ReportDocument:
+def _of_linkage(findings: Findings, language: str, command: str, parallel: bool) -> ReportDocument:
     machine, analysis = findings.machine, findings.analysis
-    drawn = drawings(findings, together)
-    blocks: Parts = {"model": [*drawn.get("model", []), *model_blocks(machine)]}
-    blocks["motion"] = [*drawn.get("motion", []), *_details(motion_blocks(analysis))]
+    pictures = drawings(findings, parallel)
+    blocks: Parts = {"model": [*pictures.get("model", []), *model_blocks(machine)]}
+    blocks["motion"] = [*pictures.get("motion", []), *_details(motion_blocks(analysis))]
     blocks["motion"] += [*cam_blocks(analysis), *elements_tables(analysis)]
     if findings.planting is not None:
-        blocks["planting"] = [*drawn.get("planting", []), *planting_blocks(findings.planting)]
+        blocks["planting"] = [*pictures.get("planting", []), *planting_blocks(findings.planting)]
     later = findings.after
     if analysis.solved is not None:
         again = None if later is None else later.analysis
         blocks["forces"] = [
-            *drawn.get("forces", []),
+            *pictures.get("forces", []),
             *_details(_with_after(force_blocks, analysis, again)),
         ]
-        blocks["joints"] = [*drawn.get("joints", []), *_with_after(_joints, analysis, again)]
+        blocks["joints"] = [*pictures.get("joints", []), *_with_after(_joints, analysis, again)]
     if findings.response is not None:
         response = None if later is None else later.response
-        blocks["vibration"] = [*drawn.get("vibration", []), *drawn.get("modes", [])]
+        blocks["vibration"] = [*pictures.get("vibration", []), *pictures.get("modes", [])]
         blocks["vibration"] += _with_after(response_blocks, findings.response, response)
         if findings.sweep is not None and findings.sweep.resonances:
             blocks["vibration"].append(resonances_table(findings.sweep))
     if findings.balanced is not None:
-        blocks["balance"] = [*balance_blocks(findings), *drawn.get("balance", [])]
+        blocks["balance"] = [*balance_blocks(findings), *pictures.get("balance", [])]
     seens = {name: seen_in(name, findings) for name in blocks}
     summary = tuple(answers(findings))
     if "balance" in blocks:
@@ -225,7 +225,7 @@ def _first_text(blocks: Iterable[Block | ReportSection]) -> Text | None:
 def _sections(
     findings: Findings | ToolFindings,
     blocks: Parts,
-    seen: Mapping[str, str],
+    headlines: Mapping[str, str],
     settings: Iterable[str],
     command: str,
 ) -> tuple[tuple[ReportSection, ...], tuple[ReportSection, ...]]:
@@ -234,20 +234,20 @@ def _sections(
     seen : what is seen in a section, by its name.
     """
     template = to_say("Made by Equipoise {version} from {file}")
-    made = say(template, version=equipoise.__version__, file=findings.file)
+    origin = say(template, version=equipoise.__version__, file=findings.file)
     asked = (*findings.notes, *questions_of(findings))
     notes = [Notes(asked)] if asked else []
     again = [FileText(say("Command"), command)] if command else []  # as it is, to be copied
     last: Parts = {
         "sources": [Facts("", tuple(sources(findings)))],
-        "settings": [Facts("", (*settings, made)), *notes, *again],
+        "settings": [Facts("", (*settings, origin)), *notes, *again],
     }
     sections, appendix = [], []
     for name, parts in (blocks | last).items():
         short, long = ([], parts) if name in BEHIND else parted(parts)
         title = say(TITLES[name])
-        if short or seen.get(name):
-            sections.append(ReportSection(name, title, tuple(short), seen.get(name, "")))
+        if short or headlines.get(name):
+            sections.append(ReportSection(name, title, tuple(short), headlines.get(name, "")))
         if long:
             appendix.append(ReportSection(name, title, tuple(long)))
     if findings.text:
@@ -359,7 +359,7 @@ def report(
             at_place("report", Note("no file is named; give one such as 'report.html'"))
         )
     result = find(model, speed=speed)
-    write_document(build(result, language, command, together=True), outs)
+    write_document(build(result, language, command, parallel=True), outs)
 
 
 def report_page(findings: Findings | ToolFindings, language: str = "en", command: str = "") -> str:

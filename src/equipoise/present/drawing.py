@@ -9,7 +9,7 @@ import warnings
 from collections.abc import Collection
 from typing import TYPE_CHECKING
 
-from equipoise.figures import drawn as svg_of
+from equipoise.figures import standalone_svg as svg_of
 from equipoise.i18n import say
 from equipoise.present.findings import Findings, ToolFindings
 from equipoise.present.pictures import SECTIONS, each
@@ -22,14 +22,14 @@ Drawings = dict[str, list[SvgPicture]]
 """Pictures by section."""
 
 
-def drawings(findings: Findings | ToolFindings, together: bool = False) -> Drawings:
+def drawings(findings: Findings | ToolFindings, parallel: bool = False) -> Drawings:
     """All pictures.
 
     together : whether a copy of this process may draw half of them, where there are two processors,
         Linux, and no other thread, which the copy would lack.
     """
     processors = len(os.sched_getaffinity(0)) if sys.platform == "linux" else 1
-    may_fork = together and processors > 1 and threading.active_count() == 1
+    may_fork = parallel and processors > 1 and threading.active_count() == 1
     other = _others(findings) if may_fork else ()
     if not other:
         return _draw(findings, SECTIONS)
@@ -44,11 +44,11 @@ def drawings(findings: Findings | ToolFindings, together: bool = False) -> Drawi
         helper.start()
     there.close()
     try:
-        drawn = _draw(findings, [section for section in SECTIONS if section not in other])
+        pictures = _draw(findings, [section for section in SECTIONS if section not in other])
         of_helper: Drawings = here.recv()
-        return drawn | of_helper
+        return pictures | of_helper
     except EOFError:  # the helper failed, and what it failed of is to be told
-        return drawn | _draw(findings, other)
+        return pictures | _draw(findings, other)
     finally:
         helper.kill()
         helper.join()
@@ -71,12 +71,12 @@ def _send(pipe: Connection, findings: Findings | ToolFindings, sections: Collect
 
 
 def _draw(findings: Findings | ToolFindings, sections: Collection[str]) -> Drawings:
-    drawn: Drawings = {}
+    pictures: Drawings = {}
     for picture in each(findings, sections=sections):
         chart = picture.draw()
         text = say("; ").join((chart.what, *chart.words))
         svg, wide = svg_of(chart)
-        seen, caption = picture.seen(), say(picture.caption)
-        block = SvgPicture(picture.name, text, svg, seen, caption, wide, picture.detail)
-        drawn.setdefault(picture.section, []).append(block)
-    return drawn
+        headline, caption = picture.seen(), say(picture.caption)
+        block = SvgPicture(picture.name, text, svg, headline, caption, wide, picture.detail)
+        pictures.setdefault(picture.section, []).append(block)
+    return pictures

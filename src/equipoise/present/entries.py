@@ -27,16 +27,18 @@ def pages(
     name: str,
     caption: str,
     make: Callable[[], Iterable[Chart]],
-    seen: Callable[[], str] = str,
+    headline: Callable[[], str] = str,
     detail: bool = False,
 ) -> Iterator[PictureEntry]:
     """What goes on over several pictures; how many, only their charts tell."""
     for number, chart in enumerate(make(), 1):
         if number == 1:
-            yield PictureEntry(name, caption, partial(made, chart), seen, detail)
+            yield PictureEntry(name, caption, partial(unchanged, chart), headline, detail)
         else:
-            yield PictureEntry(f"{name}-{number}", caption, partial(made, chart), detail=detail)
+            yield PictureEntry(
+                f"{name}-{number}", caption, partial(unchanged, chart), detail=detail
+            )
 
 
-def made(chart: Chart) -> Chart:
+def unchanged(chart: Chart) -> Chart:
     return chart

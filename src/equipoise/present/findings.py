@@ -34,7 +34,7 @@ Part = TypeVar("Part")
 
 
 @dataclass(frozen=True, eq=False)
-class _Found:
+class _ComputedParts:
     """Parts that cannot be computed are None, and `failed` keeps why."""
 
     told: ClassVar[tuple[str, ...]]
@@ -61,20 +61,20 @@ def part(name: str) -> Callable[[Callable[[Any], Part]], cached_property[Part | 
 
     def of(compute: Callable[[Any], Part]) -> cached_property[Part | None]:
         @wraps(compute)
-        def found(self: _Found) -> Part | None:
+        def part_or_none(self: _ComputedParts) -> Part | None:
             try:
                 return compute(self)
             except EquipoiseError as error:
                 self.failed[name] = error.note
                 return None
 
-        return cached_property(found)
+        return cached_property(part_or_none)
 
     return of
 
 
 @dataclass(frozen=True, eq=False)
-class Findings(_Found):
+class Findings(_ComputedParts):
     """What can be told of a linkage.
 
     machine : at the speed that is asked for.
@@ -157,7 +157,7 @@ class Findings(_Found):
 
 
 @dataclass(frozen=True, eq=False)
-class ToolFindings(_Found):
+class ToolFindings(_ComputedParts):
     """What can be told of a hand-held tool.
 
     tool : working at the speed that is asked for.

@@ -140,7 +140,7 @@ def resisted(figures: PlantingFigures) -> str:
 # -- forces ----------------------------------------------------------------------------------------
 
 
-def shaken(findings: Findings) -> str:
+def shaking_headline(findings: Findings) -> str:
     """How much shakes the frame."""
     size = Shaking.of(findings).size
     if not size.peak:
@@ -248,8 +248,8 @@ def added(findings: Findings) -> str:
     """What the changes do to the mass of the links."""
     balanced = findings.balanced
     assert balanced is not None
-    more = told(balanced.added_mass, "mass", digits=3)
-    return say("{mass} of mass is added", mass=more) if balanced.added_mass > 0 else ""
+    mass = told(balanced.added_mass, "mass", digits=3)
+    return say("{mass} of mass is added", mass=mass) if balanced.added_mass > 0 else ""
 
 
 COMPARED = {
@@ -304,7 +304,7 @@ def seen_in(part: str, findings: Findings) -> str:
         "model": lambda: counted(analysis),
         "motion": lambda: stroked(analysis),
         "planting": lambda: planted(findings.planting),
-        "forces": lambda: shaken(findings),
+        "forces": lambda: shaking_headline(findings),
         "joints": lambda: carried(analysis),
         "vibration": lambda: first_gauge(findings.response),
         "balance": lambda: aimed(findings),

@@ -8,7 +8,7 @@ from typing import Any
 
 from equipoise.displays import Displayed
 from equipoise.errors import EquipoiseError
-from equipoise.figures import drawn
+from equipoise.figures import standalone_svg
 from equipoise.figures.linkage import linkage
 from equipoise.handheld.blocks import model_blocks as tool_blocks
 from equipoise.handheld.model import Tool
@@ -39,7 +39,7 @@ def html_of(value: Displayed) -> str:
             return part_of_page(title, (*trouble, *model_blocks(value)), picture)
         if isinstance(value, Motion):
             analysis = Analysis(value, None)
-            return part_of_page(title, motion_blocks(analysis), _drawn(analysis))
+            return part_of_page(title, motion_blocks(analysis), _picture(analysis))
         if isinstance(value, Forces):
             analysis = Analysis(value.motion, value)
             return part_of_page(title, (*force_blocks(analysis), *joint_blocks(analysis)))
@@ -58,11 +58,13 @@ def _owner(value: Any) -> Any:
 def _pose(machine: Machine) -> tuple[str, tuple[Block, ...]]:
     """The linkage as it moves, and why there is no picture where it cannot."""
     try:
-        seen = swing(machine)
-        return _drawn(Analysis(move(machine if seen is None else seen.machine, ANGLES), None)), ()
+        swinging = swing(machine)
+        return _picture(
+            Analysis(move(machine if swinging is None else swinging.machine, ANGLES), None)
+        ), ()
     except EquipoiseError as error:
         return "", (Text(error.told(lines=True)), *map(Text, error.lines))
 
 
-def _drawn(analysis: Analysis) -> str:
-    return drawn(linkage(analysis, None))[0]
+def _picture(analysis: Analysis) -> str:
+    return standalone_svg(linkage(analysis, None))[0]

@@ -140,7 +140,7 @@ def inlined(svg: str, name: str, title: str) -> str:
     used = set(_USED.findall(body))
     body = _NAME.sub(lambda result: f' id="{name}-{result[1]}"' if result[1] in used else "", body)
     body = body.replace("url(#", f"url(#{name}-").replace('href="#', f'href="#{name}-')
-    body = _COLOR.sub(lambda found: colored(found[0]), body)
+    body = _COLOR.sub(lambda match: colored(match[0]), body)
     width, height = re.findall(r'viewBox="0 0 ([0-9.]+) ([0-9.]+)"', head)[0]
     opening = (
         f'<svg xmlns="http://www.w3.org/2000/svg" role="img" aria-label="{escape(title)}" '
@@ -305,15 +305,15 @@ def pdf(document: ReportDocument) -> bytes:
     import typst
 
     try:
-        made = typst.compile(
+        content = typst.compile(
             _source(document).encode(), font_paths=installed(), format="pdf", timestamp=0
         )
     except typst.TypstError as error:
         raise EquipoiseError(
             Note("the PDF could not be set ({error})", error=str(error))
         ) from error
-    assert isinstance(made, bytes)
-    return made
+    assert isinstance(content, bytes)
+    return content
 
 
 @cache

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 from equipoise.dataclass import dataclass
 from equipoise.i18n import to_say
-from equipoise.present import headlines as seen
+from equipoise.present import headlines
 from equipoise.present import support_headlines as gauged
-from equipoise.present.entries import PictureEntry, made, pages
+from equipoise.present.entries import PictureEntry, pages, unchanged
 from equipoise.present.findings import Findings, ToolFindings
 from equipoise.present.tool_pictures import of_tool
 
@@ -80,7 +80,7 @@ def _model(findings: Findings, at: Sequence[float] | None) -> Iterator[PictureEn
 
     caption = to_say("The linkage to scale, with its joints, links and centres of mass.")
     draw = partial(linkage, findings.analysis, at)
-    value = partial(seen.heaviest, findings.analysis)
+    value = partial(headlines.heaviest, findings.analysis)
     yield PictureEntry("linkage", caption, draw, value, True)
     if findings.analysis.machine.has_planes:
         caption = to_say("The planes of links, masses and bearings, from the side and to scale.")
@@ -95,11 +95,15 @@ def _motion(findings: Findings) -> Iterator[PictureEntry]:
     analysis = findings.analysis
     caption = to_say("Paths of the points of the moving links, with marks at equal times.")
     yield PictureEntry(
-        "curves", caption, partial(curves, analysis), partial(seen.longest, analysis)
+        "curves", caption, partial(curves, analysis), partial(headlines.longest, analysis)
     )
     caption = to_say("Velocity and acceleration of these points: the ends of their arrows.")
     yield PictureEntry(
-        "hodograph", caption, partial(hodograph, analysis), partial(seen.fastest, analysis), True
+        "hodograph",
+        caption,
+        partial(hodograph, analysis),
+        partial(headlines.fastest, analysis),
+        True,
     )
     if rolling(analysis):
         caption = to_say("Centrodes: paths of instant centres in the frame and in the link.")
@@ -107,11 +111,11 @@ def _motion(findings: Findings) -> Iterator[PictureEntry]:
     caption = to_say("Motion over crank angle: position, velocity and acceleration.")
     charts = main_kinematics(analysis) if len(analysis.crank_angle) > 1 else ()
     for number, chart in enumerate(charts):
-        value = partial(seen.kinematic, analysis, chart.name)
-        yield PictureEntry(chart.name, caption, partial(made, chart), value, number > 0)
+        value = partial(headlines.kinematic, analysis, chart.name)
+        yield PictureEntry(chart.name, caption, partial(unchanged, chart), value, number > 0)
     caption = to_say("Speed ratio of gears over crank angle.")
     for chart in ratios(analysis) if len(analysis.crank_angle) > 1 else ():
-        yield PictureEntry(chart.name, caption, partial(made, chart), detail=True)
+        yield PictureEntry(chart.name, caption, partial(unchanged, chart), detail=True)
 
 
 def _planting(findings: Findings) -> Iterator[PictureEntry]:
@@ -122,7 +126,7 @@ def _planting(findings: Findings) -> Iterator[PictureEntry]:
     from equipoise.figures.planting import joints, ratio, tips, torque
 
     caption = to_say("Path of the planting finger relative to the machine and over the ground.")
-    yield PictureEntry("path", caption, partial(path, figures), partial(seen.planted, figures))
+    yield PictureEntry("path", caption, partial(path, figures), partial(headlines.planted, figures))
     caption = to_say("Angular velocity of a link over that of the crank.")
     for link in figures.machine.links:
         if link != figures.machine.drive.link:
@@ -130,16 +134,16 @@ def _planting(findings: Findings) -> Iterator[PictureEntry]:
                 f"ratio-{link}",
                 caption,
                 partial(ratio, figures, link),
-                partial(seen.geared, findings.analysis, link),
+                partial(headlines.geared, findings.analysis, link),
                 detail=True,
             )
     caption = to_say("Velocity and acceleration of the finger's tip relative to the machine.")
     for chart in tips(figures):
-        yield PictureEntry(f"tip-{chart.name}", caption, partial(made, chart), detail=True)
+        yield PictureEntry(f"tip-{chart.name}", caption, partial(unchanged, chart), detail=True)
     if figures.forces is not None:
         caption = to_say("Drive torque with and without the forces of the soil.")
         yield PictureEntry(
-            "soil-torque", caption, partial(torque, figures), partial(seen.resisted, figures)
+            "soil-torque", caption, partial(torque, figures), partial(headlines.resisted, figures)
         )
         caption = to_say("Forces in the joints with and without the forces of the soil.")
         yield PictureEntry("soil-joints", caption, partial(joints, figures), detail=True)
@@ -153,21 +157,21 @@ def _forces(findings: Findings) -> Iterator[PictureEntry]:
 
     caption = to_say("Shaking force as a polar diagram: the end of its arrow over the cycle.")
     yield PictureEntry(
-        "polar", caption, partial(forces.polar, analysis), partial(seen.pushed, findings), True
+        "polar", caption, partial(forces.polar, analysis), partial(headlines.pushed, findings), True
     )
     caption = to_say("Shaking force over crank angle.")
     yield PictureEntry(
         "force",
         caption,
         partial(forces.force, analysis),
-        partial(seen.peaked, analysis, "shaking_force", "force"),
+        partial(headlines.peaked, analysis, "shaking_force", "force"),
     )
     caption = to_say("Shaking moment over crank angle.")
     yield PictureEntry(
         "moment",
         caption,
         partial(forces.moment, analysis),
-        partial(seen.peaked, analysis, "shaking_moment", "torque"),
+        partial(headlines.peaked, analysis, "shaking_moment", "torque"),
     )
     drives, pushes = analysis.machine.driven, analysis.machine.drive.pushes
     of_torque = to_say("Drive torque over crank angle, and what it is for.")
@@ -177,7 +181,7 @@ def _forces(findings: Findings) -> Iterator[PictureEntry]:
             "torque" if number == 1 else f"torque-{number}",
             of_force if drive.pushes else of_torque,
             partial(forces.torque, analysis, number),
-            partial(seen.caused, analysis, number),
+            partial(headlines.caused, analysis, number),
         )
     if analysis.has_orders:
         of_torque = to_say(
@@ -191,7 +195,7 @@ def _forces(findings: Findings) -> Iterator[PictureEntry]:
             "spectrum",
             caption,
             partial(forces.spectrum, analysis),
-            partial(seen.ordered, findings),
+            partial(headlines.ordered, findings),
             detail=True,
         )
 
@@ -204,13 +208,13 @@ def _joints(findings: Findings) -> Iterator[PictureEntry]:
 
     caption = to_say("Tension of the strands of belts over crank angle.")
     for chart in strands(findings.analysis):
-        yield PictureEntry(chart.name, caption, partial(made, chart), detail=True)
+        yield PictureEntry(chart.name, caption, partial(unchanged, chart), detail=True)
     caption = to_say("Forces in the joints over crank angle.")
     yield from pages(
         "joints",
         caption,
         partial(joints, findings.analysis),
-        partial(seen.joint_peaked, findings.analysis),
+        partial(headlines.joint_peaked, findings.analysis),
         detail=True,
     )
     caption = to_say("Forces in the joints as polar diagrams: the ends of their arrows.")
@@ -218,7 +222,7 @@ def _joints(findings: Findings) -> Iterator[PictureEntry]:
         "joint-polars",
         caption,
         partial(joint_polars, findings.analysis),
-        partial(seen.joint_acting, findings.analysis),
+        partial(headlines.joint_acting, findings.analysis),
         detail=True,
     )
 
@@ -304,15 +308,15 @@ def _balance(findings: Findings) -> Iterator[PictureEntry]:
     if balanced is None or not findings.helped:
         return
     from equipoise.figures.aims import aims
-    from equipoise.figures.balancing import phases, signals, together
+    from equipoise.figures.balancing import combined, phases, signals
     from equipoise.figures.changes import changes
 
     of_linkage = any(change.kind != "phases" for change in balanced.changes)
     if of_linkage:
         caption, draw = to_say("What to change, to scale."), partial(changes, balanced)
-        yield PictureEntry("changes", caption, draw, partial(seen.added, findings))
+        yield PictureEntry("changes", caption, draw, partial(headlines.added, findings))
     caption = to_say("Objectives and limited outputs, before and after, by crank angle and order.")
-    yield from pages("aims", caption, partial(aims, balanced), partial(seen.reached, balanced))
+    yield from pages("aims", caption, partial(aims, balanced), partial(headlines.reached, balanced))
     if of_linkage:
         captions = {
             "force": to_say("Shaking force, before and after."),
@@ -326,8 +330,8 @@ def _balance(findings: Findings) -> Iterator[PictureEntry]:
             yield PictureEntry(
                 f"balanced-{name}",
                 captions[name],
-                partial(made, chart),
-                partial(seen.compared, findings, name),
+                partial(unchanged, chart),
+                partial(headlines.compared, findings, name),
                 detail=True,
             )
     if balanced.phasing is not None:
@@ -337,8 +341,8 @@ def _balance(findings: Findings) -> Iterator[PictureEntry]:
         yield PictureEntry(
             "rows",
             caption,
-            partial(together, *both),
-            partial(seen.compared, findings, "rows"),
+            partial(combined, *both),
+            partial(headlines.compared, findings, "rows"),
             True,
         )
 

@@ -42,9 +42,9 @@ class Shaking:
         analysis = findings.analysis.resolved
         force = analysis.together.get("shaking_force", analysis.forces.shaking_force.value)
         parts = analysis.forces.split.by_link("shaking_force").values()
-        beside = max(float(np.max(np.abs(part))) for part in parts)
-        beside = max(beside, analysis.summary["frame_force"].peak)
-        if np.max(np.abs(force)) <= NOTHING * beside:
+        scale = max(float(np.max(np.abs(part))) for part in parts)
+        scale = max(scale, analysis.summary["frame_force"].peak)
+        if np.max(np.abs(force)) <= NOTHING * scale:
             force = np.zeros_like(force)
         return cls(findings.machine, analysis.motion, force)
 

@@ -45,7 +45,9 @@ def answers(findings: Findings) -> Iterator[SummaryAnswer]:
         yield SummaryAnswer(say("What shakes"), (missing,))
     else:
         shaking = Shaking.of(findings)
-        yield SummaryAnswer(say("What shakes, and how much"), tuple(_shaken(findings, shaking)))
+        yield SummaryAnswer(
+            say("What shakes, and how much"), tuple(_shaking_sentences(findings, shaking))
+        )
         yield SummaryAnswer(say("Why"), tuple(_why(findings)))
         if findings.balanced is not None:
             worse = tuple(worse_told(findings.balanced)) if findings.helped else ()
@@ -128,7 +130,7 @@ def _at(crank_angle: float) -> str:
 # -- what shakes, and why --------------------------------------------------------------------------
 
 
-def _shaken(findings: Findings, shaking: Shaking) -> Iterator[str]:
+def _shaking_sentences(findings: Findings, shaking: Shaking) -> Iterator[str]:
     size, rows = shaking.size, len(findings.machine.rows)
     analysis, unit = findings.analysis, display_of_totals(findings.analysis, "force")
     speed = brief(abs(findings.analysis.motion.speed) / PER_RPM)

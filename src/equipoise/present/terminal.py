@@ -112,9 +112,9 @@ def coloured(stream: TextIO | None) -> bool:
     return known and os.environ.get("TERM") not in ("dumb", "unknown")
 
 
-def _with_more(text: str, more: int) -> str:
+def _with_omitted(text: str, omitted: int) -> str:
     """What stands above a list or ends it, with how many items are left out."""
-    return say("{what} (and {count} more)", what=text, count=more) if more else text
+    return say("{what} (and {count} more)", what=text, count=omitted) if omitted else text
 
 
 class _Printer:
@@ -146,14 +146,14 @@ class _Printer:
         elif isinstance(block, Facts):
             if block.title:
                 self.space()
-                self.words(_with_more(block.title, block.more), "title")
+                self.words(_with_omitted(block.title, block.more), "title")
             for item in block.items:
                 self.words(f"  {item}")
         elif isinstance(block, Notes):
             self.space()
             for place, note in enumerate(block.notes, 1):
-                more = block.more if place == len(block.notes) else 0
-                self.words(_with_more(f"note: {said(note)}", more))
+                omitted = block.more if place == len(block.notes) else 0
+                self.words(_with_omitted(f"note: {said(note)}", omitted))
             if not block.notes and block.more:
                 self.words(say("notes left out here: {count}", count=block.more))
         elif isinstance(block, FileText):

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from functools import partial
 
 from equipoise.i18n import to_say
-from equipoise.present import tool_headlines as seen
+from equipoise.present import tool_headlines
 from equipoise.present.entries import PictureEntry, pages
 from equipoise.present.findings import ToolFindings
 
@@ -25,14 +25,14 @@ def of_tool(findings: ToolFindings) -> Iterator[PictureEntry]:
         yield PictureEntry("side-modes", caption, draw, detail=True)
         caption = to_say("Shapes of the natural vibrations of the shaft.")
         for plane, name in enumerate(planes):
-            drawn = partial(tool_shaft.shapes, modes, plane)
-            value = partial(seen.lowest, modes, plane)
-            yield from pages(f"modes{name}", caption, drawn, value, detail=True)
+            shapes_chart = partial(tool_shaft.shapes, modes, plane)
+            value = partial(tool_headlines.lowest, modes, plane)
+            yield from pages(f"modes{name}", caption, shapes_chart, value, detail=True)
     if transmission is not None:
         caption = to_say("Share of a shaking force that comes to what holds the tool.")
         for plane, name in enumerate(planes):
             draw = partial(tool_speeds.transmission, transmission, plane, modes)
-            value = partial(seen.passed, transmission, plane)
+            value = partial(tool_headlines.passed, transmission, plane)
             yield PictureEntry(f"transmission{name}", caption, draw, value, plane > 0)
     if findings.sweep is not None and findings.sweep.response is not None:
         caption = to_say("Bending moment and displacement along the shaft.")
@@ -44,7 +44,7 @@ def of_tool(findings: ToolFindings) -> Iterator[PictureEntry]:
             "acceleration",
             caption,
             partial(tool_speeds.acceleration, findings.exposure),
-            partial(seen.worst, findings),
+            partial(tool_headlines.worst, findings),
             detail=True,
         )
         caption = to_say("Daily exposure of the hands, with what is allowed.")
@@ -52,7 +52,7 @@ def of_tool(findings: ToolFindings) -> Iterator[PictureEntry]:
             "exposure",
             caption,
             partial(tool_speeds.weighted, findings.exposure),
-            partial(seen.judged, findings),
+            partial(tool_headlines.judged, findings),
         )
     if findings.design is not None:
         caption = to_say("The tool from the side before and after what is changed.")
@@ -62,5 +62,5 @@ def of_tool(findings: ToolFindings) -> Iterator[PictureEntry]:
             "design",
             caption,
             partial(tool_designs.design, findings.design),
-            partial(seen.improved, findings),
+            partial(tool_headlines.improved, findings),
         )

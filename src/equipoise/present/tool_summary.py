@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 DAY = 86400.0
 """s."""
-NEAR = 0.1
+RESONANCE_SHARE = 0.1
 """Distance of a natural frequency from what shakes, over the latter, below which it is told."""
 
 
@@ -68,7 +68,9 @@ def tool_answers(findings: ToolFindings) -> Iterator[SummaryAnswer]:
     elif findings.transmission is not None:
         yield SummaryAnswer(say("What comes to the hands"), tuple(_transmitted(findings)))
     if findings.modes is not None:
-        yield SummaryAnswer(say("Natural frequencies"), tuple(_near(findings, findings.modes)))
+        yield SummaryAnswer(
+            say("Natural frequencies"), tuple(_near_resonances(findings, findings.modes))
+        )
     if findings.design is not None:
         yield SummaryAnswer(say("What helps most"), tuple(_helps(findings.design, findings)))
 
@@ -142,7 +144,7 @@ def _transmitted(findings: ToolFindings) -> Iterator[str]:
         )
 
 
-def _near(findings: ToolFindings, modes: ToolModes) -> Iterator[str]:
+def _near_resonances(findings: ToolFindings, modes: ToolModes) -> Iterator[str]:
     """The natural frequency nearest to what shakes once a turn."""
     plane = modes.planes[0]
     swinging = plane.cycles_per_second[len(plane.rigid) :]
@@ -155,7 +157,7 @@ def _near(findings: ToolFindings, modes: ToolModes) -> Iterator[str]:
     firing = operation.speed / (2 * pi)
     nearest = float(swinging[int(np.argmin(np.abs(swinging - firing)))])
     away = nearest / firing - 1
-    if abs(away) < NEAR:
+    if abs(away) < RESONANCE_SHARE:
         yield say(
             "One of {frequency} Hz is only {share} % away from once a turn of the engine.",
             frequency=brief(nearest),

@@ -10,7 +10,7 @@ from equipoise.quantities.units import HUGE, SI, TINY, Dimension
 
 DIGITS, SHORT = 12, 9
 """Significant ones that are kept, and those of a number that somebody may have meant in SI."""
-MEANT, NEAR = 6, 1e-8
+MEANT, ROUNDING = 6, 1e-8
 """Digits of a number that is meant where another differs by no more than this share from it: what a
 program finds at a limit of 100 mm is 99.999999637 mm."""
 OTHER: dict[Dimension, str] = {"angle": "deg", "angular speed": "rpm"}
@@ -24,7 +24,7 @@ def clean(value: float, dimension: Dimension | None = None) -> float:
         return plain
     unit = chosen_unit(dimension) or OTHER.get(dimension, SI[dimension])
     meant = parse(rounded(value, unit, MEANT), dimension)
-    if abs(meant - value) <= NEAR * abs(value):
+    if abs(meant - value) <= ROUNDING * abs(value):
         return meant
     short = plain == float(f"{value:.{SHORT}g}")
     return plain if short else parse(rounded(value, unit, DIGITS), dimension)

@@ -226,7 +226,7 @@ _SCALES: tuple[tuple[str, ...], ...] = (
 )
 """Units of which the next is taken where numbers become too small or too large."""
 
-_MORE = {
+_EXTRA_UNITS = {
     "nm": 1e9,
     "mrad": 1e3,
     "urad": 1e6,
@@ -262,7 +262,7 @@ LARGE_IN_UNIT = 1e5
 @cache
 def in_unit(unit: str) -> Display:
     """The display of a unit that is given."""
-    return Display(unit, _MORE[unit] if unit in _MORE else 1 / float(FACTORS[unit]))
+    return Display(unit, _EXTRA_UNITS[unit] if unit in _EXTRA_UNITS else 1 / float(FACTORS[unit]))
 
 
 def display(dimension: Dimension | None, values: Any = (), unit: str | None = None) -> Display:
@@ -340,7 +340,7 @@ def display_rules() -> Mapping[str, Any]:
     units : what may follow a number in a sentence, and stays in its line; longer ones first.
     lengths : m in each unit in which a length may be typed.
     """
-    units = sorted({*FACTORS, *_MORE, "%"}, key=lambda unit: (-len(unit), unit))
+    units = sorted({*FACTORS, *_EXTRA_UNITS, "%"}, key=lambda unit: (-len(unit), unit))
     lengths = {unit: float(FACTORS[unit]) for unit in KINDS["length"].units}
     return {"least": LEAST, "most": MOST, "units": units, "lengths": lengths}
 

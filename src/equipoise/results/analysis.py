@@ -27,7 +27,7 @@ from equipoise.mechanism.kinematics.jumps import jumps_of, resolved
 from equipoise.mechanism.kinematics.motion import Motion, move, move_again
 from equipoise.mechanism.kinematics.stroke_figures import Stroke
 from equipoise.mechanism.kinematics.strokes import dwell, strokes
-from equipoise.mechanism.outputs.declared import DECLARED, Found
+from equipoise.mechanism.outputs.declared import DECLARED, OutputSource
 from equipoise.mechanism.parts.machine import Machine, Vector
 from equipoise.mechanism.parts.places import in_frame
 from equipoise.mechanism.parts.support import idle_parts
@@ -444,8 +444,10 @@ def order_values(analysis: Analysis, orders: int, zero: float) -> Values:
     result = {}
     for name, whole in analysis.by_order.items():
         signal = whole.shifted(zero)
-        kept = slice(0, signal.count_to(orders))
-        result[name] = {key: values[kept] for key, values in values_of(signal, BY_ORDER).items()}
+        shown_orders = slice(0, signal.count_to(orders))
+        result[name] = {
+            key: values[shown_orders] for key, values in values_of(signal, BY_ORDER).items()
+        }
     return result
 
 
@@ -460,7 +462,7 @@ def _split(forces: Forces) -> Values:
     count, links = len(motion.crank_angle), len(motion.machine.links)
     split_of = to_say("forces by cause and link at {count} crank angles, of {turns} turns")
     check_memory(SPLIT * links**2 * count, Note(split_of, count=count, turns=motion.turns))
-    read = Found(forces.motion, forces.split)
+    read = OutputSource(forces.motion, forces.split)
     result: Values = {key: {"joints": {}} for key in ("by_cause", "by_link")}
     for entry in DECLARED.values():
         if entry.part in ("x", "y") or not entry.is_split:

@@ -145,8 +145,8 @@ def advantages_table(analysis: Analysis) -> Table:
         if stroke.least_advantage is not None:
             least = Value(stroke.least_advantage, at=stroke.least_advantage_at)
         pushes = (least, None) if stroke.kind == "slider" else (None, least)
-        held = Value(stroke.dwell, at=stroke.dwell_at, after=1)
-        rows.append((joint_named(name), Value(stroke.rise, after=1), held, *pushes))
+        dwell = Value(stroke.dwell, at=stroke.dwell_at, after=1)
+        rows.append((joint_named(name), Value(stroke.rise, after=1), dwell, *pushes))
     columns = (
         "",
         Column(say("rises over"), "angle", "deg"),
@@ -170,7 +170,7 @@ TOTALS = ("forces", "drives", "rows")
 """Groups of outputs of frame and drive: of one row, of further drives, and of all rows."""
 
 
-def _beside(analysis: Analysis, kind: Dimension | None) -> float:
+def _scale(analysis: Analysis, kind: Dimension | None) -> float:
     """The largest of all forces, moments or torques on frame and drive."""
     ones = (item for item in analysis.outputs.summed if item.group in TOTALS[:2])
     return max((item.figures.peak for item in ones if item.dimension == kind), default=0.0)
@@ -197,7 +197,7 @@ def force_blocks(analysis: Analysis) -> Iterator[Block]:
     rows: list[tuple[Cell, ...]] = []
     for entry in ones:
         figures, kind = entry.figures, entry.dimension
-        scale, unit = _beside(analysis, kind), display_of_totals(analysis, kind).unit
+        scale, unit = _scale(analysis, kind), display_of_totals(analysis, kind).unit
         mean, rms, swing = (
             Value(value, scale, dimension=kind, unit=unit)
             for value in (figures.mean, figures.rms, figures.peak_to_peak)
@@ -285,7 +285,7 @@ def orders_table(analysis: Analysis) -> Table:
     sizes = [np.pad(signal.sizes, (0, count - len(signal.sizes))) for signal in signals]
     tops = tops_of(zip(ones, (size[1:] for size in sizes), strict=True))
     kinds = [item.dimension for item in ones]
-    scales = [max(1e3 * tops[kind], _beside(analysis, kind)) for kind in kinds]
+    scales = [max(1e3 * tops[kind], _scale(analysis, kind)) for kind in kinds]
     turns = analysis.motion.turns
     per_order = abs(analysis.motion.speed) / (2 * np.pi)
     rows = (
@@ -321,7 +321,9 @@ def harmonic_blocks(analysis: Analysis, orders: int, zero: float) -> Iterator[Bl
     signals = analysis.by_order
     tops = tops_of((item, signals[item.name].sizes) for item in analysis.outputs.ordered)
     # the motion before the forces, as in that table
-    for entry in sorted(analysis.outputs.ordered, key=lambda one: one.dimension != "acceleration"):
+    for entry in sorted(
+        analysis.outputs.ordered, key=lambda entry: entry.dimension != "acceleration"
+    ):
         kind = entry.dimension
         columns = [say("order"), *(Column(label, kind, alike=False) for label in ("A", "B", "R"))]
         columns += [Column(say("phase"), "angle"), Column(say("RMS"), kind, alike=False)]

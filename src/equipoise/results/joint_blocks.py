@@ -94,10 +94,15 @@ def joint_table(analysis: Analysis) -> Table:
         if isinstance(joint, SliderForce):
             couple = Value(float(np.max(np.abs(joint.moment))), scale)
         rows.append(
-            (contact_named(forces, name), *_told(analysis, joint), couple, _peak(tilting.get(name)))
+            (
+                contact_named(forces, name),
+                *_cells(analysis, joint),
+                couple,
+                _peak(tilting.get(name)),
+            )
         )
     for name, joint in across.bearings.items() if across is not None else ():
-        rows.append((say("bearing {name}", name=name), *_told(analysis, joint), None, None))
+        rows.append((say("bearing {name}", name=name), *_cells(analysis, joint), None, None))
     labels = (say("mean"), say("RMS"), say("largest"))
     unit = display_of_joints(analysis).unit
     columns = ["", say("by → on"), *(Column(label, "force", unit) for label in labels)]
@@ -110,7 +115,7 @@ def joint_table(analysis: Analysis) -> Table:
 MOMENT, TILTING = to_say("moment"), to_say("tilting moment")
 
 
-def _told(analysis: Analysis, joint: JointForce) -> tuple[Cell, ...]:
+def _cells(analysis: Analysis, joint: JointForce) -> tuple[Cell, ...]:
     """Which bodies it is between, and mean, RMS and largest of a force."""
     figures = analysis.motion.figures(joint.size)
     ends = f"{body_named(joint.by)} → {body_named(joint.on)}"

@@ -10,7 +10,7 @@ import numpy as np
 
 from equipoise.i18n import coordinates, say, to_say
 from equipoise.mechanism.outputs.spoken import body_named
-from equipoise.mechanism.parts.bodies import inertia_of, material_of, together
+from equipoise.mechanism.parts.bodies import combined, inertia_of, material_of
 from equipoise.quantities import Dimension, Display, angle, display, told
 from equipoise.results.blocks import Block, Cell, Column, Facts, Span, Table, Value
 from equipoise.signals import Array, Figures
@@ -146,7 +146,7 @@ def bodies_tables(machine: Machine) -> Iterator[Table]:
         parts = [inertia_of(body, link.points) for body in link.bodies]
         named = [*zip(map(_named, link.bodies), map(_stuff, link.bodies), parts, strict=True)]
         if len(parts) > 1:
-            named.append((say("together"), "", together(parts)))
+            named.append((say("together"), "", combined(parts)))
         for part, stuff, (mass, center, inertia) in named:
             where = place((center.real, center.imag), unit)
             rows.append((name, part, stuff, Value(mass), where, Value(inertia)))

@@ -113,13 +113,17 @@ class AnalysisOutputs:
     """
 
     def __init__(self, analysis: Any) -> None:
-        had = [one for one in DECLARED.values() if one.read and _can_be_had(one, analysis)]
+        had = [
+            declaration
+            for declaration in DECLARED.values()
+            if declaration.read and _can_be_had(declaration, analysis)
+        ]
         members: dict[Any, dict[str, None]] = {}  # those of several declarations are the same
         # with friction that is solved already, and names are the same
         named = analysis.resolved if analysis.machine.rubs else analysis
         self._linkage = analysis.motion.linkage
         self._found: dict[str, AnalysisOutput] = {}
-        for _, group in groupby(had, key=lambda one: one.group):
+        for _, group in groupby(had, key=lambda declaration: declaration.group):
             own = []
             for one in group:
                 who = one.items or one.members
@@ -153,12 +157,12 @@ class AnalysisOutputs:
         ------
         UsageError : there is no output of a name.
         """
-        found: dict[str, AnalysisOutput] = {}
+        chosen: dict[str, AnalysisOutput] = {}
         for name in names:
             parts = [f"{name}.{axis}" for axis in "xy" if name not in self]
             every = [part for part in parts if part in self] or [name]
-            found |= {item: self[item] for item in every}
-        return list(found.values())
+            chosen |= {item: self[item] for item in every}
+        return list(chosen.values())
 
     @property
     def names(self) -> list[str]:
@@ -182,8 +186,8 @@ class AnalysisOutputs:
 
     def grouped(self) -> dict[str, list[AnalysisOutput]]:
         """Those of each group of `GROUPS` that has any."""
-        found = {group: [item for item in self if item.group == group] for group in GROUPS}
-        return {group: ones for group, ones in found.items() if ones}
+        by_group = {group: [item for item in self if item.group == group] for group in GROUPS}
+        return {group: ones for group, ones in by_group.items() if ones}
 
 
 def _can_be_had(declared: Declared, analysis: Any) -> bool:
@@ -196,10 +200,10 @@ def unit_of(name: str) -> str:
     """SI unit of an output, such as ``points.P.vx``; of the crank angle too."""
     if name == "crank_angle":
         return "rad"
-    found = declared(name)
-    if found is None:
+    declaration = declared(name)
+    if declaration is None:
         raise UsageError(unknown(name, DECLARED, "output"))
-    return found[0].unit
+    return declaration[0].unit
 
 
 def documented() -> str:
@@ -242,9 +246,9 @@ def _documented_figures(classes: Mapping[str, type]) -> str:
     )
 
 
-def _unit_of_figure(one: Field[Any]) -> str:
-    dimension: Dimension | None = one.metadata["dimension"]
-    return "m or rad" if one.metadata["own"] else SI[dimension] if dimension else ""
+def _unit_of_figure(figure: Field[Any]) -> str:
+    dimension: Dimension | None = figure.metadata["dimension"]
+    return "m or rad" if figure.metadata["own"] else SI[dimension] if dimension else ""
 
 
 RPM = 30 / pi
@@ -283,19 +287,21 @@ def output_named(name: str, rows: int = 1) -> str:
     rows : of the machine; where there are several, outputs are of one row if they do not say so.
     """
     first, _, rest = name.partition(".")
-    found = declared(name)
-    if found is not None:
-        return found[0].say(found[1], rows > 1)
+    declaration = declared(name)
+    if declaration is not None:
+        return declaration[0].say(declaration[1], rows > 1)
     return say("all rows: {what}", what=output_named(rest)) if first == "rows" else name
 
 
 def figure_named(path: str) -> Note | str:
     """A figure of an output, such as ``joints.A.peak``, in words; its path where it has none."""
     name, _, figure = path.removeprefix("summary.").rpartition(".")
-    found = declared(name)
-    if found is None or figure not in FIGURES:
+    declaration = declared(name)
+    if declaration is None or figure not in FIGURES:
         return path
-    return Note("{what}, {part}", what=found[0].note(found[1]), part=Note(FIGURES[figure]))
+    return Note(
+        "{what}, {part}", what=declaration[0].note(declaration[1]), part=Note(FIGURES[figure])
+    )
 
 
 def objective_named(objective: Objective, rows: int = 1, measured: bool = True) -> str:
@@ -328,9 +334,11 @@ def shown_in(unit: str, values: Any = ()) -> Display:
     return display(dimension, values, "mrad" if dimension == "angle" else None)
 
 
-def tops_of(found: Iterable[tuple[AnalysisOutput, Array]]) -> dict[Dimension | None, float]:
+def tops_of(outputs: Iterable[tuple[AnalysisOutput, Array]]) -> dict[Dimension | None, float]:
     """The largest amplitude of any output of each dimension, beside which others are rounding."""
     tops: dict[Dimension | None, float] = {}
-    for one, sizes in found:
-        tops[one.dimension] = max(tops.get(one.dimension, 0.0), float(np.max(sizes, initial=0.0)))
+    for output, sizes in outputs:
+        tops[output.dimension] = max(
+            tops.get(output.dimension, 0.0), float(np.max(sizes, initial=0.0))
+        )
     return tops

@@ -187,8 +187,8 @@ class Result(Displayed):
             raise UsageError(
                 Note("there are no pictures of {kind}; show its blocks", kind=type(self).__name__)
             )
-        drawn: Mapping[str, Chart] = _function(self.pictures_in)(self)
-        return drawn
+        charts: Mapping[str, Chart] = _function(self.pictures_in)(self)
+        return charts
 
     def plot(self, name: str = "", *, ax: Any = None) -> Any:
         """Draw one of its pictures; a notebook shows what comes back.
@@ -299,9 +299,9 @@ def _axes(
 ) -> tuple[str, ...]:
     """Names of the axes of an array; what stands nearest of an abscissa goes before others."""
     axes: list[str] = [] if record is None else [record]
-    beside = [f"{scope}{name}" for name in ABSCISSAE for scope in _scopes(path)]
+    abscissae = [f"{scope}{name}" for name in ABSCISSAE for scope in _scopes(path)]
     for k, size in list(enumerate(values.shape))[len(axes) :]:
-        fitting = (item for item in beside if item in single and len(single[item]) == size)
+        fitting = (item for item in abscissae if item in single and len(single[item]) == size)
         free = (item for item in fitting if item not in axes)
         axes.append(next(free, f"{path}.index_{k}"))
     return tuple(axes)

@@ -214,10 +214,10 @@ def assess(
     readings : of gauges by name, as in `Response.gauges`; gauges are left out where not given.
     """
     worst: dict[str, FigureAssessment] = {}
-    for found in _of_outputs(analysis):
-        family = found.family[0]
-        if family not in worst or found.ratio > worst[family].ratio:
-            worst[family] = found
+    for assessment in _of_outputs(analysis):
+        family = assessment.family[0]
+        if family not in worst or assessment.ratio > worst[family].ratio:
+            worst[family] = assessment
     entries = [*worst.values(), *_of_cams(analysis)]
     for name, reading in (readings or {}).items():
         entries += _of_gauge(analysis.machine, name, reading)
@@ -246,9 +246,9 @@ def _of_outputs(analysis: Analysis) -> Iterator[FigureAssessment]:
     scales = _Scales(analysis)
     for output in analysis.outputs:
         if output.declared.yardstick and not _is_of_one_row_or_drive(output):
-            found = OF_OUTPUT[output.declared.yardstick](scales, output)
-            if found is not None:
-                yield found
+            assessment = OF_OUTPUT[output.declared.yardstick](scales, output)
+            if assessment is not None:
+                yield assessment
 
 
 def _yardstick_of_whole(output: AnalysisOutput) -> str:
@@ -482,8 +482,8 @@ def _largest(loads: Any) -> float:
 
 def _extent(places: list[Any]) -> float:
     """Largest distance of any two places."""
-    found = np.array([complex(*place) for place in places])
-    return float(np.max(np.abs(found[:, None] - found), initial=0.0))
+    points = np.array([complex(*place) for place in places])
+    return float(np.max(np.abs(points[:, None] - points), initial=0.0))
 
 
 # -- figures of outputs ----------------------------------------------------------------------------
@@ -642,7 +642,9 @@ def _reach_of_support(machine: Machine) -> float:
     assert support is not None
     places = [mount.point for mount in support.mounts.values()]
     places += [gauge.point for gauge in support.gauges.values()]
-    held = [place for place in places if place is not None]
+    positions = [place for place in places if place is not None]
     center = np.array(support.center_of_mass)
-    reach = max((float(np.linalg.norm(np.array(point) - center)) for point in held), default=0.0)
+    reach = max(
+        (float(np.linalg.norm(np.array(point) - center)) for point in positions), default=0.0
+    )
     return reach or size_of_links(machine)

@@ -296,9 +296,9 @@ class Integration:
         acting, holding = self.equation.at_rest(now.angle)
         driving = float(self.driver.torque(np.zeros(())))
         net = acting + driving
-        held = holding[copysign(1.0, net)] + self.driver.holding()
-        held += AT_REST * max(self.equation.largest_at_rest, abs(driving))
-        if abs(net) <= held:
+        resistance = holding[copysign(1.0, net)] + self.driver.holding()
+        resistance += AT_REST * max(self.equation.largest_at_rest, abs(driving))
+        if abs(net) <= resistance:
             rubs = holding[copysign(1.0, net)] > 0
             pushes = rubs and self.driver.on and net * self.driver.sense > 0
             self._note("stall" if pushes else "standstill", now)
@@ -341,8 +341,8 @@ class Integration:
         """What is tried next of a piece: all of it, or its rest from an instant on, halved as
         often as `halvings` says.
         """
-        near, far = ends[:: int(self.direction)]
-        if not self.halvings and begin.angle == near:
+        first, far = ends[:: int(self.direction)]
+        if not self.halvings and begin.angle == first:
             return TableRange(
                 (k, self.direction), ends, self.table.values[:, k], self.table.coefficients[k][0]
             )
@@ -413,14 +413,14 @@ class Integration:
         return None
 
     def _dense(
-        self, begin: Instant, part: TableRange, found: tuple[float, float, Array]
+        self, begin: Instant, part: TableRange, step: tuple[float, float, Array]
     ) -> Solution:
         """The motion in a piece anywhere in it, as of `_by_angle`.
 
         found : place of its begin, kinetic energy there, and rates by crank angle at the nodes of
             time, of the motor's circuit and of works.
         """
-        (start, began, rates), ends = found, part.ends
+        (start, began, rates), ends = step, part.ends
         half = (ends[1] - ends[0]) / 2
 
         def rows(x: Array) -> Array:

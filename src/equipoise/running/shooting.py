@@ -63,7 +63,7 @@ class Shooting:
             self.sizes.append(servo.torque_limit / servo.angle_gain)
             self.first.append(0.0)
 
-    def steady(self, near: Array | None = None) -> tuple[Array, Array] | None:
+    def steady(self, guess: Array | None = None) -> tuple[Array, Array] | None:
         """The state at the begin of a cycle that ends as it begins, and to which others come, and
         rows of its track, as of `Integration`; None where none is met.
 
@@ -73,7 +73,7 @@ class Shooting:
         state near by, to which the crank never comes, it is let run on instead, by more and more
         such cycles at once.
         """
-        state = np.array(self.first) if near is None else near
+        state = np.array(self.first) if guess is None else guess
         try:
             end, track = self._cycle(state)
             nudges = NUDGE * np.eye(len(state))
@@ -123,9 +123,9 @@ class Shooting:
 
     def start_of(self, state: Array) -> Start:
         """What is followed from a state on; the lag is None without a servo motor."""
-        speed, *more = (np.array(self.sizes) * state).tolist()
-        current = more[0] if self.driver.lags else 0.0
-        lag = None if self.driver.servo is None else more[0] if more else 0.0
+        speed, *others = (np.array(self.sizes) * state).tolist()
+        current = others[0] if self.driver.lags else 0.0
+        lag = None if self.driver.servo is None else others[0] if others else 0.0
         return speed, current, lag
 
     def end_of(self, run: Integration) -> Array:

@@ -20,7 +20,7 @@ from equipoise.keys import Frozen, Key, KeyTable, Named, Tables, Whole, all_keys
 from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.schema.models import Held, machine_of, plain_of
+from equipoise.schema.models import HeldFiles, machine_of, plain_of
 from equipoise.schema.places import Context
 from equipoise.schema.reading import read_table
 from equipoise.schema.template import named_parts
@@ -42,8 +42,8 @@ class Document:
     @classmethod
     def of_machine(cls, machine: Machine) -> Document:
         """As `save` would write it."""
-        names, beside = named_parts(machine)
-        return cls(type(machine), plain_of(machine, names), beside)
+        names, tables = named_parts(machine)
+        return cls(type(machine), plain_of(machine, names), tables)
 
     def machine(self, texts: Mapping[str, str] | None = None) -> Machine:
         """The machine that it stands for.
@@ -54,7 +54,7 @@ class Document:
         ------
         ModelError : there is none.
         """
-        return machine_of(self.content, Held(self.beside, texts or {}))
+        return machine_of(self.content, HeldFiles(self.beside, texts or {}))
 
     def put(self, place: KeyPath, values: Content, name: str | None = None) -> Document:
         """With other values of the plain keys of an entry, or with a new entry.
@@ -67,13 +67,13 @@ class Document:
         """
         kind = kind_at(self.of, place)
         if not place:
-            return self._with({**kept(kind.type, self.content), **values})
+            return self._with({**valid_content(kind.type, self.content), **values})
         content = deepcopy(self.content)
         above = _above(self.of, content, place)
-        if not _held(above, place[-1]):
+        if not _has(above, place[-1]):
             _make_room(self.of, content, place)
-        old = above[place[-1]] if _held(above, place[-1]) else {}
-        _set(above, place, {**kept(kind.type, old), **values}, name)
+        old = above[place[-1]] if _has(above, place[-1]) else {}
+        _set(above, place, {**valid_content(kind.type, old), **values}, name)
         return self._with(content)
 
     def without(self, place: KeyPath) -> Document:
@@ -86,7 +86,7 @@ class Document:
         kind_at(self.of, place)
         content = deepcopy(self.content)
         above = _above(self.of, content, place) if place else {}
-        if not place or not _held(above, place[-1]):
+        if not place or not _has(above, place[-1]):
             raise ModelError(place.shown, Note("entry not found; it may have been deleted"))
         del above[place[-1]]
         if not above and len(place) > 1:
@@ -117,7 +117,7 @@ def tables_below(of: type[Frozen]) -> dict[str, Key]:
     return {name: all_key for name, all_key in all_keys(of).items() if _below(all_key)}
 
 
-def kept(of: type[Frozen], entry: Mapping[str, Any]) -> Content:
+def valid_content(of: type[Frozen], entry: Mapping[str, Any]) -> Content:
     """What stays of an entry when its own keys are given anew."""
     own = own_keys(of)
     return {name: value for name, value in entry.items() if name not in own}
@@ -159,7 +159,7 @@ def _below(key: Key) -> bool:
     return isinstance(innermost(key.kind), KeyTable | Tables)
 
 
-def _held(above: Any, step: str | int) -> bool:
+def _has(above: Any, step: str | int) -> bool:
     if isinstance(above, list):
         return isinstance(step, int) and 0 <= step < len(above)
     return isinstance(above, dict) and step in above
@@ -169,7 +169,7 @@ def _above(of: type[Frozen], content: Content, place: KeyPath) -> Any:
     """The table or list in which an entry stands, made where it may be empty."""
     here: Any = content
     for length, step in enumerate(place[:-1], 1):
-        if not _held(here, step):
+        if not _has(here, step):
             # a list, or a table of names, begins with its first entry; another table does not
             if length != len(place) - 1 or _is_entry(of, place.begin(length)):
                 first = place.begin(length).shown

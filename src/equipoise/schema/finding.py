@@ -213,10 +213,10 @@ def replaced(content: Content, given: Iterable[Given]) -> dict[str, Any]:
     for path, result, value in given:
         if isinstance(value, bool) or not isinstance(value, Real):
             raise ModelError(path, Note("got {value!r}; give a number", value=value))
-        beside = parts.setdefault(result.place, {})
-        _check_company(path, result, beside, result.place in changes)
+        siblings = parts.setdefault(result.place, {})
+        _check_company(path, result, siblings, result.place in changes)
         if result.whole is not None:
-            beside[result.part] = value
+            siblings[result.part] = value
             wholes[result.place] = result.whole
         elif result.number is not None:
             changes[result.place] = result.number.written(value)
@@ -225,14 +225,14 @@ def replaced(content: Content, given: Iterable[Given]) -> dict[str, Any]:
 
 
 def _check_company(
-    path: str, location: NumberLocation, beside: Mapping[str, float], taken: bool
+    path: str, location: NumberLocation, siblings: Mapping[str, float], taken: bool
 ) -> None:
     """Refuse a number that others have changed already."""
-    if taken or location.part in beside or (beside and not location.part):
+    if taken or location.part in siblings or (siblings and not location.part):
         raise ModelError(
             path, Note("{path} is a number that varies already; leave one of them out", path=path)
         )
-    forms = {key in POLAR for key in (location.part, *beside)}
+    forms = {key in POLAR for key in (location.part, *siblings)}
     if isinstance(location.whole, Vector) and len(forms) == 2:
         above = path.rpartition(".")[0]
         raise ModelError(
@@ -241,7 +241,7 @@ def _check_company(
                 "{path} cannot vary beside {other}; let either {cartesian} or {polar} of "
                 "a point vary",
                 path=path,
-                other=f"{above}.{next(iter(beside))}",
+                other=f"{above}.{next(iter(siblings))}",
                 cartesian=all_of(XYZ[:2]),
                 polar=all_of(POLAR),
             ),

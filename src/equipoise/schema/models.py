@@ -31,7 +31,7 @@ from equipoise.schema.opening import (
 )
 from equipoise.schema.places import Context
 from equipoise.schema.reading import read_table
-from equipoise.schema.writing import WorkedOut, Writer, beside, toml_text
+from equipoise.schema.writing import WorkedOut, Writer, file_tables, toml_text
 
 if TYPE_CHECKING:
     from equipoise.handheld.model import Tool
@@ -45,7 +45,7 @@ def load_linkage(path_or_name: str | os.PathLike[str]) -> Machine:
 def loads_linkage(text: str, source: str = "<text>", folder: Folder = None) -> Machine:
     """Read the text of the file of a linkage and of nothing else; as `loads`."""
     with in_file(source):
-        return machine_of(content_of(text, "linkage"), Beside(folder))
+        return machine_of(content_of(text, "linkage"), AdjacentFiles(folder))
 
 
 def load_tool(path_or_name: str | os.PathLike[str]) -> Tool:
@@ -56,13 +56,13 @@ def load_tool(path_or_name: str | os.PathLike[str]) -> Tool:
 def loads_tool(text: str, source: str = "<text>", folder: Folder = None) -> Tool:
     """Read the text of a tool's file and of nothing else; as `loads`."""
     with in_file(source):
-        return tool_of(content_of(text, "tool"), Beside(folder))
+        return tool_of(content_of(text, "tool"), AdjacentFiles(folder))
 
 
 # -- content ---------------------------------------------------------------------------------------
 
 
-def machine_of(content: Mapping[str, Any], reader: Beside) -> Machine:
+def machine_of(content: Mapping[str, Any], reader: AdjacentFiles) -> Machine:
     """The machine of the content of a file; `reader` gets its tables by their files' names.
 
     The table [balance] is read when the machine is there, which tells what outputs are measured
@@ -90,7 +90,7 @@ def _with_balance(machine: Machine, balance: Any, context: Context) -> Machine:
         return machine.with_balance(plan)
 
 
-def tool_of(content: Mapping[str, Any], reader: Beside) -> Tool:
+def tool_of(content: Mapping[str, Any], reader: AdjacentFiles) -> Tool:
     """The tool of the content of a file; `reader` gets its tables and linkages."""
     from equipoise.handheld.model import Tool
 
@@ -124,7 +124,7 @@ def _limit(machine: Machine, given: dict[str, Any]) -> Any:
 # -- what lies beside -----------------------------------------------------------------------------
 
 
-class Beside:
+class AdjacentFiles:
     """Reads tables by the names of their files, which are relative to the model file's folder.
 
     folder : None where the model did not come from a file; then every table is refused.
@@ -168,8 +168,8 @@ class Beside:
 
     def _opened(self, file: str) -> Opened:
         """The model file of a linkage, of which one beside goes before a bundled one."""
-        beside = self.folder is not None and os.path.isfile(self.folder / file)
-        if not beside and file in bundled():
+        in_folder = self.folder is not None and os.path.isfile(self.folder / file)
+        if not in_folder and file in bundled():
             return opened_example(file)
         if self.folder is None:
             raise ModelError(
@@ -186,7 +186,7 @@ class Beside:
             raise ModelError("", at_place(printable(file), error.what)) from error
 
 
-class Held(Beside):
+class HeldFiles(AdjacentFiles):
     """Reads what lies beside a file out of what is held already, by sort and name; of no disk.
 
     tables : those that there are.  texts : of CSV files that are given now, by name.
@@ -366,7 +366,7 @@ class ModelPart:
 def parts_of(model: Machine | Tool) -> list[ModelPart]:
     """Tables and linkages of a model that have files of their own."""
     parts: list[ModelPart] = []
-    for where, sort, value, file in beside(type(model), model):
+    for where, sort, value, file in file_tables(type(model), model):
         number = len(parts) + 1
         if sort in {"load", "linkage"}:  # numbered as in the file
             number = int(where[where.index("[") + 1 : where.index("]")])

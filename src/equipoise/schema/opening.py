@@ -123,12 +123,12 @@ def _file_meant(name: str) -> Note | None:
     """Ask whether a file beside is meant whose name is spelt alike, or lacks its ending here."""
     folder, base = os.path.split(name)
     try:
-        beside = [item for item in os.listdir(folder or ".") if item.endswith(".toml")]
+        candidates = [item for item in os.listdir(folder or ".") if item.endswith(".toml")]
     except OSError:
         return None
-    if f"{base}.toml" in beside:
+    if f"{base}.toml" in candidates:
         return Note("did you mean {name!r}?", name=os.path.join(folder, f"{base}.toml"))
-    note = meant(base, sorted(beside))  # folders are not compared, which would be alike
+    note = meant(base, sorted(candidates))  # folders are not compared, which would be alike
     if not isinstance(note, Note):
         return None
     path = printable(os.path.join(folder, note.values["name"]))

@@ -60,7 +60,7 @@ def read_table(
             what = Note("{sentence} (and {more} more)", sentence=what, more=len(others))
         raise ModelError(where.shown, what)
     with context.with_written():
-        return made(table, context)
+        return constructed(table, context)
 
 
 UNKNOWN = "no-key-of-that-name"
@@ -158,12 +158,12 @@ def _named(kind: keys.Named, given: Any, place: KeyPath, context: Context) -> An
     return {name: read(item, entry, place / name, context) for name, entry in given.items()}
 
 
-def made(value: Any, context: Context) -> Any:
+def constructed(value: Any, context: Context) -> Any:
     """The objects of what has been read."""
     if isinstance(value, dict):
-        return {name: made(item, context) for name, item in value.items()}
+        return {name: constructed(item, context) for name, item in value.items()}
     if isinstance(value, tuple) and value and isinstance(value[0], Values | NamedFile):
-        return tuple(made(item, context) for item in value)
+        return tuple(constructed(item, context) for item in value)
     if isinstance(value, Values):
         make = partial(context.makers.get(value.of, value.of.from_table), _given(value, context))
     elif isinstance(value, NamedFile) and context.beside is not None:
@@ -178,7 +178,7 @@ def made(value: Any, context: Context) -> Any:
 
 def _given(values: Values, context: Context) -> dict[str, Any]:
     """What an object is made of, by its fields."""
-    given = {name: made(value, context) for name, value in values.given.items()}
+    given = {name: constructed(value, context) for name, value in values.given.items()}
     for name, key in keys.keys_of(values.of).items():
         if isinstance(key.kind, keys.File) and key.kind.named and name in given:
             given[key.kind.named] = values.given[name].file
@@ -340,7 +340,7 @@ def _point(kind: keys.Point, given: Any, place: KeyPath, context: Context) -> An
         table = _table(keys.KeyTable(Polar), given, place, context)
         if len(context.problems) > count:
             return WRONG
-        x, y = made(table, context)
+        x, y = constructed(table, context)
         return (x, y, 0.0) if kind.space else (x, y)
     if not kind.space:
         if not isinstance(given, list):
@@ -402,7 +402,9 @@ def example_of(kind: keys.Kind) -> str:
     return KINDS[kind.dimension].example if isinstance(kind, keys.Quantity) else "hand.csv"
 
 
-def _told(kind: keys.DependentQuantity, given: Any, place: KeyPath, context: Context) -> Any:
+def _read_dependent(
+    kind: keys.DependentQuantity, given: Any, place: KeyPath, context: Context
+) -> Any:
     context.wrote(place, given)
     return given if isinstance(given, str) else context.wrong(place, given, kind.right)
 
@@ -427,7 +429,7 @@ READERS: dict[type[keys.Kind], Callable[[Any, Any, KeyPath, Context], Any]] = {
     keys.KeyTable: _table,
     keys.Tables: _tables,
     keys.TextKind: _text,
-    keys.DependentQuantity: _told,
+    keys.DependentQuantity: _read_dependent,
     keys.Whole: _whole,
     keys.Wording: _wording,
 }

@@ -88,10 +88,10 @@ def _text_of(kind: keys.Quantity) -> Schema:
     return {"type": "string", "pattern": either, "examples": [example]}
 
 
-def _described(dimension: Dimension, more: str = "") -> Schema:
+def _described(dimension: Dimension, addition: str = "") -> Schema:
     kind = KINDS[dimension]
     units = ", ".join(kind.units)
-    return {"description": f"{kind.noun}: number, space and one of {units}{more}"}
+    return {"description": f"{kind.noun}: number, space and one of {units}{addition}"}
 
 
 def _text(kind: keys.TextKind, definitions: Definitions) -> Schema:
@@ -183,15 +183,15 @@ def _planes(kind: keys.Planes, definitions: Definitions) -> Schema:
     return _defined(f"{name}InPlanes", lambda: _in_planes(_text_of(item), text), definitions)
 
 
-def _in_planes(text: Schema, told: str) -> Schema:
+def _in_planes(text: Schema, description: str) -> Schema:
     table: Schema = {
         "type": "object",
         "properties": dict.fromkeys(keys.PLANES, text),
         "required": [*keys.PLANES],
         "additionalProperties": False,
     }
-    told = f"{told} with one for the vertical and one for the lateral plane"
-    return {"anyOf": [text, table], "description": told}
+    description = f"{description} with one for the vertical and one for the lateral plane"
+    return {"anyOf": [text, table], "description": description}
 
 
 def _table(kind: keys.KeyTable, definitions: Definitions) -> Schema:

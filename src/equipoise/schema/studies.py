@@ -168,8 +168,8 @@ def _vary(where: str, given: VaryTable, template: Template) -> Variable:
 
 
 def _spread(where: str, given: VaryTable, value: float, dimension: str | None) -> Spread:
-    def read(key: str, one: Any) -> float:
-        return value if one is None else si_value(f"{where}{key}", one, dimension)
+    def read(key: str, item: Any) -> float:
+        return value if item is None else si_value(f"{where}{key}", item, dimension)
 
     if given.range is not None:
         low, high = (read(f"[{n}]", item) for n, item in enumerate(given.range, 1))

@@ -32,7 +32,7 @@ from equipoise.schema.finding import (
     replaced,
     unit_in,
 )
-from equipoise.schema.models import Beside, Held, machine_of, parts_of, text_of, tool_of
+from equipoise.schema.models import AdjacentFiles, HeldFiles, machine_of, parts_of, text_of, tool_of
 from equipoise.schema.numbers import FileNumber
 from equipoise.schema.opening import Kind, Opened, in_file, kind_of, model_content, opened
 from equipoise.schema.tables import TABLES
@@ -201,15 +201,15 @@ class Template:
             given = ((path, self._find(path), value) for path, value in values.items())
             content = replaced(self._content, (item for item in given if not item[1].rest))
             known = self._known | {("linkage", names[at]): new for at, new in linkages.items()}
-            made = self._read(with_values(content, names), _Carried(None, known))
+            machine = self._read(with_values(content, names), _Carried(None, known))
         except ModelError as error:
             raise error.in_file(self.source) from error
-        return _without_names(made, {*names.values()}) if names else made
+        return _without_names(machine, {*names.values()}) if names else machine
 
     def texts(self) -> dict[str, str]:
         """All of it as texts by name, from which `restored` makes it again, exactly."""
-        beside = {f"{sort} {name}": _text_of(value) for (sort, name), value in self._known.items()}
-        return {"source": self.source, "model": self.text, **beside}
+        tables = {f"{sort} {name}": _text_of(value) for (sort, name), value in self._known.items()}
+        return {"source": self.source, "model": self.text, **tables}
 
     @classmethod
     def restored(cls, texts: Mapping[str, str]) -> Template:
@@ -310,11 +310,11 @@ class Template:
             linkages[place] = machine
         return linkages
 
-    def _read(self, content: Mapping[str, Any], reader: Beside) -> Machine | Tool:
+    def _read(self, content: Mapping[str, Any], reader: AdjacentFiles) -> Machine | Tool:
         return (tool_of if self.kind == "tool" else machine_of)(content, reader)
 
 
-class _Carried(Beside):
+class _Carried(AdjacentFiles):
     """Reads what lies beside a model file once, and gives that from then on."""
 
     def __init__(
@@ -322,7 +322,7 @@ class _Carried(Beside):
     ) -> None:
         super().__init__(folder)
         self.known = known
-        self.tables = Beside(folder) if texts is None else Held(known, texts)
+        self.tables = AdjacentFiles(folder) if texts is None else HeldFiles(known, texts)
 
     def read(self, sort: str, file: str) -> Any:
         if sort != "linkage" and (sort, file) not in self.known:

@@ -98,28 +98,30 @@ def plain_default(key: keys.Key) -> Any:
     return None if isinstance(default, list | dict) and not default else default
 
 
-def beside(of: type[keys.Frozen], value: Any) -> Iterator[tuple[str, str, Any, str]]:
+def file_tables(of: type[keys.Frozen], value: Any) -> Iterator[tuple[str, str, Any, str]]:
     """What lies in files of their own: the key that names each, its sort, itself, and its name."""
-    yield from _beside(keys.KeyTable(of), value, KeyPath())
+    yield from _file_tables(keys.KeyTable(of), value, KeyPath())
 
 
-def _beside(kind: keys.Kind, value: Any, place: KeyPath) -> Iterator[tuple[str, str, Any, str]]:
+def _file_tables(
+    kind: keys.Kind, value: Any, place: KeyPath
+) -> Iterator[tuple[str, str, Any, str]]:
     if isinstance(kind, keys.File):
         yield place.shown, kind.sort, value, getattr(value, "file", "")
     elif isinstance(kind, keys.Planes):
         for part, item in _in_planes(value, place):
-            yield from _beside(kind.item, item, part)
+            yield from _file_tables(kind.item, item, part)
     elif isinstance(kind, keys.Tables):
         for number, item in enumerate(value):
-            yield from _beside(kind.item, item, place / number)
+            yield from _file_tables(kind.item, item, place / number)
     elif isinstance(kind, keys.Named) and isinstance(value, Mapping):
         for name, item in value.items():
-            yield from _beside(kind.item, item, place / name)
+            yield from _file_tables(kind.item, item, place / name)
     elif isinstance(kind, keys.KeyTable):
         for name, item in _given(kind.type.to_table, value, place).items():
             key = keys.keys_of(kind.type)[name]
             inner = place if isinstance(key.kind, keys.KeyTable) and key.kind.flat else place / name
-            for where, sort, result, file in _beside(key.kind, item, inner):
+            for where, sort, result, file in _file_tables(key.kind, item, inner):
                 named = isinstance(key.kind, keys.File) and key.kind.named
                 yield where, sort, result, getattr(value, named) if named else file
 

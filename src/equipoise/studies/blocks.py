@@ -70,20 +70,20 @@ def unit_in(units: Units | None, name: str) -> Unit:
 
 def named_together(names: Sequence[str], units: Units | None) -> str:
     """Numbers that vary together in words; what they are of is said once."""
-    result = _together([unit_in(units, name).label for name in names])
+    result = _joined([unit_in(units, name).label for name in names])
     return result.said() if isinstance(result, Note) else result
 
 
-def _together(words: Sequence[Note | str]) -> Note | str:
+def _joined(words: Sequence[Note | str]) -> Note | str:
     first, *rest = words
     if not rest:
         return first
     notes = [word for word in words if isinstance(word, Note) and "what" in word.values]
     around = [(note.template, {**note.values, "what": ""}) for note in notes]
     if len(notes) == len(words) and around.count(around[0]) == len(around):
-        inner = _together([note.values["what"] for note in notes])
+        inner = _joined([note.values["what"] for note in notes])
         return Note(notes[0].template, **{**notes[0].values, "what": inner})
-    return Note("{first} + {second}", first=first, second=_together(rest))
+    return Note("{first} + {second}", first=first, second=_joined(rest))
 
 
 def in_unit(value: float | None, unit: Unit) -> Value | None:
@@ -99,20 +99,20 @@ def labelled(unit: Unit) -> str:
 def spread_told(spread: Spread, unit: Unit) -> str:
     """How a number varies, such as ``60.00 to 80.00`` or ``71.50 +- 0.2000``, without its unit."""
 
-    def told(value: float) -> str:
+    def formatted(value: float) -> str:
         return number(unit.of_si(value))
 
     if isinstance(spread, Range):
         steps = "" if spread.steps is None else f", {spread.steps} steps"
-        return f"{told(spread.low)} to {told(spread.high)}{steps}"
+        return f"{formatted(spread.low)} to {formatted(spread.high)}{steps}"
     if isinstance(spread, Choices):
-        some = ", ".join(map(told, spread.values[:MOST_CHOICES]))
-        more = len(spread.values) - MOST_CHOICES
-        return f"{some} and {more} more" if more > 0 else some
+        some = ", ".join(map(formatted, spread.values[:MOST_CHOICES]))
+        omitted = len(spread.values) - MOST_CHOICES
+        return f"{some} and {omitted} more" if omitted > 0 else some
     if isinstance(spread, Normal):
         cut = "" if spread.cut is None else f", cut at {spread.cut:g}"
-        return f"{told(spread.mean)}, deviation {told(spread.deviation)}{cut}"
-    return f"{told(spread.centre)} +- {told(spread.half_width)}"
+        return f"{formatted(spread.mean)}, deviation {formatted(spread.deviation)}{cut}"
+    return f"{formatted(spread.centre)} +- {formatted(spread.half_width)}"
 
 
 # -- designs ---------------------------------------------------------------------------------------

@@ -12,7 +12,7 @@ import numpy as np
 
 from equipoise.codegen.figures import COMPUTED
 from equipoise.dataclass import dataclass
-from equipoise.studies.outcomes import Block, kept
+from equipoise.studies.outcomes import Block, feasible
 from equipoise.studies.sampling import random_numbers
 from equipoise.studies.store import UNKNOWN
 
@@ -30,7 +30,7 @@ BINS = 40
 """Along each side of a picture of many."""
 MIDST, DECADES = (5, 95), 30.0
 """Percentiles of a figure above 0, and their ratio from which it is told by its decades."""
-DRAWN = 11
+MOST_COLUMNS = 11
 """Stream of random numbers of those designs that are drawn as lines."""
 
 
@@ -110,7 +110,11 @@ def cloud_of(
     """
     names = [*numbers, *(output.name for output in outputs)]
     few = size <= MOST
-    chosen = np.arange(size) if few else random_numbers(1, DRAWN).choice(size, SOME, replace=False)
+    chosen = (
+        np.arange(size)
+        if few
+        else random_numbers(1, MOST_COLUMNS).choice(size, SOME, replace=False)
+    )
     counted = np.zeros(3, int)
     least, most = np.full(len(names), np.inf), np.full(len(names), -np.inf)
     rows, marks = [np.empty((0, len(names)))], [np.empty((3, 0), bool)]
@@ -143,7 +147,7 @@ def _table(block: Block, outputs: Sequence[Output]) -> tuple[Array, Array]:
     """
     reason = block.outcome.reason
     stored, there = reason != UNKNOWN, reason == COMPUTED
-    inside = there & np.all(kept(outputs, block.outcome.figures), axis=1)
+    inside = there & np.all(feasible(outputs, block.outcome.figures), axis=1)
     figures = np.where(there[:, None], block.outcome.figures, np.nan)
     values = np.where(stored[:, None], block.values, np.nan)
     return np.hstack([values, figures]), np.array([inside, there & ~inside, stored & ~there])

@@ -69,10 +69,10 @@ class Output(RequiredFigure):
         dimension: str | None = None,
         *,
         asks: Asks = (),
-        **more: Any,
+        **options: Any,
     ) -> None:
         given = {"name": name, "of": of, "value": value or name, "dimension": dimension}
-        for field, item in (given | {"asks": asks_of(more, asks)}).items():
+        for field, item in (given | {"asks": asks_of(options, asks)}).items():
             object.__setattr__(self, field, item)
 
     @property

@@ -90,14 +90,14 @@ def pooled(
     alone = evaluator(study)
     shared = not getattr(alone, "compiled", False)
     make = partial(evaluator, study, threads=1)
-    together = AT_ONCE if any(output.of == "plant" for output in study.outputs) else 1
+    batch = AT_ONCE if any(output.of == "plant" for output in study.outputs) else 1
     return PooledEvaluator(
         alone,
         make,
         Outcome.joined,
         workers,
         shared=shared,
-        together=together,
+        together=batch,
         elsewhere=elsewhere(cluster, workers),
     )
 
@@ -187,15 +187,15 @@ class OneByOne:
         """Fill figures (P, m) and reasons (P,) of a few designs, one command after the other."""
         models: dict[int, Machine | Tool] = {}
         for k, row in enumerate(values.tolist()):
-            made = self.made(row)
-            if isinstance(made, int):
-                reason[k] = made
+            model = self.made(row)
+            if isinstance(model, int):
+                reason[k] = model
             else:
-                models[k] = made
+                models[k] = model
         for asked in self.asked:
             going = {k: model for k, model in models.items() if reason[k] not in STANDING}
             if asked.command == "planted":
-                failed = _together(going, asked, figures)
+                failed = _in_batches(going, asked, figures)
             else:
                 failed = {k: self.ask(model, asked, figures[k]) for k, model in going.items()}
             for k, why in failed.items():
@@ -230,7 +230,7 @@ class OneByOne:
         return COMPUTED if all(map(isfinite, result)) else NO_FIGURE
 
 
-def _together(models: Mapping[int, Any], asked: Request, figures: Array) -> dict[int, int]:
+def _in_batches(models: Mapping[int, Any], asked: Request, figures: Array) -> dict[int, int]:
     """Fill the figures of planting fingers; returns why some are missing, by design."""
     failed, turning = {}, {}
     for k, machine in models.items():
@@ -276,7 +276,7 @@ def _figures_of(model: Machine | Tool, asked: Request, study: Study) -> tuple[li
         return [read(values, steps) for steps in asked.steps], True
     values = analyzed(machine, ANGLES, asked.wanted)
     items = [read(values, steps) for steps in asked.steps]
-    faint = {str(step[0]): FAINT * _beside(values, str(step[0])) for step in asked.steps}
+    faint = {str(step[0]): FAINT * _limit_value(values, str(step[0])) for step in asked.steps}
     number, calm = ANGLES, 0
     # Extremes, and their places, may stand still once by chance.
     needed = 1 if all(figure_name(step) in ("mean", "rms") for step in asked.steps) else 2
@@ -315,7 +315,7 @@ def _still(
     return True
 
 
-def _beside(values: Values, key: str) -> float:
+def _limit_value(values: Values, key: str) -> float:
     """RMS of the largest signal in a table, of which others may be the rounding."""
     table = values["summary" if key == "by_order" else key] if key in values else None
     return max(_sizes(table), default=0.0)

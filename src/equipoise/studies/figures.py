@@ -165,8 +165,8 @@ class _Finder:
         else:
             yield ()
 
-    def ends(self, rest: str, told: str) -> None:
-        self.stuck.append((len(rest), told))
+    def ends(self, rest: str, given: str) -> None:
+        self.stuck.append((len(rest), given))
 
     def into_table(self, here: Values, rest: str) -> Iterator[tuple[Step, ...]]:
         """Names may hold dots, so the longest that fits goes first."""

@@ -379,7 +379,7 @@ def landscape(
         )
     linkage_of(model.base())
     given = dict(given or {})
-    paths, drawn = _checked(over, given)
+    paths, columns = _checked(over, given)
     told_ases = {path: told_as(model, path, paths) for path in (*paths, *given)}
     dimensions = {path: kind for path, (kind, _) in told_ases.items()}
     words = {path: item for path, (_, item) in told_ases.items()}
@@ -391,9 +391,9 @@ def landscape(
         base.with_balance(Balance(objectives=(of,)))
     except ModelError as error:  # of a plan that nobody has written
         raise UsageError(error.what) from error
-    ends = (dict(zip(paths, (item[k] for item in drawn), strict=True)) for k in (0, -1))
+    ends = (dict(zip(paths, (item[k] for item in columns), strict=True)) for k in (0, -1))
     _check_weights(*({**given, **end} for end in ends))
-    x, y = drawn
+    x, y = columns
     points = np.stack([item.ravel() for item in np.meshgrid(x, y)], axis=1)
     linear = LinearValues.of(maker, of, paths, points)
     value = linear or SingleValues(maker, of, paths)

@@ -76,7 +76,7 @@ class Block:
     outcome: Outcome
 
 
-def kept(outputs: Sequence[Output], figures: Array) -> Array:
+def feasible(outputs: Sequence[Output], figures: Array) -> Array:
     """Whether each design keeps each limit, (P, m); `figures` are (P, m)."""
     return np.stack(
         [
@@ -271,7 +271,7 @@ class Tally:
                 self.of_late.popleft()
 
     def _compare(self, outcome: Outcome) -> None:
-        good = outcome.computed & kept(self.outputs, outcome.figures).all(axis=1)
+        good = outcome.computed & feasible(self.outputs, outcome.figures).all(axis=1)
         for column, output in enumerate(self.outputs):
             if output.make and good.any():
                 best = np.fmin if output.make == "smallest" else np.fmax
@@ -295,7 +295,7 @@ class Tally:
 
 # -- how long a run takes --------------------------------------------------------------------------
 
-MORE, LONGEST = 8, 1.0
+FIRST_BATCH, LONGEST = 8, 1.0
 """So many times as many designs are computed next, unless that would take longer than this, s."""
 
 
@@ -332,7 +332,7 @@ def estimated(
     timed(1)  # what is loaded and compiled at first is no part of a rate
     while True:
         seconds = timed(count)
-        following = min(MORE * count, most)
+        following = min(FIRST_BATCH * count, most)
         if following == count or following / count * seconds > LONGEST:
             break
         count = following

@@ -34,7 +34,7 @@ from equipoise.studies.outcomes import (
     designs_told,
     failures,
     far_apart,
-    kept,
+    feasible,
     non_dominated,
     signs_of,
     why_none,
@@ -239,12 +239,12 @@ class _StudyProblem(DesignProblem):
         return self.seen.known(values)
 
     def evaluate(self, places: Array) -> tuple[Array, Array]:
-        seen, volumes = self.seen, self.volumes
-        rows = seen.rows(self.values_of(places))
-        volumes.add(seen.costs[seen.front])
+        archive, volumes = self.seen, self.volumes
+        rows = archive.rows(self.values_of(places))
+        volumes.add(archive.costs[archive.front])
         done = len(volumes.fronts)
-        self.progress(done, self.generations, len(seen.values), len(seen.front))
-        return seen.costs[rows], seen.violations[rows]
+        self.progress(done, self.generations, len(archive.values), len(archive.front))
+        return archive.costs[rows], archive.violations[rows]
 
 
 def search_size(
@@ -281,14 +281,14 @@ def breeding_time(study: Study, population: int) -> float:
     low = [-inf if output.at_least is None else output.at_least for output in study.outputs]
     high = [inf if output.at_most is None else output.at_most for output in study.outputs]
 
-    def drawn(values: Array) -> Outcome:
+    def sample_outcome(values: Array) -> Outcome:
         figures = random.random((len(values), len(low))).clip(low, high)
         return Outcome(figures, np.zeros(len(values), np.uint8))
 
     def note(*_: int) -> None:
         moments.append(perf_counter())
 
-    search(study, population=population, generations=TIMED, progress=note, compute=drawn)
+    search(study, population=population, generations=TIMED, progress=note, compute=sample_outcome)
     return (moments[-1] - moments[0]) / max(len(moments) - 1, 1)
 
 
@@ -308,13 +308,13 @@ def _check(study: Study) -> None:
         raise ModelError("outputs", note)
 
 
-def _result(archive: _Archive, volumes: Hypervolumes, told: Array, seed: int) -> Searched:
+def _result(archive: _Archive, volumes: Hypervolumes, reported: Array, seed: int) -> Searched:
     study, counts = archive.study, archive.outcome.counts
     if not len(archive.front):
         good = archive.outcome.figures[archive.outcome.computed]
-        limits = np.sum(kept(study.outputs, good), axis=0)
+        limits = np.sum(feasible(study.outputs, good), axis=0)
         raise UsageError(why_none(study.outputs, counts, limits))
-    order = told[np.lexsort(archive.costs[told].T[::-1])]
+    order = reported[np.lexsort(archive.costs[reported].T[::-1])]
     makes = {output.name: output.make for output in study.objectives if output.make}
     return Searched(
         study=study,

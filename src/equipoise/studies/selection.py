@@ -33,7 +33,7 @@ from equipoise.studies.outcomes import (
     signs_of,
     why_none,
 )
-from equipoise.studies.outcomes import kept as keep
+from equipoise.studies.outcomes import feasible as keep
 from equipoise.studies.store import REASON, UNKNOWN, Store, as_usage_error
 
 Array = np.ndarray[Any, Any]
@@ -181,8 +181,8 @@ class _Choice:
         if not self.kept:
             lacking = _lack(self.outputs, figures)
             rows = np.column_stack([lacking, start + computed, block.values[computed], figures])
-            near = np.concatenate([self.near, rows])
-            self.near = near[np.argsort(near[:, 0], kind="stable")[: self.count]]
+            nearest = np.concatenate([self.near, rows])
+            self.near = nearest[np.argsort(nearest[:, 0], kind="stable")[: self.count]]
         rows = np.hstack([block.values[computed[good]], figures[good]])
         self.designs = np.concatenate([self.designs, start + computed[good]])
         self.rows = np.concatenate([self.rows, rows])

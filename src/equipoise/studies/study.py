@@ -134,14 +134,14 @@ def from_plain(plain: Mapping[str, Any], model: Model, file: str = "") -> Study:
     for entry in plain["vary"]:
         spread = dict(entry["spread"])
         vary.append(Variable(**{**entry, "spread": SPREADS[spread.pop("kind")](**spread)}))
-    made = {
+    variables = {
         "title": worded(plain["title"]),
         "vary": tuple(vary),
         "outputs": tuple(Output(**item) for item in plain["outputs"]),
         "sampling": Sampling(**plain["sampling"]),
         "correlations": tuple(Correlation(**item) for item in plain["correlations"]),
     }
-    return Study(**{**plain, **made}, model=model, file=file)
+    return Study(**{**plain, **variables}, model=model, file=file)
 
 
 # -- what varies, and how --------------------------------------------------------------------------

@@ -24,18 +24,18 @@ CHANCE, FINE = 4, 1000
 
 def tolerances_blocks(tolerances: Tolerances, units: Units | None = None) -> Iterator[Block]:
     """Scatter, limits, causes, and a sentence on what to do."""
-    drawn = say(
+    sampling = say(
         "{count} machines drawn, seed {seed}",
         count=tolerances.designs,
         seed=tolerances.study.sampling.seed,
     )
     failed = say(", ").join(f"{what} {count}" for what, count in tolerances.failures.items())
-    yield Text(f"{drawn}; {say('failed: {list}', list=failed)}" if failed else drawn)
+    yield Text(f"{sampling}; {say('failed: {list}', list=failed)}" if failed else sampling)
     if tolerances.within is not None:
         yield Text(say("{share} of them are within all limits.", share=_share(tolerances.within)))
     yield _scatters(tolerances, units)
     if any(scatter.within is not None for scatter in tolerances.scatters.values()):
-        yield _kept(tolerances, units)
+        yield _limits_table(tolerances, units)
     yield _causes(tolerances, units)
     yield _variances(tolerances, units)
     yield Text(advice(tolerances, units))
@@ -58,7 +58,7 @@ def _scatters(tolerances: Tolerances, units: Units | None) -> Table:
     return Table(title, tuple(map(Column, labels)), tuple(rows))
 
 
-def _kept(tolerances: Tolerances, units: Units | None) -> Table:
+def _limits_table(tolerances: Tolerances, units: Units | None) -> Table:
     rows = []
     for name, scatter in tolerances.scatters.items():
         if scatter.within is None:
@@ -81,10 +81,10 @@ def _share(share: IntervalEstimate) -> str:
 
 
 def _causes(tolerances: Tolerances, units: Units | None) -> Table:
-    digits, kept = _digits(tolerances), tolerances.unchanged is not None
+    digits, has_unchanged = _digits(tolerances), tolerances.unchanged is not None
     rows: list[tuple[Cell, ...]] = []
     for cause in tolerances.causes:
-        shares = (cause.halved, cause.removed) if kept else ()
+        shares = (cause.halved, cause.removed) if has_unchanged else ()
         cells = (None if share is None else Value(100 * share, after=digits) for share in shares)
         given = "; ".join(tolerance_told(tolerances, path, units) for path in cause.numbers)
         gain = Value(100 * cause.gain, after=1)

@@ -21,7 +21,7 @@ from equipoise.errors import ModelError, UsageError
 from equipoise.i18n import Note
 from equipoise.results.result import Result
 from equipoise.studies.evaluate import pooled
-from equipoise.studies.outcomes import Evaluator, Outcome, failures, kept, why_none
+from equipoise.studies.outcomes import Evaluator, Outcome, failures, feasible, why_none
 from equipoise.studies.sampling import samples
 from equipoise.studies.study import SLOW_CHUNK
 from equipoise.studies.variance import (
@@ -263,7 +263,7 @@ def _limited(study: Study) -> list[int]:
 
 
 def _kept_all(study: Study, outcome: Outcome) -> Array:
-    inside: Array = np.all(kept(study.outputs, outcome.figures)[:, _limited(study)], axis=1)
+    inside: Array = np.all(feasible(study.outputs, outcome.figures)[:, _limited(study)], axis=1)
     return inside
 
 

@@ -19,7 +19,7 @@ import numpy as np
 from equipoise.dataclass import dataclass
 from equipoise.design.spreads import Normal, Uniform
 from equipoise.sequences import sobol
-from equipoise.studies.outcomes import kept
+from equipoise.studies.outcomes import feasible
 from equipoise.studies.sampling import BITS, random_numbers, values_at
 
 if TYPE_CHECKING:
@@ -68,9 +68,9 @@ def causes_of(study: Study) -> tuple[tuple[int, ...], ...]:
         first, second = (
             study.paths.index(path) for path in (correlation.first, correlation.second)
         )
-        together = groups[first] | groups[second]
-        for k in together:
-            groups[k] = together
+        union = groups[first] | groups[second]
+        for k in union:
+            groups[k] = union
     return tuple(dict.fromkeys(tuple(sorted(group)) for group in groups))
 
 
@@ -116,7 +116,7 @@ def effects(figures: Sequence[Array], seed: int) -> list[Effect] | None:
     halved, removed = (np.std(table[k::3], axis=1) / spread for k in (3, 4))
     shares = _shares(base, other, table[2::3], seed)
     left = zip(halved.tolist(), removed.tolist(), strict=True)
-    return [Effect(*both, *kept) for both, kept in zip(shares, left, strict=True)]
+    return [Effect(*both, *estimates) for both, estimates in zip(shares, left, strict=True)]
 
 
 # `scipy.stats.sobol_indices` gives the same estimates to 1e-16, but only of 2**n rows, which are
@@ -229,7 +229,7 @@ def scatter_of(output: Output, base: float, figures: Array) -> Scatter:
         counts=counts,
         below=float(np.sum(there < below)) / len(figures),
         above=float(np.sum(there > above)) / len(figures),
-        within=share_of(kept([output], figures[:, None])[:, 0]) if output.limited else None,
+        within=share_of(feasible([output], figures[:, None])[:, 0]) if output.limited else None,
     )
 
 

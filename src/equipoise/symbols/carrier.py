@@ -16,7 +16,7 @@ MOUNT = 40.0, 7.0
 """Length of a spring or damper between support and ground, and half its width."""
 NEEDLE = 32.0
 """Length of a gauge's arrow."""
-SEEN = 0.3
+VISIBLE = 0.3
 """Length of the view of a unit vector below which it is seen end on."""
 RING = 22.0, 10.0
 """Radius of the first arc about an axis that is seen end on, and how much larger others are."""
@@ -98,7 +98,7 @@ class Carrier:
             return 0j
         place, along = (complex(*z[:2]) for z in (item.point, unit_vector(item.direction)))
         if isinstance(item, Gauge):
-            return along / abs(along) if abs(along) >= SEEN else 0j
+            return along / abs(along) if abs(along) >= VISIBLE else 0j
         return to_ground(along, place - self.center, item.one_sided)
 
 
@@ -111,11 +111,11 @@ def to_ground(along: complex, arm: complex, one_sided: bool) -> complex:
     along : the view of the direction in which it pushes the support.  arm : from the middle of the
     support, from which one that goes along points away.
     """
-    if abs(along) < SEEN:
+    if abs(along) < VISIBLE:
         return 0j
     way = -along / abs(along)
-    beside = not one_sided and abs(way.imag) < 0.5
-    return -way if beside and dot(arm, way) < 0 else way
+    sideways = not one_sided and abs(way.imag) < 0.5
+    return -way if sideways and dot(arm, way) < 0 else way
 
 
 def strut(item: Mount, place: complex, way: complex) -> list[Shape]:
@@ -152,7 +152,7 @@ def mount(item: Mount, place: complex, way: complex) -> list[Shape]:
 def gauge(place: complex, way: complex) -> list[Shape]:
     """A gauge: a diamond with an arrow in its direction, the view of which is at most 1 long."""
     diamond = sign("gauge", place, 5.5 * np.array([1, 1j, -1, -1j]), closed=True)
-    if abs(way) < SEEN:
+    if abs(way) < VISIBLE:
         return [diamond]
     way /= abs(way)
     head = sign("needle-head", place, way * (NEEDLE + np.array([0, -8 + 3j, -8 - 3j])), closed=True)

@@ -42,8 +42,10 @@ def _off_links(scene: Scene, at: Array) -> Iterator[Array]:
     signs += [(link, "", center[at]) for link, center in scene.mass_centers.items()]
     if scene.carrier is not None:
         below = -0.5j * MOUNT[0] * scene.unit
-        held = (item.point for item in scene.carrier.items.values() if item.point is not None)
-        signs += [("", "", np.full(len(at), complex(*point[:2]) + below)) for point in held]
+        mount_points = (
+            item.point for item in scene.carrier.items.values() if item.point is not None
+        )
+        signs += [("", "", np.full(len(at), complex(*point[:2]) + below)) for point in mount_points]
     for link, points, outline in outlines:
         corners = np.array([scene.places[name][at] for name in outline])
         for own, point, place in signs:
@@ -63,10 +65,10 @@ def _uncrossed(scene: Scene, at: Array) -> Iterator[Array]:
     for edge, other in combinations([ends for ends in edges if len(ends) == 2], 2):
         if not edge & other:
             a, b, c, d = (scene.places[name][at] for name in (*sorted(edge), *sorted(other)))
-            yield 1.0 * (_beside(scene, a, b, c, d) | _beside(scene, c, d, a, b))
+            yield 1.0 * (_overlap(scene, a, b, c, d) | _overlap(scene, c, d, a, b))
 
 
-def _beside(scene: Scene, a: Array, b: Array, c: Array, d: Array) -> Array:
+def _overlap(scene: Scene, a: Array, b: Array, c: Array, d: Array) -> Array:
     """Whether c and d lie on one side of the line from a to b, or one of them on it, (M,)."""
     ends = cross(b - a, c - a) * cross(b - a, d - a)
     return np.asarray(ends > -((scene.unit * np.abs(b - a)) ** 2))

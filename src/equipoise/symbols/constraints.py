@@ -52,7 +52,7 @@ def constraint_marks(constraints: Iterable[Constraint], bodies: Bodies) -> Itera
         for (body, start), (_, end) in constraint.lines(bodies):
             way = complex(*bodies[body][end]) - complex(*bodies[body][start])
             turn = way / abs(way) if way else 1.0
-            drawn = SIGNS[constraint.kind]
-            for stroke in drawn.strokes:
-                shape = sign(legend[0], way * drawn.at, np.array(stroke) * turn)
+            constraint_sign = SIGNS[constraint.kind]
+            for stroke in constraint_sign.strokes:
+                shape = sign(legend[0], way * constraint_sign.at, np.array(stroke) * turn)
                 yield BodyMark(body, start, shape, table="constraints", legend=legend)

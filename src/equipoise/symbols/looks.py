@@ -55,12 +55,12 @@ class Look:
         fill = f"var(--{self.fill})" if self.fill else "none"
         if self.line is None:
             return f"fill:{fill}"
-        more = ";stroke-linecap:butt" if self.dashes or self.flat else ""
+        caps = ";stroke-linecap:butt" if self.dashes or self.flat else ""
         if self.dashes:
             lengths = " ".join(pixels(length * unit) for length in self.dashes)
-            more += f";stroke-dasharray:{lengths}"
+            caps += f";stroke-dasharray:{lengths}"
         width = pixels(self.width * unit)
-        return f"fill:{fill};stroke:var(--{self.line});stroke-width:{width}{more}"
+        return f"fill:{fill};stroke:var(--{self.line});stroke-width:{width}{caps}"
 
 
 EDGE, BODY = 10.4, 8.6

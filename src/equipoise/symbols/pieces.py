@@ -38,7 +38,7 @@ from equipoise.symbols.shapes import (
 )
 from equipoise.symbols.tracks import Hold, PieceTrack, track_of
 
-BESIDE = 0.6
+SIDE_GAP = 0.6
 """How much farther than the machine the soil reaches, over its size: out of every picture."""
 AHEAD = np.radians(np.linspace(24, 84, 26))
 """Angles from the crank over which the arrow of its sense goes."""
@@ -86,13 +86,13 @@ def pieces(scene: Scene, traced: Collection[str] = (), field: bool = True) -> li
     """
     items = [*_soil(scene)] if field else []
     items += [*_carrier(scene), *_rows(scene), *_wheels(scene), *_stands(scene)]
-    items += [*_links(scene), *_drawn(scene, "springs")]
+    items += [*_links(scene), *_pieces(scene, "springs")]
     items += [*_springs(scene), *_cylinder(scene), Piece("pivots", tuple(_pivots(scene)))]
     items += [
         Piece("blocks", tuple(block()), Hold(guide.point, guide=guide.name), part=_part(guide))
         for guide in scene.guides
     ]
-    items += _drawn(scene, "riders")
+    items += _pieces(scene, "riders")
     items += [
         Piece("joints", tuple(_marks(scene, body, traced)), _with(body)) for body in scene.bodies
     ]
@@ -117,7 +117,7 @@ def _soil(scene: Scene) -> Iterator[Piece]:
     if scene.field is None:
         return
     low, high = scene.linkage_box
-    over = BESIDE * WIDE * scene.unit
+    over = SIDE_GAP * WIDE * scene.unit
     surface, depth = scene.field.surface, scene.field.depth
     ends = low.real - over, high.real + over
     earth = soil(*ends, surface, surface - depth - over, scene.unit)
@@ -132,7 +132,7 @@ def _carrier(scene: Scene) -> Iterator[Piece]:
     body = plate(np.array(carrier.corners), ("support-edge", "support"))
     yield Piece("support", tuple(body))
     below, above = [], []  # what stands on the ground, and what the support carries
-    seen, ring = set(), 0
+    placed, ring = set(), 0
     for name, item in carrier.items.items():
         kind = Mount if isinstance(item, Mount) else None
         if item.point is None:
@@ -141,9 +141,9 @@ def _carrier(scene: Scene) -> Iterator[Piece]:
                 ring += 1
             continue
         place, along = (complex(*z[:2]) for z in (item.point, unit_vector(item.direction)))
-        if (key := (kind, round(abs(place), 9), place, along)) in seen:
+        if (key := (kind, round(abs(place), 9), place, along)) in placed:
             continue
-        seen.add(key)
+        placed.add(key)
         if not isinstance(item, Mount):
             above += gauge(place, along)
             continue
@@ -164,12 +164,12 @@ def _carrier(scene: Scene) -> Iterator[Piece]:
 
 def _wheels(scene: Scene) -> Iterator[Piece]:
     bodies = {body.name: body for body in scene.bodies}
-    seen = set()
-    for item in sorted(scene.wheels, key=lambda one: -one.radius):
+    placed = set()
+    for item in sorted(scene.wheels, key=lambda wheel: -wheel.radius):
         key = (item.link, item.center, round(item.radius / scene.unit))
-        if item.curve is None and key in seen:
+        if item.curve is None and key in placed:
             continue
-        seen.add(key)
+        placed.add(key)
         if item.link == FRAME:
             still = complex(scene.places[item.center][0])
             yield Piece("wheels", (rim(still, item.radius, item.curve),), part=item.part)
@@ -178,10 +178,10 @@ def _wheels(scene: Scene) -> Iterator[Piece]:
         center = scene.local(body, scene.places[item.center])
         shapes = tuple(wheel(center, item.radius, item.curve))
         yield Piece("wheels", shapes, _with(body), part=item.part)
-    yield from _drawn(scene, "wheels")
+    yield from _pieces(scene, "wheels")
 
 
-def _drawn(scene: Scene, layer: str) -> Iterator[Piece]:
+def _pieces(scene: Scene, layer: str) -> Iterator[Piece]:
     """What moves with bodies and lies in a layer, of marks that lie in one or two."""
     bodies = {body.name: body for body in scene.bodies}
     for mark in scene.marks:
@@ -296,9 +296,9 @@ def _marks(scene: Scene, body: LinkOutline, traced: Collection[str]) -> Iterator
     others = scene.bodies[: scene.bodies.index(body)]
     hung = {point for ends in scene.stretched for point in ends}
     hung |= {point for drive in scene.drives for point in drive.between or ()}
-    drawn = {*scene.frame, *(point for other in others for point in other.points)}
+    points = {*scene.frame, *(point for other in others for point in other.points)}
     for point in body.points:
-        if point in drawn:
+        if point in points:
             continue
         place = scene.local(body, scene.places[point])
         if point in traced:

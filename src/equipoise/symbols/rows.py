@@ -48,7 +48,7 @@ class Rows:
         return tuple(part for part in self.others if part.places)
 
 
-ONE = Rows()
+SINGLE_ROW = Rows()
 """Of a machine that has no rows, or whose rows are not to be seen."""
 
 
@@ -56,13 +56,13 @@ def rows_of(motion: Motion, size: float) -> Rows:
     """All rows of a machine in motion, whose linkage has a size, m."""
     rows = motion.machine.rows
     if len(rows) < 2:
-        return ONE
+        return SINGLE_ROW
     alike: dict[tuple[int, ...], list[int]] = {}
     for number, row in enumerate(rows, 1):
         turned = round(float(np.angle(np.exp(1j * row.phase)) / CLOSE))
         place = (round(part / CLOSE) for part in row.offset)
         alike.setdefault((turned, *place), []).append(number)
-    drawn = tuple(alike.pop((0, 0, 0), ()))
+    in_place = tuple(alike.pop((0, 0, 0), ()))
     others = []
     for numbers in alike.values():
         row = rows[numbers[0] - 1]
@@ -74,4 +74,4 @@ def rows_of(motion: Motion, size: float) -> Rows:
         places = {name: point.place + offset for name, point in there.points.items()}
         angles = {name: link.angle for name, link in there.links.items()}
         others.append(Ghost(tuple(numbers), phase, places, angles))
-    return Rows(drawn, tuple(others))
+    return Rows(in_place, tuple(others))

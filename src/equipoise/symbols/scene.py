@@ -20,7 +20,7 @@ from equipoise.symbols.carrier import MOUNT, Carrier, SupportSwing
 from equipoise.symbols.constraints import constraint_marks
 from equipoise.symbols.drives import DriveSign
 from equipoise.symbols.part_signs import Surroundings, in_order, signs_of
-from equipoise.symbols.rows import ONE, Rows, rows_of
+from equipoise.symbols.rows import SINGLE_ROW, Rows, rows_of
 from equipoise.symbols.shapes import Array, BodyMark, hull
 from equipoise.symbols.wheels import Wheel, wheels_of
 
@@ -126,7 +126,7 @@ class Scene:
     carrier: Carrier | None = None
     swing: SupportSwing | None = None
     room: tuple[complex, ...] = ()
-    rows: Rows = ONE
+    rows: Rows = SINGLE_ROW
     marks: tuple[BodyMark, ...] = ()
 
     @classmethod
@@ -172,7 +172,7 @@ class Scene:
         """The scene of a motion with all rows of its machine; the same where it has one."""
         low, high = self.linkage_box
         rows = rows_of(motion, abs(high - low))
-        return self if rows is ONE else replace(self, rows=rows)
+        return self if rows is SINGLE_ROW else replace(self, rows=rows)
 
     @property
     def drive(self) -> DriveSign:
@@ -192,9 +192,9 @@ class Scene:
     @property
     def standing(self) -> tuple[str, ...]:
         """Points of the frame at which something is held."""
-        held = {point for ends in self.stretched for point in ends} | self.pins
-        held |= {point for drive in self.drives for point in drive.between or ()}
-        return tuple(name for name in self.frame if name in held)
+        fixed_points = {point for ends in self.stretched for point in ends} | self.pins
+        fixed_points |= {point for drive in self.drives for point in drive.between or ()}
+        return tuple(name for name in self.frame if name in fixed_points)
 
     def ground(self, point: str) -> complex:
         """Way to what holds a point of the frame: down, or up where all that it holds hangs."""

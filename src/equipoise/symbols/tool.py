@@ -106,7 +106,7 @@ class ToolScene:
         shaft, shapes.  The shaft lies between the layers ``below`` and ``above``.
         """
         kinds = (
-            ("below", _held, False),
+            ("below", _restraint, False),
             ("below", _absorber, True),
             ("above", _body, True),
             ("above", _hands, False),
@@ -168,7 +168,7 @@ def _body(seat: SeatSign) -> Iterator[Shape]:
         yield circle("pin", 0, grown=3.6)
 
 
-def _held(seat: SeatSign) -> Iterator[Shape]:
+def _restraint(seat: SeatSign) -> Iterator[Shape]:
     """The belt, and springs and dampers to the ground."""
     if seat.harness:
         loop = 66j - 14j * np.exp(1j * np.linspace(0.15, 2, 9) * np.pi)

@@ -196,10 +196,10 @@ def _shared(body: SupportBody, load: Array) -> dict[str, float]:
             stiffness += k * np.outer(rows[n], rows[n])
         settled = lstsq(stiffness, left, rcond=1e-12)[0]
         floats = {n: float(-k * (rows[n] @ settled)) for n, k in rates.items()}
-        kept = {n: k for n, k in rates.items() if not (mounts[n].one_sided and floats[n] < 0)}
-        if kept.keys() == touching.keys():
+        engaged = {n: k for n, k in rates.items() if not (mounts[n].one_sided and floats[n] < 0)}
+        if engaged.keys() == touching.keys():
             break
-        touching = kept
+        touching = engaged
     over = left - stiffness @ settled
     if known:  # what they leave over along them, the support settles by; the linear model notes it
         along = np.array([rows[name] for name in known]).T

@@ -241,15 +241,15 @@ def _along(
 ) -> Answers:
     """Response at every speed, one after the other; None where no steady state was found."""
     answers: Answers = []
-    near = None
+    guess = None
     for speed in speeds:
         try:
-            exact_solution = solve_exact(machine, speed, drive, near, patient=False)
+            exact_solution = solve_exact(machine, speed, drive, guess, patient=False)
         except ResponseError:
-            near = None
+            guess = None
             answers.append(None)
         else:
-            near = exact_solution.found.orbit.at
+            guess = exact_solution.found.orbit.at
             answers.append(exact_solution.response(brief))
         progress(len(answers))
     return answers

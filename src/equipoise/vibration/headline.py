@@ -137,7 +137,7 @@ def _loud(sweep: Sweep) -> Iterator[str]:
     """Loud resonances, the loudest first."""
     loud = sorted(
         (resonance for resonance in sweep.resonances if resonance.is_loud),
-        key=lambda one: -one.share,
+        key=lambda resonance: -resonance.share,
     )
     for item in loud[:MOST_LOUD]:
         values = {

@@ -154,10 +154,10 @@ def _loads(motion: Motion, shift: complex) -> tuple[Array, Array, Array]:
     about = np.zeros(len(motion.crank_angle))
     total = about + 0j
     loads = demands_of(motion, outer_loads(motion))
-    for link, (held, moment) in loads.items():
+    for link, (force, moment) in loads.items():
         anchor = motion.state[p(motion.linkage.anchors[link])[0]]
-        total = total - held
-        about = about - moment - cross(anchor + shift, held)
+        total = total - force
+        about = about - moment - cross(anchor + shift, force)
     every = (loads, inner_demands(motion), spring_demands(motion, rated=False))
     turning = sum(generalized_force(motion, demands) for demands in every)
     return total, about, np.asarray(turning)

@@ -86,7 +86,7 @@ def nearest_loud(resonances: Iterable[Resonance], speed: float) -> Resonance:
     """
     every = tuple(resonances)
     loud = [item for item in every if item.is_loud] or every
-    return min(loud, key=lambda one: abs(abs(one.speed / speed) - 1))
+    return min(loud, key=lambda resonance: abs(abs(resonance.speed / speed) - 1))
 
 
 def resonance_note(resonances: Iterable[Resonance], speed: float) -> Note:
@@ -173,14 +173,16 @@ def resonances(linear: Linear, slowest: float, fastest: float) -> list[Resonance
     )
 
 
-def _loudness(linear: Linear, found: list[tuple[float, float, int, Mode]]) -> list[float]:
+def _loudness(linear: Linear, resonances: list[tuple[float, float, int, Mode]]) -> list[float]:
     """Amplitude of each resonance at the gauge where it is loudest beside the others there."""
     rows = np.array([linear.body.row(g)[linear.body.free] for g in gauges_of(linear.body).values()])
-    amplitudes = np.zeros((len(found), len(rows)))
-    speeds, orders = np.array([(speed, order) for speed, order, _, _ in found]).reshape(-1, 2).T
+    amplitudes = np.zeros((len(resonances), len(rows)))
+    speeds, orders = (
+        np.array([(speed, order) for speed, order, _, _ in resonances]).reshape(-1, 2).T
+    )
     places = np.rint(orders * linear.excitation.motion.turns).astype(int)
     wrenches = linear.excitation.at_orders(speeds, places)[linear.body.free].T
-    for k, (wrench, (_, _, _, mode)) in enumerate(zip(wrenches, found, strict=True)):
+    for k, (wrench, (_, _, _, mode)) in enumerate(zip(wrenches, resonances, strict=True)):
         force = abs(mode.shape @ wrench)
         inertia = abs(mode.shape @ linear.mass @ mode.shape)
         damping = max(abs(mode.damping_ratio), LEAST_DAMPING)

@@ -148,9 +148,9 @@ SIGNAL: Declarations = {
 """Figures of one signal over a period, and its amplitudes by order."""
 
 
-def signal_output(meaning: str, dimension: Dimension, **more: Any) -> ResultOutput:
+def signal_output(meaning: str, dimension: Dimension, **options: Any) -> ResultOutput:
     """A signal over a period as an output: figures in JSON, samples in CSV."""
-    return ResultOutput(meaning, dimension, of=SIGNAL, table="signal", **more)
+    return ResultOutput(meaning, dimension, of=SIGNAL, table="signal", **options)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

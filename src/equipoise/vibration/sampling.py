@@ -17,7 +17,7 @@ from equipoise.vibration.response import Response
 Answers = dict[float, Response | None]
 """Speed of the crank, rad/s -> the response; None where there is none."""
 
-NEAR = (-8.0, -4.0, -2.0, -1.0, -0.5, -0.2, 0.0, 0.2, 0.5, 1.0, 2.0, 4.0, 8.0)
+OFFSETS = (-8.0, -4.0, -2.0, -1.0, -0.5, -0.2, 0.0, 0.2, 0.5, 1.0, 2.0, 4.0, 8.0)
 """Speeds about a resonance, in damping ratios of its mode: a peak is as wide as two."""
 ACROSS, UP = 480.0, 160.0
 """Points: size of a picture with a curve in it, whose values have a log axis."""
@@ -40,7 +40,7 @@ def about(
     grid = [np.linspace(slowest, fastest, count), np.array([own])]
     for resonance in met:
         damping = np.clip(linear.modes[resonance.mode - 1].damping_ratio, 1e-5, 0.05)
-        grid.append(resonance.speed * (1 + np.array(NEAR) * damping))
+        grid.append(resonance.speed * (1 + np.array(OFFSETS) * damping))
     low, high = sorted((slowest, fastest))
     speeds = np.concatenate(grid)
     inside = np.unique(speeds[(speeds >= low) & (speeds <= high)])

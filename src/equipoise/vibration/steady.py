@@ -114,9 +114,9 @@ def _mesh(intervals: int, period: float, jumps: Array) -> Array:
     points = np.linspace(0.0, period, intervals + 1)
     inside = jumps[(jumps > SHORTEST) & (jumps < period - SHORTEST)]
     apart = np.min(np.abs(np.subtract.outer(points, inside)), axis=1, initial=np.inf)
-    kept = apart > SHORTEST * period / intervals
-    kept[[0, -1]] = True
-    return np.unique(np.concatenate([points[kept], inside]))
+    distinct = apart > SHORTEST * period / intervals
+    distinct[[0, -1]] = True
+    return np.unique(np.concatenate([points[distinct], inside]))
 
 
 def _first(tried: Iterable[Orbit | None]) -> Orbit:

@@ -327,7 +327,7 @@ def _gauge_curve(name: str, responses: list[Response], there: Array) -> GaugeCur
     gauges = [answer.gauges[name] for answer in responses]
     curves = {}
     for quantity, prefix in PREFIXES.items():
-        signal = _together([getattr(gauge, quantity) for gauge in gauges])
+        signal = _joined([getattr(gauge, quantity) for gauge in gauges])
         curves[f"{prefix}peak_to_peak"] = _spread(there, signal.peak_to_peak)
         curves[f"{prefix}rms"] = _spread(there, signal.vibration_rms)
         if quantity == "displacement":
@@ -337,7 +337,7 @@ def _gauge_curve(name: str, responses: list[Response], there: Array) -> GaugeCur
 
 def _mount_curve(name: str, responses: list[Response], there: Array) -> MountCurve:
     mounts = [answer.mounts[name] for answer in responses]
-    force = _together([mount.force for mount in mounts])
+    force = _joined([mount.force for mount in mounts])
     smallest = np.maximum(force.extreme(-1)[0], [mount.least for mount in mounts])
     return MountCurve(
         _spread(there, force.extreme(1)[0] - smallest),
@@ -348,7 +348,7 @@ def _mount_curve(name: str, responses: list[Response], there: Array) -> MountCur
     )
 
 
-def _together(signals: list[Periodic]) -> Periodic:
+def _joined(signals: list[Periodic]) -> Periodic:
     """Signals as one, amplitudes (signals, K + 1)."""
     count = max(len(signal.amplitudes) for signal in signals)
     padded = [np.pad(signal.amplitudes, (0, count - len(signal.amplitudes))) for signal in signals]

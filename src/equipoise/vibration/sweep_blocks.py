@@ -121,7 +121,7 @@ def free_blocks(free: FreeVibration) -> Iterator[Block]:
 def _reference_told(free: FreeVibration) -> str:
     """About which point matrices and shapes are."""
     shown = display("length", [*free.reference], "mm")
-    place = coordinates(shown.text(part, NEAR) for part in free.reference)
+    place = coordinates(shown.text(part, AT_RESONANCE) for part in free.reference)
     support = free.linear.body.support
     template = (
         to_say("Displacements, masses and stiffnesses are those of the support's pivot, ({place}).")
@@ -134,7 +134,7 @@ def _reference_told(free: FreeVibration) -> str:
     return say(template, place=shown.with_unit(place))
 
 
-NEAR = 1e-3
+AT_RESONANCE = 1e-3
 """m beside which a coordinate that is smaller than atoms is 0."""
 
 

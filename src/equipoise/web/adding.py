@@ -23,7 +23,7 @@ from equipoise.web.sketch import Sketch
 
 USUAL_SPEED = 2 * pi
 """rad/s, of a drive that is chosen."""
-TOGETHER = 1e-9
+COINCIDENT = 1e-9
 """Distance over the size of the machine below which two places are one."""
 
 
@@ -112,7 +112,7 @@ def with_link(sketch: Sketch, start: Spot, end: Spot) -> Sketch:
     """
     sketch, first, begin = put(sketch, start)
     sketch, second, there = put(sketch, end, [first])
-    if first == second or abs(there - begin) <= TOGETHER * sketch.size:
+    if first == second or abs(there - begin) <= COINCIDENT * sketch.size:
         raise UsageError(
             Note("both ends of the link lie at one place; choose another place for one")
         )
@@ -136,7 +136,7 @@ def with_slider(
     second = toward if toward.point else replace(toward, on=on)
     sketch, through, other = put(sketch, second, [point])
     _check_line(sketch, point, on, through)
-    if abs(other - place) <= TOGETHER * sketch.size:
+    if abs(other - place) <= COINCIDENT * sketch.size:
         raise UsageError(
             Note("the line of a slider goes through two places; choose another second one")
         )

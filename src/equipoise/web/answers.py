@@ -7,7 +7,7 @@ from typing import Protocol
 
 from equipoise.errors import EquipoiseError
 from equipoise.web.messages import Message, message_of
-from equipoise.web.replies import Reply, refused, told
+from equipoise.web.replies import Reply, completed, refused
 
 
 class Counterpart(Protocol):
@@ -40,4 +40,4 @@ def answers(to: Counterpart, content: object) -> Iterator[Reply]:
         return
     if to.has_more:
         yield from to.tell_more()
-    yield told(message.seq)
+    yield completed(message.seq)

@@ -40,16 +40,16 @@ def _arrows(analysis: Analysis, point: str) -> Iterator[tuple[Values, Array]]:
         }
         for kind, (dimension, values) in moved.items():
             label = analysis.outputs[f"points.{point}.{kind}"].label()
-            yield _told(kind, f"arrow.{kind}", label, dimension), values
+            yield _quantity(kind, f"arrow.{kind}", label, dimension), values
     joints = {} if analysis.solved is None else analysis.solved.joints
     for name in _joints_at(analysis, point, joints):
         joint = joints[name]
         label = analysis.outputs[f"joints.{name}"].label()
         label = say("{force}, on {body}", force=label, body=body_named(joint.on))
-        yield _told("force", f"arrow.force.{name}", label, "force"), joint.value
+        yield _quantity("force", f"arrow.force.{name}", label, "force"), joint.value
 
 
-def _told(kind: str, array: str, label: str, dimension: Dimension) -> Values:
+def _quantity(kind: str, array: str, label: str, dimension: Dimension) -> Values:
     unit = display(dimension)
     return {"kind": kind, "array": array, "label": label, "unit": unit.name, "factor": unit.factor}
 

@@ -11,7 +11,7 @@ from threading import Lock
 from types import MappingProxyType
 from typing import Any, Protocol
 
-from equipoise.balancing.advice import advise, beside
+from equipoise.balancing.advice import advice_against, advise
 from equipoise.balancing.balanced import Balanced
 from equipoise.balancing.objectives import unit_of as si_unit
 from equipoise.balancing.optimisation import balance
@@ -63,7 +63,7 @@ def balanced(base: Design, hold: bool = False) -> Balanced:
     """
 
     def solve(_: Machine, plan: Balance) -> Balanced:
-        plan = _held(base.machine, plan) if hold else plan
+        plan = _with_gauge_limits(base.machine, plan) if hold else plan
         free = _replaced(base, plan)
         result = balance(_without_shafts(base.without(free)).machine, plan)
         if not (free or base.shafts):
@@ -86,8 +86,8 @@ def _without_shafts(base: Design) -> Design:
         table: tuple(item for item in getattr(own, table) if gone.isdisjoint(item.bodies))
         for table in coupling_kinds(Machine)
     }
-    held = {point for link in links.values() for point in link.points}
-    pins = {point for name in gone for point in own.links[name].points} - held
+    used_points = {point for link in links.values() for point in link.points}
+    pins = {point for name in gone for point in own.links[name].points} - used_points
     frame = {point: place for point, place in own.frame.items() if point not in pins}
     if not gone:
         return base
@@ -98,7 +98,7 @@ def _advised(base: Design) -> Balanced:
     """As `advise` does it, in the place of all counterweights that there are."""
     weights = _weighted(base)
     result = advise(base.without(weights).machine)
-    return beside(result, base.machine.with_balance(None)) if weights else result
+    return advice_against(result, base.machine.with_balance(None)) if weights else result
 
 
 def _weighted(base: Design) -> list[str]:
@@ -106,7 +106,7 @@ def _weighted(base: Design) -> list[str]:
     return [name for name, weight in base.counterweights.items() if weight.mass]
 
 
-def _held(machine: Machine, plan: Balance) -> Balance:
+def _with_gauge_limits(machine: Machine, plan: Balance) -> Balance:
     """A plan by which no gauge reads more, RMS about the mean at the machine's own speed."""
     if machine.support is None or plan.phases is not None:
         return plan
@@ -150,7 +150,7 @@ def nothing_gained(balanced: Balanced) -> str | None:
     return f"nothing to gain: balancing would not make {aims_told(balanced)} smaller by {share}"
 
 
-KEPT = 9
+DIGITS = 9
 """Digits of a place: a program finds -1e-12 m beside 40 mm for 0."""
 
 
@@ -216,7 +216,7 @@ def _clean(own: Link, link: Link) -> Link:
 def _rounded(body: Body) -> Body:
     if not isinstance(body.at, tuple) or body.mass is None:
         return body
-    x, y = clean_place(complex(*body.at), digits=KEPT)
+    x, y = clean_place(complex(*body.at), digits=DIGITS)
     at = clean(x, "length"), clean(y, "length")
     return replace(body, at=at, mass=clean(body.mass, "mass"))
 

@@ -23,7 +23,7 @@ from equipoise.mechanism.parts.cams import RIDES, Cam
 from equipoise.mechanism.parts.laws import AngleLaw, AngleSegment, LengthLaw, LengthSegment
 from equipoise.mechanism.parts.machine import FRAME, Slider
 from equipoise.quantities import clean
-from equipoise.web.adding import TOGETHER, check_body, check_link, put, the
+from equipoise.web.adding import COINCIDENT, check_body, check_link, put, the
 from equipoise.web.messages import Message, Spot
 from equipoise.web.sketch import Sketch
 
@@ -127,7 +127,7 @@ def _seated(sketch: Sketch, cam: Cam, pin: str, joint: Slider | str) -> Cam:
     if cam.rides == "flat":
         normal = _square(sketch, cam, joint, arm)
         far = float(dot(normal, arm))
-    if far <= TOGETHER * sketch.size:
+    if far <= COINCIDENT * sketch.size:
         note = Note(
             "{point} lies where the cam of {link} turns; set it apart, by the cam's radius",
             point=cam.point,
@@ -177,18 +177,18 @@ def _cut(sketch: Sketch, cam: Cam, pin: str, joint: Slider | str) -> Sketch:
 def _moving(sketch: Sketch, cam: Cam, pin: str, joint: Slider | str) -> Iterator[Cam]:
     """The cam with rise, dwell, return and rest, by less and less."""
     turned = LinkPlacement(0j, sketch.pose(cam.driver).angle - sketch.pose(cam.carrier).angle)
-    drawn = round(degrees(phase(turned.turn)) - RESTING) % 360
+    start_angle = round(degrees(phase(turned.turn)) - RESTING) % 360
     far, rider = abs(sketch.places[cam.point] - sketch.places[pin]), sketch.places[cam.point]
     for share in LIFTS:
         if isinstance(joint, Slider):
             lift = _tidy(share * far)
             lifted = [LengthSegment(_degrees(over), to) for over, to in _parts(lift)]
-            yield replace(cam, lift=LengthLaw(segments=(*lifted,), phase=_degrees(drawn)))
+            yield replace(cam, lift=LengthLaw(segments=(*lifted,), phase=_degrees(start_angle)))
         else:
             lever = abs(rider - sketch.places[joint])
             swing = _degrees(_tidy(degrees(share * far / lever)))
             swung = [AngleSegment(_degrees(over), to) for over, to in _parts(swing)]
-            yield replace(cam, swing=AngleLaw(segments=(*swung,), phase=_degrees(drawn)))
+            yield replace(cam, swing=AngleLaw(segments=(*swung,), phase=_degrees(start_angle)))
 
 
 def _parts(top: float) -> Iterator[tuple[float, float]]:

@@ -99,15 +99,15 @@ def _in_a_cycle(document: Document, entry: Entry) -> Document:
         start = law.get("start") or law.get("between", [_none_of(segments[0]["to"])])[0]
         plain = {key: value for key, value in law.items() if key not in OTHERWISE}
         document = document.put(way.parent, {**plain, "start": start})
-        beside, values = 1, {"to": start}
+        neighbor, values = 1, {"to": start}
     else:
         after = int(number) + (entry.values is not None)
-        beside = after if after < len(segments) else int(number) - 1
-        left, values = left + overs[beside], segments[beside]
+        neighbor = after if after < len(segments) else int(number) - 1
+        left, values = left + overs[neighbor], segments[neighbor]
     if left <= 0:
         return document
     over = format_exact(clean(left, "angle"), "angle")
-    return document.put(way / beside, {**values, "over": over})
+    return document.put(way / neighbor, {**values, "over": over})
 
 
 def _none_of(text: str) -> str:

@@ -20,7 +20,7 @@ from equipoise.mechanism.parts.couplings import Coupling
 from equipoise.mechanism.parts.machine import FRAME, Gear
 from equipoise.mechanism.parts.racks import Rack
 from equipoise.quantities import clean
-from equipoise.web.adding import TOGETHER, check_body, the
+from equipoise.web.adding import COINCIDENT, check_body, the
 from equipoise.web.messages import Message
 from equipoise.web.sketch import Sketch
 
@@ -67,7 +67,7 @@ def with_rack(sketch: Sketch, driver: str, driven: str) -> Sketch:
                 continue
             axis = sketch.places[_pin(sketch, pinion, slider.on)] - sketch.places[slider.point]
             off = axis / exp(1j * (slider.direction + sketch.pose(slider.on).angle))
-            if abs(off.imag) <= TOGETHER * sketch.size:
+            if abs(off.imag) <= COINCIDENT * sketch.size:
                 note = Note(
                     "{pinion} turns about a point of the line of {rack}; set it beside the line, "
                     "by the radius of the pinion",
@@ -108,15 +108,15 @@ def _pin(sketch: Sketch, body: str, carrier: str) -> str:
     return _shared(sketch, body, carrier)[0]
 
 
-def _carrier(sketch: Sketch, driver: str, driven: str, told: str | None) -> str:
+def _carrier(sketch: Sketch, driver: str, driven: str, given: str | None) -> str:
     """The body about one point of which each of both turns; the frame before others."""
-    for body in (driver, driven, *([told] if told else ())):
+    for body in (driver, driven, *([given] if given else ())):
         check_body(sketch, body)
-    for carrier in [told] if told else (FRAME, *sketch.links):
+    for carrier in [given] if given else (FRAME, *sketch.links):
         wheels = [body for body in (driver, driven) if body != carrier]
         if [len(_shared(sketch, body, carrier)) for body in wheels] == [1, 1]:
             return carrier
-    carrier = told or FRAME
+    carrier = given or FRAME
     body = next(
         item for item in (driver, driven)
         if item == carrier or len(_shared(sketch, item, carrier)) != 1

@@ -37,7 +37,7 @@ OF_STORE = ("ready", "study", "design")
 
 
 @dataclass
-class Desk:
+class PageBackend:
     """The counterpart of a page.
 
     session : of its machine.  tool : that is open instead, if any.
@@ -181,7 +181,7 @@ class Desk:
         return inside
 
 
-def begun(file: str | None) -> Callable[[], Desk]:
+def begun(file: str | None) -> Callable[[], PageBackend]:
     """Makes the counterparts of pages that begin with a file, or with nothing.
 
     Raises
@@ -194,29 +194,29 @@ def begun(file: str | None) -> Callable[[], Desk]:
     there = file is not None and os.path.exists(file)
     folder = Path(os.path.abspath(file)).parent if there and file else Path.cwd()
     if file is None:
-        return lambda: Desk(folder=folder)
+        return lambda: PageBackend(folder=folder)
     if is_store(file):
         store = StoreDesk.load(file)
-        return lambda: Desk(Session(), store=store, studied=True, folder=folder)
+        return lambda: PageBackend(Session(), store=store, studied=True, folder=folder)
     if kind_of_text(opened(file).text) == "tool":
         tool = tool_of_file(file)
         _ = tool.first.figures.whole
-        kept = on_disk(file, tool.first.tool)
+        file_on_disk = on_disk(file, tool.first.tool)
 
-        def begin_tool() -> Desk:
-            own = kept and kept.now()
+        def begin_tool() -> PageBackend:
+            own = file_on_disk and file_on_disk.now()
             again = (
                 tool.again if own is None or own.text == tool.template.text else tool_of_file(file)
             )
             again.disk = own
-            return Desk(Session(disk=own), again, folder=folder)
+            return PageBackend(Session(disk=own), again, folder=folder)
 
         return begin_tool
     first = Session()
     first.open(opened_file(file))
     disk = on_disk(file, first.shown.design.machine)
 
-    def begin() -> Desk:
+    def begin() -> PageBackend:
         own = disk and disk.now()
         session = Session(disk=own)
         result = first.shown
@@ -224,6 +224,6 @@ def begun(file: str | None) -> Callable[[], Desk]:
             assert isinstance(own.model, Machine)
             result = solved(Design(result.design.name, own.model))
         session.open(result.design, result)
-        return Desk(session, folder=folder)
+        return PageBackend(session, folder=folder)
 
     return begin

@@ -15,7 +15,7 @@ from equipoise.i18n import Note, to_say
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.schema.documents import dumps, load
 from equipoise.schema.files import FileError, printable, read_text, write
-from equipoise.schema.models import Beside, parts_of
+from equipoise.schema.models import AdjacentFiles, parts_of
 from equipoise.web.design import Design
 from equipoise.web.edits import solved
 from equipoise.web.replies import Reply
@@ -117,10 +117,10 @@ class Disk:
         """Nothing but the model file is written: its tables have to lie beside it."""
         for part in parts_of(model):
             try:
-                beside = Beside(os.path.dirname(self.path)).read(part.sort, part.file)
+                on_disk = AdjacentFiles(os.path.dirname(self.path)).read(part.sort, part.file)
             except EquipoiseError:
-                beside = None
-            if beside != part.value:
+                on_disk = None
+            if on_disk != part.value:
                 raise UsageError(
                     Note(
                         "{name}: the table {table!r} does not lie beside it as it is here; put it "

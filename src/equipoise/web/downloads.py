@@ -49,29 +49,29 @@ def downloaded(
     kind = message.text("kind")
     if kind not in (MODEL, *FILES, PLAYED):
         raise UsageError(unknown(kind, (MODEL, *FILES, PLAYED), "download"))
-    more: dict[str, Any] = {}
+    options: dict[str, Any] = {}
     stem = FORBIDDEN.sub("-", computed.design.name.removesuffix(".toml")) or "machine"
     if kind == PLAYED:
         language = message.text("language", "en")
         end, data = "-played.html", played(computed, replies(language), language).encode()
     elif kind == MODEL:
-        text, more["files"] = taken_along(computed.design.machine, f"{stem}.toml")
+        text, options["files"] = taken_along(computed.design.machine, f"{stem}.toml")
         end, data = ".toml", text.encode()
     else:
         end, data = FILES[kind](computed, message, stem)
     name = f"{stem}{end}"
-    return {"name": name, "mime": MIMES[name.rpartition(".")[2]], **more}, data
+    return {"name": name, "mime": MIMES[name.rpartition(".")[2]], **options}, data
 
 
-Made = tuple[str, bytes]
+NamedFile = tuple[str, bytes]
 """What follows the name of the machine in that of the file, and its bytes."""
 
 
-def _csv(computed: Computed, message: Message, stem: str) -> Made:
+def _csv(computed: Computed, message: Message, stem: str) -> NamedFile:
     return ".csv", to_csv(computed.analysis).encode()
 
 
-def _report(computed: Computed, message: Message, stem: str) -> Made:
+def _report(computed: Computed, message: Message, stem: str) -> NamedFile:
     from equipoise.present.composition import report_page
     from equipoise.present.findings import Findings
 
@@ -85,22 +85,22 @@ def _report(computed: Computed, message: Message, stem: str) -> Made:
     return "-report.html", text.encode()
 
 
-def _film(computed: Computed, message: Message, stem: str) -> Made:
+def _film(computed: Computed, message: Message, stem: str) -> NamedFile:
     return ".gif", film_of(computed)
 
 
-def _drawing(computed: Computed, message: Message, stem: str) -> Made:
+def _drawing(computed: Computed, message: Message, stem: str) -> NamedFile:
     return _rendered(linkage_at(computed, message.whole("at", 0)), "drawing", message)
 
 
-def _chart(computed: Computed, message: Message, stem: str) -> Made:
+def _chart(computed: Computed, message: Message, stem: str) -> NamedFile:
     name, choice = message.text("chart"), message.text("choice", "")
     return _rendered(
         chart_of(computed, name, choice), choice if name == "output" else name, message
     )
 
 
-def _rendered(picture: Any, name: str, message: Message) -> Made:
+def _rendered(picture: Any, name: str, message: Message) -> NamedFile:
     from equipoise.figures import render
 
     kind = message.text("format", "svg")
@@ -111,18 +111,18 @@ def _rendered(picture: Any, name: str, message: Message) -> Made:
     return f"-{FORBIDDEN.sub('-', name.replace('.', '-'))}.{kind}", data
 
 
-def _interactive(computed: Computed, message: Message, stem: str) -> Made:
+def _interactive(computed: Computed, message: Message, stem: str) -> NamedFile:
     from equipoise.exchange.formats import Job
-    from equipoise.web.interactive import made
+    from equipoise.web.interactive import export_bytes
 
     language = message.text("language", "en")
     if language not in LANGUAGES:
         raise UsageError(unknown(language, LANGUAGES, "language of pages"))
     with speaking(language):
-        return "-interactive.html", made(Job(computed.analysis.machine)).encode()
+        return "-interactive.html", export_bytes(Job(computed.analysis.machine)).encode()
 
 
-FILES: dict[str, Callable[[Computed, Message, str], Made]] = {
+FILES: dict[str, Callable[[Computed, Message, str], NamedFile]] = {
     "csv": _csv,
     "report": _report,
     "drawing": _drawing,

@@ -36,9 +36,9 @@ def stage_of(scene: Scene, handles: Sequence[str], cams: Sequence[Values] = ()) 
     cams : see `cams_told`.
     """
     low, high = scene.box
-    drawn = pieces(scene)
-    shapes = iter(shapes_of([shape for piece in drawn for shape in piece.shapes]))
-    roles = sorted({shape.role for piece in drawn for shape in piece.shapes})
+    symbols = pieces(scene)
+    shapes = iter(shapes_of([shape for piece in symbols for shape in piece.shapes]))
+    roles = sorted({shape.role for piece in symbols for shape in piece.shapes})
     return {
         "frame": list(scene.frame),
         "standing": list(scene.standing),
@@ -50,7 +50,7 @@ def stage_of(scene: Scene, handles: Sequence[str], cams: Sequence[Values] = ()) 
         "cams": list(cams),
         "signs": [
             {**_sign(scene, piece), "shapes": [next(shapes) for _ in piece.shapes]}
-            for piece in drawn
+            for piece in symbols
         ],
         "looks": {role: LOOKS[role].css(UNIT) for role in roles},
         "reference": _reference(scene),

@@ -29,7 +29,7 @@ from equipoise.web.drawing import moves_of, stage_of
 from equipoise.web.edits import Computed, edited, settled, solved
 from equipoise.web.fields import Field, Scale
 from equipoise.web.lacking import lacking
-from equipoise.web.measures import Measure, held, measures_of
+from equipoise.web.measures import Measure, constrained_place, measures_of
 from equipoise.web.messages import Change, Entry, Setting
 from equipoise.web.moving import moved, with_constraints_met
 from equipoise.web.sketch import Sketch
@@ -191,7 +191,7 @@ def redrawn(sketch: Sketch, changes: list[Change]) -> Sketch:
         elif change.of_mass:
             raise UsageError(Note("a centre of mass can be dragged once the machine is finished"))
         else:
-            sketch = moved(sketch, change.name, held(sketch.places, change))
+            sketch = moved(sketch, change.name, constrained_place(sketch.places, change))
     return with_constraints_met(before, sketch)
 
 

@@ -28,13 +28,13 @@ from equipoise.symbols.scene import Scene
 from equipoise.web.design import DRAGGED, Design
 from equipoise.web.fields import fields_of
 from equipoise.web.following import Goals, extent_of, following
-from equipoise.web.measures import held
+from equipoise.web.measures import constrained_place
 from equipoise.web.messages import Change, Drag, Setting
 
 MOST_SAMPLES = 2880
 """Crank angles in a cycle of many turns, which has fewer in each."""
 OTHER_SIDE = {item: other for pair in ALTERNATIVES for item, other in (pair, pair[::-1])}
-HELD = to_say(
+STROKE_LIMITED = to_say(
     "the position of {name} is limited by the stroke of the drive; change the stroke, or other "
     "points"
 )
@@ -131,7 +131,7 @@ def edited(base: Computed, changes: Iterable[Change], previous: Computed | None 
                 return agreeing
     previous = previous or base
     try:
-        return _told(_assembled(design, goals, previous, base.swings is not None), goals)
+        return _with_limit_note(_assembled(design, goals, previous, base.swings is not None), goals)
     except (MobilityError, ModelError):
         if (agreeing := _agreeing(base, design, goals, previous)) is None:
             raise
@@ -164,7 +164,9 @@ def _moved(base: Computed, design: Design, change: Drag) -> tuple[Design, comple
     if change.name not in movable(machine):
         raise UsageError(unknown(change.name, movable(machine), "point that can be moved"))
     _check_sample(motion, change)
-    to = held({name: point.place[change.at] for name, point in motion.points.items()}, change)
+    to = constrained_place(
+        {name: point.place[change.at] for name, point in motion.points.items()}, change
+    )
     frame, links = dict(machine.frame), dict(machine.links)
     if change.name in frame:
         frame[change.name] = clean_place(to, extent_of(machine), DRAGGED)
@@ -294,15 +296,15 @@ def _reaches(computed: Computed, goals: Goals) -> bool:
 
 def _missed(computed: Computed, goals: Goals) -> list[str]:
     """Points that are not where they were put."""
-    points, near = computed.motion.points, THERE * extent_of(computed.design.own)
+    points, tolerance = computed.motion.points, THERE * extent_of(computed.design.own)
     return [
         name
         for name, (at, to) in goals.items()
-        if at >= len(points[name].place) or abs(points[name].place[at] - to) > near
+        if at >= len(points[name].place) or abs(points[name].place[at] - to) > tolerance
     ]
 
 
-def _told(computed: Computed, goals: Goals) -> Computed:
+def _with_limit_note(computed: Computed, goals: Goals) -> Computed:
     """The same, with why the end of a cylinder, or a driven block, is not where it was put."""
     machine = computed.design.own
     points = {slider.name: slider.point for slider in machine.sliders}
@@ -311,5 +313,5 @@ def _told(computed: Computed, goals: Goals) -> Computed:
         for name in {*(drive.between or ()), points.get(drive.slider)} & {
             *_missed(computed, goals)
         }:
-            return replace(computed, held=Note(HELD, name=name))
+            return replace(computed, held=Note(STROKE_LIMITED, name=name))
     return computed

@@ -43,10 +43,10 @@ def signals_of(analysis: Analysis) -> Signals:
         if told_signal.group == "forces" and not told_signal.part and name in analysis.outputs
     }
     signals |= {f"joint.{name}": joint.size for name, joint in solved.joints.items()}
-    return signals | _together(analysis)
+    return signals | _of_all_rows(analysis)
 
 
-def _together(analysis: Analysis) -> Signals:
+def _of_all_rows(analysis: Analysis) -> Signals:
     """The same of all rows together, where there are several and they turn."""
     if analysis.motion.speed == 0:
         return {}
@@ -221,7 +221,7 @@ def charts_of(analysis: Analysis, signals: Signals) -> list[Values]:
     """Charts of what shakes the frame and drives the machine, by crank angle and by order."""
     if not signals:
         return []
-    there = _told(signals)
+    there = _listed_names(signals)
     charts = [
         chart(name, [_choice(analysis, signals, item) for item in (f"{ROWS}{name}", name)])
         for name in dict.fromkeys(name.removeprefix(ROWS) for name in there)
@@ -279,7 +279,7 @@ def _choice(analysis: Analysis, signals: Signals, name: str) -> Values | None:
     }
 
 
-def _told(signals: Signals) -> list[str]:
+def _listed_names(signals: Signals) -> list[str]:
     """Names of signals of frame and drive, those of all rows first, without parts of vectors."""
     whole = [
         name for name, told_signal in told_signals().items() if told_signal.part not in ("x", "y")
@@ -289,7 +289,7 @@ def _told(signals: Signals) -> list[str]:
 
 def _by_order(analysis: Analysis, signals: Signals) -> Iterator[Values]:
     """Choices of spectra: those of all rows where these are told, and of one row."""
-    for name in _told(signals):
+    for name in _listed_names(signals):
         whole = _choice(analysis, signals, name)
         assert whole is not None
         vector = len(whole["curves"]) == 2

@@ -24,7 +24,7 @@ from equipoise.mechanism.parts.machine import FRAME, Machine
 from equipoise.quantities import clean_place
 from equipoise.web.design import DRAGGED
 
-TOGETHER = 1e-9
+COINCIDENT = 1e-9
 """rad: by how much bodies turn against each other that count as one kind."""
 FITS = 1e-10
 """Of the size of the machine: what rounding misses."""
@@ -125,7 +125,7 @@ def _rings(motion: Motion) -> Iterator[Terms]:
     angles |= {name: link.angle for name, link in motion.links.items()}
     kinds: list[list[str]] = []
     for body, angle in angles.items():
-        like = (kind for kind in kinds if np.ptp(angle - angles[kind[0]]) <= TOGETHER)
+        like = (kind for kind in kinds if np.ptp(angle - angles[kind[0]]) <= COINCIDENT)
         kind = next(like, None)
         if kind is None:
             kinds.append([body])
@@ -143,8 +143,8 @@ def _walk(motion: Motion, bodies: list[str]) -> tuple[dict[str, Terms], list[Ter
     known: dict[str, Terms] = {}
     rings: list[Terms] = []
     pins = motion.linkage.joints.pins
-    held = {point: [body for body in of if body in bodies] for point, of in pins.items()}
-    left = [(point, of[0], other) for point, of in held.items() for other in of[1:]]
+    bodies_at = {point: [body for body in of if body in bodies] for point, of in pins.items()}
+    left = [(point, of[0], other) for point, of in bodies_at.items() for other in of[1:]]
     for first in bodies:
         if first in known:
             continue

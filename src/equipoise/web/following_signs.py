@@ -130,17 +130,17 @@ def _places(scene: Scene, body: str) -> Iterator[tuple[str, complex]]:
 def _corner(
     scene: Scene, own: dict[str, complex], guides: list[GuideSign], place: complex
 ) -> str | list[str | float] | None:
-    near = SAME * WIDE * scene.unit
+    tolerance = SAME * WIDE * scene.unit
     for name, at in own.items():
-        if abs(at - place) <= near:
+        if abs(at - place) <= tolerance:
             return name
     for guide in guides:
         low, high = _ends(scene, guide)
         way = high - low
-        if not abs(way) > near:
+        if not abs(way) > tolerance:
             continue
         share = (place - low) / way
-        if abs(share.imag) * abs(way) <= near and -1e-6 <= share.real <= 1 + 1e-6:
+        if abs(share.imag) * abs(way) <= tolerance and -1e-6 <= share.real <= 1 + 1e-6:
             return [guide.name, share.real]
     return None
 

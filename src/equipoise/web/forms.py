@@ -67,13 +67,13 @@ def _keys_of_linkages() -> Mapping[str, tuple[keys.Key, ...]]:
     return MappingProxyType(by_name)
 
 
-def control_of(key: keys.Key, beside: Mapping[str, keys.Key]) -> Values:
+def control_of(key: keys.Key, siblings: Mapping[str, keys.Key]) -> Values:
     """What a page needs to ask for the value of a key; beside : keys of the same table."""
     default = plain_default(key)
     return {
         "key": key.name,
         "word": word_of(key),
-        "text": text_of(key, beside),
+        "text": text_of(key, siblings),
         "required": key.required,
         "default": None if default in ([], {}) else default,
         "example": key.example,
@@ -86,13 +86,13 @@ def word_of(key: keys.Key) -> str:
     return say(key.word if key.word and "{" not in key.word else plain_word(key))
 
 
-def text_of(key: keys.Key, beside: Mapping[str, keys.Key] = MappingProxyType({})) -> str:
+def text_of(key: keys.Key, siblings: Mapping[str, keys.Key] = MappingProxyType({})) -> str:
     """What a key means; of keys beside it in what a form calls them."""
     values = getattr(key.kind, "names", ())
 
     def shown(match: re.Match[str]) -> str:
         name = match[1]
-        other = beside.get(name) if name not in values else None
+        other = siblings.get(name) if name not in values else None
         return name if other is None else say("“{name}”", name=word_of(other))
 
     return re.sub("`([^`]*)`", shown, say(key.text))

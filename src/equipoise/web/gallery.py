@@ -30,7 +30,7 @@ def pictured() -> Iterator[tuple[Values, bytes]]:
     machines = {name: opened_example(name).machine for name in titles()}
     headings = sections()
     for name, machine in sorted(machines.items(), key=lambda item: section_of(item[1])):
-        drawing, data = _drawn(name)
+        drawing, data = _thumbnail(name)
         text = ASIDE.sub("", " ".join(said(machine.description).split()))
         line = END.split(text, maxsplit=1)[0]
         statement = {"name": name, "title": said(machine.title), "line": line}
@@ -40,7 +40,7 @@ def pictured() -> Iterator[tuple[Values, bytes]]:
 
 
 @cache
-def _drawn(name: str) -> tuple[Values, bytes]:
+def _thumbnail(name: str) -> tuple[Values, bytes]:
     """What does not depend on the language.
 
     at : sample at which nothing hides anything else, where a picture stands still.

@@ -50,7 +50,7 @@ from equipoise.web.measures import measures_of
 from equipoise.web.words import wording_of
 
 
-def made(job: Job) -> str:
+def export_bytes(job: Job) -> str:
     """The file's content.
 
     Raises
@@ -160,12 +160,12 @@ class Interactive:
 
     def _with_numbers(self, names: Sequence[str], numbers: Mapping[str, float]) -> Script | None:
         """A script of as many of the numbers as can be handed to one; None of none."""
-        kept = [*self._written(names, [*numbers.items()])]
-        while kept:
+        written = [*self._written(names, [*numbers.items()])]
+        while written:
             try:
-                return javascript(self.motion.linkage, names, dict(kept))
+                return javascript(self.motion.linkage, names, dict(written))
             except UsageError:
-                kept = kept[: len(kept) // 2]
+                written = written[: len(written) // 2]
         return None
 
     def _written(

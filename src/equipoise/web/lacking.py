@@ -67,9 +67,9 @@ def _loose(sketch: Sketch, joints: Structure) -> str:
     left = undetermined(joints, sketch.driven)
     for link in left:
         free = [point for point in sketch.links[link].points if point not in joints.pins]
-        held = len(sketch.links[link].points) - len(free)
-        held += sum(link in (slider.link, slider.on) for slider in sketch.sliders)
-        if held < 2 and free:
+        constrained = len(sketch.links[link].points) - len(free)
+        constrained += sum(link in (slider.link, slider.on) for slider in sketch.sliders)
+        if constrained < 2 and free:
             points = _listed(free, OR)
             return say(
                 "{link} is not connected: pin {points} to another link or the frame",

@@ -16,11 +16,11 @@ from contextlib import AbstractContextManager, ExitStack
 from threading import Lock, Timer, get_ident
 from typing import TypeVar
 
-Found = TypeVar("Found")
+Answer = TypeVar("Answer")
 
 MOMENT = 0.1
 """s of computing, below which an answer is quick."""
-HEAPS, LARGE, KEPT = (-8, 2), (-3, 4 << 20), (-1, 16 << 20)
+HEAPS, LARGE, TRIMMED = (-8, 2), (-3, 4 << 20), (-1, 16 << 20)
 """Of glibc's `mallopt`: how many heaps threads share; bytes from where on memory is given back to
 the system as soon as it is free, and how many may be free at a heap's end.  The arrays of one
 answer stay below: to get their pages anew each time takes a tenth of the time of the answer."""
@@ -37,7 +37,7 @@ def share_heaps() -> None:
     lives long grows though it holds no more than before.
     """
     if mallopt := _of_heaps("mallopt"):
-        for option in HEAPS, LARGE, KEPT:
+        for option in HEAPS, LARGE, TRIMMED:
             mallopt(*option)
 
 
@@ -91,7 +91,7 @@ class PageWork:
         self.spent = 0.0
         self._lock, self._threads, self._ended = Lock(), set[int](), False
 
-    def do(self, compute: Callable[[], Found]) -> Found:
+    def do(self, compute: Callable[[], Answer]) -> Answer:
         """Compute in this thread; `EndedError` as soon as the page is closed."""
         thread = get_ident()
         with self._lock:
@@ -103,7 +103,7 @@ class PageWork:
         finally:
             self._leave(thread)
 
-    def timed(self, compute: Callable[[], Found]) -> Found:
+    def timed(self, compute: Callable[[], Answer]) -> Answer:
         """The same, and remember how long it took."""
         begun = time.thread_time()
         try:

@@ -115,7 +115,7 @@ def lost(before: Sketch, after: Sketch) -> Iterator[str]:
         yield say("also deleted, because they refer to it: {tables}", tables=", ".join(tables))
 
 
-def made(sketch: Sketch, asked: Message) -> tuple[Sketch, str]:
+def sketch_after(sketch: Sketch, asked: Message) -> tuple[Sketch, str]:
     """The sketch after an operation, and what the step is called.
 
     Raises

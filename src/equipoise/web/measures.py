@@ -82,11 +82,11 @@ class Measure:
             centers = [start, *(complex(*points[name]) for name in others)]
             now = complex(*points[self.moves])
             radii = [abs(total - start), *(abs(now - center) for center in centers[1:])]
-            near = REACHED * sum(radii)
+            tolerance = REACHED * sum(radii)
             places = [
                 place
                 for place in _crossings(centers[:2], radii[:2])
-                if abs(abs(place - start) - radii[0]) <= near
+                if abs(abs(place - start) - radii[0]) <= tolerance
             ]
             if self.dimension == "angle" or len(others) > 1 or not places:
                 names = all_of([f"{name}–{self.moves}" for name in others])
@@ -111,7 +111,7 @@ def measures_of(points: Mapping[str, Vector]) -> Iterator[Measure]:
             yield Measure("angle", start, end, phase(way))
 
 
-def held(places: Mapping[str, complex], change: Drag) -> complex:
+def constrained_place(places: Mapping[str, complex], change: Drag) -> complex:
     """The nearest place to where a point is dragged at which its locked lengths stay, m.
 
     places : of all points, m.

@@ -16,7 +16,7 @@ from equipoise.mechanism.parts.constraints import changed_points
 from equipoise.mechanism.parts.element_kinds import PartKind
 from equipoise.mechanism.parts.machine import FRAME, Slider
 from equipoise.quantities import DIGITS, clean, clean_place
-from equipoise.web.adding import TOGETHER, check_point
+from equipoise.web.adding import COINCIDENT, check_point
 from equipoise.web.design import DRAGGED
 from equipoise.web.sketch import Sketch
 
@@ -79,7 +79,7 @@ def _onto(sketch: Sketch, slider: Slider, to: complex) -> complex:
 def _aimed(sketch: Sketch, number: int, slider: Slider) -> Sketch:
     """The line of a slider from the point that it goes through to its block, in the old sense."""
     place, other = sketch.places[slider.point], sketch.places[slider.through]
-    if abs(place - other) <= TOGETHER * sketch.size:
+    if abs(place - other) <= COINCIDENT * sketch.size:
         raise UsageError(
             Note(
                 "{through} and {point} would lie at one place; the line of {link} goes through "
@@ -110,7 +110,7 @@ def straight(sketch: Sketch, links: Iterable[str], digits: int = DIGITS) -> Sket
             continue
         places = {point: sketch.pose(name).out(at) for point, at in link.points.items()}
         first, second, *_ = places.values()
-        if abs(second - first) <= TOGETHER * sketch.size:
+        if abs(second - first) <= COINCIDENT * sketch.size:
             raise UsageError(
                 Note(
                     "{names} of {name} would lie at one place",

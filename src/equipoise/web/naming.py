@@ -84,8 +84,8 @@ def _joint(force: str) -> tuple[str, tuple[str, ...], str]:
     link, _, guide = name.partition(SLIDING)
     if guide:
         return "", (link, guide), component
-    point, _, held = name.partition("/")
-    return point, (held,) if held else (), component
+    point, _, body = name.partition("/")
+    return point, (body,) if body else (), component
 
 
 def _joint_renamed(force: str, what: What, old: str, new: str) -> str:

@@ -10,7 +10,7 @@ from typing import Any
 from equipoise.errors import ModelError, UsageError
 from equipoise.i18n import Note
 from equipoise.schema.files import printable
-from equipoise.schema.models import Held, load_linkage, loads_linkage, machine_of
+from equipoise.schema.models import HeldFiles, load_linkage, loads_linkage, machine_of
 from equipoise.schema.opening import content_of, examples, in_file, kind_of_text, opened
 from equipoise.web.design import Design
 from equipoise.web.messages import Message
@@ -63,7 +63,7 @@ def opened_text(
         raise ModelError("", TOOLS, shown)
     with in_file(shown):
         content = content_of(text.removeprefix("\ufeff"), "linkage")
-        return Design(shown, machine_of(content, Held(tables, files)))
+        return Design(shown, machine_of(content, HeldFiles(tables, files)))
 
 
 def wants_tool(message: Message) -> bool:

@@ -16,10 +16,10 @@ from starlette.websockets import WebSocketDisconnect
 
 from equipoise.errors import UsageError
 from equipoise.i18n import Note
-from equipoise.web.desk import Desk
+from equipoise.web.desk import PageBackend
 from equipoise.web.lanes import MOMENT, Lanes, PageWork, give_back
 from equipoise.web.messages import SLOW, Message, makes_way, read
-from equipoise.web.replies import Reply, packed, refused, told, unexpected
+from equipoise.web.replies import Reply, completed, packed, refused, unexpected
 
 if TYPE_CHECKING:
     from starlette.websockets import WebSocket
@@ -44,7 +44,7 @@ class Page:
     whole : when all that follows from a message was told last, s.
     """
 
-    def __init__(self, socket: WebSocket, desk: Desk, lanes: Lanes) -> None:
+    def __init__(self, socket: WebSocket, desk: PageBackend, lanes: Lanes) -> None:
         self.socket, self.desk, self.lanes, self.work = socket, desk, lanes, PageWork()
         self.waiting: deque[Message | UsageError] = deque()
         self.come = asyncio.Event()
@@ -140,7 +140,7 @@ class Page:
                     await self._answer(self.desk.tell_more(), None, self.lanes.long)
             elif self.told < self.answered:
                 self.told = self.answered
-                await self._send(told(self.told))
+                await self._send(completed(self.told))
             else:
                 break
 

@@ -154,10 +154,14 @@ def without_coupling(table: str, sketch: Sketch, name: str) -> Sketch:
 def _tidied(sketch: Sketch) -> Sketch:
     """Without what names points, links or joints that are gone."""
     named = joint_names(sketch.joints)
-    kept = [
+    valid_entries = [
         (key, item)
         for key, item in sketch.entries()
-        if (item.joint in named if key == "joints" else _held(key, item, sketch.bodies))
+        if (
+            item.joint in named
+            if key == "joints"
+            else _refers_to_existing(key, item, sketch.bodies)
+        )
     ]
     if sketch.drive is not None and not _there(sketch, sketch.drive):
         sketch = replace(sketch, drive=None)
@@ -171,7 +175,7 @@ def _tidied(sketch: Sketch) -> Sketch:
     bearings = sketch.rest.get("bearings") or {}
     kept_on = {name: bearing for name, bearing in bearings.items() if bearing.link in sketch.links}
     rest = {**sketch.rest, **gone, "bearings": kept_on, "drives": drives}
-    return replace(sketch, rest=rest).with_entries(kept)
+    return replace(sketch, rest=rest).with_entries(valid_entries)
 
 
 def _there(sketch: Sketch, value: Any) -> bool:
@@ -180,7 +184,7 @@ def _there(sketch: Sketch, value: Any) -> bool:
             and named_in(value, "link") <= sketch.links.keys())  # fmt: skip
 
 
-def _held(key: str, entry: Any, bodies: Bodies) -> bool:
+def _refers_to_existing(key: str, entry: Any, bodies: Bodies) -> bool:
     """Whether all that an entry names is there."""
     if isinstance(entry, Coupling | Element):
         ends = all(point in bodies.get(body, ()) for body, point in entry.points)
@@ -216,8 +220,8 @@ def renamed_point(sketch: Sketch, old: str, new: str) -> Sketch:
         planes = {} if body == FRAME else dict(sketch.links[body].planes)
         points = {new if item == old else item: at for item, at in sketch.bodies[body].items()}
         if body != FRAME and sketch.links[body].bodies:
-            made = renamed_in(sketch.links[body].bodies, "point", old, new)
-            link = sketch.links[body].altered(points=points, bodies=made)
+            bodies = renamed_in(sketch.links[body].bodies, "point", old, new)
+            link = sketch.links[body].altered(points=points, bodies=bodies)
             sketch = replace(sketch, links={**sketch.links, body: link})
         elif body != FRAME and sketch.links[body].length is not None:  # which goes on to hold
             names: Any = (*points,)

@@ -59,7 +59,7 @@ def unexpected(error: Exception) -> UsageError:
     )
 
 
-def told(seq: int | None) -> Reply:
+def completed(seq: int | None) -> Reply:
     """Say that a question has all its answers, also those that take longer."""
     return Reply({"type": "told", "seq": seq})
 

@@ -23,7 +23,7 @@ from equipoise.web.variants import NOTHING, OPENED, STEP, VARIANT, Variants
 
 
 @dataclass
-class Seen:
+class ViewState:
     """What a page shows besides the machine.
 
     arrows_at : a point.  variants : that are kept.
@@ -57,9 +57,9 @@ class Seen:
         """The design that is drawn pale, with pale curves."""
         return None if self.variants.against == STEP else self.against(None)
 
-    def opening(self, computed: Computed | None) -> Seen:
+    def opening(self, computed: Computed | None) -> ViewState:
         """The same for a machine that is opened: nothing is kept but what the page knows."""
-        return Seen(opened=computed, ghost=self.ghost, table=self.table)
+        return ViewState(opened=computed, ghost=self.ghost, table=self.table)
 
     def compared(self, computed: Computed | None) -> Iterator[Reply]:
         """The pale drawing and the table of variants, where the page has others.
@@ -94,7 +94,7 @@ def _ghost(pale: Computed | None) -> Reply:
 class ViewSession(Protocol):
     """What answers need of a session."""
 
-    seen: Seen
+    seen: ViewState
     lock: Lock
     wanted: tuple[str, ...]
 
@@ -137,8 +137,8 @@ def _pin(session: ViewSession, _: Message) -> None:
 
 
 def _rename(session: ViewSession, message: Message) -> None:
-    seen = session.seen
-    seen.variants = seen.variants.renamed(message.text("name"), message.text("to"))
+    view = session.seen
+    view.variants = view.variants.renamed(message.text("name"), message.text("to"))
 
 
 def _drop(session: ViewSession, message: Message) -> None:

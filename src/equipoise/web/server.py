@@ -21,7 +21,7 @@ from equipoise.i18n import Note
 from equipoise.interrupts import answered
 from equipoise.schema.files import reason
 from equipoise.web.assets import TYPES, assets
-from equipoise.web.desk import Desk
+from equipoise.web.desk import PageBackend
 from equipoise.web.documents import document
 from equipoise.web.lanes import Lanes
 from equipoise.web.messages import LARGEST_MESSAGE
@@ -124,7 +124,7 @@ BODY = """<main id="equipoise-live" data-live="/live?token={token}"></main>
 <script type="module" src="/equipoise.js?token={token}"></script>"""
 
 
-def application(port: int, token: str, begin: Callable[[], Desk], lanes: Lanes) -> ASGIApp:
+def application(port: int, token: str, begin: Callable[[], PageBackend], lanes: Lanes) -> ASGIApp:
     """The server as an ASGI application.
 
     port : on which it is served.  token : that every request has to carry.
@@ -171,7 +171,7 @@ def application(port: int, token: str, begin: Callable[[], Desk], lanes: Lanes) 
 
 @contextmanager
 def served(
-    begin: Callable[[], Desk], port: int | None = 0
+    begin: Callable[[], PageBackend], port: int | None = 0
 ) -> Iterator[tuple[uvicorn.Server, socket.socket, str]]:
     """A server that is ready to run on a socket that listens, and the address of its page.
 
@@ -208,7 +208,7 @@ def served(
         yield uvicorn.Server(config), listener, f"http://{ADDRESS}:{port}/?token={token}"
 
 
-def serve(begin: Callable[[], Desk], port: int | None, tell: Callable[[str], None]) -> None:
+def serve(begin: Callable[[], PageBackend], port: int | None, tell: Callable[[str], None]) -> None:
     """Serve pages on this machine until interrupted; errors as `served`.
 
     tell : is given the address of the page, which is served from then on.

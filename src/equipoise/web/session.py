@@ -37,13 +37,13 @@ from equipoise.web.drawn import (
 from equipoise.web.edits import Computed, settled, solved
 from equipoise.web.fields import Scale, fields_of
 from equipoise.web.history import History, HistoryStep
-from equipoise.web.making import lost, made
+from equipoise.web.making import lost, sketch_after
 from equipoise.web.messages import MOST_LANGUAGES, Message
 from equipoise.web.openings import opened_example, opened_text, titles, tool_titles
 from equipoise.web.recorded import MeasuredSignals
 from equipoise.web.replies import Reply, refused
-from equipoise.web.seen import ASKED, Seen
-from equipoise.web.shaken import more, response_of
+from equipoise.web.seen import ASKED, ViewState
+from equipoise.web.shaken import deferred_replies, response_of
 from equipoise.web.sketch import Sketch
 from equipoise.web.state import first_of, state_of
 from equipoise.web.words import language_of, spoken_in, wording_of
@@ -75,7 +75,7 @@ class Session:
     wanted: tuple[str, ...] = ()
     language: str = "en"
     disk: Disk | None = None
-    seen: Seen = field(default_factory=Seen)
+    seen: ViewState = field(default_factory=ViewState)
     lock: Lock = field(default_factory=Lock)
 
     def receive(self, message: Message) -> Iterator[Reply]:
@@ -152,7 +152,7 @@ class Session:
     def _make(self, message: Message) -> Iterator[Reply]:
         with self.lock, self.telling():
             base = sketch_of(self.base(), message.whole("at", 0))
-            sketch, label = made(base, message)
+            sketch, label = sketch_after(base, message)
             result = drawn(sketch)
             self._go(self._past.then(result.design, label), result)
             self._measure(result, False)
@@ -200,19 +200,19 @@ class Session:
             }
         )
 
-    def _titled(self, found: dict[str, str]) -> list[Values]:
+    def _titled(self, titles: dict[str, str]) -> list[Values]:
         with speaking(self.language):
-            return [{"name": name, "title": said(title)} for name, title in found.items()]
+            return [{"name": name, "title": said(title)} for name, title in titles.items()]
 
     def open(self, design: Design | Sketch, result: Computed | None = None) -> None:
         """Begin with a design, or with a sketch; what was done before is forgotten.
 
         result : the design, if it has been computed.
         """
-        seen = result or computed(design)
+        shown = result or computed(design)
         with self.lock:
-            self._go(History(HistoryStep(design, "")), seen)
-            self._measure(seen, True)
+            self._go(History(HistoryStep(design, "")), shown)
+            self._measure(shown, True)
 
     def _measure(self, computed: Computed | Incomplete, new: bool) -> None:
         """What goes by the build of a machine: ranges of sliders, and outputs that are drawn.
@@ -245,7 +245,7 @@ class Session:
         if wanted is None:
             return
         result, against, sweep = wanted
-        text = more(result, against, sweep, lambda: self.view is not result)
+        text = deferred_replies(result, against, sweep, lambda: self.view is not result)
         while True:
             with self.telling():  # left where this waits: whoever goes on may be another thread
                 item = next(text, None)
@@ -368,21 +368,21 @@ class Session:
         return Reply({"type": "state", "seq": seq, **text, **content}, data)
 
     def _state_of(self, computed: Computed) -> tuple[Values, bytes]:
-        seen = self.seen
+        view = self.seen
         return state_of(
             computed,
-            seen.pale or self.before,
+            view.pale or self.before,
             self.wanted,
             against=self._against,
-            arrows_at=seen.arrows_at,
-            record=seen.record,
+            arrows_at=view.arrows_at,
+            record=view.record,
         )
 
     @property
     def _against(self) -> Computed | None:
         """The design that figures are told against, if any."""
-        held = self.found if self.preview is not None else None
-        return self.seen.against(held if isinstance(held, Computed) else None) or self.before
+        shown = self.found if self.preview is not None else None
+        return self.seen.against(shown if isinstance(shown, Computed) else None) or self.before
 
 
 def _in_file(error: EquipoiseError, name: str) -> EquipoiseError:

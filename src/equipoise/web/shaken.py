@@ -47,9 +47,9 @@ def kept_with_design(make: Callable[..., R]) -> Callable[..., R]:
     results: WeakKeyDictionary[Computed, R] = WeakKeyDictionary()
 
     @wraps(make)
-    def result_of(shown: Computed, *more: Any) -> R:
+    def result_of(shown: Computed, *arguments: Any) -> R:
         if shown not in results:
-            results[shown] = make(shown, *more)
+            results[shown] = make(shown, *arguments)
         return results[shown]
 
     return result_of
@@ -92,7 +92,7 @@ def response_of(shown: Computed) -> tuple[Values, bytes] | None:
             "swing": None,
             "modes": [],
         }, b""
-    return _told(shown, response, block), block.data
+    return _displacements(shown, response, block), block.data
 
 
 def swept(shown: Computed, progress: Callable[[int, int], None]) -> tuple[Values, bytes] | None:
@@ -106,7 +106,7 @@ def swept(shown: Computed, progress: Callable[[int, int], None]) -> tuple[Values
     except EquipoiseError:  # of which `response_of` has told
         return None
     block = FloatBlock()
-    content = _told(shown, response, block)
+    content = _displacements(shown, response, block)
     block.add("sweep.speed", curves.speed)
     choices: list[Values] = []
     for name, curve in curves.gauges.items():
@@ -121,7 +121,7 @@ def swept(shown: Computed, progress: Callable[[int, int], None]) -> tuple[Values
     return content, block.data
 
 
-def _told(shown: Computed, response: Response, block: FloatBlock) -> Values:
+def _displacements(shown: Computed, response: Response, block: FloatBlock) -> Values:
     """Displacements against the crank angle, which runs as the crank does, and how to draw them."""
     count = SAMPLES * response.turns
     choices: list[Values] = []
@@ -175,7 +175,7 @@ class OutdatedError(Exception):
     """The design is no longer shown."""
 
 
-def more(
+def deferred_replies(
     computed: Computed, against: Computed | None, sweep: bool, outdated: Callable[[], bool]
 ) -> Iterator[tuple[Values, bytes]]:
     """Planes from the side, strokes, gauges, planting figures, the response over speed; each as
@@ -207,16 +207,16 @@ def more(
             raise OutdatedError
 
     try:
-        shaken = swept(computed, progress)
+        response = swept(computed, progress)
     except OutdatedError:
         return
-    if shaken is not None and not outdated():
-        content, data = shaken
+    if response is not None and not outdated():
+        content, data = response
         yield {"type": "response", **content}, data
 
 
 @dataclass(frozen=True)
-class _Told:
+class FigureValue:
     """A figure that is told: what it is called, its value (SI units), and how it is shown."""
 
     label: str
@@ -225,7 +225,7 @@ class _Told:
     unit: str | None = None
 
 
-_Figures = Mapping[str, _Told]
+_Figures = Mapping[str, FigureValue]
 
 
 def _told_against(
@@ -245,15 +245,15 @@ def _told_against(
     return {"type": kind, "figures": values, "compared": bool(others), "notes": notes}
 
 
-def _shown(name: str, one: _Told, other: _Told | None) -> Values:
+def _shown(name: str, figure: FigureValue, other: FigureValue | None) -> Values:
     """A figure in the unit in which it is told; None where it is not finite."""
-    shown = display(one.dimension, [one.value], one.unit)
+    shown = display(figure.dimension, [figure.value], figure.unit)
 
     def there(value: float) -> float | None:
         return shown.factor * value if isfinite(value) else None
 
-    now = there(one.value)
-    text = {"name": name, "label": one.label, "unit": shown.name, "value": now}
+    now = there(figure.value)
+    text = {"name": name, "label": figure.label, "unit": shown.name, "value": now}
     was = {} if other is None else {"was": was_of(there(other.value), now)}
     return {**text, "text": text_of(now), **was}
 
@@ -270,7 +270,7 @@ def _gauges(computed: Computed) -> _Figures:
         return {}
     reading = DECLARED["gauges.{}"]
     return {
-        f"gauges.{name}.{measure}": _Told(
+        f"gauges.{name}.{measure}": FigureValue(
             say("{what}, {measure}", what=reading.say(_spoken(name)), measure=say(word)),
             float(getattr(gauge.displacement, measure)),
             "angle" if gauge.rotation else reading.dimension,
@@ -285,7 +285,7 @@ def _strokes(computed: Computed) -> _Figures:
     return dict(_strokes_of(computed.analysis))
 
 
-def _strokes_of(analysis: Analysis) -> Iterator[tuple[str, _Told]]:
+def _strokes_of(analysis: Analysis) -> Iterator[tuple[str, FigureValue]]:
     machine = analysis.machine
     for name, stroke in analysis.strokes.items():
         of_joint = partial(_of_joint, machine, name)
@@ -295,7 +295,7 @@ def _strokes_of(analysis: Analysis) -> Iterator[tuple[str, _Told]]:
     yield from _losses_of(analysis)
 
 
-def _losses_of(analysis: Analysis) -> Iterator[tuple[str, _Told]]:
+def _losses_of(analysis: Analysis) -> Iterator[tuple[str, FigureValue]]:
     """What friction costs, joint by joint and altogether; nothing where no joint rubs."""
     losses = analysis.resolved.losses
     if losses is None:
@@ -303,10 +303,10 @@ def _losses_of(analysis: Analysis) -> Iterator[tuple[str, _Told]]:
     word = say("mean loss")
     for name, joint in losses.joints.items():
         label = f"{joint_named(name)}: {word}"
-        yield f"friction.joints.{name}.loss", _Told(label, joint.loss, "power")
-    yield "friction.loss", _Told(f"{say('all joints')}: {word}", losses.loss, "power")
+        yield f"friction.joints.{name}.loss", FigureValue(label, joint.loss, "power")
+    yield "friction.loss", FigureValue(f"{say('all joints')}: {word}", losses.loss, "power")
     if losses.efficiency is not None:
-        yield "friction.efficiency", _Told(say("efficiency"), losses.efficiency, None)
+        yield "friction.efficiency", FigureValue(say("efficiency"), losses.efficiency, None)
 
 
 def _of_joint(machine: Machine, name: str, kind: Field[Any]) -> Dimension | None:
@@ -319,15 +319,15 @@ def _own(kind: Field[Any]) -> Dimension | None:
 
 
 def _declared_of(
-    path: str, named: str, one: Any, dimension: Callable[[Field[Any]], Dimension | None]
-) -> Iterator[tuple[str, _Told]]:
+    path: str, named: str, owner: Any, dimension: Callable[[Field[Any]], Dimension | None]
+) -> Iterator[tuple[str, FigureValue]]:
     """Figures that are declared on the class of something."""
-    for kind in declared_figures(type(one)):
-        value, of = getattr(one, kind.name), dimension(kind)
+    for kind in declared_figures(type(owner)):
+        value, of = getattr(owner, kind.name), dimension(kind)
         if value is not None and not kind.name.endswith("_at"):
             unit = "rpm" if of == "angular speed" else None
             label = f"{named}: {say(kind.metadata['label'])}"
-            yield f"{path}.{kind.name}", _Told(label, value, of, unit)
+            yield f"{path}.{kind.name}", FigureValue(label, value, of, unit)
 
 
 def _plants(computed: Computed) -> bool:
@@ -353,7 +353,7 @@ def _planted(computed: Computed) -> _Figures:
 
     figures = planted(computed).figures
     return {
-        name: _Told(figure_named(name), float(figures[name]), text.dimension, text.unit)
+        name: FigureValue(figure_named(name), float(figures[name]), text.dimension, text.unit)
         for name in (*FIGURES, *(name for name in figures if of_all_arms(name) in FIGURES))
         if name in figures
         for text in [cell(float(figures[name]), name)]

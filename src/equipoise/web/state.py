@@ -179,8 +179,8 @@ def _spectra(analysis: Analysis, signals: dict[str, Array]) -> Iterator[tuple[st
 
 def _sizes(signal: Periodic) -> Array:
     sizes = np.zeros(MOST_ORDER * signal.turns + 1)
-    kept = signal.sizes[: len(sizes)]
-    sizes[: len(kept)] = kept
+    low_orders = signal.sizes[: len(sizes)]
+    sizes[: len(low_orders)] = low_orders
     return sizes
 
 

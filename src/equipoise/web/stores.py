@@ -20,7 +20,7 @@ from equipoise.i18n import say, to_say
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.schema.study_units import machine_of, owner_of, units_in
 from equipoise.studies.evaluate import evaluator
-from equipoise.studies.outcomes import kept
+from equipoise.studies.outcomes import feasible
 from equipoise.studies.sampling import random_numbers
 from equipoise.studies.selection import best
 from equipoise.studies.store import ABOUT, MARK, UNKNOWN, Store, open_store
@@ -125,7 +125,7 @@ class StoreDesk:
         for _, block in self.store.in_blocks():
             reasons += np.bincount(block.outcome.reason, minlength=256)
             figures = block.outcome.figures[block.outcome.reason == COMPUTED]
-            good += int(np.sum(np.all(kept(self.store.wishes, figures), axis=1)))
+            good += int(np.sum(np.all(feasible(self.store.wishes, figures), axis=1)))
         return good, reasons
 
     def told(self, seq: int | None) -> Reply:
@@ -137,7 +137,7 @@ class StoreDesk:
         block = FloatBlock()
         numbers, rows, reasons = self._drawn
         figures = rows[:, len(self.store.numbers) :]
-        inside = (reasons == COMPUTED) & np.all(kept(self.store.wishes, figures), axis=1)
+        inside = (reasons == COMPUTED) & np.all(feasible(self.store.wishes, figures), axis=1)
         block.add("number", numbers)
         block.add("reason", np.where(reasons == COMPUTED, 0, reasons))
         block.add("kept", inside)
@@ -187,8 +187,8 @@ class StoreDesk:
             yield self._column(name, units[name], "number")
         for wish in self.store.wishes:
             ends = wish.at_least, wish.at_most
-            more: dict[str, Any] = {"limits": [*ends], "make": wish.make}
-            yield self._column(wish.name, units[wish.name], "output") | more
+            limits: dict[str, Any] = {"limits": [*ends], "make": wish.make}
+            yield self._column(wish.name, units[wish.name], "output") | limits
 
     def _column(self, name: str, unit: Any, kind: str) -> Values:
         return {

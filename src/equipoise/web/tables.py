@@ -123,8 +123,8 @@ def _groups(
         group["required"] = item.required and many == "one"
         if entry is None:
             group["needs"] = name
-        held = (entry or {}).get(key)
-        entries = [*_entries(held, at, many)]
+        given = (entry or {}).get(key)
+        entries = [*_entries(given, at, many)]
         group["entries"] = [_entry(inner.type, value, place) for place, value in entries]
         if key == "bodies" and entries:
             group["result"] = _mass_of(machine, str(place[-1]))
@@ -141,19 +141,19 @@ def _group(place: KeyPath, of: type[Frozen], many: str, words: Values) -> Values
     return {**text, "many": many, "needs": "", **words}
 
 
-def _entries(held: Any, place: KeyPath, many: str) -> Iterator[tuple[KeyPath, Any]]:
+def _entries(value: Any, place: KeyPath, many: str) -> Iterator[tuple[KeyPath, Any]]:
     """The entries of a key, each with its place."""
     if many == "one":
-        yield from [] if held is None else [(place, held)]
+        yield from [] if value is None else [(place, value)]
     elif many == "list":
-        yield from ((place / number, item) for number, item in enumerate(held or ()))
+        yield from ((place / number, item) for number, item in enumerate(value or ()))
     else:
-        yield from ((place / name, item) for name, item in (held or {}).items())
+        yield from ((place / name, item) for name, item in (value or {}).items())
 
 
-def _called(one: Any, place: KeyPath) -> str:
+def _called(item: Any, place: KeyPath) -> str:
     last = place[-1]
-    return f"{word_of(one)} {last + 1}" if isinstance(last, int) else word_of(one)
+    return f"{word_of(item)} {last + 1}" if isinstance(last, int) else word_of(item)
 
 
 def _entry(of: type[Frozen], entry: Mapping[str, Any], place: KeyPath) -> Values:

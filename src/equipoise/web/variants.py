@@ -72,16 +72,16 @@ class Variants:
             raise UsageError(
                 Note("there is a variant of the name {to!r} already; give another", to=to)
             )
-        kept = {to if item == name else item: result for item, result in self.kept.items()}
+        by_name = {to if item == name else item: result for item, result in self.kept.items()}
         against = VARIANT + to if self.against == VARIANT + name else self.against
-        return Variants(MappingProxyType(kept), against)
+        return Variants(MappingProxyType(by_name), against)
 
     def without(self, name: str) -> Variants:
         """The same without one of them."""
         self.of(name)
-        kept = {item: result for item, result in self.kept.items() if item != name}
+        by_name = {item: result for item, result in self.kept.items() if item != name}
         against = STEP if self.against == VARIANT + name else self.against
-        return Variants(MappingProxyType(kept), against)
+        return Variants(MappingProxyType(by_name), against)
 
     def told_against(self, what: str) -> Variants:
         """The same, but told against something else: one of the three words, or a variant."""

@@ -20,12 +20,12 @@ from equipoise.dataclass import dataclass
 from equipoise.errors import EquipoiseError, UsageError
 from equipoise.i18n import Note, to_say
 from equipoise.web.design import Design
-from equipoise.web.desk import Desk
+from equipoise.web.desk import PageBackend
 from equipoise.web.edits import Computed, solved
 from equipoise.web.messages import SLOW, Message, makes_way, read
-from equipoise.web.replies import Reply, packed, refused, told, unexpected
+from equipoise.web.replies import Reply, completed, packed, refused, unexpected
 from equipoise.web.session import Session
-from equipoise.web.shaken import more
+from equipoise.web.shaken import deferred_replies
 
 OF_MACHINE = ("balance", "download")
 """Of the questions that take long, those about the machine that is open."""
@@ -68,7 +68,7 @@ class Foreground:
     """One page: messages in, one reply a step out."""
 
     def __init__(self) -> None:
-        self.desk = Desk()
+        self.desk = PageBackend()
         self.waiting: deque[Message | UsageError] = deque()
         self.tasks: deque[bytes] = deque()
         self.missing: str | None = None
@@ -171,7 +171,7 @@ class Foreground:
                 return None
             else:
                 self._reported = self._answered
-                return told(self._reported)
+                return completed(self._reported)
 
     def _start(self, message: Message | UsageError) -> None:
         if isinstance(message, UsageError):
@@ -292,7 +292,9 @@ class Background:
                 assert outcome is not None
                 against = None if task.against is None else solved(task.against)
                 with session.telling():
-                    for content, data in more(outcome, against, task.sweep, lambda: False):
+                    for content, data in deferred_replies(
+                        outcome, against, task.sweep, lambda: False
+                    ):
                         yield "reply", packed(Reply({"seq": None, **content}, data))
             elif task.message.kind == "balance":
                 from equipoise.web import balanced

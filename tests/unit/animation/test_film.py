@@ -109,7 +109,7 @@ def test_a_film_takes_as_many_turns_as_it_is_told_and_has_even_sides() -> None:
     _, scene, arrow = prepared(of_three_turns(60))
     told: list[tuple[int, int]] = []
     options = {"seconds": 0.2, "width": 201, "arrow": arrow, "dark": True}
-    whole = frames_of_mp4(mp4(scene, told=lambda *count: told.append(count), **options))
+    whole = frames_of_mp4(mp4(scene, progress=lambda *count: told.append(count), **options))
     assert len(whole) == 3 * 6
     assert told == [(done, 18) for done in range(1, 19)]
     assert all(side % 2 == 0 for side in whole[0].shape[:2])

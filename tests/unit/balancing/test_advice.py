@@ -196,7 +196,7 @@ def test_the_paper_s_own_counterweight_fits(name: str) -> None:
     """111 deg from the line of the pivots, in a plane beside the pin C that would cross it."""
     machine = bare(name)
     *_, room = rooms_about(machine, "crank")
-    assert [*room.beside] == ["C"] and room.beside["C"] == pytest.approx(38e-3, abs=1e-4)
+    assert [*room.neighbors] == ["C"] and room.neighbors["C"] == pytest.approx(38e-3, abs=1e-4)
     outer, inner = 0.07, 0.02
     # Over their crank angle, from the line A to D at -83 deg; from the axes of the crank, 0 deg.
     way = 111.0
@@ -210,7 +210,7 @@ def test_the_paper_s_own_counterweight_fits(name: str) -> None:
 def test_a_plane_of_its_own_is_crossed_by_shafts_and_guided_pins() -> None:
     """A piston comes near its crank in every plane; the shaft of a rocker is in the frame."""
     engine, rig = bare("slider-crank-engine"), bare("yamashita-1")
-    assert all(not room.beside for room in rooms_about(engine, "crank"))
+    assert all(not room.neighbors for room in rooms_about(engine, "crank"))
     *_, room = rooms_about(rig, "crank")
     shaft = abs(complex(*rig.frame["D"]) - complex(*rig.frame["A"]))
     assert 0.85 * shaft < room.largest < shaft - room.clearance * (1 - 1e-9)
@@ -222,7 +222,7 @@ def test_a_plane_of_its_own_is_said_where_only_a_link_comes_near() -> None:
     """A pin says enough, as it ends the link too; what comes near neither needs no such plane."""
     machine = bare("yamashita-1")
     *_, room = rooms_about(machine, "crank")
-    room = replace(room, beside={"C": 0.07}, beside_links={"rocker": 0.04})
+    room = replace(room, neighbors={"C": 0.07}, beside_links={"rocker": 0.04})
     for outer, said in ((0.07, " beside pin C"), (0.04, " beside rocker"), (0.03, "")):
         _, (change,) = with_sectors(machine, (room,), (SectorShape(outer, 0.01, 0.01, 0, 90),))
         (text,) = in_short(change)

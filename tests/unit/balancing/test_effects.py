@@ -238,7 +238,7 @@ def test_numbers_near_a_machine(machine: eq.Machine) -> None:
     ]
     x = np.concatenate(numbers)
     changed = problem.machine_with(numbers)
-    near = problem.near(numbers)
+    near = problem.linearized_at(numbers)
     (signal,) = signals_of(problem.effects, wish, near.close)
     assert measured(signal.at(x), "ripple") == pytest.approx(
         read(changed, name, "ripple"), rel=EXACT
@@ -479,22 +479,22 @@ def test_kept_orders(is_vector: bool) -> None:
     if not is_vector:
         start, column = start.real, column.real
     signal = Signal(start, column[None, :])
-    kept = signal.kept((2.0,))
+    kept = signal.with_orders((2.0,))
     wanted = 0.5 * np.exp(2j * ANGLE) + backwards
     second = np.exp(2j * ANGLE)
     part = (lambda z: z) if is_vector else np.real
     assert kept.start == pytest.approx(part(wanted), abs=1e-12)
     assert kept.columns[0] == pytest.approx(part(second), abs=1e-12)
     assert np.iscomplexobj(kept.start) == is_vector
-    assert signal.kept(()) is signal
-    assert signal.kept((0.0, 3.0)).start == pytest.approx(np.full(N, 4.0), abs=1e-12)
+    assert signal.with_orders(()) is signal
+    assert signal.with_orders((0.0, 3.0)).start == pytest.approx(np.full(N, 4.0), abs=1e-12)
 
 
 def test_orders_count_events_in_one_turn_of_the_crank() -> None:
     """Two turns in the samples: the second wave in them is order 1, the first order 1/2."""
     signal = Signal(np.cos(ANGLE) + np.cos(2 * ANGLE), np.zeros((0, N)), turns=2)
-    assert signal.kept((1.0,)).start == pytest.approx(np.cos(2 * ANGLE), abs=1e-12)
-    assert signal.kept((0.5,)).start == pytest.approx(np.cos(ANGLE), abs=1e-12)
+    assert signal.with_orders((1.0,)).start == pytest.approx(np.cos(2 * ANGLE), abs=1e-12)
+    assert signal.with_orders((0.5,)).start == pytest.approx(np.cos(ANGLE), abs=1e-12)
 
 
 def test_division_and_values() -> None:

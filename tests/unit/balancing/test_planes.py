@@ -113,7 +113,7 @@ def test_gauges_feel_the_rocking_moment() -> None:
     problem = Problem.of(machine, plan)
     m = problem.parts[0].mass_unit
     numbers = [np.array([0.4 / m, 0.0, 0.0, 0.0, 0.0])]
-    close = problem.near(numbers)
+    close = problem.linearized_at(numbers)
     for there, made in ((problem, machine), (close, close.machine_with(numbers))):
         signal = signals_of(there.effects, plan.objectives[0], there.close)[0]
         x = numbers[0] if made is not machine else 0 * numbers[0]

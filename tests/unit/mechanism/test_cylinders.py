@@ -12,7 +12,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import ModelError, UsageError
-from equipoise.exchange.export import made
+from equipoise.exchange.export import export_content
 from equipoise.exchange.formats import FORMATS
 from equipoise.figures import render
 from equipoise.mechanism.dynamics.parameters import parameter_values, regressor
@@ -176,12 +176,12 @@ def test_a_file_of_it_is_read_as_it_was_written() -> None:
 def test_programs_that_turn_a_crank_refuse_it(name: str) -> None:
     evenly = "turns the driven link evenly all the way round:"
     with pytest.raises(UsageError, match=f"{evenly} this drive pushes"):
-        made(boom(), FORMATS[name], 0.0)
+        export_content(boom(), FORMATS[name], 0.0)
     with pytest.raises(UsageError, match=f"{evenly} this machine has several drives"):
-        made(eq.load("pick-and-place"), FORMATS[name], 0.0)
+        export_content(eq.load("pick-and-place"), FORMATS[name], 0.0)
     stuck = four_bar(1.0, 0.9, 0.5, 0.55)
     with pytest.raises(UsageError, match=f"{evenly} the crank cannot turn fully"):
-        made(stuck, FORMATS[name], 0.0)
+        export_content(stuck, FORMATS[name], 0.0)
 
 
 def test_everything_is_shown_of_it() -> None:

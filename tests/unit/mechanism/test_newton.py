@@ -167,7 +167,7 @@ def test_a_machine_near_another_is_solved_at_all_angles_together(
     tables = {name: table + apart for name, table in cycle.tables.items()}
     steps, each = [], LoopGroup.follow_each
     monkeypatch.setattr(LoopGroup, "follow_each", lambda *a: steps.append(1) or each(*a))
-    assemble(anew, near=replace(cycle, tables=tables))
+    assemble(anew, guess=replace(cycle, tables=tables))
     got = eq.move(anew, 360)
     assert bool(steps) == bool(apart)
     for name, point in want.points.items():

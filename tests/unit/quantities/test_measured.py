@@ -17,7 +17,7 @@ from equipoise.i18n import Note
 from equipoise.quantities import KINDS, Measured, as_written, plain_unit
 from equipoise.quantities.units import OF_UNIT
 from equipoise.schema import examples
-from equipoise.schema.models import Beside, machine_of, tool_of
+from equipoise.schema.models import AdjacentFiles, machine_of, tool_of
 from equipoise.schema.opening import opened_example
 
 OFF = Note("got {at}; give {low} to {high}", at=Measured(1.6, "length"),
@@ -73,7 +73,7 @@ def with_text(content: Any, place: tuple[Any, ...], text: str) -> Any:
 
 def complaint(read: Any, content: Any, folder: Any) -> str:
     try:
-        read(content, Beside(folder))
+        read(content, AdjacentFiles(folder))
     except EquipoiseError as error:
         return str(error)
     return ""

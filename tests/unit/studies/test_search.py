@@ -19,7 +19,7 @@ from equipoise.mechanism.parts.machine import Machine
 from equipoise.studies import searching
 from equipoise.studies.design_space import Correlation, Output
 from equipoise.studies.evaluate import evaluator
-from equipoise.studies.outcomes import Evaluator, Outcome, kept, non_dominated
+from equipoise.studies.outcomes import Evaluator, Outcome, feasible, non_dominated
 from equipoise.studies.searching import search, search_size
 from equipoise.studies.study import Study
 from support.chosen import EXHAUSTIVE
@@ -257,7 +257,9 @@ def test_a_four_bar_against_every_design() -> None:
     compute = evaluator(some)
     every = np.stack(np.meshgrid(lengths, lengths, indexing="ij"), axis=-1).reshape(-1, 2)
     outcome = compute(every)
-    good = np.flatnonzero(np.all(kept(outputs, outcome.figures), axis=1) & (outcome.reason == 0))
+    good = np.flatnonzero(
+        np.all(feasible(outputs, outcome.figures), axis=1) & (outcome.reason == 0)
+    )
     wanted = good[non_dominated(outcome.figures[good, :2] * (1, -1))]
     assert 3 < len(wanted) < len(good) < len(every)
 

@@ -13,7 +13,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import RangeError, UsageError
-from equipoise.exchange.export import made
+from equipoise.exchange.export import export_content
 from equipoise.exchange.formats import FORMATS
 from equipoise.i18n import catalogue, speaking
 from equipoise.mechanism.assembly.linkage import assemble
@@ -52,7 +52,7 @@ return { figures, refusal: other.refusal, text: toml(machine, design) };
 def page_of(machine: eq.Machine) -> str:
     """The file; it skips the test of a machine of which no script can be written."""
     try:
-        return str(made(machine, HTML, 0.0)[1])
+        return str(export_content(machine, HTML, 0.0)[1])
     except UsageError as error:
         pytest.skip(str(error))
 
@@ -224,14 +224,14 @@ def test_what_is_left_out_is_reported(tmp_path: Path) -> None:
 
 def test_the_file_speaks_the_language_of_its_export() -> None:
     with speaking("ja"):
-        html = str(made(eq.load("yamashita-1"), HTML, 0.0)[1])
+        html = str(export_content(eq.load("yamashita-1"), HTML, 0.0)[1])
     assert '<html lang="ja">' in html
     for text in ("Reset all", "What a drag changes", "RMS"):
         assert catalogue("ja")[text] in html
 
 
 def test_the_file_asks_for_nothing() -> None:
-    html = str(made(eq.load("yamashita-1"), HTML, 0.0)[1])
+    html = str(export_content(eq.load("yamashita-1"), HTML, 0.0)[1])
     assert "default-src 'none'" in html
     assert "http:" not in html.replace("http://www.w3.org/2000/svg", "") and "https:" not in html
 

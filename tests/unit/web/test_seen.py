@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.figures.swing import SEEN
+from equipoise.figures.swing import LARGEST
 from equipoise.web.messages import message_of
 from equipoise.web.replies import Reply
 from unit.web.pages import ask, edit, opened, refusal, state
@@ -184,8 +184,8 @@ def test_a_support_is_told_how_it_moves(name) -> None:
     for mode in modes:
         if mode["seen"]:
             dx, dy, turn = (complex(*mode["shape"][i : i + 2]) for i in (0, 2, 4))
-            assert abs(dx) + abs(dy) + arm * abs(turn) >= 0.5 * SEEN * size
-            assert max(abs(dx), abs(dy)) <= 2 * SEEN * size + arm * abs(turn)
+            assert abs(dx) + abs(dy) + arm * abs(turn) >= 0.5 * LARGEST * size
+            assert max(abs(dx), abs(dy)) <= 2 * LARGEST * size + arm * abs(turn)
     held = [one["hold"] for one in scene["signs"] if one["hold"] and "mount" in one["hold"]]
     assert held and all(abs(complex(*one["ground"])) == pytest.approx(50) for one in held)
     assert any(one["still"] for one in scene["signs"])

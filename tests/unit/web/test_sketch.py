@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.web.desk import Desk
+from equipoise.web.desk import PageBackend
 from equipoise.web.messages import message_of
 from equipoise.web.session import Session
 from support.chosen import DISTINCT, few
@@ -454,7 +454,7 @@ def test_a_second_drive_goes_with_its_link() -> None:
 
 
 def test_a_new_machine_takes_the_place_of_a_tool() -> None:
-    desk = Desk()
+    desk = PageBackend()
     told = [*desk.receive(message_of({"type": "open", "seq": 1, "example": "pole-saw"}))]
     assert desk.tool is not None, told
     (told,) = desk.receive(message_of({"type": "open", "seq": 2, "new": True}))

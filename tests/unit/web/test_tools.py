@@ -11,7 +11,7 @@ import pytest
 import equipoise as eq
 from equipoise.handheld.modes import vibrate_tool
 from equipoise.i18n import said, speaking
-from equipoise.web.desk import Desk, begun
+from equipoise.web.desk import PageBackend, begun
 from equipoise.web.messages import message_of
 from equipoise.web.tools import tool_of_file
 from surface.running import TOOLS, example_text
@@ -25,7 +25,7 @@ HELD = example_text("brush-cutter").replace(OWN, 'impedance = "hand.csv"\n')
 HAND = "frequency [Hz],resistance [N s/m],reactance [N s/m]\n1,90,-1400\n5000,90,-1\n"
 
 
-def ask(desk: Desk, asked: str, /, **values):
+def ask(desk: PageBackend, asked: str, /, **values):
     """The answers to a message, which goes by way of JSON."""
     message = message_of(json.loads(json.dumps({"type": asked, "seq": 1, **values})))
     return [*desk.receive(message)]
@@ -42,7 +42,7 @@ def figures(content):
     return {one["name"]: one for one in content["figures"]}
 
 
-def setting(desk: Desk, text: str, commit=True, path=PATH):
+def setting(desk: PageBackend, text: str, commit=True, path=PATH):
     edits = [{"set": path, "text": text}]
     return ask(desk, "edit", commit=commit, label=path, edits=edits)
 

@@ -46,7 +46,7 @@ def read(data: bytes, marks: Marks, unit: float | None) -> Read:
     if b"ENTITIES" not in data:
         raise ModelError("", NONE)
     try:
-        with _heard() as warnings:
+        with _warnings() as warnings:
             document, _ = recover.read(BytesIO(data))
             drawing = _drawing(document, unit)
     except (EquipoiseError, MemoryError):
@@ -62,16 +62,16 @@ def read(data: bytes, marks: Marks, unit: float | None) -> Read:
 
 
 @contextmanager
-def _heard() -> Iterator[list[str]]:
+def _warnings() -> Iterator[list[str]]:
     """What ezdxf warns of meanwhile, which nobody else is told."""
-    heard: list[str] = []
+    warnings: list[str] = []
     handler = logging.Handler()
-    handler.emit = lambda record: heard.append(record.getMessage())  # type: ignore[method-assign]
+    handler.emit = lambda record: warnings.append(record.getMessage())  # type: ignore[method-assign]
     logger = logging.getLogger("ezdxf")
     logger.addHandler(handler)
     propagated, logger.propagate = logger.propagate, False
     try:
-        yield heard
+        yield warnings
     finally:
         logger.propagate = propagated
         logger.removeHandler(handler)

@@ -25,7 +25,7 @@ SMALL, LARGE = 2_000_000, 20_000_000
 """Bytes of a text, and of a drawing, that are read at most."""
 
 
-DRAWN = ("frame", "guide", "link", "tolerance", "unit")
+DRAWING_OPTIONS = ("frame", "guide", "link", "tolerance", "unit")
 
 
 MODELS = ("frame", "pin")
@@ -67,17 +67,17 @@ FORMATS: Mapping[str, ImportFormat] = {
             "DXF drawing",
             "lines, polylines, circles, hatchings, blocks",
             (".dxf",),
-            lambda data, told: dxf.read(data, told.marks, told.unit),
-            takes=DRAWN,
+            lambda data, options: dxf.read(data, options.marks, options.unit),
+            takes=DRAWING_OPTIONS,
         ),
         ImportFormat(
             "svg",
             "SVG drawing",
             "lines, paths, polygons, circles, groups",
             (".svg",),
-            lambda root, told: svg.read(root, told.marks, told.unit),
+            lambda root, options: svg.read(root, options.marks, options.unit),
             "svg",
-            takes=DRAWN,
+            takes=DRAWING_OPTIONS,
         ),
         ImportFormat(
             "mjcf",
@@ -85,7 +85,7 @@ FORMATS: Mapping[str, ImportFormat] = {
             "bodies, hinges, slides, connect, weld, gears, springs, "
             "masses of bodies and shapes, the drive",
             (".xml", ".mjcf"),
-            lambda root, told: mjcf.read(root, told.bodies),
+            lambda root, options: mjcf.read(root, options.bodies),
             "mujoco",
             MODELS,
         ),
@@ -94,7 +94,7 @@ FORMATS: Mapping[str, ImportFormat] = {
             "URDF",
             "links, revolute, continuous, prismatic, planar and fixed joints, mimic, masses",
             (".urdf",),
-            lambda root, told: urdf.read(root, told.bodies),
+            lambda root, options: urdf.read(root, options.bodies),
             "robot",
             MODELS,
         ),
@@ -103,7 +103,7 @@ FORMATS: Mapping[str, ImportFormat] = {
             "Linkage",
             "connectors, links, anchors, sliders, the input",
             (".linkage2", ".linkage"),
-            lambda root, told: linkage2.read(root, told.unit),
+            lambda root, options: linkage2.read(root, options.unit),
             "linkage2",
         ),
         ImportFormat(
@@ -111,7 +111,7 @@ FORMATS: Mapping[str, ImportFormat] = {
             "PMKS+",
             "joints, links, sliders on the frame, the input",
             (".pmks",),
-            lambda text, told: pmks.read(text, told.unit),
+            lambda text, options: pmks.read(text, options.unit),
         ),
     )
 }
@@ -166,11 +166,11 @@ def import_machine(
             )
         )
     bodies = Bodies(tuple(frame), tuple(pin))
-    told = ImportOptions(Marks(tuple(frame), tuple(guide), tuple(link), tolerance), bodies, unit)
+    options = ImportOptions(Marks(tuple(frame), tuple(guide), tuple(link), tolerance), bodies, unit)
     try:
         kind, content = _opened(path)
-        _check(kind, told)
-        read = kind.read(content, told)
+        _check(kind, options)
+        read = kind.read(content, options)
     except FileError as problem:
         raise ModelError("", problem.note, source) from problem
     except ModelError as error:
@@ -213,14 +213,14 @@ def _opened(path: str | os.PathLike[str]) -> tuple[ImportFormat, Any]:
     """The kind of a file by its content and its ending, and what is in it."""
     ending = Path(os.fspath(path)).suffix.casefold()
     by_ending = next((format for format in FORMATS.values() if ending in format.endings), None)
-    drawn = by_ending in (FORMATS["dxf"], FORMATS["svg"])
+    is_drawing = by_ending in (FORMATS["dxf"], FORMATS["svg"])
     if by_ending is FORMATS["dxf"] and not (data := read_bytes(path, LARGE)).startswith(b"<"):
         return by_ending, data
-    text = read_text(path, LARGE if drawn else SMALL)
+    text = read_text(path, LARGE if is_drawing else SMALL)
     if by_ending is FORMATS["pmks"] or re.match(r"\s*https?://\S+\?\S+\s*$", text):
         return FORMATS["pmks"], text
     if not by_ending and not text.lstrip().startswith("<"):
-        known = ", ".join(one for kind in FORMATS.values() for one in kind.endings)
+        known = ", ".join(ending for kind in FORMATS.values() for ending in kind.endings)
         raise ModelError(
             "", Note("it is of no kind that is read; give one of {known}", known=known)
         )

@@ -187,7 +187,7 @@ def _check(outline: MachineDraft) -> None:
     outline.machine()
 
 
-def _crank(outline: MachineDraft, wanted: str, told: str) -> tuple[str, str]:
+def _crank(outline: MachineDraft, wanted: str, given: str) -> tuple[str, str]:
     """The driven link, and how it was found where nobody told."""
     turning = [name for name, link in outline.links.items()
                if sum(point in outline.frame for point in link.points) == 1]  # fmt: skip
@@ -206,8 +206,8 @@ def _crank(outline: MachineDraft, wanted: str, told: str) -> tuple[str, str]:
                 )
             )
         return wanted, ""
-    if told in turning:
-        return told, ""
+    if given in turning:
+        return given, ""
     by_name = [item for item in turning if item.casefold().startswith(CRANKS)]
     tried = [*dict.fromkeys((*by_name, *turning))][:MOST]
     able = [name for name in tried if _turns(outline, name)] if outline.mobility == 1 else []

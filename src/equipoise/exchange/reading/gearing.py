@@ -45,7 +45,7 @@ def gears(
                     "carrier does; leave it out"
                 ),
             )
-        gear = min(able, key=lambda one: (one.driver not in moved, _joints(outline, one.driven)))
+        gear = min(able, key=lambda gear: (gear.driver not in moved, _joints(outline, gear.driven)))
         moved.add(gear.driven)
         yield gear
 

@@ -38,13 +38,13 @@ def outline_of(
     """
     poses = {name: _pose([places[point] for point in points]) for name, points in links.items()}
     size = max(map(abs, places.values()), default=0.0)
-    made = {name: Link(points={point: clean_place(poses[name].into(places[point]), size)
+    moving = {name: Link(points={point: clean_place(poses[name].into(places[point]), size)
                                for point in points})
             for name, points in links.items()}  # fmt: skip
     sliders = []
     for slot in slots:
-        block = free("block", made)
-        made[block] = Link(points={slot.point: (0.0, 0.0)}, mass=0.0, center_of_mass=(0.0, 0.0),
+        block = free("block", moving)
+        moving[block] = Link(points={slot.point: (0.0, 0.0)}, mass=0.0, center_of_mass=(0.0, 0.0),
                            inertia=0.0)  # fmt: skip
         poses[block] = LinkPlacement(places[slot.point], slot.way)
         on = (STILL if slot.on == FRAME else poses[slot.on]).angle
@@ -52,7 +52,7 @@ def outline_of(
             Slider(block, slot.point, slot.on, slot.through, clean(slot.way - on, "angle"))
         )
     still = {point: clean_place(places[point], size) for point in frame}
-    return MachineDraft(still, made, poses, None, tuple(sliders), {"title": title})
+    return MachineDraft(still, moving, poses, None, tuple(sliders), {"title": title})
 
 
 def _pose(places: Sequence[complex]) -> LinkPlacement:

@@ -22,7 +22,7 @@ UNIT = 0.0254 / 96
 """m, of its coordinates."""
 MOST = 2000
 """Connectors and links; no linkage has so many."""
-DRAWN = 1
+DRAWING_LAYER = 1
 """Layer of what is only drawn."""
 
 
@@ -55,7 +55,7 @@ class _File:
                 "", Note("it has more than {most} connectors and links; give a linkage", most=MOST)
             )
         for part in root.findall("connector"):
-            if _layer(part) == DRAWN:
+            if _layer(part) == DRAWING_LAYER:
                 continue
             place = complex(number(part, "x", "0"), number(part, "y", "0")) * unit
             rpm = number(part, "rpm", "0") if part.get("input") == "true" else None
@@ -71,12 +71,12 @@ class _File:
         links = self._links()
         points = {name: [self.connectors[item].name for item in ids] for name, ids in links.items()}
         places = {connector.name: connector.place for connector in self.connectors.values()}
-        held = {point for own in points.values() for point in own}
+        on_links = {point for own in points.values() for point in own}
         slots = [slot for part in self.root.findall("connector")
                  if part.get("slider") == "true" and (slot := self._slot(part, links))]  # fmt: skip
         guides = {slot.through for slot in slots if slot.on == FRAME}
         frame = [connector.name for connector in self.connectors.values() if connector.still
-                 and (connector.name in held or connector.name in guides)]  # fmt: skip
+                 and (connector.name in on_links or connector.name in guides)]  # fmt: skip
         crank, speed = self._driven(links)
         outline = outline_of("", places, points, frame, slots)
         return Read(outline, crank, speed, tuple(self.notes))
@@ -86,7 +86,7 @@ class _File:
         texts: dict[str, list[str]] = {}
         names: dict[str, str] = {}
         for item in (*self.root.findall("Link"), *self.root.findall("element")):
-            if _layer(item) == DRAWN:
+            if _layer(item) == DRAWING_LAYER:
                 continue
             if item.get("gear") == "true" or item.get("actuator") == "true":
                 raise ModelError(

@@ -29,8 +29,8 @@ from equipoise.exchange.reading.spatial import (
     SpatialOptions,
     by_euler,
     by_quaternion,
+    combined,
     direction,
-    together,
     turned,
 )
 from equipoise.i18n import Note
@@ -143,7 +143,7 @@ class _Model:
         elif len(lumps) < len(shapes):
             self.space.note("the masses of links with meshes and no inertial are left open")
         elif lumps and self.from_geoms != "false":
-            solid.lump = together(lumps)
+            solid.lump = combined(lumps)
         elif not joints:
             solid.lump = Lump(0.0, solid.axes.origin, np.zeros((3, 3)))
 
@@ -241,8 +241,8 @@ class _Model:
     # -- what holds and drives -----------------------------------------------------------------
 
     def _equalities(self) -> None:
-        held = (item for group in self.root.findall("equality") for item in group)
-        for place, entry in enumerate(held, 1):
+        equalities = (item for group in self.root.findall("equality") for item in group)
+        for place, entry in enumerate(equalities, 1):
             if entry.get("active") == "false":
                 continue
             name = entry.get("name") or f"{entry.tag} {place}"

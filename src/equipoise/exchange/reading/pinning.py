@@ -37,9 +37,9 @@ class Pinning:
 
     def at(self, link: str, place: complex) -> int | None:
         """The point of a link at a place of the frame, m."""
-        near, pose = SAME * self.size, self.pose(link)
+        tolerance, pose = SAME * self.size, self.pose(link)
         result = (item for item, local in self.points[link].items()
-                 if abs(pose.out(local) - place) <= near)  # fmt: skip
+                 if abs(pose.out(local) - place) <= tolerance)  # fmt: skip
         return next(result, None)
 
     def put(self, link: str, place: complex, wish: str) -> int:
@@ -56,18 +56,18 @@ class Pinning:
         there = self.at(link, place)
         return self.put(link, place, wish) if there is None else there
 
-    def pin(self, name: str, one: tuple[str, complex], other: tuple[str, complex]) -> None:
+    def pin(self, name: str, first: tuple[str, complex], other: tuple[str, complex]) -> None:
         """Make one of a point of each of two links.
 
         Raises
         ------
         ModelError : the links are pinned elsewhere already.
         """
-        kept, gone = (self.held(*end, name) for end in (one, other))
-        if kept == gone:
+        remaining, gone = (self.held(*end, name) for end in (first, other))
+        if remaining == gone:
             return
-        if any({kept, gone} <= points.keys() for points in self.points.values()):
-            links = f"{one[0]!r} and {other[0]!r}"
+        if any({remaining, gone} <= points.keys() for points in self.points.values()):
+            links = f"{first[0]!r} and {other[0]!r}"
             raise ModelError(
                 f"joint {name!r}",
                 Note(
@@ -75,11 +75,11 @@ class Pinning:
                     links=links,
                 ),
             )
-        self.wishes[kept] += self.wishes.pop(gone)
+        self.wishes[remaining] += self.wishes.pop(gone)
         self.wishes[gone] = []
         for points in self.points.values():
             if gone in points:
-                points[kept] = points.pop(gone)
+                points[remaining] = points.pop(gone)
 
     def named(self) -> dict[int, str]:
         """A name for every point, those of pins first; no two have the same."""

@@ -21,7 +21,7 @@ from equipoise.exchange.reading.spatial import (
     Solid,
     Space,
     SpatialOptions,
-    together,
+    combined,
 )
 from equipoise.i18n import Note
 from equipoise.mechanism.kinematics.outline import LinkPlacement, MachineDraft
@@ -217,7 +217,7 @@ class _Flat:
         lumps = [part.lump for part in parts if part.lump is not None]
         if len(lumps) < len(parts):
             return {}
-        whole = together(lumps)
+        whole = combined(lumps)
         local = self.pins.pose(link).into(self.flat(whole.center))
         inertia = float(self.normal @ whole.inertia @ self.normal) if whole.mass else 0.0
         if whole.mass < 0 or inertia < 0:

@@ -80,7 +80,7 @@ def _machine(
     for entry in joints:
         name = entry.name or entry.key
         points[entry.key] = name if name not in points.values() else free(name, points.values())
-    made: dict[str, list[str]] = {}
+    points_of_links: dict[str, list[str]] = {}
     slots: list[SlotLine] = []
     extra: dict[str, complex] = {}
     crank = ""
@@ -96,16 +96,22 @@ def _machine(
         if slide is not None:
             slots += _slots(own, slide, points, extra)
         elif text[:1] == "Y" and keys:
-            name = free(name, made) if name in made or name == FRAME or not name else name
-            made[name] = [points[key] for key in dict.fromkeys(keys)]
+            name = (
+                free(name, points_of_links)
+                if name in points_of_links or name == FRAME or not name
+                else name
+            )
+            points_of_links[name] = [points[key] for key in dict.fromkeys(keys)]
             if any(item.flags & INPUT and item.flags & STILL for item in own):
                 crank = crank or name
     places = {points[joint.key]: joint.place for joint in joints} | extra
-    held = {point for own in made.values() for point in own}
+    on_links = {point for own in points_of_links.values() for point in own}
     frame = [
-        points[joint.key] for joint in joints if joint.flags & STILL and points[joint.key] in held
+        points[joint.key]
+        for joint in joints
+        if joint.flags & STILL and points[joint.key] in on_links
     ]
-    outline = outline_of("", places, made, [*frame, *extra], slots)
+    outline = outline_of("", places, points_of_links, [*frame, *extra], slots)
     return Read(outline, crank, speed or None, tuple(notes))
 
 

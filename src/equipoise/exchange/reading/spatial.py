@@ -62,7 +62,7 @@ class Lump:
         return Lump(self.mass, at.out(self.center), at.turn @ self.inertia @ at.turn.T)
 
 
-def together(lumps: list[Lump]) -> Lump:
+def combined(lumps: list[Lump]) -> Lump:
     """Several as one."""
     mass = sum(lump.mass for lump in lumps)
     if not mass:

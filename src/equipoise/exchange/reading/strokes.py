@@ -18,7 +18,7 @@ from equipoise.mechanism.parts.machine import FRAME
 
 MOST = 1000
 """Corners of lines, and circles, beyond which a drawing is none of a skeleton."""
-TOGETHER = 1e-6
+COINCIDENT = 1e-6
 """Distance over the size of the drawing below which ends meet, where none is told."""
 PIVOT = 0.2
 """Radius over the size of the drawing above which a circle marks no pivot."""
@@ -27,7 +27,7 @@ NEARLY = 0.01
 FRAMES = ("frame", "ground", "fixed", "base")
 GUIDES = ("guide", "slider", "rail")
 """Names of what stands still, and of lines on which ends slide, where none are told."""
-BESIDE = (
+IGNORED = (
     "path",
     "part",
     "dimensions",
@@ -147,8 +147,8 @@ def _distance(place: complex, start: complex, end: complex) -> float:
     return abs(place - start - min(max(share, 0.0), 1.0) * way)
 
 
-def _named(one: DrawnLine | Ring, names: Iterable[str]) -> bool:
-    own = {part for name in one.names for part in (name.casefold(), _first(name))}
+def _named(item: DrawnLine | Ring, names: Iterable[str]) -> bool:
+    own = {part for name in item.names for part in (name.casefold(), _first(name))}
     return any(name.casefold() in own for name in names)
 
 
@@ -165,13 +165,13 @@ class _Skeleton:
         self.grounds = [item for item in every if _named(item, frames)]
         self.guides = [stroke for stroke in drawing.strokes if _named(stroke, guides)]
         taken = {id(ground) for ground in (*self.grounds, *self.guides)}
-        beside = [item for item in every if _first((*item.names, "")[0]) in BESIDE]
-        if beside:
-            drawn = "paths, parts, springs, gears, belts, racks and cams"
-            drawing.note(f"{len(beside)} lines and circles of {drawn} are left out")
-        taken |= {id(item) for item in beside}
+        ignored = [item for item in every if _first((*item.names, "")[0]) in IGNORED]
+        if ignored:
+            kinds = "paths, parts, springs, gears, belts, racks and cams"
+            drawing.note(f"{len(ignored)} lines and circles of {kinds} are left out")
+        taken |= {id(item) for item in ignored}
         lines = [stroke for stroke in drawing.strokes if id(stroke) not in taken]
-        rings = [ring for ring in drawing.rings if ring not in beside]
+        rings = [ring for ring in drawing.rings if ring not in ignored]
         corners = sum(len(line.places) for line in (*lines, *self.grounds, *self.guides)
                       if isinstance(line, DrawnLine))  # fmt: skip
         if max(corners, len(rings)) > MOST:
@@ -185,7 +185,7 @@ class _Skeleton:
         places = [place for stroke in drawing.strokes for place in stroke.places]
         xs, ys = zip(*((place.real, place.imag) for place in places), strict=True)
         self.size = max(max(xs) - min(xs), max(ys) - min(ys))
-        self.near = marks.together or TOGETHER * self.size
+        self.near = marks.together or COINCIDENT * self.size
         self.pivots = self._pivots(rings, lines)
         self.joints: list[complex] = [pivot.center for pivot in self.pivots]
         self.bodies = [*self._bodies(lines)]
@@ -206,8 +206,10 @@ class _Skeleton:
             on = self._carrier(guide, links)
             own = frame if on == FRAME else links[on]
             start, end = guide.places[0], guide.places[-1]
-            near = (point for point in points if guide.distance(self.joints[point]) <= self.near)
-            sliding = [points[item] for item in near if points[item] not in own]
+            on_guide = (
+                point for point in points if guide.distance(self.joints[point]) <= self.near
+            )
+            sliding = [points[item] for item in on_guide if points[item] not in own]
             if sliding:
                 through = free("G", places)
                 places[through] = start
@@ -222,10 +224,10 @@ class _Skeleton:
         """Ends that nearly meet, and links that are joined to nothing."""
         ends = sorted({number for _, corners in self.bodies for number in corners})
         gaps = (abs(self.joints[end] - self.joints[other]) for end, other in combinations(ends, 2))
-        near = min((gap for gap in gaps if self.near < gap < NEARLY * self.size), default=0.0)
-        if near:
-            wide = float(f"{2e3 * near:.1g}")
-            yield (f"two ends nearly meet, {1e3 * near:.2g} mm apart; --tolerance '{wide:g} mm' "
+        gap = min((gap for gap in gaps if self.near < gap < NEARLY * self.size), default=0.0)
+        if gap:
+            wide = float(f"{2e3 * gap:.1g}")
+            yield (f"two ends nearly meet, {1e3 * gap:.2g} mm apart; --tolerance '{wide:g} mm' "
                    "would join them")  # fmt: skip
         holders = Counter(chain(frame, *links.values()))
         for name, points in links.items():
@@ -250,7 +252,7 @@ class _Skeleton:
         as a flywheel.
         """
         items: list[Ring] = []
-        for ring in sorted(rings, key=lambda one: one.radius):
+        for ring in sorted(rings, key=lambda circle: circle.radius):
             if not 0 < ring.radius < PIVOT * self.size:
                 continue
             inside = [item for item in items if abs(item.center - ring.center) <= ring.radius]
@@ -268,7 +270,7 @@ class _Skeleton:
         groups = [[line for line in lines if _named(line, [name])] for name in self.marks.link]
         grouped = {id(item) for group in groups for item in group}
         groups += [[line] for line in lines if id(line) not in grouped]
-        seen = set()
+        used = set()
         for group in groups:
             corners = [*dict.fromkeys(self._joint(z) for item in group for z in item.places)]
             on = (number for number, ring in enumerate(self.pivots)
@@ -276,8 +278,8 @@ class _Skeleton:
             corners = [*dict.fromkeys((*corners, *on))]
             if len(corners) < 2:
                 self.drawing.note("lines that lie wholly in a circle of a pivot are left out")
-            elif frozenset(corners) not in seen:
-                seen.add(frozenset(corners))
+            elif frozenset(corners) not in used:
+                used.add(frozenset(corners))
                 yield group, corners
 
     def _joint(self, place: complex) -> int:
@@ -299,8 +301,8 @@ class _Skeleton:
         used = dict.fromkeys(number for _, corners in self.bodies for number in corners)
         texts: dict[int, str] = {}
         for place, word in self.drawing.words:
-            near = (item for item in used if abs(self.joints[item] - place) <= self.near)
-            if (at := next(near, None)) is not None and word not in texts.values():
+            close = (item for item in used if abs(self.joints[item] - place) <= self.near)
+            if (at := next(close, None)) is not None and word not in texts.values():
                 texts.setdefault(at, word)
         names = (*ascii_uppercase, *(f"P{number}" for number in range(1, len(used) + 1)))
         free_names = (name for name in names if name not in texts.values())

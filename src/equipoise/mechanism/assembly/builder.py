@@ -191,8 +191,8 @@ class Builder:
         them, also where it was solved from one that stands for such a point in a joint.
         """
         for rider in joints.riders.values():
-            for link, held in rider.held.items():
-                own = held.get(self.anchors.get(link, "")) if link in group.links else None
+            for link, points in rider.held.items():
+                own = points.get(self.anchors.get(link, "")) if link in group.links else None
                 if own is not None:
                     steps = (*group.motion, *self.reach(link, own))
                     group = replace(group, motion=steps)

@@ -16,7 +16,7 @@ from equipoise.i18n import Note, key_names
 from equipoise.keys import with_fields
 from equipoise.mechanism.assembly.builder import Guide
 from equipoise.mechanism.assembly.cam_shapes import (
-    BESIDE,
+    KNOT_OFFSET,
     Array,
     CamShape,
     FollowerPath,
@@ -35,7 +35,7 @@ STEEPEST = 1e-6
 """Cosine of the pressure angle at which the follower jams."""
 BOTH = {(1, 0), (0, 1)}
 """Numbers of sliding joints and pins between follower and carrier: one of them."""
-NEAR, FEWEST, WIDEST = 0.1, 8, radians(3)
+ZERO_MARGIN, FEWEST, WIDEST = 0.1, 8, radians(3)
 """Of a value's size: what is lower may be below 0 between angles of a cam that are this far apart,
 and so many in each piece of its law."""
 AT_ONCE = 128
@@ -264,17 +264,17 @@ def larger_base(machine: Machine, joints: Structure, cam: Cam) -> float | None:
     low, high = cam.base_radius, LARGEST * cam.base_radius
     for _ in range(2):
         radii = np.geomspace(low, high, RADII)
-        right = np.flatnonzero(_made(machine, joints, cam, radii))
+        right = np.flatnonzero(_feasible_radii(machine, joints, cam, radii))
         if not len(right):
             return None
         low, high = radii[max(right[0] - 1, 0)], radii[right[0]]
     step = 10.0 ** (floor(log10(high)) + 1 - DIGITS)
     radii = np.arange(np.ceil(low / step), np.ceil(high / step) + 1) * step
-    right = np.flatnonzero(_made(machine, joints, cam, radii))
+    right = np.flatnonzero(_feasible_radii(machine, joints, cam, radii))
     return float(radii[right[0]]) if len(right) else None
 
 
-def _made(machine: Machine, joints: Structure, cam: Cam, radii: Array) -> Array:
+def _feasible_radii(machine: Machine, joints: Structure, cam: Cam, radii: Array) -> Array:
     """With which base radii (R,), m, a cam can be made."""
     several = with_fields(cam, base_radius=radii[:, None])  # a column of designs
     alone = replace(joints, couplings=(several,))
@@ -285,9 +285,9 @@ def _made(machine: Machine, joints: Structure, cam: Cam, radii: Array) -> Array:
 def can_be_made(fit: CamFit) -> Array:
     """Of which designs (P, 1), whose numbers are columns, the cam can be made."""
     cam = fit.cam
-    made: Array = np.isfinite(fit.rest) & (np.asarray(cam.base_radius) > 0)
+    feasible: Array = np.isfinite(fit.rest) & (np.asarray(cam.base_radius) > 0)
     if cam.rides == "roller":
-        made = made & (np.asarray(cam.roller_radius) > 0)
+        feasible = feasible & (np.asarray(cam.roller_radius) > 0)
     count, knots = np.size(fit.rest), fit.knots
     shape = fit.shape(_spread(knots))
     with np.errstate(all="ignore"):
@@ -295,25 +295,25 @@ def can_be_made(fit: CamFit) -> Array:
             some = slice(begin, begin + AT_ONCE)
             for demand in _demands(cam):
                 least = np.min(demand.value(shape.of(some)), axis=-1, keepdims=True)
-                made[some] &= least > 0
-                near = made[some] & (least < NEAR * design(demand.size, some))
-                for k in begin + np.flatnonzero(near):
-                    made[k] = lowest(shape.of(k), demand.value, knots)[0] > 0
-    return made
+                feasible[some] &= least > 0
+                doubtful = feasible[some] & (least < ZERO_MARGIN * design(demand.size, some))
+                for k in begin + np.flatnonzero(doubtful):
+                    feasible[k] = lowest(shape.of(k), demand.value, knots)[0] > 0
+    return feasible
 
 
 def _spread(knots: Array) -> Array:
     """Cam angles, rad, between which no value is lower by as much as `NEAR`."""
     ends = np.append(knots, knots[0] + 2 * pi)
     counts = np.maximum(FEWEST, np.ceil(np.diff(ends) / WIDEST)).astype(int)
-    pairs = zip(ends + BESIDE, ends[1:] - BESIDE, counts, strict=False)
+    pairs = zip(ends + KNOT_OFFSET, ends[1:] - KNOT_OFFSET, counts, strict=False)
     return np.concatenate([np.linspace(*pair) for pair in pairs])
 
 
 def _demands(cam: Cam) -> Iterator[RequiredWrench]:
     if cam.rides == "flat":
         yield RequiredWrench(
-            lambda one: 1 - STEEPEST - one.ride.turn_1,
+            lambda shape: 1 - STEEPEST - shape.ride.turn_1,
             lambda _, angle: Note(
                 "at cam angle {angle:.4g} deg the follower turns as fast as the cam, which no flat "
                 "face can do; give it less swing there, or more time",
@@ -331,7 +331,9 @@ def _demands(cam: Cam) -> Iterator[RequiredWrench]:
         ),
     )
     if cam.rides == "flat":
-        yield RequiredWrench(lambda one: one.radius_of_curvature, _undercut_flat, cam.base_radius)
+        yield RequiredWrench(
+            lambda shape: shape.radius_of_curvature, _undercut_flat, cam.base_radius
+        )
         return
     # the curve of a roller's centre bends less than the roller, outward and in a groove inward
     for sign in (1.0, -1.0) if cam.closed_by == "groove" else (1.0,):

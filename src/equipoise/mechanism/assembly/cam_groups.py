@@ -175,8 +175,8 @@ def _follower(builder: Builder, joints: Structure, fit: CamFit) -> Group:
     motion += builder.reach(cam.driven, cam.point)
     motion += _touch(fit)
     ground, push, *forces = _forces(builder, joints, fit)
-    held = builder.hand_over(ground), builder.hand_over(push)
-    return Group("coupled", (cam.driven,), tuple(motion), (*forces, *held), (ground, push))
+    reactions = builder.hand_over(ground), builder.hand_over(push)
+    return Group("coupled", (cam.driven,), tuple(motion), (*forces, *reactions), (ground, push))
 
 
 def _turning(body: str) -> tuple[str, str]:
@@ -228,9 +228,9 @@ def _touch(fit: CamFit) -> list[Step]:
     ends, parts = (place, f"p({fit.cam_pin})", rate), (contact, f"normal({name})")
     if fit.face is None:
         return [towards, KernelCall(kernels.touch_round, ends, (cam.roller_radius,), parts), rising]
-    more = (*ends, f"u({cam.driven})", f"y1({name})")
+    face_inputs = (*ends, f"u({cam.driven})", f"y1({name})")
     sense = fit.sense if fit.guide is None else 0.0
-    return [towards, KernelCall(kernels.touch_flat, more, (fit.face, sense), parts), rising]
+    return [towards, KernelCall(kernels.touch_flat, face_inputs, (fit.face, sense), parts), rising]
 
 
 def _at(cam: Cam) -> str:

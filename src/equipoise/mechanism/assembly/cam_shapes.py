@@ -28,7 +28,7 @@ Law = Callable[[Any], tuple[Any, Any, Any]]
 
 GRID = 3600
 """Angles of the cam among which the sharpest place is looked for."""
-BESIDE = 1e-7
+KNOT_OFFSET = 1e-7
 """rad: how far beside an angle at which a law changes is looked; nearer, rounding decides."""
 
 
@@ -210,8 +210,8 @@ def lowest(
 
     knots : angles at which the law changes, to both sides of which is looked.
     """
-    beside = np.concatenate([knots - BESIDE, knots + BESIDE])
-    angles = np.unique(np.concatenate([np.arange(GRID) * (2 * pi / GRID), beside % (2 * pi)]))
+    around_knots = np.concatenate([knots - KNOT_OFFSET, knots + KNOT_OFFSET])
+    angles = np.unique(np.concatenate([np.arange(GRID) * (2 * pi / GRID), around_knots % (2 * pi)]))
     width, best = 2 * pi / GRID, (np.inf, 0.0)
     for _ in range(4):
         with np.errstate(all="ignore"):

@@ -83,7 +83,7 @@ def turns_given(machine: Machine) -> int:
 def close(
     machine: Machine,
     groups: Iterable[Group],
-    near: Cycle | None = None,
+    guess: Cycle | None = None,
     check: Callable[[State], None] | None = None,
 ) -> Cycle:
     """Find the cycle of a linkage, given the groups in which it is solved.
@@ -109,7 +109,7 @@ def close(
         )
     while turns <= min(MOST_TURNS, MOST_LOOP_TURNS * base):
         tried = turns
-        grid = _Grid(machine, turns, near)
+        grid = _Grid(machine, turns, guess)
         try:
             for group in groups:
                 grid.add(group)
@@ -139,12 +139,12 @@ class _LongerCycle(Exception):
 class _Grid:
     """A run of the steps, group by group, over a number of turns of the crank."""
 
-    def __init__(self, machine: Machine, turns: int, near: Cycle | None) -> None:
+    def __init__(self, machine: Machine, turns: int, guess: Cycle | None) -> None:
         self.machine, self.turns = machine, turns
         points = POINTS_PER_TURN if turns <= MANY_TURNS else FEWER_POINTS
         self.theta = np.linspace(0.0, 2 * pi * turns, points * turns + 1)
         self.state = initial_state(machine, self.theta)
-        for name, table in near.tables.items() if near is not None else ():
+        for name, table in guess.tables.items() if guess is not None else ():
             self.state[f"near({name})"] = table
         self.done: list[Group] = []
         self.tables: dict[str, Array] = {

@@ -44,7 +44,7 @@ from equipoise.mechanism.assembly.steps import (
     u,
 )
 from equipoise.mechanism.formulas import kernels
-from equipoise.mechanism.formulas.rolling import beside
+from equipoise.mechanism.formulas.rolling import stacked
 from equipoise.mechanism.parts.bodies import Body
 from equipoise.mechanism.parts.body_checks import outlined_by_columns
 from equipoise.mechanism.parts.couplings import coupling_kinds
@@ -167,7 +167,7 @@ def _beside(values: tuple[Any, ...]) -> Any:
     if not callable(values[0]):
         return column(values)
     with suppress(ValueError):
-        return beside(values)
+        return stacked(values)
 
     def law(angles: Any) -> tuple[Array, ...]:
         rows = (value(row) for value, row in zip(values, angles, strict=True))
@@ -290,24 +290,24 @@ def _no_column(paths: str) -> UsageError:
     )
 
 
-def _filled(parts: Mapping[Part, Array], held: Any) -> Any:
+def _filled(parts: Mapping[Part, Array], template: Any) -> Any:
     """What holds numbers with columns for some of them, which have to be given."""
-    if isinstance(held, tuple):
-        return _pair(held, parts)
-    if isinstance(held, Mapping) and parts.keys() <= held.keys():
-        return {**held, **parts}
-    if not isinstance(held, Frozen):
+    if isinstance(template, tuple):
+        return _pair(template, parts)
+    if isinstance(template, Mapping) and parts.keys() <= template.keys():
+        return {**template, **parts}
+    if not isinstance(template, Frozen):
         raise KeyError
     fields: dict[str, Any] = {}
     for part, column in parts.items():
         name, place = (part, None) if isinstance(part, str) else part
-        value = fields.get(name, getattr(held, name))
+        value = fields.get(name, getattr(template, name))
         if value is None or (place is not None) != isinstance(value, tuple):
             raise KeyError
         if place is not None and place >= len(value):
             raise KeyError
         fields[name] = column if place is None else (*value[:place], column, *value[place + 1 :])
-    return with_fields(held, **held.following(fields))
+    return with_fields(template, **template.following(fields))
 
 
 def _check_outlines(machine: Machine) -> None:

@@ -88,10 +88,10 @@ class FullTurn:
         """Close in on dips of a dyad's margin, near crank angles (D,): the angle and the value."""
         values, width = angles, self.theta[1]
         for _ in range(4):
-            near = angles[:, None] + np.linspace(-width, width, 41)
-            result = self.margin(group, near.ravel()).reshape(near.shape)
-            best = np.arange(len(near)), np.argmin(result, axis=1)
-            angles, values, width = near[best], result[best], width / 18
+            samples = angles[:, None] + np.linspace(-width, width, 41)
+            result = self.margin(group, samples.ravel()).reshape(samples.shape)
+            best = np.arange(len(samples)), np.argmin(result, axis=1)
+            angles, values, width = samples[best], result[best], width / 18
         return [*zip(angles.tolist(), values.tolist(), strict=True)]
 
     def margin(self, group: Group, theta: Array) -> Array:
@@ -204,12 +204,12 @@ class FullTurn:
     def crossing(self, group: Group, low: float, high: float) -> float:
         """Crank angle between two others at which a dyad's margin passes zero."""
         for _ in range(5):
-            near = np.linspace(low, high, 41)
-            sign = self.margin(group, near) > 0
+            samples = np.linspace(low, high, 41)
+            sign = self.margin(group, samples) > 0
             k = int(np.argmax(sign != sign[0]))
             if k == 0:
                 break
-            low, high = float(near[k - 1]), float(near[k])
+            low, high = float(samples[k - 1]), float(samples[k])
         return 0.5 * (low + high)
 
 

@@ -39,7 +39,7 @@ from equipoise.mechanism.formulas import joint_kernels, kernels
 from equipoise.mechanism.parts.machine import Slider
 
 AHEAD = ("forward", "backward")
-NEAR = 1e-3
+NEAR_PIVOT = 1e-3
 """Distance, over the size of the machine, at which a block counts as near its guide's pivot."""
 
 
@@ -53,7 +53,7 @@ def _dyad(
     at: str = "",
     point: str = "",
     dead: Note | str = "",
-    more: tuple[str, ...] = (),
+    extra: tuple[str, ...] = (),
 ) -> Group:
     """Two links of which the outer joints are known, and that are known afterwards.
 
@@ -68,7 +68,7 @@ def _dyad(
     if inner.kind == "pin":
         builder.pinned.add(inner.name)
     margin = f"s({inner.name})"
-    known = [*(name for outer in outers for name in outer.inputs), *more]
+    known = [*(name for outer in outers for name in outer.inputs), *extra]
     parts = (*u(first), *u(second), *(p(at) if at else ()), margin)
     reach = [step for outer in outers for step in builder.reach(outer.body, outer.point)]
     builder.add({first: reactions[0].at, second: reactions[1].at}, [at] if at else [])
@@ -130,7 +130,7 @@ def _through(
         (kernels.parallelogram, (*arms, side)),
         (joint_kernels.rrr_forces, places, ()),
         at=pin,
-        more=(*p(pivot), *u(closed.here)[1:], *u(closed.there)[1:]),
+        extra=(*p(pivot), *u(closed.here)[1:], *u(closed.there)[1:]),
     )
     return replace(dyad, motion=(*reach, *dyad.motion), through=True)
 
@@ -169,7 +169,7 @@ def rpr(builder: Builder, block: Outer, other: Outer, slider: Slider) -> Group:
         builder,
         (block, other),
         (block.reaction(), other.reaction(), guide_reaction(guide, link, on, block.point)),
-        (kernels.rpr, (offset, guide.turn, back, (NEAR * builder.size()) ** 2, side)),
+        (kernels.rpr, (offset, guide.turn, back, (NEAR_PIVOT * builder.size()) ** 2, side)),
         (joint_kernels.rpr_forces, places, (guide.turn.conjugate(),)),
         point=short,
         dead=Note(

@@ -145,29 +145,31 @@ def held_too_often(joints: Structure, drives: Sequence[str]) -> tuple[str, ...]:
     """The links that too many joints hold; those that are driven where none but they are."""
     known = [FRAME, *drives]
     others = [link for link in joints.bodies[1:] if link not in drives]
-    held = (group for group in subsets(joints, others) if joints.freedom(group, known) < 0)
-    return next(held, tuple(drives))
+    overconstrained = (
+        group for group in subsets(joints, others) if joints.freedom(group, known) < 0
+    )
+    return next(overconstrained, tuple(drives))
 
 
 def _check_apart(machine: Machine, pins: Mapping[str, tuple[str, ...]]) -> None:
     """Two pins of one body at the same place make a length of 0."""
     for body in (FRAME, *machine.links):
-        seen: dict[tuple[float, float], str] = {}
+        by_place: dict[tuple[float, float], str] = {}
         for point, place in machine.points_of(body).items():
             if point not in pins:
                 continue
-            if place in seen:
+            if place in by_place:
                 where = "frame" if body == FRAME else f"links.{body}"
                 raise ModelError(
                     f"{where}.points",
                     Note(
                         "{seen} and {point} lie at the same place; set them apart, or give them "
                         "one name if they are one pin",
-                        seen=seen[place],
+                        seen=by_place[place],
                         point=point,
                     ),
                 )
-            seen[place] = point
+            by_place[place] = point
 
 
 def drive_pivot(joints: Structure, drive: str, where: str = "drive.link") -> str:

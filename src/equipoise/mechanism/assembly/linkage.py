@@ -33,7 +33,7 @@ from equipoise.mechanism.assembly.groups import hung
 from equipoise.mechanism.assembly.joints import Structure, drive_pivot, name_in_outputs, structure
 from equipoise.mechanism.assembly.named_joints import given_properties, pin_radii
 from equipoise.mechanism.assembly.newton import BranchError
-from equipoise.mechanism.assembly.ordering import held, next_group
+from equipoise.mechanism.assembly.ordering import has_two_known_pins, next_group
 from equipoise.mechanism.assembly.parallels import surplus_cranks
 from equipoise.mechanism.assembly.shared import RedundantReactions, shared
 from equipoise.mechanism.assembly.steps import (
@@ -181,7 +181,7 @@ class Linkage(Brief):
         return run(self.motion, state)
 
 
-def assemble(machine: Machine, near: Cycle | None = None) -> Linkage:
+def assemble(machine: Machine, guess: Cycle | None = None) -> Linkage:
     """Order the links of a machine into steps.  The result is kept with the machine.
 
     near : motion of a machine of the same build that differs by little, if one is known.
@@ -194,7 +194,7 @@ def assemble(machine: Machine, near: Cycle | None = None) -> Linkage:
     """
     linkage: Linkage | None = machine.memory.get(LINKAGE)
     if linkage is None:
-        linkage = replace(ordered(machine, structure(machine)), near=near)
+        linkage = replace(ordered(machine, structure(machine)), near=guess)
         names = [name for name, _ in linkage.named_reactions]
         for name in names:
             if names.count(name) > 1:  # outputs go by the names of joints
@@ -370,7 +370,8 @@ def _grouped(
             ready = [
                 link
                 for link in unknown
-                if link not in pushed and (link not in surplus or held(builder, joints, link))
+                if link not in pushed
+                and (link not in surplus or has_two_known_pins(builder, joints, link))
             ]
             waiting = [link for link in pushed if link in unknown]
             group = hung(builder, joints, waiting) or next_group(builder, joints, ready)

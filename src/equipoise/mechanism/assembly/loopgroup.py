@@ -99,7 +99,9 @@ class LoopForces:
         strengths = iter(solved.transpose(1, 2, 0).reshape(matrix.shape[-1], *demand.shape[:-1]))
         return [list(islice(strengths, loop.unknowns)) for loop in self.loops]
 
-    def matrix(self, state: State, poses: Poses, senses: Sequence[Any], more: int = 0) -> Array:
+    def matrix(
+        self, state: State, poses: Poses, senses: Sequence[Any], extra_columns: int = 0
+    ) -> Array:
         """What each unknown adds to force and moment on each link, (N, 3 n, m + more)."""
         columns = [
             column
@@ -107,7 +109,7 @@ class LoopForces:
             for column in self.columns(loop, poses, sense)
         ]
         rows = 3 * len(self.group.links)
-        matrix = np.zeros((len(columns) + more, rows, *np.shape(state["theta"])))
+        matrix = np.zeros((len(columns) + extra_columns, rows, *np.shape(state["theta"])))
         for column, entries in zip(matrix, columns, strict=False):
             for row, entry in entries.items():
                 column[row] = entry
@@ -231,8 +233,8 @@ class Maker:
             if free := [body for body in bodies if body in self.links]:
                 known = [body for body in bodies if body in self.builder.rank]
                 hub = self.builder.carrier_of(known) if known else free[0]
-                held = [self.end(link, point) for link in free if link != hub]
-                loops += [PinLoop(point, end, self.end(hub, point)) for end in held]
+                ends_on_hub = [self.end(link, point) for link in free if link != hub]
+                loops += [PinLoop(point, end, self.end(hub, point)) for end in ends_on_hub]
         for slider in self.joints.sliders:
             ends = {slider.link, slider.on}
             if ends <= {*self.builder.rank, *self.links} and ends & set(self.links):
@@ -275,8 +277,8 @@ class Maker:
 
     def tree(self, loops: Sequence[Loop]) -> tuple[Place, ...]:
         """Where each link is; one that nothing but couplings, or riders, holds may be anywhere."""
-        held = [self.place(link, loops[k]) for link, k in self.holds.items()]
-        return (*map(Free, self.free), *held)
+        constrained = [self.place(link, loops[k]) for link, k in self.holds.items()]
+        return (*map(Free, self.free), *constrained)
 
     def place(self, link: str, loop: Loop) -> Place:
         here = link == loop.on.body
@@ -336,10 +338,10 @@ def _solve_start(
     before: tuple[Step, ...],
     group: LoopGroup,
     loops: tuple[Loop, ...],
-    near: Position | None,
+    start_guess: Position | None,
 ) -> tuple[LoopGroup, tuple[Loop, ...]]:
     """The group with its solution at crank angle 0 and, from that, the offsets of its couplings."""
-    position = near or builder.machine.position
+    position = start_guess or builder.machine.position
     if position is None:
         raise ModelError(
             "position",
@@ -425,8 +427,8 @@ def _rough(
     links = [*group.shown, *(link for link in group.links if link not in group.shown)]
     links = [link for link in links if link in free]
     for link in links:
-        seen = known if link in group.shown else poses
-        x, y, angle = _guess(builder, anchors, link, seen, position)
+        visible = known if link in group.shown else poses
+        x, y, angle = _guess(builder, anchors, link, visible, position)
         values += [x, y, angle]
         here = (x, y, (np.exp(1j * angle), angle))
         poses[link] = Free(link).pose(poses, here, [0.0] * 3, [0.0] * 3)

@@ -70,14 +70,14 @@ def given_properties(
     ------
     ModelError : there is no such joint, it is named twice, or it has no such property.
     """
-    named, seen = named_joints(joints, reactions), dict[str, str]()
+    named, tables = named_joints(joints, reactions), dict[str, str]()
     varying = {(coupling.table, coupling.name) for coupling in machine.couplings
                if coupling.special}  # fmt: skip
     for where, item in numbered("joints", machine.joints):
         if item.joint not in named:
             raise ModelError(f"{where}.joint", unknown(item.joint, named, "joint"))
         for joint in named[item.joint]:
-            if (before := seen.setdefault(joint.force, where)) != where:
+            if (before := tables.setdefault(joint.force, where)) != where:
                 note = Note(
                     "{joint!r} has its properties in {before}; give them in one table",
                     joint=item.joint,

@@ -93,8 +93,8 @@ class LoopGroup:
         guess = state.get(f"reference({self.reference})")
         with np.errstate(all="ignore"):
             if guess is None:
-                near = state.get(f"near({self.reference})")
-                levels = self.follow(self.start, known, theta, near)
+                guess_levels = state.get(f"near({self.reference})")
+                levels = self.follow(self.start, known, theta, guess_levels)
             else:
                 q = self.solve(guess, known, theta)
                 levels = (q, *self.derivatives(q, known))
@@ -204,15 +204,15 @@ class LoopGroup:
         q2 = -divide(matrix, self.stacked(self.poses(known, q, q1), 2, q.shape[1:]))
         return q1, q2
 
-    def follow(self, start: Array, known: Poses, theta: Array, near: Any = None) -> Levels:
+    def follow(self, start: Array, known: Poses, theta: Array, guess: Any = None) -> Levels:
         """Follow the branch along crank angles, from the solution `start` at the first.
 
         From unknowns `near` it (n, N) all together, if there are such.  Else wide steps first, with
         all angles between them together; where those do not fit, every angle from the one before.
         """
-        if near is not None and near.shape == (len(start), len(theta)):
+        if guess is not None and guess.shape == (len(start), len(theta)):
             with suppress(MotionError):
-                levels = self.joined(near, known, theta)
+                levels = self.joined(guess, known, theta)
                 if np.all(self.sizes(levels[0][:, 0] - start) <= SAME):
                     return levels
         for stride in STRIDES if len(theta) > 1 else ():

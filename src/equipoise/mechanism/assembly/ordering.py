@@ -27,8 +27,8 @@ def next_group(builder: Builder, joints: Structure, unknown: list[str]) -> Group
     if group is not None:
         return group
     outers = {link: outer_joints(builder, joints, link) for link in unknown}
-    for held in outers.values() if joints.surplus else ():
-        pins = [outer for outer in held if outer.guide is None]
+    for joints_out in outers.values() if joints.surplus else ():
+        pins = [outer for outer in joints_out if outer.guide is None]
         if len(pins) > 1 and (group := pointed(builder, pins)):
             return group
     hung = [link for link in unknown if len(outers[link]) == 1]
@@ -95,8 +95,8 @@ def _agreeing(builder: Builder, joints: Structure, links: tuple[str, ...]) -> Gr
     solved = next(step for step in group.motion if isinstance(step, LoopGroup))
     if builder.told or solved.rigid(builder.now):
         return group
-    for kept in ("rank", "anchors", "points", "running"):
-        setattr(builder, kept, getattr(before, kept))
+    for attribute in ("rank", "anchors", "points", "running"):
+        setattr(builder, attribute, getattr(before, attribute))
     return None
 
 
@@ -125,7 +125,7 @@ def _guided(builder: Builder, joints: Structure, links: tuple[str, ...]) -> Posi
     return Position(0.0, {label: (place[0], place[1])}, {link: float(np.angle(turn))})
 
 
-def held(builder: Builder, joints: Structure, link: str) -> bool:
+def has_two_known_pins(builder: Builder, joints: Structure, link: str) -> bool:
     """Whether two pins of a link are on known bodies."""
     return len(outer_joints(builder, joints, link)) > 1
 

@@ -108,10 +108,10 @@ def surplus_cranks(machine: Machine, joints: Structure) -> frozenset[str]:
     """Links beyond two that are equal and parallel cranks between the same two bodies."""
     between: dict[frozenset[str], list[tuple[str, Mapping[str, str]]]] = {}
     for link in sorted(machine.links, key=lambda link: link != machine.drive.link):
-        held = [(body, point) for point, bodies in joints.pins.items() if link in bodies
+        pins = [(body, point) for point, bodies in joints.pins.items() if link in bodies
                 for body in bodies if body != link]  # fmt: skip
-        if len(held) == len({body for body, _ in held}) == len({pt for _, pt in held}) == 2:
-            between.setdefault(frozenset(body for body, _ in held), []).append((link, dict(held)))
+        if len(pins) == len({body for body, _ in pins}) == len({pt for _, pt in pins}) == 2:
+            between.setdefault(frozenset(body for body, _ in pins), []).append((link, dict(pins)))
     return frozenset(chain.from_iterable(_beyond(machine, *item) for item in between.items()))
 
 
@@ -138,14 +138,18 @@ def _beyond(
             yield link
 
 
-def pointed(builder: Builder, held: list[Outer]) -> Group | None:
+def pointed(builder: Builder, outers: list[Outer]) -> Group | None:
     """A link that is pinned to known bodies at two points or more, which tell where it is."""
-    link, first = held[0].link, held[0].point
-    second = max((outer.point for outer in held), key=lambda pt: abs(builder.arm(link, first, pt)))
+    link, first = outers[0].link, outers[0].point
+    second = max(
+        (outer.point for outer in outers), key=lambda pt: abs(builder.arm(link, first, pt))
+    )
     arm = builder.arm(link, first, second)
     if not arm:
         return None
-    reach = [step for outer in held for step in builder.reach(outer.body, outer.point)]
+    reach = [step for outer in outers for step in builder.reach(outer.body, outer.point)]
     builder.add({link: first})
     motion = KernelCall(kernels.pointed, (*p(first), *p(second)), (arm,), u(link))
-    return Group("pointed", (link,), (*reach, motion), (), tuple(item.reaction() for item in held))
+    return Group(
+        "pointed", (link,), (*reach, motion), (), tuple(item.reaction() for item in outers)
+    )

@@ -30,7 +30,7 @@ FINER, ROUNDS = 16, 6
 """Into how many parts the step is parted in which an end lies, and how often."""
 LOOP_ROUNDS = 3
 """The same where Newton's method takes each step: to 1/4000 of a degree."""
-NEAR, THINNER = 10, 4
+STEPS_BEFORE_END, THINNER = 10, 4
 """Steps before an end, all of which are taken again, and one of so many before them."""
 
 
@@ -71,7 +71,7 @@ class Reach:
     @property
     def note(self) -> Note:
         """The range and what ends it."""
-        low, high, (first, second) = _told(self.low), _told(self.high), self.stops
+        low, high, (first, second) = _in_degrees(self.low), _in_degrees(self.high), self.stops
         if str(first) == str(second):
             text = Note(
                 "the crank cannot turn fully: it stops at {low} and at {high}, where {first}",
@@ -193,8 +193,8 @@ def _end(linkage: Assembled, start: float, side: int, gaps: Array) -> tuple[floa
     good = _followed(linkage, way)
     if good == len(way):
         return float(way[-1]), ""
-    kept = np.append(way[:good][:-NEAR:THINNER], way[:good][-NEAR:])
-    way, good = np.append(kept, way[good]), len(kept)
+    thinned = np.append(way[:good][:-STEPS_BEFORE_END:THINNER], way[:good][-STEPS_BEFORE_END:])
+    way, good = np.append(thinned, way[good]), len(thinned)
     for _ in range(LOOP_ROUNDS if has_loops(linkage) else ROUNDS):
         last = way[good - 1]
         way = np.append(way[: good - 1], np.linspace(last, way[good], FINER + 1))
@@ -247,5 +247,5 @@ def _stopping(linkage: Assembled, way: Array) -> Group:
     return linkage.groups[-1]
 
 
-def _told(angle: float) -> str:
+def _in_degrees(angle: float) -> str:
     return f"{degrees(angle):.2f} deg"

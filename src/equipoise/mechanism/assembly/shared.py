@@ -78,7 +78,7 @@ OPEN = 1e-9
 """Share of a joint in forces that hold each other, up to which it has none."""
 WEAK = 1e-6
 """Smallest over largest stiffness against motion, up to which joints do not hold the machine."""
-BESIDE = 1e-3
+CHANGE_POINT_OFFSET = 1e-3
 """rad: how far from a change point it is looked at which forces grow without bound there."""
 IDLE = "flank({}) idle"
 """Where teeth bear nothing on either flank (N,), in the state."""
@@ -139,8 +139,8 @@ def parts_of(matrix: Array) -> tuple[Array, Array]:
     """
     left, sizes, right = svd(matrix, full_matrices=True)
     rank = sizes.shape[-1]
-    kept = sizes > ROUNDED * sizes[:, :1]
-    over = np.where(kept, 1 / np.where(kept, sizes, 1.0), 0.0)
+    significant = sizes > ROUNDED * sizes[:, :1]
+    over = np.where(significant, 1 / np.where(significant, sizes, 1.0), 0.0)
     right = np.swapaxes(right, -1, -2)
     return right[..., :rank] * over[:, None] @ np.swapaxes(left, -1, -2), right[..., rank:]
 
@@ -194,7 +194,7 @@ class FitCondition:
         if misfits[worst][at] <= AGREES * size:
             return next(self.off_at_start(poses), "")
         sentence = too_short(self.groups, state, size)
-        return sentence or _beside(self.loops[worst], misfits[worst], theta, at, size)
+        return sentence or _misfit_note(self.loops[worst], misfits[worst], theta, at, size)
 
     def off_at_start(self, poses: Poses) -> Iterator[Note]:
         """Say of couplings that start a link at another angle than other joints have it."""
@@ -218,7 +218,7 @@ def gap(loop: Loop, poses: Poses, size: float) -> Any:
     return np.hypot(first, second)
 
 
-def _beside(loop: Loop, misfit: Array, theta: Array, at: Any, size: float) -> Note:
+def _misfit_note(loop: Loop, misfit: Array, theta: Array, at: Any, size: float) -> Note:
     turned = isinstance(loop, CouplingLoop) and not loop.slides
     apart = degrees(misfit[at] / size) if turned else misfit[at] * 1e3
     template = AHEAD if turned else MISPLACED
@@ -379,7 +379,7 @@ class RedundantReactions(LoopForces):
         count = len(self.drives)
         units = np.where([*couples, *[True] * count], size, 1.0)
         rows = np.tile([1.0, 1.0, size], len(self.group.links))
-        matrix = self.matrix(state, poses, senses, more=count)
+        matrix = self.matrix(state, poses, senses, extra_columns=count)
         for column, drive in enumerate(self.drives, -count):
             matrix[:, 3 * self.group.links.index(drive) + 2, column] = 1.0
         matrix *= units / rows[:, None]
@@ -463,15 +463,15 @@ class RedundantReactions(LoopForces):
     def growing_joints(self, state: State) -> frozenset[str]:
         """Names of forces that grow without bound towards where the joints do not hold it."""
         _, _, unknowns = svd(self.unsensed(state), full_matrices=False)
-        return self.those(np.max(np.abs(unknowns[:, -1]), axis=0) > BESIDE)
+        return self.those(np.max(np.abs(unknowns[:, -1]), axis=0) > CHANGE_POINT_OFFSET)
 
     def unsensed(self, state: State) -> Array:
         """The equations, for whatever flanks of couplings."""
         return self.balance(state, self.poses(state), [0.0] * len(self.loops))[0]
 
-    def those(self, told: Array) -> frozenset[str]:
+    def those(self, flags_by_unknown: Array) -> frozenset[str]:
         """Names of forces by flags of the unknowns."""
-        flags = iter(told)
+        flags = iter(flags_by_unknown)
         owners = [
             (reaction.force, [next(flags) for _ in range(loop.unknowns)])
             for loop, reaction in zip(self.loops, self.reactions, strict=True)

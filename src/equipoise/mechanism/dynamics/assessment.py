@@ -119,9 +119,9 @@ def _described(
     return FourBar(*links, pins, a, b, c, d, grashof, kind, low, high, swing, ratio, turns, apart)
 
 
-def _distance(machine: Machine, body: str, one: str, other: str) -> float:
+def _distance(machine: Machine, body: str, first: str, other: str) -> float:
     points = machine.points_of(body)
-    return abs(complex(*points[one]) - complex(*points[other]))
+    return abs(complex(*points[first]) - complex(*points[other]))
 
 
 def _class(a: float, b: float, c: float, d: float) -> tuple[str, str]:
@@ -152,9 +152,9 @@ def _condition_5(a: float, b: float, c: float, d: float) -> bool:
     return True
 
 
-def _opposite(one: float, other: float, opposite: float) -> float:
+def _opposite(first: float, other: float, opposite: float) -> float:
     """Angle of a triangle between two sides, from the side opposite."""
-    cosine = (one * one + other * other - opposite * opposite) / (2 * one * other)
+    cosine = (first * first + other * other - opposite * opposite) / (2 * first * other)
     return acos(min(1.0, max(-1.0, cosine)))
 
 

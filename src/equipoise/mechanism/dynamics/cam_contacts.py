@@ -23,7 +23,7 @@ from equipoise.signals import ROUNDING, highest_at
 
 PER_TURN = 360
 """Crank angles in a turn among which the place where a follower lifts off is looked for first."""
-NEAR, MOST_PLACES = 1.1, 16
+CANDIDATE_RATIO, MOST_PLACES = 1.1, 16
 """Squares of speeds, over the least sample, up to which a place may be the lowest; most places."""
 ROUNDS, FINER = 3, 24
 """How often such a place is looked at more closely, and how much more so each time: to 1e-6 rad."""
@@ -143,15 +143,17 @@ def _lowest(name: str, forces: Forces, squares: Array) -> tuple[float, float]:
     motion, theta = forces.motion, forces.motion.crank_angle
     ends = (-np.inf, np.inf) if motion.whole_cycle else (theta[0], theta[-1])
     low = (squares <= np.roll(squares, 1)) & (squares <= np.roll(squares, -1))
-    places = np.flatnonzero(low & (squares <= NEAR * np.min(squares)))
+    places = np.flatnonzero(low & (squares <= CANDIDATE_RATIO * np.min(squares)))
     places = np.sort(places[np.argsort(squares[places], kind="stable")][:MOST_PLACES])
     step, at, least = theta[1] - theta[0], theta[places], squares[places]
     for _ in range(ROUNDS):
-        near = np.clip(at[:, None] + step * np.linspace(-1, 1, 2 * FINER + 1), *ends)
-        result = _squares(*_at_rest(name, _forces_at(forces, near.ravel()))).reshape(near.shape)
+        samples = np.clip(at[:, None] + step * np.linspace(-1, 1, 2 * FINER + 1), *ends)
+        result = _squares(*_at_rest(name, _forces_at(forces, samples.ravel()))).reshape(
+            samples.shape
+        )
         best = np.argmin(result, axis=1)[:, None]
         better = np.take_along_axis(result, best, 1)[:, 0] < least * (1 - ROUNDING)
-        at = np.where(better, np.take_along_axis(near, best, 1)[:, 0], at)
+        at = np.where(better, np.take_along_axis(samples, best, 1)[:, 0], at)
         least = np.where(better, np.take_along_axis(result, best, 1)[:, 0], least)
         step /= FINER
     k = int(highest_at(-least, smooth=False))

@@ -46,15 +46,18 @@ def reversals(load: Array) -> Array:
         turns = np.diff(load)[:-1] * np.diff(load)[1:] <= 0
         load = load[np.concatenate([[True], turns, [True]])]
     least = SMALL * float(np.max(np.abs(load), initial=0.0))
-    kept: list[float] = []
+    turning_points: list[float] = []
     for value in load.tolist():
-        if kept and abs(value - kept[-1]) <= least:
+        if turning_points and abs(value - turning_points[-1]) <= least:
             continue
-        if len(kept) > 1 and (kept[-1] - kept[-2]) * (value - kept[-1]) > 0:
-            kept[-1] = value
+        if (
+            len(turning_points) > 1
+            and (turning_points[-1] - turning_points[-2]) * (value - turning_points[-1]) > 0
+        ):
+            turning_points[-1] = value
         else:
-            kept.append(value)
-    return np.array(kept)
+            turning_points.append(value)
+    return np.array(turning_points)
 
 
 def rainflow(load: Array, repeats: bool = False) -> LoadCycles:

@@ -111,8 +111,8 @@ class Forces(ForceReadings, Displayed):
     def solved_like(self, other: JointReactions | None) -> JointReactions:
         """The same with the flanks of couplings in contact that are so in another run."""
         total = dict(self.inertia)
-        for more in (self.weights, self.loads, self.springs):
-            for link, (force, moment) in more.items():
+        for wrenches in (self.weights, self.loads, self.springs):
+            for link, (force, moment) in wrenches.items():
                 total[link] = (total[link][0] + force, total[link][1] + moment)
         if self.rubs and self.motion.machine.rubs:
             return with_friction(self.motion, total, other)
@@ -267,8 +267,12 @@ def forces(motion: Motion, about: str | Vector | complex | None = None) -> Force
         own = inertia_moved(machine, link, motion.linkage.anchors[link])
         inertia[link] = _needed([(rate, units[link]) for rate, units in rates], *own)
         weights[link] = kernels.weight_demand(motion.state[f"u({link})"], *own[:2], gravity)
-    held = acting.load_demands(motion), acting.spring_demands(motion), acting.inner_demands(motion)
-    return Forces(motion, pole, inertia, weights, *held)
+    applied = (
+        acting.load_demands(motion),
+        acting.spring_demands(motion),
+        acting.inner_demands(motion),
+    )
+    return Forces(motion, pole, inertia, weights, *applied)
 
 
 Units = tuple[Array, Array, Array, Array, Array]

@@ -48,7 +48,7 @@ from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.kinematics.rubbing import RubbingJoint, rubbing_joints
 
 Demands = Mapping[str, Demand]
-Kept = TypeVar("Kept")
+Cached = TypeVar("Cached")
 
 CLOSE = 1e-13
 """Share of the largest friction at a crank angle by which the law may be missed."""
@@ -156,8 +156,8 @@ class FrictionLaw:
         Below 1 rows of the derivatives have more on their diagonal than beside it, and the law put
         into itself converges by this share each time.
         """
-        beside = np.abs(self.grip) * np.einsum("jc,jcn->jn", np.abs(self.levers), press.most)
-        return np.asarray(np.max(beside, axis=0, initial=0.0))
+        couplings = np.abs(self.grip) * np.einsum("jc,jcn->jn", np.abs(self.levers), press.most)
+        return np.asarray(np.max(couplings, axis=0, initial=0.0))
 
     def at(self, some: Array) -> FrictionLaw:
         """At some of the N crank angles."""
@@ -215,14 +215,14 @@ def balanced(law: FrictionLaw, press: Press, start: Array | None = None) -> tupl
     contracts = contraction < 1
     good = np.zeros_like(contracts)
     if np.any(contracts):
-        inserted, held = _inserted(law, press, efforts, contraction)
-        good = held & contracts
+        inserted, converged = _inserted(law, press, efforts, contraction)
+        good = converged & contracts
         efforts = np.where(good, inserted, efforts)
     for some in (contracts, ~contracts):
         if len(rest := np.flatnonzero(some & ~good)):
-            own, beside = law.at(rest), press.at(rest)
+            own, own_press = law.at(rest), press.at(rest)
             efforts[:, rest], good[rest] = _newton(
-                own, beside, efforts[:, rest], whole[rest], some is contracts
+                own, own_press, efforts[:, rest], whole[rest], some is contracts
             )
     if len(bad := np.flatnonzero(~good)):
         efforts[:, bad], whole[bad] = _grown(law.at(bad), press.at(bad))
@@ -312,8 +312,8 @@ def _grown(law: FrictionLaw, press: Press) -> tuple[Array, Array]:
     while np.any(going := (share < 1) & (step >= LAST_STEP)):
         some = np.flatnonzero(going)
         tried = np.minimum(share[some] + step[some], 1.0)
-        own, beside = law.at(some), press.at(some)
-        result, good = _newton(own, beside, efforts[:, some], tried, contracts=False)
+        own, own_press = law.at(some), press.at(some)
+        result, good = _newton(own, own_press, efforts[:, some], tried, contracts=False)
         efforts[:, some[good]], share[some[good]] = result[:, good], tried[good]
         step[some] *= np.where(good, 1.0, 0.5)
     return efforts, share
@@ -325,7 +325,7 @@ def _grown(law: FrictionLaw, press: Press) -> tuple[Array, Array]:
 def law_of(motion: Motion) -> FrictionLaw:
     """The law of the joints of a motion."""
     joints = rubbing_joints(motion.linkage)
-    rates = _kept(motion, "rates of friction", joints,
+    rates = _cached(motion, "rates of friction", joints,
                   lambda: np.array([joint.rate(motion) for joint in joints]))  # fmt: skip
     return FrictionLaw.of(joints, rates * motion.speed, np.sign(rates * motion.speed))
 
@@ -336,19 +336,19 @@ def response_of(
     """Parts (J, 2, J, N) of what presses in joints with a unit of friction in each of them, where
     no coupling bears on one flank or the other, and what they add at most (J, 2, N).
     """
-    response = _kept(motion, "response to friction", joints,
+    response = _cached(motion, "response to friction", joints,
                      lambda: pressing_rows(motion, units, joints, None))  # fmt: skip
-    return response, _kept(motion, "most friction", joints, lambda: most_added(response))
+    return response, _cached(motion, "most friction", joints, lambda: most_added(response))
 
 
-def _kept(
-    motion: Motion, what: str, joints: Sequence[RubbingJoint], compute: Callable[[], Kept]
-) -> Kept:
+def _cached(
+    motion: Motion, what: str, joints: Sequence[RubbingJoint], compute: Callable[[], Cached]
+) -> Cached:
     """What depends on the pose and on which joints rub alone: kept with the state of the motion."""
     name = f"{what}({', '.join(joint.name for joint in joints)})"
     if name not in motion.state:
         motion.state[name] = compute()
-    value: Kept = motion.state[name]
+    value: Cached = motion.state[name]
     return value
 
 
@@ -399,7 +399,9 @@ def with_friction(
     LockError : the machine locks itself.
     """
     law = law_of(motion)
-    units = _kept(motion, "units of friction", law.joints, lambda: unit_demands(motion, law.joints))
+    units = _cached(
+        motion, "units of friction", law.joints, lambda: unit_demands(motion, law.joints)
+    )
     result = like
     if result is None and motion.machine.switches:
         result = reactions(motion, demands)

@@ -166,11 +166,11 @@ def values_across(machine: Machine) -> Array:
     """Parameters of `Regressor.across`: those of `parameter_values`, then each link's sums of mass
     times plane, and of that times x and y.
     """
-    more = []
+    values = []
     for link in machine.links.values():
         mass, moment = moments_across(link)
-        more += [mass, moment.real, moment.imag]
-    return np.concatenate([parameter_values(machine), more])
+        values += [mass, moment.real, moment.imag]
+    return np.concatenate([parameter_values(machine), values])
 
 
 def _unit_demands(motion: Motion) -> tuple[dict[str, Any], dict[str, Any]]:
@@ -232,15 +232,15 @@ def base_parameters(
     rows = [_rows(motion, output, size) for output in outputs]
     width = max(part.shape[1] for part in rows)
     matrix = np.concatenate([np.pad(part, ((0, 0), (0, width - part.shape[1]))) for part in rows])
-    scale, beside = np.tile([1.0, size, size, size**2], count), width > len(names)
-    if beside:
+    scale, out_of_plane = np.tile([1.0, size, size, size**2], count), width > len(names)
+    if out_of_plane:
         names += parameter_names(machine, ACROSS)
         scale = np.append(scale, np.tile([size, size**2, size**2], count))
-    kept, grouping = independent_columns(matrix * scale)
-    combinations = grouping * scale[kept][:, None] / scale
+    independent, grouping = independent_columns(matrix * scale)
+    combinations = grouping * scale[independent][:, None] / scale
     if not all(link.has_mass for link in machine.links.values()):
         return BaseParameters(names, combinations, None)
-    own = values_across(machine) if beside else parameter_values(machine)
+    own = values_across(machine) if out_of_plane else parameter_values(machine)
     return BaseParameters(names, combinations, combinations @ own)
 
 
@@ -263,18 +263,18 @@ def independent_columns(matrix: Array, tolerance: float = 1e-9) -> tuple[list[in
     Returns the kept columns' numbers and factors (B, P) with matrix = matrix[:, kept] @ factors.
     """
     limit = tolerance * float(np.max(np.linalg.norm(matrix, axis=0)))
-    kept: list[int] = []
+    independent: list[int] = []
     basis = np.zeros((len(matrix), 0))
     for k, column in enumerate(matrix.T):
         rest = column - basis @ (basis.T @ column)
         rest -= basis @ (basis.T @ rest)
         norm = float(np.linalg.norm(rest))
         if norm > limit:
-            kept.append(k)
+            independent.append(k)
             basis = np.column_stack([basis, rest / norm])
-    factors = lstsq(matrix[:, kept], matrix, rcond=None)[0]
+    factors = lstsq(matrix[:, independent], matrix, rcond=None)[0]
     factors[np.abs(factors) < tolerance] = 0.0
-    return kept, factors
+    return independent, factors
 
 
 def spring_units(motion: Motion, link: str, point: str, to: str) -> Array:

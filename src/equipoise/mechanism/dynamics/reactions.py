@@ -355,8 +355,8 @@ def _passed(
     linkage = motion.linkage
     state.update({} if like is None else like.flanks)
     run(linkage.forces if like is None else linkage.forces_on_flanks, state)
-    for name, more in zip((f"F({FRAME})", f"M({FRAME})"), on_frame, strict=True):
-        state[name] = state[name] + more
+    for name, on_ground in zip((f"F({FRAME})", f"M({FRAME})"), on_frame, strict=True):
+        state[name] = state[name] + on_ground
     for drive in motion.machine.driven:
         state[f"R({motion.linkage.anchors[drive.link]}/{drive.link})"] = state[f"F({drive.link})"]
     return JointReactions(motion, state)

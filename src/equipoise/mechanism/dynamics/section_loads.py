@@ -142,14 +142,14 @@ class SectionLoads:
         """Normal stress (2, N) in the left and the right outermost fibre, Pa."""
         of = self.section
         bent = loads.bending * of.outermost / of.second_moment
-        drawn = loads.axial / of.area
-        return of.stress_concentration * np.array([drawn - bent, drawn + bent])
+        axial = loads.axial / of.area
+        return of.stress_concentration * np.array([axial - bent, axial + bent])
 
     @cached_property
     def envelope(self) -> Envelope:
         """What is largest of all cuts."""
         zero = np.zeros(len(self.cuts[0].at))
-        stress, bent, drawn = zero, zero, zero
+        stress, bent, axial = zero, zero, zero
         stresses, ends = [], []
         for cut in self.cuts:
             loads = self.in_cut(cut)
@@ -157,10 +157,10 @@ class SectionLoads:
             stresses.append(np.max(sizes, axis=1))
             stress = np.maximum(stress, np.max(sizes, axis=0))
             bent = np.maximum(bent, np.abs(loads.bending))
-            drawn = np.where(np.abs(loads.axial) > np.abs(drawn), loads.axial, drawn)
+            axial = np.where(np.abs(loads.axial) > np.abs(axial), loads.axial, axial)
             ends.append((np.max(loads.axial), -np.min(loads.axial), np.max(np.abs(loads.shear))))
         most = np.max(ends, axis=0).tolist()
-        return Envelope(stress, bent, drawn, np.transpose(stresses), *most)
+        return Envelope(stress, bent, axial, np.transpose(stresses), *most)
 
     @property
     def stress(self) -> Array:

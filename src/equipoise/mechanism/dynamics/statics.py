@@ -58,7 +58,7 @@ def contacts(linkage: Any) -> tuple[BodyContact, ...]:
     machine, order = linkage.machine, linkage.joints.bodies.index
     ends = {name: _ends(linkage, item) for name, item in linkage.named_reactions
             if item.kind in JOINTS}  # fmt: skip
-    held = {end for both in ends.values() for end in both if FRAME in both}
+    on_frame = {end for both in ends.values() for end in both if FRAME in both}
     body_contacts = []
     for name, entry in linkage.named_reactions:
         if entry.kind not in JOINTS:
@@ -73,7 +73,9 @@ def contacts(linkage: Any) -> tuple[BodyContact, ...]:
         elif entry.kind == "slider":
             slider = next(s for s in machine.sliders if s.name == entry.name)
             points = {slider.link: slider.point, slider.on: slider.through}
-        body_contacts.append(BodyContact(name, on, by, _plane_between(machine, points, held), True))
+        body_contacts.append(
+            BodyContact(name, on, by, _plane_between(machine, points, on_frame), True)
+        )
     return tuple(body_contacts)
 
 
@@ -91,8 +93,10 @@ def pushing(linkage: Any) -> Iterator[BodyContact]:
             plane = planes[drive.slider]
         else:
             points = zip((by, on), drive.between, strict=True)
-            held = [machine.links[body].plane_of(item) for body, item in points if body != FRAME]
-            plane = sum(held) / len(held)
+            own_planes = [
+                machine.links[body].plane_of(item) for body, item in points if body != FRAME
+            ]
+            plane = sum(own_planes) / len(own_planes)
         yield BodyContact(PUSH.format(drive.link), on, by, plane, False)
 
 
@@ -101,11 +105,11 @@ def _ends(linkage: Any, reaction: Any) -> tuple[str, str]:
     return (reaction.on, reaction.by) if rider is None else (rider.link, rider.on)
 
 
-def _plane_between(machine: Mechanism, points: Mapping[str, str], held: set[str]) -> float:
+def _plane_between(machine: Mechanism, points: Mapping[str, str], on_frame: set[str]) -> float:
     """Plane of a joint of two bodies, each with its point there."""
     ends = [(body, machine.links[body], point) for body, point in points.items() if body != FRAME]
     values = [link.planes[point] for _, link, point in ends if point in link.planes]
-    loose = [link.plane for body, link, _ in ends if body not in held]
+    loose = [link.plane for body, link, _ in ends if body not in on_frame]
     planes = values[:1] or (loose if len(loose) == 1 else [link.plane for _, link, _ in ends])
     return sum(planes) / len(planes)
 
@@ -136,8 +140,8 @@ class Statics:
     @cached_property
     def open(self) -> tuple[str, ...]:
         """Names of joints whose couples statics leaves open."""
-        held = {end for item in self.bearing for end in item.ends if FRAME in item.ends}
-        free = [link for link in self.links if link not in held]
+        on_frame = {end for item in self.bearing for end in item.ends if FRAME in item.ends}
+        free = [link for link in self.links if link not in on_frame]
         return tuple(_open(self.machine, self.contacts, free))
 
     def factors(self, number: int) -> tuple[dict[str, float], dict[str, float]]:

@@ -13,7 +13,7 @@ from equipoise.dataclass import dataclass
 from equipoise.errors import RangeError, UsageError
 from equipoise.i18n import Note, all_of, to_say
 from equipoise.mechanism.assembly.linkage import Linkage
-from equipoise.mechanism.assembly.shared import BESIDE, IDLE, WEAK
+from equipoise.mechanism.assembly.shared import CHANGE_POINT_OFFSET, IDLE, WEAK
 from equipoise.mechanism.assembly.steps import State, run
 from equipoise.mechanism.kinematics.motion import Motion
 
@@ -75,7 +75,7 @@ class Undecided:
 
 def undecided(linkage: Linkage) -> Undecided:
     """What statics does not tell of the joints of a linkage; kept with it."""
-    return _kept(linkage, _found)
+    return _cached(linkage, _compute)
 
 
 def idle_told(linkage: Linkage, solved: State) -> Iterator[Note]:
@@ -92,7 +92,7 @@ def idle_told(linkage: Linkage, solved: State) -> Iterator[Note]:
 
 def refuse_unbounded(linkage: Linkage, output: str) -> None:
     """Raise a `UsageError` for an output of a joint whose force has no bound."""
-    result = _kept(linkage, _growing)
+    result = _cached(linkage, _growing)
     if any(output.partition(".")[2].startswith(name) for name in result.unbounded):
         *_, text = result.told()
         raise UsageError(text)
@@ -100,14 +100,14 @@ def refuse_unbounded(linkage: Linkage, output: str) -> None:
 
 def hidden(motion: Motion) -> tuple[str, ...]:
     """Joints whose force has no bound at some of the crank angles of a motion, or between them."""
-    shared, result = motion.linkage.shared, _kept(motion.linkage, _growing)
+    shared, result = motion.linkage.shared, _cached(motion.linkage, _growing)
     if shared is None or not result.unbounded:
         return ()
     bounded = not motion.whole_cycle and np.all(shared.strength(motion.state) > WEAK)
     return () if bounded else result.unbounded
 
 
-def _kept(linkage: Linkage, find: Callable[[Linkage], Undecided]) -> Undecided:
+def _cached(linkage: Linkage, find: Callable[[Linkage], Undecided]) -> Undecided:
     name = find.__name__
     if name not in linkage.memory:
         linkage.memory[name] = find(linkage)
@@ -115,13 +115,13 @@ def _kept(linkage: Linkage, find: Callable[[Linkage], Undecided]) -> Undecided:
     return result
 
 
-def _found(linkage: Linkage) -> Undecided:
+def _compute(linkage: Linkage) -> Undecided:
     shared = linkage.shared
     if shared is None:
         return Undecided()
     open_ones = shared.open_joints(_somewhere(linkage)) if shared.count else frozenset()
     return replace(
-        _kept(linkage, _growing),
+        _cached(linkage, _growing),
         open=_named(linkage, open_ones),
         by_stiffness=bool(shared.compliance),
         reach=shared.group.size if linkage.joints.sliders else 0.0,
@@ -136,7 +136,9 @@ def _growing(linkage: Linkage) -> Undecided:
     weakest = [linkage.cycle.weakest.get(group.joint, (0.0, 0.0))[1] for group in through]
     weak = shared.strength(linkage.solve(np.array(weakest))) < WEAK
     for group, at in compress(zip(through, weakest, strict=True), weak):
-        growing = shared.growing_joints(linkage.solve(np.array([at - BESIDE, at + BESIDE])))
+        growing = shared.growing_joints(
+            linkage.solve(np.array([at - CHANGE_POINT_OFFSET, at + CHANGE_POINT_OFFSET]))
+        )
         names = _named(linkage, growing)
         return Undecided(unbounded=names, at=at % (2 * np.pi), links=group.links)
     return Undecided()

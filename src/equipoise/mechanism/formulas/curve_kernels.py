@@ -40,7 +40,7 @@ def on_track(g, g1, g2, n, w, a, c, c1, c2, c3, s1, s2):
     steep = c1.real * c1.real + c1.imag * c1.imag
     pace, over = steep**0.5, 1 / steep
     bend = (c1.conjugate() * c2).imag * over  # of the tangent's angle by the parameter
-    more = ((c1.conjugate() * c3).imag - 2 * (c1.conjugate() * c2).real * bend) * over
+    bend_rate = ((c1.conjugate() * c3).imag - 2 * (c1.conjugate() * c2).real * bend) * over
     slip = n * c1 * s1
     place = n * c
     return (
@@ -49,6 +49,6 @@ def on_track(g, g1, g2, n, w, a, c, c1, c2, c3, s1, s2):
         g2 + (1j * a - w * w) * place + 2j * w * slip + n * (c2 * (s1 * s1) + c1 * s2),
         n * c1 * (1 / pace),
         w + bend * s1,
-        a + bend * s2 + more * (s1 * s1),
+        a + bend * s2 + bend_rate * (s1 * s1),
         pace * s1,
     )

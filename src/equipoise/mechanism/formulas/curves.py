@@ -69,10 +69,10 @@ class PeriodicCurve:
     def place(self, x: Any) -> tuple[Array, Array, Array]:
         """Rounds before x, and of what is left the piece and the way into it, as `x` (...)."""
         x = np.asarray(x, dtype=float)
-        near = ROUNDING * self.length
-        rounds = np.floor((x + near) / self.length)
+        tolerance = ROUNDING * self.length
+        rounds = np.floor((x + tolerance) / self.length)
         since = x - rounds * self.length
-        piece = np.searchsorted(self.knots[1:-1], since + near, side="right")
+        piece = np.searchsorted(self.knots[1:-1], since + tolerance, side="right")
         return rounds, piece, since - self.knots[piece]
 
     def jumps(self, order: int) -> Array:
@@ -98,8 +98,8 @@ class PeriodicCurve:
         best = x[int(np.argmax(sense * self.at(x)[0]))]
         width = float(np.max(self._widths)) / 32
         for _ in range(3):
-            near = best + np.linspace(-width, width, 65)
-            best = near[int(np.argmax(sense * self.at(near)[0]))]
+            samples = best + np.linspace(-width, width, 65)
+            best = samples[int(np.argmax(sense * self.at(samples)[0]))]
             width /= 24
         return float(self.at(best)[0])
 

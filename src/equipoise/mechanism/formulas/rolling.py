@@ -214,8 +214,10 @@ class PitchCurve:
         ring = mean > 1
         pole = -1 / float(np.min(radius) if ring else np.max(radius))
 
-        def missing(one: float) -> float:
-            return float(np.sum(weights * one * radius / (1 + one * radius)) - mean)
+        def missing(factor_tried: float) -> float:
+            return float(
+                np.sum(weights * factor_tried * radius / (1 + factor_tried * radius)) - mean
+            )
 
         factor = float(mean / (1 - mean) / np.sum(weights * radius))
         factor = min(factor, 2 * pole) if ring else max(factor, 0.5 * pole)
@@ -264,7 +266,7 @@ Rolling = HalfAngle | RatioWaves | RatioTable | PitchCurve
 """How far the driven gear turns by the driver's angle."""
 
 
-def beside(values: Sequence[Any]) -> Any:
+def stacked(values: Sequence[Any]) -> Any:
     """Laws of P designs as one, or parts of them; numbers that differ become columns (P, 1).
 
     Raises
@@ -279,10 +281,10 @@ def beside(values: Sequence[Any]) -> Any:
     if is_dataclass(first) and not isinstance(first, type):
         names = [field.name for field in fields(first)]
         return replace(
-            first, **{name: beside([getattr(v, name) for v in values]) for name in names}
+            first, **{name: stacked([getattr(v, name) for v in values]) for name in names}
         )
     if isinstance(first, tuple):
-        return tuple(map(beside, zip(*values, strict=True)))
+        return tuple(map(stacked, zip(*values, strict=True)))
     if all(np.array_equal(value, first) for value in values):
         return first
     if isinstance(first, np.ndarray):

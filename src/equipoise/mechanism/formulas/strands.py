@@ -64,7 +64,7 @@ class Strands:
         out = 1j * side * self.way(side)
         return self.radius * out, self.apart + self.other * out
 
-    def run_through(self, place: Any, near: float) -> bool:
+    def run_through(self, place: Any, share: float) -> bool:
         """Whether a strand comes to a place, from the driver's pin (complex, m), as near as this
         share of the distance of the pins.
         """
@@ -72,7 +72,7 @@ class Strands:
             start, _ = self.ends(side)
             way = (place - start) * np.conj(self.way(side))
             inside = (way.real >= 0) & (way.real <= self.length)
-            if np.all(inside & (abs(way.imag) <= near * self.distance)):
+            if np.all(inside & (abs(way.imag) <= share * self.distance)):
                 return True
         return False
 

@@ -155,7 +155,7 @@ def commanded(machine: Machine) -> StrokeInverse:
     return _commanded(machine, _meshing(machine, float(result.value(0.0)[0])))
 
 
-def _meshing(machine: Machine, near: float) -> float:
+def _meshing(machine: Machine, guess: float) -> float:
     """Angle of the link at crank angle 0, where couplings are as they start: by secants."""
     drive, law = machine.drive, machine.drive.stroke
     assert law is not None
@@ -166,7 +166,7 @@ def _meshing(machine: Machine, near: float) -> float:
         at = Followed.over(linkage, -STEP, STEP, STEP, ends_of(machine, drive))
         return float(_lengths(at, np.zeros(1), drive)[0][0]) - wanted
 
-    old, new = near, near + STEP
+    old, new = guess, guess + STEP
     gap, there = over(old), over(new)
     for _ in range(ITERATIONS):
         if abs(gap - there) <= SETTLED * abs(wanted) or abs(new - old) <= SETTLED:
@@ -268,13 +268,13 @@ def _chosen(drive: Drive, law: LengthLaw, branches: Sequence[Branch], shift: flo
     """The branch in which the stroke lies."""
     low, high = law.extremes
     matching_branches = [branch for branch in branches if branch.holds(low, high)]
-    near = [item for item in matching_branches if _has(item, 0.0)]
+    at_start = [item for item in matching_branches if _has(item, 0.0)]
     if drive.start is not None and len(matching_branches) > 1:
-        matching_branches = near or matching_branches
+        matching_branches = at_start or matching_branches
     if len(matching_branches) == 1:
         return matching_branches[0]
     if matching_branches:
-        values = [_told(item.ends, shift) for item in matching_branches]
+        values = [_range_note(item.ends, shift) for item in matching_branches]
         raise ModelError(
             "drive.start",
             Note(
@@ -284,7 +284,7 @@ def _chosen(drive: Drive, law: LengthLaw, branches: Sequence[Branch], shift: flo
                 told=all_of(values),
             ),
         )
-    widest = max(branches, key=lambda one: one.high - one.low, default=None)
+    widest = max(branches, key=lambda branch: branch.high - branch.low, default=None)
     if drive.start is not None:
         widest = next((branch for branch in branches if _has(branch, 0.0)), widest)
     assert widest is not None
@@ -322,6 +322,6 @@ def _has(branch: Branch, at: float) -> bool:
     return low <= at + 2 * pi * ceil((low - at) / (2 * pi)) <= high
 
 
-def _told(ends: tuple[float, float], shift: float) -> Note:
+def _range_note(ends: tuple[float, float], shift: float) -> Note:
     low, high = (angle(end + shift) for end in ends)
     return Note("from {low} to {high}", low=low, high=high)

@@ -130,8 +130,8 @@ def _extent(place: Array) -> float:
     return float(np.max(np.abs(outer[:, None] - outer)))
 
 
-def _apart(one: float, other: float, period: float) -> float:
-    away = abs(one - other) % period
+def _apart(first: float, other: float, period: float) -> float:
+    away = abs(first - other) % period
     return min(away, period - away)
 
 
@@ -142,14 +142,14 @@ def _sampled(place: Array, tolerance: float) -> tuple[Array, Array]:
     """
     count = len(place)
     reach = np.full(count, count)  # samples from each back to the last that is too far from it
-    near = np.arange(count)
+    active = np.arange(count)
     for back in range(1, count + 1):
-        far = np.abs(place[near] - place[near - back]) > tolerance
-        reach[near[far]] = back
-        near = near[~far]
+        far = np.abs(place[active] - place[active - back]) > tolerance
+        reach[active[far]] = back
+        active = active[~far]
         if back & (back - 1) == 0:  # now and then: what others hold back need not look further
-            near = near[back < _held_back(reach)[near]]
-        if not near.size:
+            active = active[back < _held_back(reach)[active]]
+        if not active.size:
             break
     lengths = _held_back(reach) - 1
     return (np.arange(count) - lengths) % count, lengths
@@ -168,8 +168,8 @@ def _refined(path: Path, low: float, high: float, tolerance: float) -> tuple[flo
     width = 2 * path.step
     inner = np.linspace(low, high, INNER)
     for _ in range(ROUNDS):
-        middle, near = 0.5 * (low + high), width * np.linspace(-1.0, 1.0, ZONE)
-        left, right = np.minimum(low + near, middle), np.maximum(high + near, middle)
+        middle, offsets = 0.5 * (low + high), width * np.linspace(-1.0, 1.0, ZONE)
+        left, right = np.minimum(low + offsets, middle), np.maximum(high + offsets, middle)
         between = inner[(inner > left[-1]) & (inner < right[0])]
         theta = np.concatenate([left, between, right])
         places = path.at(theta)

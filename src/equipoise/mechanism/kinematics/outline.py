@@ -229,9 +229,9 @@ class MachineDraft:
             left.remove(k)
             entry, start = turnings[k], turnings[k].start
             way = _way(entry, angles[entry.driver], angles[entry.carrier])
-            drawn = self.pose(entry.driven).angle - way
-            if abs(remainder(drawn - start, 2 * pi)) > MESHING:
-                start = clean(remainder(drawn, 2 * pi), "angle")
+            start_drawn = self.pose(entry.driven).angle - way
+            if abs(remainder(start_drawn - start, 2 * pi)) > MESHING:
+                start = clean(remainder(start_drawn, 2 * pi), "angle")
                 turnings[k] = replace(entry, start=start)
             angles[entry.driven] = start, start + way
         return {key: tuple(item for item in turnings if item.table == key) for key in lists}
@@ -246,8 +246,8 @@ class MachineDraft:
             ends = (rack.rack, rack.carrier)
             slider = next(slider for slider in self.sliders if (slider.link, slider.on) == ends)
             off = self.travel(slider) - float(motion.sliders[slider.name].travel[0])
-            near = abs(off) <= MESHING * rack.radius
-            return rack if near else replace(rack, travel=clean(rack.travel + off, "length"))
+            in_mesh = abs(off) <= MESHING * rack.radius
+            return rack if in_mesh else replace(rack, travel=clean(rack.travel + off, "length"))
         turned = self.pose(rack.pinion).angle - float(motion.links[rack.pinion].angle[0])
         off = remainder(turned, 2 * pi)
         return rack if abs(off) <= MESHING else replace(rack, angle=clean(rack.angle + off))

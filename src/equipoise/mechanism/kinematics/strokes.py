@@ -118,20 +118,20 @@ def strokes(linkage: Linkage) -> Mapping[str, Stroke]:
         item: np.ptp(sample[0]) > EQUAL * np.max(np.abs(sample[0]))
         for item, sample in samples.items()
     }
-    kept = tuple(item for item in ones if rates[item] > least and ways[item])
-    if not kept:
+    moving = tuple(item for item in ones if rates[item] > least and ways[item])
+    if not moving:
         return NamedItems("slider or rocker", ())
-    outputs = _Outputs(linkage, kept)
-    table = np.array([samples[item] for item in kept])
+    outputs = _Outputs(linkage, moving)
+    table = np.array([samples[item] for item in moving])
     fastest = largest(outputs.size, outputs.gain, theta, np.abs(table[:, 1]))
     dead = _dead_positions(outputs, theta, table)
-    for k, entry in enumerate(kept):
+    for k, entry in enumerate(moving):
         if len(dead[k]) > 1:
             own = _Outputs(linkage, (entry,))
             dead[k] = _rested(own, dead[k], theta, table[k, 1], STILL * rates[entry])
     by_name = {
         item.name: _stroke(item, linkage, table[k], dead[k], (fastest[0][k], fastest[1][k]))
-        for k, item in enumerate(kept)
+        for k, item in enumerate(moving)
         if len(dead[k]) > 1
     }
     return NamedItems("slider or rocker", by_name.items())
@@ -205,7 +205,7 @@ def _stroke(
     rise = float(np.min(way * (angles[tops] - low.gone(way)) % period))
     top = dead[int(np.argmin(np.where(tops, way * (angles - low.gone(way)) % period, np.inf)))]
     fall = float(np.min(way * (angles[bottoms] - top.gone(way)) % period))
-    held = longest_dwell(_along(samples[0], samples[1], samples[2], period), SHARE * stroke)
+    dwell = longest_dwell(_along(samples[0], samples[1], samples[2], period), SHARE * stroke)
     advantage, at = None, None
     holds = output.kind == "rocker" or output.name in guided(linkage.machine)
     if holds and linkage.machine.has_crank:
@@ -222,8 +222,8 @@ def _stroke(
         low.rest,
         top.rest,
         max(rise, fall) / min(rise, fall) if min(rise, fall) else float("nan"),
-        held.angle,
-        held.begin,
+        dwell.angle,
+        dwell.begin,
         advantage,
         at,
         dead,
@@ -263,17 +263,17 @@ def dwell(linkage: Linkage, name: str, tolerance: float | None = None) -> Dwell:
     if name in motion.sliders:
         slider = motion.sliders[name]
         parts = (slider.travel, slider.travel_1, slider.travel_2)
-        return _held(_along(*parts, period), tolerance)
+        return _dwell_of(_along(*parts, period), tolerance)
     if name in motion.links:
         link = motion.links[name]
         u = np.exp(1j * link.angle)
         path = Path(u, 1j * link.angle_1 * u, (1j * link.angle_2 - link.angle_1**2) * u, period)
         usual = SHARE * min(float(np.ptp(link.angle)), pi)
         angle = usual if tolerance is None else min(tolerance, pi)
-        return Dwell(angle, *_ends_of(_held(path, 2 * np.sin(angle / 2))))
+        return Dwell(angle, *_ends_of(_dwell_of(path, 2 * np.sin(angle / 2))))
     if name in motion.points:
         point = motion.points[name]
-        return _held(Path(point.place, point.place_1, point.place_2, period), tolerance)
+        return _dwell_of(Path(point.place, point.place_1, point.place_2, period), tolerance)
     every = [*motion.sliders, *motion.links, *motion.points]
     raise UsageError(unknown(name, every, "slider, link or point"))
 
@@ -283,7 +283,7 @@ def _along(place: Array, first: Array, second: Array, period: float) -> Path:
     return Path(place + 0j, first + 0j, second + 0j, period)
 
 
-def _held(path: Path, tolerance: float | None) -> Dwell:
+def _dwell_of(path: Path, tolerance: float | None) -> Dwell:
     if tolerance is None:
         size = abs(complex(np.ptp(path.place.real), np.ptp(path.place.imag)))
         tolerance = SHARE * size

@@ -136,18 +136,18 @@ def lowest_within(
     Sampled, then sampled again ever closer about the smallest sample.
     """
     low, high = low[:, None], high[:, None]
-    near = low + (high - low) * np.linspace(0.0, 1.0, samples)
-    values = signal(near)
+    grid = low + (high - low) * np.linspace(0.0, 1.0, samples)
+    values = signal(grid)
     k = highest_at(-values)[:, None]
     offsets = np.linspace(-1.0, 1.0, 21)
     width = (high - low) / (samples - 1)
     while True:
-        at = np.take_along_axis(near, k, axis=1)
+        at = np.take_along_axis(grid, k, axis=1)
         if not np.any(np.abs(width) > FINE):
             return np.take_along_axis(values, k, axis=1)[:, 0], at[:, 0]
         between = at + width * offsets
-        near = np.clip(between, np.minimum(low, high), np.maximum(low, high))
-        values = signal(near)
+        grid = np.clip(between, np.minimum(low, high), np.maximum(low, high))
+        values = signal(grid)
         k = np.argmin(values, axis=1)[:, None]
         width = np.where(np.abs(width) > 8 * FINE, width / 8, 0.0)  # as alone, see `roots`
 
@@ -257,9 +257,9 @@ class TipCurve:
         """Third derivative of the tip's place by crank angle, (P, K)."""
         offsets = STEP * np.array([-3, -2, -1, 1, 2, 3])
         weights = np.array([-1, 9, -45, 45, -9, 1]) / (60 * STEP)
-        near = theta[..., None] + offsets
-        second = self.at(near.reshape(len(theta), -1)).place_2
-        third: Array = np.sum(second.reshape(near.shape) * weights, axis=-1)
+        samples = theta[..., None] + offsets
+        second = self.at(samples.reshape(len(theta), -1)).place_2
+        third: Array = np.sum(second.reshape(samples.shape) * weights, axis=-1)
         return third
 
     @cached_property

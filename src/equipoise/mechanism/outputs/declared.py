@@ -15,8 +15,8 @@ from equipoise.mechanism.outputs.declaring import (
     DECLARED,
     GROUPS,
     Declared,
-    Found,
     Measure,
+    OutputSource,
     alike,
     declare_as,
     declared,
@@ -29,7 +29,16 @@ from equipoise.mechanism.outputs.poles import advantage, guided, instant_center,
 from equipoise.mechanism.outputs.spoken import joint_named, joint_names, pair_named, slider_names
 from equipoise.quantities import Dimension
 
-__all__ = ["DECLARED", "GROUPS", "Declared", "Found", "declared", "declaring", "matches", "output"]
+__all__ = [
+    "DECLARED",
+    "GROUPS",
+    "Declared",
+    "OutputSource",
+    "declared",
+    "declaring",
+    "matches",
+    "output",
+]
 """What `declaring` has is had from here, where something is declared."""
 
 FORCE: tuple[Measure, ...] = ("rms", "peak")
@@ -198,7 +207,7 @@ def _of_drive(name: str, result: Any, link: str) -> Any:
     return effort * motion.way(link) * motion.speed if name == "power" else effort
 
 
-def _told(machine: Any, effort_in: str) -> list[str]:
+def _links_of_drives(machine: Any, effort_in: str) -> list[str]:
     """Links of drives that turn or push."""
     kinds = {item.link: item.effort_in for item in machine.driven}
     return [link for link in machine.told_drives if kinds[link] == effort_in]
@@ -210,14 +219,14 @@ of_drive(
     "torque",
     to_say("drive torque of {name}"),
     loop=looked_up("drive torque"),
-    members=lambda machine: _told(machine, "torque"),
+    members=lambda machine: _links_of_drives(machine, "torque"),
     yardstick="effort",
 )
 of_drive(
     "force",
     "force",
     to_say("drive force of {name}"),
-    members=lambda machine: _told(machine, "force"),
+    members=lambda machine: _links_of_drives(machine, "force"),
     yardstick="effort",
 )
 of_drive(
@@ -328,7 +337,7 @@ def _rubbing(*kinds: str) -> dict[str, Any]:
 
     def members(machine: Any) -> list[str]:
         sliders = slider_names(machine) if machine.rubs else []
-        mine = _named_in_file(machine, lambda one: one.rubs)
+        mine = _named_in_file(machine, lambda joint: joint.rubs)
         return [item for item in mine if ("slider" if item in sliders else "pin") in kinds]
 
     def items(result: Any) -> list[str]:

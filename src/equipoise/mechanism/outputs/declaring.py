@@ -227,7 +227,7 @@ class Declared:
 
 
 @dataclass(frozen=True)
-class Found:
+class OutputSource:
     """What outputs are read of where it is no analysis: a motion, and forces that belong to it.
 
     forces : such as a `Regressor` or `Split`, whose arrays have more axes before the last.
@@ -262,7 +262,7 @@ def output(
     needs: Needs = "masses",
     summed: tuple[bool, bool] | bool = True,
     sized: bool = True,
-    **more: Any,
+    **options: Any,
 ) -> Callable[[Read], Read]:
     """Declare an output by the function that has it from an analysis.
 
@@ -281,7 +281,7 @@ def output(
 
     def declare(read: Read) -> Read:
         item = Declared(
-            name, dimension, label, read, needs=needs, linear=linear, reason=reason, **more
+            name, dimension, label, read, needs=needs, linear=linear, reason=reason, **options
         )
         if parts is None:
             declare_as(replace(item, summed=of_size))
@@ -387,14 +387,16 @@ def alike(where: str, read: Callable[..., Any], **shared: Any) -> Callable[..., 
         parts: tuple[str, ...] = (),
         had: str = "",
         of: Callable[[Any], Any] = lambda values: values,
-        **more: Any,
+        **options: Any,
     ) -> None:
-        more = {**shared, **more}
+        options = {**shared, **options}
         if parts:
             stem = {part: where + name if part[0] == "." else where for part in parts}
-            more["parts"] = tuple(stem[part] + part for part in parts)
-        if more.get("loop") is True:
-            more["loop"] = looked_up(name.replace("_", " "))
-        output(where + name, dimension, label, **more)(lambda *found: of(read(had or name, *found)))
+            options["parts"] = tuple(stem[part] + part for part in parts)
+        if options.get("loop") is True:
+            options["loop"] = looked_up(name.replace("_", " "))
+        output(where + name, dimension, label, **options)(
+            lambda *source: of(read(had or name, *source))
+        )
 
     return declare

@@ -28,8 +28,8 @@ def pairs(machine: Any) -> dict[str, tuple[str, str]]:
 def pinned(machine: Any) -> list[str]:
     """Links other than the drive that turn about a pin in the frame."""
     met = [bodies for bodies in bodies_at(machine.bodies).values() if FRAME in bodies]
-    held = {body for bodies in met for body in bodies} - {machine.drive.link}
-    return [link for link in machine.links if link in held]
+    on_frame = {body for bodies in met for body in bodies} - {machine.drive.link}
+    return [link for link in machine.links if link in on_frame]
 
 
 def guided(machine: Any) -> list[str]:

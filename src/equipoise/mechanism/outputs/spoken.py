@@ -18,8 +18,10 @@ def joint_names(machine: Any) -> list[str]:
     shared = bodies_at(machine.bodies).items()
     pins = [point for point, bodies in shared if len(bodies) == 2]
     several = [(point, bodies) for point, bodies in shared if len(bodies) > 2]
-    held = [f"{point}/{body}" for point, bodies in several for body in bodies if body != FRAME]
-    return [*pins, *held, *machine.riders, *slider_names(machine)]
+    shared_pins = [
+        f"{point}/{body}" for point, bodies in several for body in bodies if body != FRAME
+    ]
+    return [*pins, *shared_pins, *machine.riders, *slider_names(machine)]
 
 
 def slider_names(machine: Any) -> list[str]:

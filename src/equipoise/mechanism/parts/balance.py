@@ -224,18 +224,18 @@ def _wrong_names(balance: Balance, bodies: Bodies) -> Iterator[ModelError]:
     new = [(place, geared.name) for place, geared in numbered("balance.geared", balance.geared)]
     for place, shafts in numbered("balance.shafts", balance.shafts):
         new += [(place, f"{shafts.name}-1"), (place, f"{shafts.name}-2")]
-    seen: set[str] = set()
+    used: set[str] = set()
     for place, name in new:
         where = f"{place}.name"
         if not name.strip() or not name.isprintable() or len(name) > LONGEST_NAME:
             yield ModelError(where, Note("got {name!r}; give another name", name=name[:60]))
         elif name in bodies:
             yield ModelError(where, Note("{name!r} is taken already; give another name", name=name))
-        elif name in seen:
+        elif name in used:
             yield ModelError(
                 where, Note("{name!r} is given twice; give each its own name", name=name)
             )
-        seen.add(name)
+        used.add(name)
 
 
 def _wrong_phases(step: float, rows: int) -> Iterator[ModelError]:

@@ -257,12 +257,12 @@ def inertia_of(body: Body, points: Points) -> tuple[Any, Any, Any]:
     for hole in body.holes:
         area, polar = _round(hole.radius, 0.0, 1 / (1.0 if body.width is None else body.width))
         parts.append((-area, place_of(hole.at, points), -polar))
-    amount, center, second = together(parts)
+    amount, center, second = combined(parts)
     mass = amount * _per_amount(body) if body.mass is None else body.mass
     return mass, center, second * (mass / amount) + body.inertia
 
 
-def together(parts: Sequence[tuple[Any, Any, Any]]) -> tuple[Any, Any, Any]:
+def combined(parts: Sequence[tuple[Any, Any, Any]]) -> tuple[Any, Any, Any]:
     """Amounts, centres and second moments about these, added up by Steiner's theorem."""
     if len(parts) == 1:
         return parts[0]
@@ -274,7 +274,7 @@ def together(parts: Sequence[tuple[Any, Any, Any]]) -> tuple[Any, Any, Any]:
 
 def weighed(bodies: Sequence[Body], points: Points) -> dict[str, Any]:
     """Mass, centre of mass and inertia of a link that is made of bodies."""
-    mass, center, inertia = together([inertia_of(body, points) for body in bodies])
+    mass, center, inertia = combined([inertia_of(body, points) for body in bodies])
     return {"mass": mass, "center_of_mass": (center.real, center.imag), "inertia": inertia}
 
 

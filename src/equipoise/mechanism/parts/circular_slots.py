@@ -61,8 +61,8 @@ class CircularSlot(JointKind):
         """A link from the centre to the pin."""
         pin, center = self.name, f"centre of {self.name}"
         points = {center: (0.0, 0.0), pin: (self.radius, 0.0)}
-        held = {self.link: {pin: self.point}, self.on: {center: self.center}}
-        return Rider(self.link, self.on, points, held, normal=1 + 0j)
+        points_on_bodies = {self.link: {pin: self.point}, self.on: {center: self.center}}
+        return Rider(self.link, self.on, points, points_on_bodies, normal=1 + 0j)
 
     @property
     def middle(self) -> Any:
@@ -109,5 +109,5 @@ class CircularSlot(JointKind):
         ends = (
             ", from " + " to ".join(told(value, "angle") for value in self.arc) if self.arc else ""
         )
-        held = f"{self.point} of {self.link} about {self.center} of {self.on}"
-        return f"circular slot: {held}, radius {told(self.radius, 'length')}{ends}"
+        ends_text = f"{self.point} of {self.link} about {self.center} of {self.on}"
+        return f"circular slot: {ends_text}, radius {told(self.radius, 'length')}{ends}"

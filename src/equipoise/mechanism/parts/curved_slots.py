@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 MOST_POINTS = 400
 FEWEST, FEWEST_CLOSED = 2, 4
 """Points of an open curve, and of one that is closed."""
-NEAR = 1e-6
+COINCIDENT = 1e-6
 """Of the curve's length: points nearer to each other coincide."""
 
 
@@ -139,9 +139,9 @@ class CurvedSlot(JointKind):
 
     def rider(self) -> Rider:
         """A body at the pin, whose x axis goes along the curve."""
-        held = {self.link: {self.name: self.point}}
+        points_on_bodies = {self.link: {self.name: self.point}}
         track = Track(self.curve, self.origin, self.direction)
-        return Rider(self.link, self.on, {self.name: (0.0, 0.0)}, held, track=track)
+        return Rider(self.link, self.on, {self.name: (0.0, 0.0)}, points_on_bodies, track=track)
 
     def values(self, at: Placed) -> Mapping[str, Any]:
         """Arc length from the first point to the pin, m, and the pin's speed along that, m/s."""
@@ -168,11 +168,11 @@ class CurvedSlot(JointKind):
         steps = [abs(b - a) for a, b in pairwise(places)]
         size = sum(steps)
         for number, step in enumerate(steps, 1):
-            if not step > NEAR * size:
+            if not step > COINCIDENT * size:
                 yield Note("points {number} and {after} coincide; leave one of them out",
                            number=number, after=number + 1)  # fmt: skip
                 return
-        if self.closed and not abs(places[-1] - places[0]) > NEAR * size:
+        if self.closed and not abs(places[-1] - places[0]) > COINCIDENT * size:
             yield Note("the last point is the first again, to which a closed curve goes on by "
                        "itself; leave it out")  # fmt: skip
 

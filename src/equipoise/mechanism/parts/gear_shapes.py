@@ -150,16 +150,16 @@ class MeshingGears(Protocol):
     def pressure_angle(self) -> float: ...
 
 
-Told = tuple[str, Note]
+KeyProblem = tuple[str, Note]
 """A key, and what is wrong with it."""
 
 
-def wrong_shape(shape: GearShape, gears: MeshingGears) -> list[Told]:
+def wrong_shape(shape: GearShape, gears: MeshingGears) -> list[KeyProblem]:
     """Everything that is wrong with the shape of gears, whatever curves follow from it."""
     return [*_wrong_keys(shape), *_wrong_table(shape), *_wrong_lobes(shape, gears)]
 
 
-def _wrong_keys(shape: GearShape) -> Iterator[Told]:
+def _wrong_keys(shape: GearShape) -> Iterator[KeyProblem]:
     own = KINDS[shape.kind]
     given = [item for item in OWN if getattr(shape, item) not in (None, ())]
     for entry in given:
@@ -178,7 +178,7 @@ def _wrong_keys(shape: GearShape) -> Iterator[Told]:
         yield "", Note("give both angle and {kind}, or neither", kind=shape.kind)
 
 
-def _wrong_table(shape: GearShape) -> Iterator[Told]:
+def _wrong_table(shape: GearShape) -> Iterator[KeyProblem]:
     rows, values = len(shape.angle), len(shape.ratio or shape.radius)
     waves = max(len(shape.cosines), len(shape.sines))
     if waves > MOST_WAVES:
@@ -208,7 +208,7 @@ def _wrong_table(shape: GearShape) -> Iterator[Told]:
         yield "angle", note
 
 
-def _wrong_lobes(shape: GearShape, gears: MeshingGears) -> Iterator[Told]:
+def _wrong_lobes(shape: GearShape, gears: MeshingGears) -> Iterator[KeyProblem]:
     ratio, exact = gears.speed_ratio, gears.exact_ratio
     if exact is None or (shape.lobes / exact).denominator != 1:
         note = Note(

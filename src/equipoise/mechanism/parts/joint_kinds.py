@@ -151,8 +151,8 @@ def with_riders(bodies: Bodies, riders: Mapping[str, Rider]) -> Bodies:
     """
     dicts = {body: dict(points) for body, points in bodies.items()}
     for rider in riders.values():
-        for body, held in rider.held.items():
-            dicts[body] |= {new: bodies[body][old] for new, old in held.items()}
+        for body, points_on_body in rider.held.items():
+            dicts[body] |= {new: bodies[body][old] for new, old in points_on_body.items()}
     (first, points), *others = dicts.items()
     return {first: points, **{name: rider.points for name, rider in riders.items()}, **dict(others)}
 

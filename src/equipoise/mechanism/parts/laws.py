@@ -40,7 +40,7 @@ SPLINES = {"cubic": 3, "quintic": 5}
 MOST_ROWS, MOST_TURNS = 720, 100
 CLOSED = 1e-9
 """Of the largest value, or of the cycle, by which rounding may miss what has to agree."""
-BESIDE = "CSV file beside this one, instead of `crank_angles` and `values`: "
+CSV_INSTEAD = "CSV file beside this one, instead of `crank_angles` and `values`: "
 ANGLES = Note('a list such as ["0 deg", "90 deg", "210 deg"]')
 LENGTHS = Note('a list such as ["0 mm", "5 mm", "20 mm"]')
 
@@ -248,7 +248,10 @@ class AngleLaw(Law):
     segments: tuple[AngleSegment, ...] = _segments(AngleSegment)
     values: tuple[float, ...] = _values("angle", ANGLES)
     table: AngleTable | None = key(
-        File("angles"), BESIDE + "`crank_angle [deg],angle [deg]`", default=None, example="law.csv"
+        File("angles"),
+        CSV_INSTEAD + "`crank_angle [deg],angle [deg]`",
+        default=None,
+        example="law.csv",
     )
 
 
@@ -264,5 +267,8 @@ class LengthLaw(Law):
     segments: tuple[LengthSegment, ...] = _segments(LengthSegment)
     values: tuple[float, ...] = _values("length", LENGTHS)
     table: LengthTable | None = key(
-        File("lengths"), BESIDE + "`crank_angle [deg],length [mm]`", default=None, example="law.csv"
+        File("lengths"),
+        CSV_INSTEAD + "`crank_angle [deg],length [mm]`",
+        default=None,
+        example="law.csv",
     )

@@ -27,7 +27,7 @@ from equipoise.keys import (
     wrong_values,
 )
 from equipoise.mechanism.checks import FRAME, Vector, unknown, unknown_point
-from equipoise.mechanism.parts.bodies import Body, together, weighed
+from equipoise.mechanism.parts.bodies import Body, combined, weighed
 from equipoise.mechanism.parts.body_checks import demands, wrong_bodies
 from equipoise.mechanism.parts.sections import LinkSection, wrong_section
 from equipoise.quantities import Measured
@@ -188,15 +188,15 @@ class Link(Frozen):
         plane : in which the mass lies, where that is another than the link's; then the link is one
             of bodies.
         """
-        beside = plane is not None and plane != self.plane
-        if self.bodies or beside:
+        off_plane = plane is not None and plane != self.plane
+        if self.bodies or off_plane:
             body = Body(
-                "point", at=place, mass=mass, inertia=inertia, plane=plane if beside else None
+                "point", at=place, mass=mass, inertia=inertia, plane=plane if off_plane else None
             )
             return self.altered(bodies=(*(self.bodies or self._as_body), body))
         assert self.center_of_mass is not None
         own = self.mass, complex(*self.center_of_mass), self.inertia
-        whole, center, second = together([own, (mass, complex(*place), inertia)])
+        whole, center, second = combined([own, (mass, complex(*place), inertia)])
         center_of_mass = (center.real, center.imag)
         return self.altered(mass=whole, center_of_mass=center_of_mass, inertia=second)
 
@@ -289,13 +289,13 @@ def _sides_of(names: Sequence[str], sides: Mapping[str, Any]) -> Iterator[Any]:
     for entry, other in ends:
         either = [name for name in (f"{entry}-{other}", f"{other}-{entry}") if name in left]
         if not either:
-            more = [f"{item}-{other}" for item, other in ends]
+            known = [f"{item}-{other}" for item, other in ends]
             lost = Note("missing; give that length")
             raise ModelError(
                 f"sides.{entry}-{other}",
                 next(
                     (
-                        Note("{sentence}; {hint}", sentence=lost, hint=unknown(name, more, "side"))
+                        Note("{sentence}; {hint}", sentence=lost, hint=unknown(name, known, "side"))
                         for name in left
                     ),
                     lost,

@@ -117,7 +117,7 @@ __all__ = [
 
 MOVING = ("link", "motion", "between", "slider", "stroke", "start")
 """What of the drive sets how the links move."""
-BESIDE = ("bodies", "plane", "planes")
+STATIC_KEYS = ("bodies", "plane", "planes")
 """Keys of a link that change nothing about the motion, beside its mass."""
 STILL = {"planting", "support", "rows", "bearings", "run", "duty"}
 """Keys, beside those of force elements, under which no number changes the motion."""
@@ -361,7 +361,7 @@ class Machine(Driven, Displayed, Frozen):
             raise ModelError(f"links.{name}", unknown(name, self.links, "link"))
         check_kept(f"links.{name}.points", self.links[name].points, changes.get("points"))
         machine = self._with_link(name, lambda link: link.altered(**changes))
-        return self._same_motion(machine, set(changes) <= {*MASS_FIELDS, *BESIDE})
+        return self._same_motion(machine, set(changes) <= {*MASS_FIELDS, *STATIC_KEYS})
 
     def _with_link(self, name: str, change: Callable[[Link], Link]) -> Machine:
         try:
@@ -450,7 +450,7 @@ class Machine(Driven, Displayed, Frozen):
         def put(_: Any) -> float | str:
             return number
 
-        massive = first == "links" and bool({*steps[2:3]} & {*MASS_FIELDS, *BESIDE})
+        massive = first == "links" and bool({*steps[2:3]} & {*MASS_FIELDS, *STATIC_KEYS})
         still = first in STILL or first in force_kinds(type(self))
         same = massive or still or last == "speed"
         if first == "links":

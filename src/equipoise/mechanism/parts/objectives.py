@@ -150,11 +150,16 @@ class Limit(Frozen, RequiredFigure):
     ratio: float | None = inside(Number(), default=None)
 
     def __init__(
-        self, objective: Objective, *, ratio: float | None = None, asks: Asks = (), **more: Any
+        self,
+        objective: Objective,
+        *,
+        ratio: float | None = None,
+        asks: Asks = (),
+        **requirement: Any,
     ) -> None:
         for name, value in (("objective", objective), ("ratio", ratio)):
             object.__setattr__(self, name, value)
-        object.__setattr__(self, "asks", asks_of(more, asks))
+        object.__setattr__(self, "asks", asks_of(requirement, asks))
         self.__post_init__()
 
     def most(self, before: float) -> float:

@@ -24,13 +24,13 @@ from equipoise.mechanism.formulas.rolling import (
     Tabled,
     Waves,
 )
-from equipoise.mechanism.parts.gear_shapes import TABLED, GearShape, MeshingGears, Told
+from equipoise.mechanism.parts.gear_shapes import TABLED, GearShape, KeyProblem, MeshingGears
 
 MISFIT = 1e-4
 """Share by which a table may miss that its curves close; it is spread over all of it."""
 CUT = 1e-3
 """Of the distance of the axes: more than what a drawing of curves by corners may miss."""
-COARSE, NEAR = 32, 0.1
+COARSE, FINE_REACH = 32, 0.1
 """Angles of a lobe, for each of its waves, at which many designs are looked at, and how near to
 what is wrong (rad, or of a ratio) they are looked at closely."""
 FORMULAS = ("elliptic", "limacon", "ratio")
@@ -43,11 +43,11 @@ def law_of(shape: GearShape, mean: float) -> Rolling:
     """The driven gear's angle by the driver's, both seen from the carrier; mean : ratio."""
     if shape.varies or np.ndim(shape.phase):
         return replace(_law.__wrapped__(shape, mean), zero=shape.phase)
-    return _kept(shape, mean)
+    return _rolling(shape, mean)
 
 
 @lru_cache(maxsize=256)
-def _kept(shape: GearShape, mean: float) -> Rolling:
+def _rolling(shape: GearShape, mean: float) -> Rolling:
     return replace(_law(_even(shape), mean), zero=shape.phase)
 
 
@@ -133,7 +133,9 @@ def closed_table(shape: GearShape, mean: float, distance: float | None) -> GearS
     return replace(shape, **values) if factor else shape
 
 
-def wrong_curve(shape: GearShape, gears: MeshingGears, distance: float | None) -> Iterator[Told]:
+def wrong_curve(
+    shape: GearShape, gears: MeshingGears, distance: float | None
+) -> Iterator[KeyProblem]:
     """What is wrong with the pitch curves that follow; distance : of the axes, if known, m."""
     even = _even(shape)
     if shape.kind in TABLED and (lowest := _lowest(even)) <= 0:
@@ -193,22 +195,22 @@ def can_roll(shape: GearShape, gears: MeshingGears) -> Array:
     good: Array = (least > 0) & (from_one > 0) & (most < pi / 2)
     if e is not None:
         good &= (np.asarray(e) >= 0) & (np.asarray(e) < 1)
-    far = (least > NEAR) & (from_one > NEAR) & (most < pi / 2 - NEAR) & (mean < 0)
+    far = (least > FINE_REACH) & (from_one > FINE_REACH) & (most < pi / 2 - FINE_REACH) & (mean < 0)
     for k in np.flatnonzero(good & ~far):
-        item, pair = (_design(held, int(k)) for held in (shape, gears))
+        item, pair = (_design(columns, int(k)) for columns in (shape, gears))
         good[k] = not [*wrong_curve(item, pair, None)]
     return good
 
 
-def _design(held: Any, k: int) -> Any:
+def _design(columns: Any, k: int) -> Any:
     """Numbers of one of the designs, instead of columns."""
     of_one = {}
-    for name, value in vars(held).items():
+    for name, value in vars(columns).items():
         several = value if isinstance(value, tuple) else (value,)
         if any(isinstance(item, np.ndarray) for item in several):
             numbers = tuple(float(item[k, 0]) if np.ndim(item) else item for item in several)
             of_one[name] = numbers if isinstance(value, tuple) else numbers[0]
-    return with_fields(held, **of_one)
+    return with_fields(columns, **of_one)
 
 
 @lru_cache(maxsize=64)
@@ -229,14 +231,14 @@ def _overlap(shape: GearShape, mean: float) -> float:
     at = np.linspace(0.0, shape.period, 90)
     turned = np.exp(1j * np.array([at, law(at)[0]])[..., None])
     of_inner, of_outer = turned if mean < 1 else turned[::-1]
-    seen = (inner_at + inner * of_inner - outer_at) / of_outer
-    room = np.interp(np.angle(seen), np.angle(outer), np.abs(outer), period=2 * pi)
-    return float(np.max(np.abs(seen) - room))
+    relative = (inner_at + inner * of_inner - outer_at) / of_outer
+    room = np.interp(np.angle(relative), np.angle(outer), np.abs(outer), period=2 * pi)
+    return float(np.max(np.abs(relative) - room))
 
 
 def _misfits(
     shape: GearShape, law: Rolling, ratio: float, distance: float | None
-) -> Iterator[Told]:
+) -> Iterator[KeyProblem]:
     """Tables whose curves do not close to a share of `MISFIT`."""
     if not shape.angle or not isinstance(law, RatioTable | PitchCurve):
         return

@@ -35,8 +35,10 @@ def moments_across(link: Link, point: str | None = None) -> tuple[Any, Any]:
 
 def demands_across(machine: Mechanism) -> Iterator[Any]:
     """What has to be true of planes of pins and bearings: flags, or columns of them."""
-    held = [(bearing.link, bearing.plane) for bearing in machine.bearings.values()]
-    yield from (here != there for (on, here), (to, there) in combinations(held, 2) if on == to)
+    bearing_planes = [(bearing.link, bearing.plane) for bearing in machine.bearings.values()]
+    yield from (
+        here != there for (on, here), (to, there) in combinations(bearing_planes, 2) if on == to
+    )
     for _, text in _told_of_pins(machine):
         yield from (here == there for (_, here), (_, there) in combinations(text, 2))
 

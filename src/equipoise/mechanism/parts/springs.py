@@ -248,15 +248,15 @@ class Spring(BetweenPoints, ForceElement):
 
     def summary(self) -> str:
         """All its numbers, in a line of `check`."""
-        held = f"spring: from {self.point} of {self.link} to {self.to}"
+        ends_text = f"spring: from {self.point} of {self.link} to {self.to}"
         if self.stiffness is None:
             lengths, _ = self.rows
             shortest, longest = (told(lengths[end], "length") for end in (0, -1))
-            return f"{held}, {len(lengths)} rows from {shortest} to {longest}"
+            return f"{ends_text}, {len(lengths)} rows from {shortest} to {longest}"
         free = f", free at {told(self.free_length, 'length')}" if self.free_length else ""
         if self.preload is not None:
             free = f", {told(self.preload, 'force')} at {told(self.free_length, 'length')}"
-        return f"{held}, {told(self.stiffness, 'stiffness', 'N/m')}{free}"
+        return f"{ends_text}, {told(self.stiffness, 'stiffness', 'N/m')}{free}"
 
     def demands(self) -> Iterator[Any]:
         """What has to be true of stiffness and lengths, or of columns of them."""

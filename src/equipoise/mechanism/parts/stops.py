@@ -171,8 +171,10 @@ class Stop(BetweenPoints, RatedElement):
 
     def summary(self) -> str:
         """All its numbers, in a line of `check`."""
-        held = f"stop: {self.point} of {self.link} on {self.to}"
+        ends_text = f"stop: {self.point} of {self.link} on {self.to}"
         rate = told(self.stiffness, "stiffness", "N/m")
         if self.speed is None:
-            return f"{held}, {rate}"
-        return f"{held}, {rate}, restitution {self.restitution:g} at {told(self.speed, 'speed')}"
+            return f"{ends_text}, {rate}"
+        return (
+            f"{ends_text}, {rate}, restitution {self.restitution:g} at {told(self.speed, 'speed')}"
+        )

@@ -70,7 +70,7 @@ FREEDOMS = (
 TIME_IN_PERIOD = "time_in_period"
 """Column of time in files of signals that are whole periods of a steady state: what reads such a
 file need not be told so."""
-HELD = ("surge", "heave", "sway")
+PIVOT_CONSTRAINED = ("surge", "heave", "sway")
 """What a pivot takes away."""
 MOST = {"mounts": 200, "gauges": 200, "rows": 200}
 
@@ -205,7 +205,7 @@ def wrong_support(support: Support | None, rows: Sequence[Row]) -> Iterator[Mode
 
 def _wrong_freedoms(support: Support) -> Iterator[ModelError]:
     for number, name in enumerate(support.freedoms, 1):
-        if support.pivot is not None and name in HELD:
+        if support.pivot is not None and name in PIVOT_CONSTRAINED:
             yield ModelError(
                 f"support.freedoms[{number}]",
                 Note(

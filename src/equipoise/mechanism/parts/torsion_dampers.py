@@ -147,7 +147,7 @@ class TorsionDamper(BetweenBodies, Damping):
 
     def summary(self) -> str:
         """All its numbers, in a line of `check`."""
-        held = f"torsion damper: {self.link} on {self.on}"
+        ends_text = f"torsion damper: {self.link} on {self.on}"
         if self.damping is None:
-            return f"{held}, {len(self.rows[0])} rows"
-        return f"{held}, {told(self.damping, 'torsional damping', 'N m s/rad')}"
+            return f"{ends_text}, {len(self.rows[0])} rows"
+        return f"{ends_text}, {told(self.damping, 'torsional damping', 'N m s/rad')}"

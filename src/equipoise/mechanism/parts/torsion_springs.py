@@ -213,11 +213,11 @@ class TorsionSpring(BetweenBodies, ForceElement):
 
     def summary(self) -> str:
         """All its numbers, in a line of `check`."""
-        held = f"torsion spring: {self.link} on {self.on}"
+        ends_text = f"torsion spring: {self.link} on {self.on}"
         if self.stiffness is None:
             ends = " to ".join(
                 told(angle, "angle") for angle in self.rows[0][:: len(self.rows[0]) - 1]
             )
-            return f"{held}, {len(self.rows[0])} rows from {ends}"
+            return f"{ends_text}, {len(self.rows[0])} rows from {ends}"
         rate = told(self.stiffness, "torsional stiffness", "N m/rad")
-        return f"{held}, {rate}, {told(self.preload, 'torque')} at {told(self.angle, 'angle')}"
+        return f"{ends_text}, {rate}, {told(self.preload, 'torque')} at {told(self.angle, 'angle')}"
