@@ -267,7 +267,7 @@ def _motor(option: str, text: str) -> Motor:
     a key of a table in its table has a dot: ``dc.voltage = 24 V``.
     """
     from equipoise.mechanism.parts.force_elements import Motor
-    from equipoise.schema.models import Beside
+    from equipoise.schema.models import AdjacentFiles
     from equipoise.schema.places import Context
     from equipoise.schema.reading import read_table
 
@@ -286,7 +286,7 @@ def _motor(option: str, text: str) -> Motor:
             raise UsageError(at_place(option, wrong))
         table[name] = float(value) if re.fullmatch(NUMBER, value) else value
     with error_in_option(option):
-        motor: Motor = read_table(Motor, content, Context(Beside(".").read))
+        motor: Motor = read_table(Motor, content, Context(AdjacentFiles(".").read))
         return motor
 
 

@@ -250,7 +250,7 @@ def _animated(scene: Scene, title: str, kind: str, options: dict[str, Any]) -> s
 
     draw = film.gif if kind == "gif" else film.mp4
     with counted("frame") as text:
-        return draw(scene, told=text, **options)
+        return draw(scene, progress=text, **options)
 
 
 # -- the report ------------------------------------------------------------------------------------

@@ -63,15 +63,15 @@ def downloaded(
     return {"name": name, "mime": MIMES[name.rpartition(".")[2]], **options}, data
 
 
-NamedFile = tuple[str, bytes]
+NameAndBytes = tuple[str, bytes]
 """What follows the name of the machine in that of the file, and its bytes."""
 
 
-def _csv(computed: Computed, message: Message, stem: str) -> NamedFile:
+def _csv(computed: Computed, message: Message, stem: str) -> NameAndBytes:
     return ".csv", to_csv(computed.analysis).encode()
 
 
-def _report(computed: Computed, message: Message, stem: str) -> NamedFile:
+def _report(computed: Computed, message: Message, stem: str) -> NameAndBytes:
     from equipoise.present.composition import report_page
     from equipoise.present.findings import Findings
 
@@ -85,22 +85,22 @@ def _report(computed: Computed, message: Message, stem: str) -> NamedFile:
     return "-report.html", text.encode()
 
 
-def _film(computed: Computed, message: Message, stem: str) -> NamedFile:
+def _film(computed: Computed, message: Message, stem: str) -> NameAndBytes:
     return ".gif", film_of(computed)
 
 
-def _drawing(computed: Computed, message: Message, stem: str) -> NamedFile:
+def _drawing(computed: Computed, message: Message, stem: str) -> NameAndBytes:
     return _rendered(linkage_at(computed, message.whole("at", 0)), "drawing", message)
 
 
-def _chart(computed: Computed, message: Message, stem: str) -> NamedFile:
+def _chart(computed: Computed, message: Message, stem: str) -> NameAndBytes:
     name, choice = message.text("chart"), message.text("choice", "")
     return _rendered(
         chart_of(computed, name, choice), choice if name == "output" else name, message
     )
 
 
-def _rendered(picture: Any, name: str, message: Message) -> NamedFile:
+def _rendered(picture: Any, name: str, message: Message) -> NameAndBytes:
     from equipoise.figures import render
 
     kind = message.text("format", "svg")
@@ -111,7 +111,7 @@ def _rendered(picture: Any, name: str, message: Message) -> NamedFile:
     return f"-{FORBIDDEN.sub('-', name.replace('.', '-'))}.{kind}", data
 
 
-def _interactive(computed: Computed, message: Message, stem: str) -> NamedFile:
+def _interactive(computed: Computed, message: Message, stem: str) -> NameAndBytes:
     from equipoise.exchange.formats import Job
     from equipoise.web.interactive import export_bytes
 
@@ -122,7 +122,7 @@ def _interactive(computed: Computed, message: Message, stem: str) -> NamedFile:
         return "-interactive.html", export_bytes(Job(computed.analysis.machine)).encode()
 
 
-FILES: dict[str, Callable[[Computed, Message, str], NamedFile]] = {
+FILES: dict[str, Callable[[Computed, Message, str], NameAndBytes]] = {
     "csv": _csv,
     "report": _report,
     "drawing": _drawing,

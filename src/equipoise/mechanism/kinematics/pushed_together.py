@@ -57,7 +57,7 @@ class RestingLinks:
 
 
 @dataclass(frozen=True, eq=False)
-class StrokeInverse:
+class MultiStrokeInverse:
     """Angles of P links that are pushed.
 
     linkage : solved where these links are held.  period : of the cycle, rad.
@@ -136,7 +136,7 @@ class FollowedLinks:
     theta : (K,) crank angles, rad.  q, rate : (P, K).
     """
 
-    of: StrokeInverse
+    of: MultiStrokeInverse
     theta: Array
     q: Array
     rate: Array
@@ -180,11 +180,11 @@ def commanded(machine: Machine) -> FollowedLinks:
     if linkage.needed_references or moved & start.keys():
         raise ModelError("drives", FOLLOWED)
     turns = np.lcm.reduce([drive.turns for drive in machine.driven])
-    of = StrokeInverse(linkage, pushers, float(2 * pi * turns))
+    of = MultiStrokeInverse(linkage, pushers, float(2 * pi * turns))
     return _followed(of, np.array([*start.values()])[:, None], POINTS * int(turns))
 
 
-def _followed(of: StrokeInverse, start: Array, count: int) -> FollowedLinks:
+def _followed(of: MultiStrokeInverse, start: Array, count: int) -> FollowedLinks:
     theta = np.linspace(0.0, of.period, count + 1)
     step = theta[1]
     q, change = of.near(theta[:1], start)
@@ -210,7 +210,7 @@ def _followed(of: StrokeInverse, start: Array, count: int) -> FollowedLinks:
     return FollowedLinks(of, theta, np.hstack(items), np.hstack(rates))
 
 
-def _not_had(of: StrokeInverse, start: Array) -> ModelError:
+def _not_had(of: MultiStrokeInverse, start: Array) -> ModelError:
     wanted = of.commanded(np.zeros(1))[0, :, 0]
     there = of.levers(np.zeros(1), start)[0][:, 0]
     each = zip(of.pushers, start[:, 0], wanted, there, strict=True)
@@ -234,7 +234,7 @@ def _not_had(of: StrokeInverse, start: Array) -> ModelError:
     )
 
 
-def _lost(of: StrokeInverse, at: float) -> ModelError:
+def _lost(of: MultiStrokeInverse, at: float) -> ModelError:
     links: Sequence[str] = [repr(pusher.link) for pusher in of.pushers]
     return ModelError(
         "drives",
