@@ -196,6 +196,22 @@ def test_a_coasting_machine_loses_force_times_way_until_it_stands_still() -> Non
     assert 2.0 < found.turned < 200.0
 
 
+def test_the_cutter_bar_of_the_examples() -> None:
+    """A turn costs twice the area below the cut's force, and the guide's over twice the stroke, to
+    what the speed of a steady state may differ by.  Later friction holds the bar.
+    """
+    machine = eq.load("cutter-bar")
+    cycle = eq.run(replace(machine, run=None)).last_cycle
+    stroke = np.ptp(eq.move(machine, np.linspace(0, 2 * np.pi, 20_001)).points["C"].x)
+    assert cycle is not None
+    wanted = 2 * 620.0 * (0.016 + 0.014) + 2 * 70.0 * stroke
+    assert cycle.energy_per_turn == pytest.approx(wanted, rel=1e-5)
+    found = eq.run(machine)
+    acting, holding = found.equation.at_rest(found.end.crank_angle)
+    assert found.end.kind == "standstill" and found.stopping is not None
+    assert abs(acting) < holding[np.copysign(1.0, acting)]
+
+
 def test_it_is_read_written_and_refused() -> None:
     rows = '[[resistances]]\nlink = "coupler"\npoint = "Q"\nto = "S"\n'
     read_back(MACHINE, "resistances", rows, ("coupler", "couplr"),
