@@ -10,9 +10,12 @@ from playwright.sync_api import BrowserContext, Page, Response, expect
 
 from browser.live import LONGEST, Live
 from equipoise.errors import UsageError
+from equipoise.i18n import LANGUAGES, catalogue
 from equipoise.web.site import Site, write_site
 from support.host import RUNTIME, WHEELS
 
+TEXTS = re.compile(r"/equipoise_(\w+)-[^/]+\.whl")
+"""A package with the catalogue of a language."""
 MOST = 12e6
 """Bytes of the first load, from a host that compresses nothing."""
 
@@ -36,9 +39,36 @@ def test_the_first_load_is_small(context: BrowserContext, hosted: Site, host: st
     live.drag(joint, (14, -9))
     assert live.place(joint) != before
     page.close()
-    loaded = sum(size for url, size in sent.items() if "service.js" not in url)
+    unsent = re.compile(r"service\.js|^blob:")  # what starts later, and what is made in the page
+    loaded = sum(size for url, size in sent.items() if not unsent.search(url))
     assert 0.99 * hosted.first < loaded < 1.01 * hosted.first
     assert hosted.first <= MOST
+
+
+def test_texts_are_loaded_of_the_language_that_is_spoken(
+    context: BrowserContext, hosted: Site, host: str
+) -> None:
+    """Once used they are there offline too, as all else; no other language is ever loaded."""
+    page, loaded = context.new_page(), list[str]()
+    context.on("request", lambda sent: loaded.append(sent.url))
+    live = opened(page, host, "yamashita-1")
+    page.wait_for_function("() => navigator.serviceWorker.controller !== null")
+    ja = catalogue("ja")
+    assert not [url for url in loaded if TEXTS.search(url)]
+    page.get_by_role("combobox", name="Language", exact=True).select_option("ja")
+    expect(page.get_by_role("button", name=ja["Undo"])).to_be_visible()
+    live.settled()
+    context.set_offline(True)
+    try:
+        page.goto("about:blank")
+        opened(page, host, "watt-six-bar")
+        expect(page.get_by_role("button", name=ja["Undo"])).to_be_visible()
+    finally:
+        context.set_offline(False)
+    page.evaluate("localStorage.clear()")
+    page.close()
+    assert {TEXTS.search(url)[1] for url in loaded if TEXTS.search(url)} == {"ja"}  # type: ignore[index]
+    assert len([*hosted.folder.glob("wheels/equipoise_*.gzip")]) == len(LANGUAGES) - 1
 
 
 def size_of(got: Response) -> int:

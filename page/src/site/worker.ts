@@ -57,7 +57,7 @@ interface CellRunner {
 }
 interface Pyodide {
   loadPackage(names: string[], options?: object): Promise<unknown>;
-  unpackArchive(data: Uint8Array, format: string): void;
+  unpackArchive(data: Uint8Array, format: string, options: object): void;
   runPython(code: string): unknown;
   /** A typed array as a view of memory. */
   toPy(data: Uint8Array): unknown;
@@ -108,6 +108,18 @@ function unpacking(packed: string[]): void {
   };
 }
 
+/** What a script gives that may lie there compressed, which a browser does not import from its place. */
+async function imported(address: URL): Promise<unknown> {
+  const reply = await fetch(address);
+  if (!reply.ok) throw new Error(`${address.pathname}: ${reply.status}`);
+  const script = URL.createObjectURL(new Blob([await reply.arrayBuffer()], { type: "text/javascript" }));
+  try {
+    return ((await import(script)) as { default: unknown }).default;
+  } finally {
+    URL.revokeObjectURL(script);
+  }
+}
+
 async function start(kind: "worker.Foreground" | "worker.Background" | "cells.CellRunner"): Promise<[Pyodide, unknown]> {
   const site = (await (await fetch(new URL("site.json", base))).json()) as Site;
   unpacking(site.packed);
@@ -115,6 +127,7 @@ async function start(kind: "worker.Foreground" | "worker.Background" | "cells.Ce
   const { loadPyodide } = (await import(new URL("pyodide.mjs", runtime).href)) as {
     loadPyodide(options: object): Promise<Pyodide>;
   };
+  const program = imported(new URL("pyodide.asm.mjs", runtime));
   const fetched = site.own.map(async (path) => {
     const reply = await fetch(new URL(path, base));
     if (!reply.ok) throw new Error(`${path}: ${reply.status}`);
@@ -125,6 +138,7 @@ async function start(kind: "worker.Foreground" | "worker.Background" | "cells.Ce
   for (const one of Object.values(lock.packages)) if (here(one)) one.file_name = new URL(one.file_name, base).href;
   const python = await loadPyodide({
     indexURL: runtime.href,
+    createPyodideModule: await program,
     lockFileContents: lock,
     packages: first.filter((name) => here(lock.packages[name]!)), // while the runtime starts
     stdout: () => undefined,
@@ -134,7 +148,9 @@ async function start(kind: "worker.Foreground" | "worker.Background" | "cells.Ce
   for (const one of Object.values(python.lockfile.packages))
     if (!here(one)) one.file_name = published + one.file_name;
   await python.loadPackage(first, { messageCallback: () => undefined });
-  for (const data of await Promise.all(fetched)) python.unpackArchive(data, "wheel");
+  // Beside the others: texts of a language are laid over what stands in for them.
+  const extractDir = python.runPython("import sysconfig; sysconfig.get_path('purelib')");
+  for (const data of await Promise.all(fetched)) python.unpackArchive(data, "wheel", { extractDir });
   const [module, name] = kind.split(".");
   const code = `from equipoise.web.${module} import ${name}; ${name}()`;
   return [python, python.runPython(code)];
@@ -148,12 +164,14 @@ async function load(python: Pyodide, module: string): Promise<boolean> {
   if (asked.has(module)) return false;
   asked.add(module);
   const packages = Object.entries(python.lockfile.packages);
-  const name = packages.find(([name, { imports }]) => name === module || imports.includes(module))?.[0];
-  if (!name) return false;
+  const wanted = packages.find(([name, { imports }]) => name === module || imports.includes(module));
+  if (!wanted) return false;
+  const [name, { imports }] = wanted;
   post({ type: "loading", what: name });
   try {
     await python.loadPackage([name], { messageCallback: () => undefined });
-    python.runPython(`import importlib; importlib.invalidate_caches(); import ${module}`);
+    python.runPython("import importlib; importlib.invalidate_caches()");
+    if (imports.length) python.runPython(`import ${module}`); // texts of a language have nothing to import
     return true;
   } catch {
     return false;

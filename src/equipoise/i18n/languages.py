@@ -2,13 +2,14 @@
 
 A catalogue is a TOML file beside this one, called by the code of its language.  Its table
 ``[language]`` comes first, then ``[particles]`` where words change by the word before them, and
-``[texts]`` last.  Only the lines of the first table are read to know which languages there are.
+``[texts]`` last.  Only the lines of the first table are read to know which languages there are, so
+that a page without a server can load the texts of a language when it is first spoken.
 """
 
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import field
 from functools import cache
 from importlib import resources
@@ -17,6 +18,8 @@ from typing import Any
 from equipoise.dataclass import dataclass
 
 ENDING = ".toml"
+ORIGINAL = "en"
+"""The language in which texts are written."""
 
 
 @dataclass(frozen=True)
@@ -44,19 +47,24 @@ def _catalogues() -> Iterator[tuple[str, Any]]:
     """Code and file of each catalogue; English, in which texts are written, first."""
     files = {file.name: file for file in resources.files(__package__).iterdir()}
     codes = {name.removesuffix(ENDING) for name in files if name.endswith(ENDING)}
-    for code in sorted(codes, key=lambda code: (code != "en", code)):
+    for code in sorted(codes, key=lambda code: (code != ORIGINAL, code)):
         yield code, files[code + ENDING]
 
 
+def head_of(lines: Iterable[str]) -> str:
+    """The first table of a catalogue, as text."""
+    head: list[str] = []
+    for line in lines:
+        if line.startswith("[") and head:
+            break
+        if line.startswith("[") or head:
+            head.append(line)
+    return "".join(head)
+
+
 def _head(file: Any) -> LanguageHead:
-    lines: list[str] = []
     with file.open(encoding="utf-8") as text:
-        for line in text:
-            if line.startswith("[") and lines:
-                break
-            if line.startswith("[") or lines:
-                lines.append(line)
-    head = tomllib.loads("".join(lines))["language"]
+        head = tomllib.loads(head_of(text))["language"]
     return LanguageHead(**head | {"fonts": tuple(head.get("fonts", ()))})
 
 
@@ -66,7 +74,19 @@ KNOWN: Mapping[str, LanguageHead] = {code: _head(file) for code, file in _catalo
 
 @cache
 def content(code: str) -> Mapping[str, Any]:
-    """The whole catalogue of a language: its tables ``language``, ``particles`` and ``texts``."""
+    """The whole catalogue of a language: its tables ``language``, ``particles`` and ``texts``.
+
+    Raises
+    ------
+    ModuleNotFoundError : here is the head alone, and the package that it names has the texts.
+    """
     file = resources.files(__package__) / f"{code}{ENDING}"
     tables: Mapping[str, Any] = tomllib.loads(file.read_text(encoding="utf-8"))
+    if "texts" not in tables:
+        raise ModuleNotFoundError(f"texts of {code!r} are not installed", name=package_of(code))
     return tables
+
+
+def package_of(code: str) -> str:
+    """The package of a site with the catalogue of a language."""
+    return f"equipoise-{code}"

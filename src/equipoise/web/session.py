@@ -108,8 +108,10 @@ class Session:
         yield from balanced.answered(self, message)
 
     def _speak(self, message: Message) -> Iterator[Reply]:
-        self.language = language_of(message.names("languages", MOST_LANGUAGES))
-        yield Reply({"type": "spoken", "seq": message.seq, **spoken_in(self.language)})
+        language = language_of(message.names("languages", MOST_LANGUAGES))
+        spoken = spoken_in(language)  # its texts may have to be loaded first, or cannot be
+        self.language = language
+        yield Reply({"type": "spoken", "seq": message.seq, **spoken})
 
     def _open(self, message: Message) -> Iterator[Reply]:
         design: Design | Sketch

@@ -7,7 +7,8 @@ wheels/                                  this package, and those that it needs
 docs/                                    the documentation, where it is given
 
 Many hosts compress nothing, so most of what is loaded first lies there as `NAME.gzip`, and the
-worker unpacks it.
+worker unpacks it.  Texts of other languages than English have a wheel each, which is loaded when
+the language is first spoken.
 """
 
 from __future__ import annotations
@@ -32,14 +33,15 @@ from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
 from equipoise.folders import Folder, LinkError
 from equipoise.i18n import Note
+from equipoise.i18n.languages import ENDING, KNOWN, ORIGINAL, head_of, package_of
 from equipoise.web.assets import MAKE
 from equipoise.web.documents import document
 
 RUNTIME = "314.0.3"
 """Version of the npm package `pyodide` that the page was tried with."""
-RUNTIME_FILES = ("pyodide.mjs", "pyodide.asm.mjs", "pyodide.asm.wasm", "python_stdlib.zip")
-SCRIPT = ".mjs"
-"""Ending of what browsers load by themselves, so that it cannot lie there compressed."""
+LOADER = "pyodide.mjs"
+"""The script that the worker imports from its place; it is handed the other one."""
+RUNTIME_FILES = (LOADER, "pyodide.asm.mjs", "pyodide.asm.wasm", "python_stdlib.zip")
 PACKED = ".gzip"
 """Ending of compressed files, which no host takes for a way of sending the file itself."""
 LOCK = "pyodide-lock.json"
@@ -52,6 +54,8 @@ UNUSED = re.compile(r"\.(pyi|h|a|pc|ini|in|pxd|pyx)$|/tests/|/_pyinstaller/|/inc
 modules stay: SciPy asks NumPy for each of its names."""
 COMMAND = "equipoise_command.py"
 """The module of the package that stands beside it."""
+CATALOGUES = "equipoise/i18n/"
+"""Folder of the package with a catalogue of each language, `CODE.toml`."""
 PURE = ("lazy-loader", "tomli-w")
 """Packages of pure Python that are imported from the beginning, besides this one."""
 PAGE = ("equipoise.js", "equipoise.css", "worker.js", "service.js", "THIRD-PARTY.txt")
@@ -148,11 +152,13 @@ class _SiteContent:
     """The runtime and the packages of a site.
 
     plain, packed : files as they are, and compressed ones without their ending, by path.
+    texts : those of the compressed ones that are loaded when their language is spoken.
     about : what the worker reads of them.
     """
 
     plain: dict[str, bytes]
     packed: dict[str, bytes]
+    texts: dict[str, bytes]
     about: dict[str, Any]
 
     @classmethod
@@ -164,32 +170,33 @@ class _SiteContent:
         packed = _lean(packages, plain)
         own = dict(_wheel(distribution(name)) for name in ("equipoise", *PURE))
         packed |= {f"wheels/{name}": _packed(data) for name, data in own.items()}
+        spoken, texts = _texts()
+        packages |= spoken
         for name, data in runtime.items():
-            if name.endswith(SCRIPT):
+            if name == LOADER:
                 plain[f"runtime/{name}"] = data
             else:
                 packed[f"runtime/{name}"] = _packed(_solid(name, data))
         about = {
             "runtime": "runtime/",
             "own": [f"wheels/{name}" for name in own],
-            "packed": sorted(packed),
+            "packed": sorted([*packed, *texts]),
             "first": FIRST,
             "lock": {**lock, "packages": packages},
         }
-        return cls(plain, packed, about)
+        return cls(plain, packed, texts, about)
 
     def write(self, folder: Path) -> None:
         """Write the files, whose folders are there."""
         for path, data in self.plain.items():
             (folder / path).write_bytes(data)
-        for path, data in self.packed.items():
+        for path, data in (self.packed | self.texts).items():
             (folder / f"{path}{PACKED}").write_bytes(data)
 
     @property
     def first(self) -> int:
         """Bytes that are loaded before the first machine moves."""
-        scripts = (data for path, data in self.plain.items() if path.endswith(SCRIPT))
-        return sum(map(len, self.packed.values())) + sum(map(len, scripts))
+        return sum(map(len, self.packed.values())) + len(self.plain[f"runtime/{LOADER}"])
 
     @property
     def missing(self) -> tuple[str, ...]:
@@ -360,20 +367,52 @@ def _packed(data: bytes) -> bytes:
     return gzip.compress(data, 9, mtime=0)
 
 
+def _texts() -> tuple[dict[str, Any], dict[str, bytes]]:
+    """Packages with the catalogues of languages, as the lock file has them, and their wheels."""
+    entries, packed = {}, {}
+    for code in KNOWN:
+        if code == ORIGINAL:
+            continue
+        name, catalogue = package_of(code), CATALOGUES + code + ENDING
+        data = (Path(__file__).parents[2] / catalogue).read_bytes()
+        file, wheel = _wheel_of(name, __version__, [(catalogue, data)])
+        path = f"wheels/{file}"
+        packed[path] = _packed(wheel)
+        entries[name] = {
+            "name": name,
+            "version": __version__,
+            "file_name": path,
+            "sha256": hashlib.sha256(packed[path]).hexdigest(),
+            "install_dir": "site",
+            "package_type": "package",
+            "unvendored_tests": False,
+            "imports": [],
+            "depends": [],
+        }
+    return entries, packed
+
+
 def _wheel(dist: Distribution) -> tuple[str, bytes]:
     """An installed package of pure Python as a wheel: its file's name and bytes."""
-    name = dist.metadata["Name"].replace("-", "_").lower()
-    stem = f"{name}-{dist.version}"
+    name = dist.metadata["Name"]
+    return _wheel_of(name, dist.version, _files_of(name.lower(), dist))
+
+
+def _wheel_of(name: str, version: str, files: Iterable[tuple[str, bytes]]) -> tuple[str, bytes]:
+    """A wheel of pure Python: its file's name and bytes."""
+    stem = f"{name.replace('-', '_').lower()}-{version}"
     info = f"{stem}.dist-info"
-    metadata = f"Metadata-Version: 2.1\nName: {name}\nVersion: {dist.version}\n"
+    metadata = f"Metadata-Version: 2.1\nName: {name}\nVersion: {version}\n"
     about = "Wheel-Version: 1.0\nRoot-Is-Purelib: true\nTag: py3-none-any\n"
     own = (("METADATA", metadata), ("WHEEL", about), ("RECORD", ""))
     described = ((f"{info}/{file}", text.encode()) for file, text in own)
-    return f"{stem}-py3-none-any.whl", _stored([*_files_of(name, dist), *described])
+    return f"{stem}-py3-none-any.whl", _stored([*files, *described])
 
 
 def _files_of(name: str, dist: Distribution) -> Iterable[tuple[str, bytes]]:
-    """Files of an installed package, without bytecode and without the page's own script."""
+    """Files of an installed package, without bytecode and the page's own script; of catalogues of
+    other languages than English the head alone.
+    """
     if name == "equipoise":  # which may be installed in place
         root = Path(__file__).parents[1]
         files = {p.relative_to(root.parent).as_posix(): p for p in root.rglob("*")}
@@ -384,7 +423,14 @@ def _files_of(name: str, dist: Distribution) -> Iterable[tuple[str, bytes]]:
         left_out = "__pycache__" in place or place.startswith("equipoise/web/static/")
         given = place.rpartition("/static/")[2] in GIVEN
         if path.is_file() and ".dist-info/" not in place and (given or not left_out):
-            yield place, path.read_bytes()
+            is_head = place.startswith(CATALOGUES) and place.endswith(ENDING)
+            is_head = is_head and path.stem != ORIGINAL
+            yield place, _head_of(path) if is_head else path.read_bytes()
+
+
+def _head_of(catalogue: Path) -> bytes:
+    with catalogue.open(encoding="utf-8") as lines:
+        return head_of(lines).encode()
 
 
 def _build_of(folder: Path) -> str:

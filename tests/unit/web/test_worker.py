@@ -10,6 +10,7 @@ import pytest
 
 from equipoise.balancing import program
 from equipoise.balancing.cone_solver import interior_point_solver
+from equipoise.i18n import catalogue
 from equipoise.web.worker import Background, Foreground
 from unit.web.pages import unpacked
 
@@ -157,6 +158,31 @@ def test_a_package_is_asked_for_and_the_message_begun_again(
     page.lacks("scipy")
     (refusal,) = [one for one in asked(page, "undo") if one["type"] == "refused"]
     assert "this needs scipy" in refusal["message"]
+
+
+def without_texts(language: str) -> Any:
+    raise ModuleNotFoundError(f"texts of {language!r} are not installed", name="equipoise-ja")
+
+
+def test_a_language_is_spoken_once_its_texts_are_loaded(
+    page: Foreground, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Where they cannot be loaded the page goes on in the language that it speaks."""
+    speak = json.dumps({"type": "speak", "seq": next(SEQ), "languages": ["ja-JP", "en"]})
+    monkeypatch.setattr("equipoise.web.session.spoken_in", without_texts)
+    page.take(speak)
+    assert page.step() is None
+    assert page.missing == "equipoise-ja"
+    page.lacks("equipoise-ja")
+    (refusal,) = [one for one in texts(page) if one["type"] == "refused"]
+    assert "this needs equipoise-ja" in refusal["message"]
+    assert asked(page, "undo")[0]["message"] == "there is nothing to undo"
+    monkeypatch.undo()
+    (spoken,) = [
+        one for one in asked(page, "speak", languages=["ja-JP"]) if one["type"] == "spoken"
+    ]
+    assert spoken["words"]["Undo"] == catalogue("ja")["Undo"]
+    assert asked(page, "undo")[0]["message"] == catalogue("ja")["there is nothing to undo"]
 
 
 def test_a_balance_without_clarabel_comes_to_the_same(
