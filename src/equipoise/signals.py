@@ -239,15 +239,16 @@ class JumpSampling:
         """Mean, RMS and extremes of each of several signals (M, N)."""
         return figures_of_each(self.at, samples, self.shares, self.shown)
 
-    def periodic(self, samples: Array) -> Periodic:
-        """Samples (..., N) by order."""
+    def periodic(self, samples: Array, most: int | None = None) -> Periodic:
+        """Samples (..., N) by order, of which those after the first `most` + 1 may be left out."""
+        last = self.orders if most is None else min(most, self.orders)
         weighted = samples * self.shares
-        values = np.empty((*samples.shape[:-1], self.orders + 1), complex)
+        values = np.empty((*samples.shape[:-1], last + 1), complex)
         theta = -1j / self.turns * self.crank_angle
-        waves = np.exp(np.outer(theta, np.arange(min(ORDERS_AT_ONCE, self.orders + 1))))
-        for begin in range(0, self.orders + 1, ORDERS_AT_ONCE):
+        waves = np.exp(np.outer(theta, np.arange(min(ORDERS_AT_ONCE, last + 1))))
+        for begin in range(0, last + 1, ORDERS_AT_ONCE):
             some = (weighted * np.exp(begin * theta)) @ waves  # of order begin, and those after it
-            values[..., begin : begin + some.shape[-1]] = some[..., : self.orders + 1 - begin]
+            values[..., begin : begin + some.shape[-1]] = some[..., : last + 1 - begin]
         values[..., 1:] *= 2
         return Periodic(values, self.turns)
 

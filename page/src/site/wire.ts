@@ -1,7 +1,7 @@
 /** A wire to Python in a worker of the browser. */
 
 import { Bytes } from "../bytes";
-import type { Wire } from "../protocol";
+import type { Told, Wire } from "../protocol";
 
 /** What a worker says of itself. */
 interface Sign {
@@ -9,8 +9,31 @@ interface Sign {
   what: string | null;
 }
 
+/** Of an object, what has changed since the one before (`equipoise/web/state_changes.py`). */
+interface Changes {
+  same: string[];
+  items: Record<string, [number, unknown][]>;
+  inside: Record<string, Changed>;
+}
+type Changed = Record<string, unknown> & { since?: Changes };
+
+/** An object put together from the one before and its changes. */
+export function changed(before: Record<string, unknown>, { since, ...now }: Changed): Record<string, unknown> {
+  if (!since) return now;
+  for (const key of since.same) now[key] = before[key];
+  for (const [key, items] of Object.entries(since.items)) {
+    const list = [...(before[key] as unknown[])];
+    for (const [number, item] of items) list[number] = item;
+    now[key] = list;
+  }
+  for (const [key, inside] of Object.entries(since.inside))
+    now[key] = changed(before[key] as Record<string, unknown>, inside);
+  return now;
+}
+
 export class WorkerWire extends Bytes implements Wire {
   private readonly worker: Worker;
+  private state: Record<string, unknown> = {};
 
   /** `sign` hears that a package is loaded, and why nothing can be computed. */
   constructor(address: string, sign: (sign: Sign) => void) {
@@ -21,6 +44,12 @@ export class WorkerWire extends Bytes implements Wire {
       else sign(data);
     };
     this.worker.onerror = (event) => sign({ type: "failed", what: event.message });
+  }
+
+  protected override whole(message: Changed): Told {
+    if (!message.since) return message as unknown as Told;
+    this.state = changed(this.state, message);
+    return this.state as unknown as Told;
   }
 
   send(content: object): void {

@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Iterable, Mapping
+from functools import lru_cache
 from typing import Any
 
 from equipoise.errors import ModelError
@@ -137,8 +138,9 @@ def quoted(value: object) -> str:
     return json.dumps(value, ensure_ascii=False)
 
 
+@lru_cache(4096)
 def written_key(name: str) -> str:
-    """A key as it stands in TOML."""
+    """A key as it stands in TOML; a page writes those of a machine at every move of a drag."""
     return name if _BARE.fullmatch(name) else quoted(name)
 
 

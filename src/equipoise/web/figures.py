@@ -7,7 +7,7 @@ those by order have a number for each of the message's orders.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from functools import cached_property
+from functools import cache, cached_property
 from math import isfinite
 from typing import Any
 
@@ -143,9 +143,14 @@ def told_signals() -> dict[str, Declared]:
 
     The size of a vector stands before its components.
     """
+    return _told_signals(tuple(DECLARED))
+
+
+@cache
+def _told_signals(names: tuple[str, ...]) -> dict[str, Declared]:
     by_name = {
         name: item
-        for name, item in DECLARED.items()
+        for name, item in ((name, DECLARED[name]) for name in names)
         if (item.group == "forces" and item.compared) or (item.group == "rows" and item.summed)
     }
     whole = {

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from functools import lru_cache
 
 import numpy as np
 
 from equipoise.figures.points import traced
-from equipoise.i18n import said, say
+from equipoise.i18n import said, say, speaking, spoken
 from equipoise.mechanism.dynamics.forces import assumed_masses
-from equipoise.mechanism.outputs.declared import GROUPS
+from equipoise.mechanism.outputs.declared import GROUPS, declared
 from equipoise.mechanism.outputs.poles import guided, pinned
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.quantities import display
+from equipoise.quantities import Dimension, Display, display
 from equipoise.results.analysis import Analysis
 from equipoise.results.drive_blocks import driven
 from equipoise.signals import Periodic
@@ -101,22 +102,37 @@ def state_of(
 
 def outputs_of(analysis: Analysis) -> list[Values]:
     """What can be drawn over the crank angle."""
-    by_name = {
-        dimension: {"unit": shown.name, "factor": shown.factor}
-        for dimension in {output.dimension for output in analysis.outputs}
-        for shown in [display(dimension)]
-    }
-    groups = {group: say(title) for group, title in GROUPS.items()}
-    return [
-        {
-            "name": output.name,
-            "label": output.label(),
-            "group": groups[output.group],
-            "winds": output.dimension == "angle",
-            **by_name[output.dimension],
-        }
-        for output in analysis.outputs
-    ]
+    dimensions = {output.dimension for output in analysis.outputs}
+    units = tuple((dimension, display(dimension)) for dimension in dimensions)
+    groups = tuple(say(title) for title in GROUPS.values())
+    several = len(analysis.machine.rows) > 1
+    return _outputs_told(tuple(analysis.outputs.names), several, units, groups, spoken())
+
+
+@lru_cache(16)
+def _outputs_told(
+    names: tuple[str, ...],
+    several: bool,
+    units: tuple[tuple[Dimension | None, Display], ...],
+    groups: tuple[str, ...],
+    language: str,
+) -> list[Values]:
+    """What is told of outputs, which stay from one move of a drag to the next."""
+    by_dimension, headings = dict(units), dict(zip(GROUPS, groups, strict=True))
+    with speaking(language):
+        return [
+            {
+                "name": name,
+                "label": output.say(item, several),
+                "group": headings[output.group],
+                "winds": output.dimension == "angle",
+                "unit": by_dimension[output.dimension].name,
+                "factor": by_dimension[output.dimension].factor,
+            }
+            for name in names
+            for output, item in [declared(name) or (None, "")]
+            if output is not None
+        ]
 
 
 def status_of(computed: Computed) -> Values:
@@ -168,19 +184,27 @@ def _spectra(analysis: Analysis, signals: dict[str, Array]) -> Iterator[tuple[st
     if analysis.solved is None:
         return
     turns = analysis.motion.turns
-    for item in analysis.outputs.ordered:
-        if item.declared.compared:
-            yield item.name, _sizes(analysis.by_order[item.name])
+    ordered = [item for item in analysis.outputs.ordered if item.declared.compared]
+    motion = analysis.resolved.motion
+    # No more orders than are drawn: where forces jump they are sums over thousands of crank angles.
+    sizes = _sizes(motion.periodic(np.stack([item.resolved for item in ordered]), _places(turns)))
+    yield from zip((item.name for item in ordered), sizes, strict=True)
     whole = signals.get("rows.shaking_force")
     if whole is not None:
         yield "rows.shaking_force.x", _sizes(Periodic.of(whole.real, turns))
         yield "rows.shaking_force.y", _sizes(Periodic.of(whole.imag, turns))
 
 
+def _places(turns: int) -> int:
+    """Places of orders in spectra, without that of order 0."""
+    return MOST_ORDER * turns
+
+
 def _sizes(signal: Periodic) -> Array:
-    sizes = np.zeros(MOST_ORDER * signal.turns + 1)
-    low_orders = signal.sizes[: len(sizes)]
-    sizes[: len(low_orders)] = low_orders
+    """Amplitude (..., P) at each place of spectra; 0 where there is no such order."""
+    low_orders = signal.sizes[..., : _places(signal.turns) + 1]
+    sizes = np.zeros((*low_orders.shape[:-1], _places(signal.turns) + 1))
+    sizes[..., : low_orders.shape[-1]] = low_orders
     return sizes
 
 
@@ -188,7 +212,7 @@ def _orders(analysis: Analysis) -> list[float]:
     if analysis.solved is None:
         return []
     turns = analysis.motion.turns
-    return [number / turns for number in range(MOST_ORDER * turns + 1)]
+    return [number / turns for number in range(_places(turns) + 1)]
 
 
 # -- what comes first ------------------------------------------------------------------------------

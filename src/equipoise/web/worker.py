@@ -26,6 +26,7 @@ from equipoise.web.messages import SLOW, Message, makes_way, read
 from equipoise.web.replies import Reply, completed, packed, refused, unexpected
 from equipoise.web.session import Session
 from equipoise.web.shaken import deferred_replies
+from equipoise.web.state_changes import StateChanges
 
 OF_MACHINE = ("balance", "download")
 """Of the questions that take long, those about the machine that is open."""
@@ -79,6 +80,7 @@ class Foreground:
         self._refused_packages: set[str] = set()
         self._answered = self._reported = 0
         self._whole = 0.0
+        self._changes = StateChanges()
 
     def take(self, text: str) -> None:
         """Take a message in; an edit that was only tried makes way for a newer one."""
@@ -104,7 +106,7 @@ class Foreground:
             reply = self._refuse(error)
         except Exception as error:  # whatever it is, the last good state is still there
             reply = self._refuse(unexpected(error))
-        return None if reply is None else packed(reply)
+        return None if reply is None else packed(self._changes.of(reply))
 
     def lacks(self, package: str) -> None:
         """Note that a package cannot be loaded."""

@@ -108,11 +108,14 @@ class Motion(Displayed):
         at = np.where(taken - at > period / 2, at + period, at)  # just before a jump at 0
         return np.maximum.accumulate(at), values[places]  # both sides of a jump differ by rounding
 
-    def periodic(self, values: Array) -> Periodic:
-        """Values (..., N) over a whole cycle by order."""
+    def periodic(self, values: Array, most: int | None = None) -> Periodic:
+        """Values (..., N) over a whole cycle by order.
+
+        most : where it is given, orders after so many places may be left out.
+        """
         if self.sampling is None:
             return Periodic.of(values, self.turns)
-        return self.sampling.periodic(values)
+        return self.sampling.periodic(values, most)
 
     def amplitude(self, values: Array, place: int) -> Array:
         """Complex amplitude (...) of values (..., N) at one place of the orders of `periodic`."""
