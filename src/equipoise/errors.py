@@ -117,17 +117,17 @@ class EquipoiseError(Exception):
         return [*shown, *([f"more: {explained_by}"] if explained_by else [])]
 
     def with_paste(self, paste: Paste | None) -> Self:
-        """The same error, with lines that can be pasted into the file."""
+        """Attach lines that can be pasted into the file; returns the error itself."""
         self._paste = paste
         return self
 
     def with_topic(self, topic: str) -> Self:
-        """The same error, about which `equipoise explain` has more by that name."""
+        """Name the topic on which `equipoise explain` has more; returns the error itself."""
         self._topic = topic
         return self
 
     def like(self, error: EquipoiseError) -> Self:
-        """The same error, with the lines and the topic of the one that it came from."""
+        """Take over the lines and the topic of another error; returns the error itself."""
         return self.with_paste(error.paste).with_topic(error.topic)
 
 
@@ -169,7 +169,7 @@ class ModelError(EquipoiseError):
         return self.at(f"{outer}{point}{self.where}", self.source)
 
     def at(self, where: str, source: str = "") -> ModelError:
-        """The same error at another place."""
+        """Copy of the error at another place."""
         same = type(self)(where, self.what, source).with_paste(self.paste)
         return same.with_topic(self._topic)
 

@@ -13,7 +13,7 @@ import mujoco
 import numpy as np
 
 from equipoise.exchange.formats import Job
-from equipoise.exchange.mjcf import made
+from equipoise.exchange.mjcf import export_bytes
 from equipoise.mechanism.parts.machine import FRAME, Machine, Spring, Vector
 from equipoise.mechanism.parts.torsion_springs import TorsionSpring
 from support.loads import work_per_crank_angle
@@ -70,7 +70,7 @@ def model_of(
         machine, support=None, rows=(), balance=None, springs=tuple(springs), gears=even,
         torsion_springs=tuple(torsion),
     )  # fmt: skip
-    model = mujoco.MjModel.from_xml_string(made(Job(alone)))
+    model = mujoco.MjModel.from_xml_string(export_bytes(Job(alone)))
     model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONSTRAINT
     for name, link in machine.links.items():  # what the file makes a little heavier than it is
         if any(body.plane is not None for body in link.bodies):

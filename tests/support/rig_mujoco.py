@@ -17,7 +17,7 @@ import mujoco
 import numpy as np
 
 from equipoise.exchange.formats import Job
-from equipoise.exchange.mjcf import made
+from equipoise.exchange.mjcf import export_bytes
 from support.rig_reference import (
     TURN,
     Real,
@@ -72,7 +72,7 @@ class Engine:
     def __init__(self, rig: Rig) -> None:
         self.rig = rig
         self.speed_given = rig.drive is None
-        self.model = mujoco.MjModel.from_xml_string(made(Job(in_package(rig))))
+        self.model = mujoco.MjModel.from_xml_string(export_bytes(Job(in_package(rig))))
         count = len(rig.rows)
         self.rows = [f" {k}" for k in range(1, count + 1)] if count > 1 else [""]
         flags = mujoco.mjtDisableBit  # no contacts, no limits: the tree is left to itself

@@ -195,7 +195,7 @@ class Balanced(Result):
 
     @cached_property
     def after(self) -> dict[str, float]:
-        """The same of the balanced machine."""
+        """Figures of the balanced machine, by name; SI units."""
         return self._shaking[1] | compared.planting_of(self.machine)
 
     @cached_property

@@ -161,7 +161,7 @@ def _aims(balanced: Balanced) -> Iterator[str]:
 
 
 def outcome_blocks(balanced: Balanced) -> Iterator[Block]:
-    """The same without what machine it is."""
+    """Outcome of balancing, without the name of the machine."""
     if balanced.advice is not None:
         yield from advice_blocks(balanced)
     if balanced.advice is not None and not balanced.helps:

@@ -223,7 +223,7 @@ class Bounder:
     def _by_forms(
         self, boxes: Boxes, totals: list[Array], turning: Array
     ) -> tuple[Boxes, Array, Array]:
-        """The same where numbers are free and terms jump: readings at many crank angles at once,
+        """Bounds where numbers are free and terms jump: readings at many crank angles at once,
         of which a linear program tells how small the largest can be.
         """
         halves, losses = self.half / 2.0**boxes.halvings, np.zeros(boxes.middles.shape)

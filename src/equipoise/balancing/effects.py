@@ -147,11 +147,11 @@ class Effects:
         self.springs = [(item, rows) for item, rows in each if isinstance(item, FreeSpring)]
 
     def at(self, speed: float) -> Effects:
-        """The same at another speed, rad/s."""
+        """Effects at another speed, rad/s."""
         return Effects(self.machine, self.parts, self.motion.at(speed))
 
     def at_angles(self, crank_angle: Array) -> Effects:
-        """The same at other crank angles (N,), rad, of one cycle or not."""
+        """Effects at other crank angles (N,), rad, of one cycle or not."""
         motion = self.motion
         moved = move(self.machine, crank_angle, motion.speed, motion.acceleration)
         return Effects(self.machine, self.parts, moved, self.like)
@@ -215,7 +215,7 @@ class Effects:
 
     @cached_property
     def weight(self) -> Demand:
-        """The same of weight."""
+        """Demands of weight of a unit of each number."""
         turn, gravity = self.motion.state, complex(*self.machine.gravity)
         return self._demands(
             lambda link, own: kernels.weight_demand(turn[f"u({link})"], own[0], own[1], gravity)

@@ -254,7 +254,7 @@ class JumpingDesigns:
         return cls(tuple(replace(whole, curves=whole.curves[k : k + count]) for k in places))
 
     def of_numbers(self, places: Sequence[int]) -> JumpingDesigns:
-        """The same with some of the K numbers only."""
+        """Designs with some of the K numbers only."""
         return JumpingDesigns((self.each[0], *(self.each[1 + k] for k in places)))
 
     def at(self, numbers: Array) -> JumpingRows:

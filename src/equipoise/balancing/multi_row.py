@@ -71,7 +71,7 @@ class RowSignals:
         return np.arange(self.amplitudes.shape[-1]) / self.turns
 
     def with_orders(self, orders: Sequence[float]) -> RowSignals:
-        """The same with these orders only; with all of them if there are none."""
+        """Signals with these orders only; with all of them if there are none."""
         if not orders:
             return self
         wanted = np.any(np.isclose(self.orders[:, None], orders, atol=1e-9), axis=1)

@@ -90,7 +90,7 @@ class Pattern:
 
     @property
     def left(self) -> str:
-        """The same in words."""
+        """Remaining orders, in words."""
         return ", ".join(f"{order} of {rows:.4g}" for order, rows in self.remaining.items())
 
     @property

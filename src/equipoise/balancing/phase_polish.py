@@ -340,7 +340,7 @@ class ActivePeaks:
         return np.concatenate([v for v, _ in values]), np.vstack([s for _, s in values])
 
     def _of_speed(self, turned: Array, places: tuple[Array, Array]) -> Pieces:
-        """The same at one speed, from the amplitudes (m, C, K + 1) of all rows."""
+        """Active peaks at one speed, from the amplitudes (m, C, K + 1) of all rows."""
         term = self.term
         slopes = 1j * term.signals.orders * turned
         if by_orders(term.measure):

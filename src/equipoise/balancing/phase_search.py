@@ -201,7 +201,7 @@ class PhaseSearch:
         return self._snapped(polished(self.cost, phases, self.step, after))
 
     def improved(self, phases: Array, known: float) -> tuple[Array, float]:
-        """The same with its cost, where phases are better than what is known; else no better.
+        """Polished phases and their cost, where better than what is known; else an infinite cost.
 
         Peaks that are read at samples flatter.
         """

@@ -86,7 +86,7 @@ class Problem:
         return zip(self.parts, numbers, strict=True)
 
     def linearized_at(self, numbers: list[Array]) -> Problem:
-        """The same, with gauges read as they are near the machine of some numbers."""
+        """Problem with gauges linearized at the machine of some numbers."""
         close, effects = (
             LinearizationPoint(self.machine_with(numbers), np.concatenate(numbers)),
             self.effects,
@@ -144,7 +144,7 @@ class Problem:
 
     @staticmethod
     def values_of(machine: Machine, objectives: Sequence[Objective]) -> list[float]:
-        """The same of several, in their order."""
+        """Values of several objectives, in their order."""
         effects, point = Effects(machine, ()), LinearizationPoint(machine)
         return [
             max(
@@ -166,7 +166,7 @@ class Problem:
         return self.plan.combined([1.0] * len(self.plan.objectives))
 
     def cost_at(self, numbers: list[Array]) -> float:
-        """The same for the parts' numbers, as the program has it."""
+        """Cost by the numbers of the parts, as the program has it."""
         x = np.concatenate(numbers)
         each = (
             (objective.measure, self.signals[objective.name]) for objective in self.plan.objectives

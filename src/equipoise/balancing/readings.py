@@ -70,7 +70,7 @@ class ParameterSum:
 
     @property
     def words(self) -> str:
-        """The same for readers, ``mass*x of coupler / 71.5 mm + mass*x of rocker / 80 mm``."""
+        """Text for readers, ``mass*x of coupler / 71.5 mm + mass*x of rocker / 80 mm``."""
         return self._sum(lambda term: say(WORDS[term.quantity], name=term.link))
 
     def _sum(self, named: Callable[[ParameterTerm], str]) -> str:

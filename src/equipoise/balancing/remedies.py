@@ -330,7 +330,7 @@ def _free(room: Room, shapes: list[Sector]) -> Array:
 
 
 def _turned(degrees: int) -> int:
-    """The same direction, from -179 to 180 degrees."""
+    """Equivalent direction from -179 to 180 degrees."""
     return 180 - (180 - degrees) % 360
 
 

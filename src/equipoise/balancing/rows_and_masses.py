@@ -257,7 +257,7 @@ class JointPhaseMassOptimizer:
 
     @cached_property
     def _of_any(self) -> list[Array]:
-        """The same where the support carries the same."""
+        """Signals of each row where the support carries the same with any mass."""
         problem = self.problem
         return [of_each_row(problem.effects, item, problem.close) for item in self._measured]
 

@@ -111,7 +111,7 @@ class TracedGroup:
     # -- what is given -----------------------------------------------------------------------------
 
     def slotted(self, value: Any, name: str, read: Read) -> Any:
-        """The same with terms for its numbers."""
+        """Copy of a value with terms for its numbers."""
 
         def part(key: Any, get: Callable[[Any], Any]) -> Any:
             return self.slotted(get(value), f"{name} {key}", lambda linkage: get(read(linkage)))

@@ -137,7 +137,7 @@ def _enlarged(cell: Cell, most: float) -> float:
 
 
 def _align(cells: list[Cell], rate: float) -> float:
-    """The same ends for axes, where these need not be much longer for that.
+    """Give axes equal ends, where these need not be much longer for that.
 
     rate : of one scale, a point in the unit of the axes.  Returns that which all of them have then.
     """

@@ -99,7 +99,7 @@ class Addition:
     holes: tuple[Array, ...] = ()
 
     def in_meters(self) -> Addition:
-        """The same as a chart has it."""
+        """Addition with places in metres, as charts have them."""
         holes = tuple(hole / MM for hole in self.holes)
         return replace(self, outline=self.outline / MM, at=self.at / MM, holes=holes)
 

@@ -83,7 +83,7 @@ def finer(x: Array, y: Array, values: Array) -> tuple[Array, Array, Array]:
 
 
 def _finer(places: Array, rows: Array) -> tuple[Array, Array]:
-    """The same of rows (J, K) over places (K,)."""
+    """Finer places and interpolated rows (J, K) over places (K,)."""
     from scipy.interpolate import Akima1DInterpolator
 
     steps = -(-FINE // (len(places) - 1))

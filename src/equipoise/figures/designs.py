@@ -66,7 +66,7 @@ def best_charts(
 
 
 def searched_charts(searched: Searched, units: Units, own: Own | None = None) -> dict[str, Chart]:
-    """The same of a search, and ``search``: how it got better from generation to generation."""
+    """Charts of a search, and ``search``: how it got better from generation to generation."""
     study = searched.study
     labels = [str(number) for number in range(len(searched.values))]
     table = np.hstack([searched.values, searched.figures])

@@ -43,7 +43,7 @@ class CanvasStroke:
 
 @dataclass(frozen=True, eq=False)
 class Markers:
-    """The same marker at some places (N, 2).
+    """One marker drawn at some places (N, 2).
 
     shape : as Matplotlib calls it.  size : of its width, points.
     """

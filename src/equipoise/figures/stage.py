@@ -186,7 +186,7 @@ class Stage:
 
     @cached_property
     def lines(self) -> list[tuple[str, str]]:
-        """The same in lines from below; the first is empty where none fits beside the ruler."""
+        """Remarks in lines from below; the first is empty where none fits beside the ruler."""
         result = []
         for words, color in self.told:
             size = width_of(words, self.size_of_type) / len(words)

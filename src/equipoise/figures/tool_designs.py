@@ -171,7 +171,7 @@ def _turns_axis(scale: float, top: float) -> Axis:
 
 
 def _parameter_axis(top: float) -> Axis:
-    """The same in lambda, by steps of which there are nine at most."""
+    """Axis of lambda, by steps of which there are nine at most."""
     step = next(step for step in STEPS if top <= 9 * step)
     return Axis(
         "λ",

@@ -88,7 +88,7 @@ def sampled(signal: Periodic) -> tuple[Array, Array]:
 
 
 def plotted(signal: Periodic) -> tuple[Array, Array, list[tuple[float, float]]]:
-    """The same, a constant where it varies by no more than rounding, and its extremes."""
+    """Angles, values (constant if they vary by no more than rounding) and extremes."""
     theta, values = sampled(signal)
     if float(np.ptp(values)) <= VARIES * float(np.max(np.abs(values))):
         return theta, np.full_like(values, float(signal.mean)), []

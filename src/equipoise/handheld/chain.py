@@ -59,7 +59,7 @@ class Transfer(namedtuple("Transfer", "ww wt wv wm tw tt tv tm vw vt vv vm mw mt
         )
 
     def part(self, key: Any) -> Transfer:
-        """The same of some of many segments."""
+        """Transfer matrices of some of many segments."""
         return Transfer(*(entry[key] for entry in self))
 
 

@@ -98,7 +98,7 @@ class Note(str):
         return here and all(item.is_translated for item in inner)
 
     def with_values(self, change: Callable[[Any], Any]) -> Note:
-        """The same sentence with other values, those of Notes in it too."""
+        """Copy of the sentence with other values, those of Notes in it too."""
         changed = {
             name: value.with_values(change) if isinstance(value, Note) else change(value)
             for name, value in self.values.items()
@@ -106,7 +106,7 @@ class Note(str):
         return Note(self.template, **changed).about(self.topic)
 
     def about(self, topic: str) -> Note:
-        """The same sentence, on which `equipoise explain` has more by that name."""
+        """Copy of the sentence, on which `equipoise explain` has more by that name."""
         same = Note(self.template, **self.values)
         same.topic = topic
         return same

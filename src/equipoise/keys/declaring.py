@@ -216,7 +216,7 @@ class Frozen(TableRecord):
         return {}
 
     def altered(self, **changes: Any) -> Self:
-        """The same with other fields, and with what follows from them."""
+        """Copy with other fields, and with what follows from them."""
         return replace(self, **self.following(changes))
 
     def __getstate__(self) -> dict[str, Any]:

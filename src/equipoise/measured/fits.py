@@ -194,7 +194,7 @@ def _line(turns: Turns) -> tuple[Array, Array]:
 
 
 def _guesses(turns: Turns) -> Iterator[Array]:
-    """The same with all of the decay viscous, with all of it Coulomb friction, with half of each.
+    """Start values with a viscous decay, with Coulomb friction, and with half of each.
 
     One of them leads to the line even where noise hides which of the two it is.
     """

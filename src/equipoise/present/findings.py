@@ -150,7 +150,7 @@ class Findings(_ComputedParts):
 
     @cached_property
     def after(self) -> Findings | None:
-        """The same of the balanced machine; None where balancing brings nothing."""
+        """Findings of the balanced machine; None where balancing brings nothing."""
         if self.balanced is None or not self.helped:
             return None
         return Findings(self.balanced.machine, self.text, self.file, self.angles)

@@ -138,7 +138,7 @@ def showing(units: Units) -> Iterator[None]:
 
 @contextmanager
 def showing_by_default(units: Units) -> Iterator[None]:
-    """The same with units that hold where none is chosen yet, as those of a model file do."""
+    """Inside, show units where none is chosen yet, as those of a model file are."""
     with showing({**units, **_chosen.get()}):
         yield
 

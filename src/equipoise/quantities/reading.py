@@ -106,7 +106,7 @@ def described(given: object) -> str:
 
 
 def _bare_number(given: object) -> str:
-    """The same of what has to have a unit."""
+    """What was given in place of a quantity that has to have a unit, in words."""
     if isinstance(given, int | float) and not isinstance(given, bool):
         return Note("the bare number {number}", number=_shown(_digits(given)))
     return described(given)

@@ -76,7 +76,7 @@ class Axis:
         return shown(self.unit.factor * value)
 
     def quantity(self, value: float) -> str:
-        """The same with its unit."""
+        """Value as the axis shows it, with its unit."""
         return f"{self.told(value)} {self.unit_name}".rstrip()
 
 
@@ -330,7 +330,7 @@ class Chart:
     words: tuple[str, ...] = ()
 
     def named(self, name: str) -> Chart:
-        """The same by another name."""
+        """Copy of the chart by another name."""
         return replace(self, name=name)
 
 

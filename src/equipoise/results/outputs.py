@@ -90,7 +90,7 @@ class AnalysisOutput:
 
     @cached_property
     def component(self) -> Array:
-        """The same, but complex (N,) of what is a vector."""
+        """Values of the output, complex (N,) of what is a vector."""
         return self.declared.component(self.declared.vector(self.analysis, self.item))
 
     @cached_property

@@ -145,7 +145,7 @@ def kind_of(content: Mapping[str, Any]) -> FileKind | None:
 
 
 def kind_of_text(text: str) -> FileKind | None:
-    """The same of the text of a file; None where it is no TOML."""
+    """Kind of file by its text; None where it is no TOML."""
     try:
         return kind_of(_toml(text))
     except ModelError:

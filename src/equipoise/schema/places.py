@@ -18,7 +18,7 @@ from equipoise.quantities.reading import got
 
 
 def within(place: KeyPath, error: ModelError) -> ModelError:
-    """The same error, whose place is inside of another."""
+    """Copy of an error whose place is inside of another."""
     return error.within(place.shown)
 
 

@@ -146,7 +146,7 @@ def owner_of(store: Store) -> Study | None:
 
 
 def units_in(store: Store) -> dict[str, Unit]:
-    """The same of a store; SI units where its study cannot be read any more."""
+    """Units of numbers and outputs of a store; SI units where its study cannot be read any more."""
     study = owner_of(store)
     if study is not None:
         return units_of(study)

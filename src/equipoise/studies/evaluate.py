@@ -77,7 +77,7 @@ def evaluator(study: Study, threads: int | None = None) -> Evaluator:
 def pooled(
     study: Study, workers: int | None = None, cluster: str | None = None
 ) -> PooledEvaluator[Outcome]:
-    """The same, shared out among processes where no loop computes everything, or on a cluster.
+    """Evaluator shared out among processes where no loop computes everything, or on a cluster.
 
     workers : processes; as many as this machine has processors if not given.
     cluster : address of a Dask scheduler whose workers compute instead.

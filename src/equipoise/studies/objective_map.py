@@ -245,7 +245,7 @@ class LinearValues:
         return change
 
     def _change(self, point: Array) -> Array:
-        """The same of one machine (4 L,)."""
+        """Change of parameters (4 L,) of one machine."""
         try:
             parameter = self.maker.parameters(dict(zip(self.paths, point.tolist(), strict=True)))[1]
         except EquipoiseError:

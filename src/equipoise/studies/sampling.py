@@ -95,7 +95,7 @@ def values_at(study: Study, unit: Array) -> Array:
 
 
 def canonical(study: Study, places: Array) -> Array:
-    """The same designs, each value of a list in one place only, so that equal ones are seen."""
+    """Designs with each value of a list in one place only, so that equal ones are seen."""
     settled = np.clip(places, 0.0, 1.0)
     for k, item in enumerate(study.vary):
         spread: Any = item.spread

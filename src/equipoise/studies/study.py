@@ -189,7 +189,7 @@ def _numbers(model: Model, vary: Sequence[Variable]) -> list[tuple[float, str | 
 
 
 def _as_in(variable: Variable, value: float, dimension: str | None) -> Variable:
-    """The same with what the model knows of the number."""
+    """Variable with what the model knows of the number."""
     spread = variable.spread
     if isinstance(value, int) and isinstance(spread, Range):
         spread = replace(spread, whole=True)

@@ -272,7 +272,7 @@ class Scene:
 
     @property
     def swept_box(self) -> tuple[complex, complex]:
-        """The same with all that it holds as the support swings."""
+        """Box of the scene with all that it holds as the support swings."""
         low, high = self.box
         corners = (low, high, complex(low.real, high.imag), complex(high.real, low.imag))
         return _box(np.concatenate([np.atleast_1d(self.swung(corner)) for corner in corners]))
@@ -312,7 +312,7 @@ class Scene:
         return complex(arm * np.exp(-1j * self.angles[body.name][0]))
 
     def corners(self, body: LinkOutline) -> Array:
-        """The same of what lies around a link, (n,)."""
+        """Corners of what lies around a link, (n,)."""
         return np.array([self.local(body, self.places[name]) for name in body.outline])
 
 

@@ -165,7 +165,7 @@ class SupportExcitation:
         return Periodic(still + speed**2 * moving, self.motion.turns)
 
     def at_orders(self, speeds: Array, places: Array) -> Array:
-        """The same (6, S) at speeds (S,), rad/s, of one order each, by its place (S,) in `at`."""
+        """Wrenches (6, S) at speeds (S,), rad/s, of one order each, by its place (S,) in `at`."""
         if self._in_soil:
             return self._of_orders_in_soil(speeds, places)
         still, moving = self._by_square
@@ -245,7 +245,7 @@ class SupportExcitation:
         return reduce(add, rows)
 
     def samples(self, theta: Array, speed: float) -> Array:
-        """The same (6, P) at crank angles (P,), rad, not by orders."""
+        """Wrenches (6, P) at crank angles (P,), rad, not by orders."""
         total: Array = np.zeros((6, len(theta)))
         for row in rows_of(self.machine):
             motion = move(self.machine, theta + row.phase, speed, 0.0)
@@ -253,7 +253,7 @@ class SupportExcitation:
         return total
 
     def of_one(self, speed: float) -> Periodic:
-        """The same of one linkage alone, as the file has it."""
+        """Excitation by one linkage alone, as the file has it."""
         wrench = self.about_reference(self._on_pivot(speed).amplitudes, Row())
         return Periodic(wrench, self.motion.turns)
 
@@ -283,7 +283,7 @@ class SupportExcitation:
         return both.amplitudes[0], both.amplitudes[1]
 
     def _signals(self, motion: Motion) -> Array:
-        """The same at the crank angles of a motion, (5, N)."""
+        """Signals (5, N) at the crank angles of a motion."""
         # Springs pull frame and links alike; left in, (57) would count their torque on the drive.
         return self._signals_of(forces(motion, self.pivot).outer)
 
@@ -397,7 +397,7 @@ class Linear:
         return Periodic(amplitudes, result.turns)
 
     def wrench_at(self, theta: Array, speed: float) -> Array:
-        """The same (D, P) at crank angles (P,), rad, not by orders."""
+        """Wrenches (D, P) at crank angles (P,), rad, not by orders."""
         sample = self.excitation.samples(theta, speed)[self.body.free]
         return np.asarray(sample + self.rest.unbalance[self.body.free, None])
 

@@ -133,7 +133,7 @@ def within(resonances: Iterable[Resonance], speed: float) -> Iterator[Note]:
 
 
 def warned(linear: Linear, speed: float) -> tuple[Note, ...]:
-    """The same of a machine, where its crank turns at a speed, rad/s."""
+    """Warning of a resonance of a machine whose crank turns at a speed, rad/s."""
     turns = linear.excitation.motion.turns
     meets = False
     for mode in linear.modes:  # told apart first by modes alone, which takes no time

@@ -264,7 +264,7 @@ def speed_at(motor: Motor, torque: float) -> float:
 
 
 def _on_lines(motor: Motor, torque: float) -> float | None:
-    """The same of a curve of straight lines; None where it never does."""
+    """Speed of a motor whose curve has straight lines; None where its torque never falls so far."""
     speeds, torques = _rows(motor)
     for k in range(len(speeds) - 2, -1, -1):
         slope = (torques[k + 1] - torques[k]) / (speeds[k + 1] - speeds[k])

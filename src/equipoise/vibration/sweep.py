@@ -288,7 +288,7 @@ def _noted(grid: Array, answers: list[Response | None]) -> Iterator[Note | str]:
 
 
 def _kind(note: Note | str) -> str:
-    """The same for notes that differ in numbers only."""
+    """Key that is equal for notes that differ in numbers only."""
     if not isinstance(note, Note):
         return note
     words = map(str, note.values.values())

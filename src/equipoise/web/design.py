@@ -87,7 +87,7 @@ class Design:
         return self.counterweights.get(link) or _opposite(self.own, link)
 
     def with_machine(self, own: Machine) -> Design:
-        """The same counterweights on another machine of the same build."""
+        """These counterweights on another machine of the same build."""
         return replace(self, own=own)
 
     def with_weight(self, link: str, weight: Counterweight) -> Design:

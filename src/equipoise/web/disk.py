@@ -69,7 +69,7 @@ class Disk:
         return Reply({"type": "saved", "seq": seq, **saved})
 
     def now(self) -> Disk:
-        """The same for another page, with what the file holds by now, where that is of its kind."""
+        """File for another page, with what it holds by now, where that is of its kind."""
         text = self._on_disk()
         if text is None or text == self.text:
             return replace(self)

@@ -238,7 +238,7 @@ def _position(machine: Machine, motion: Motion, change: Drag | None = None) -> P
 
 
 def settled(computed: Computed) -> Computed:
-    """The same, with its rough position where the machine now is, if it has one."""
+    """Design with its rough position where the machine now is, if it has one."""
     machine = computed.design.own
     if machine.position is None:
         return computed
@@ -305,7 +305,7 @@ def _missed(computed: Computed, goals: Goals) -> list[str]:
 
 
 def _with_limit_note(computed: Computed, goals: Goals) -> Computed:
-    """The same, with why the end of a cylinder, or a driven block, is not where it was put."""
+    """Result with a note on why a cylinder's end, or a driven block, is not where it was put."""
     machine = computed.design.own
     points = {slider.name: slider.point for slider in machine.sliders}
     pushing: list[Pushing] = [machine.drive, *machine.drives]

@@ -39,8 +39,8 @@ class EntrySession(Protocol):
 
 
 def stroked(sketch: Sketch, entry: Entry) -> Entry:
-    """The same; but a drive that is to push, and has no stroke yet, gets one, which begins as it is
-    drawn: neither can be there without the other.
+    """Entry as it is; but a drive that is to push, and has no stroke yet, gets one that begins
+    as it is drawn: neither can be there without the other.
     """
     values, place = entry.values, entry.place
     if values is None or not (place == ("drive",) or place[:1] == ("drives",) == place[:-1]):

@@ -64,5 +64,5 @@ CHARTS = {
 
 
 def explained() -> dict[str, str]:
-    """The same in the language that is spoken."""
+    """Explanations of charts, by name, in the language that is spoken."""
     return {name: say(text) for name, text in CHARTS.items()}

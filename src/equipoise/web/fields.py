@@ -74,7 +74,7 @@ class Field:
     expression: str | None = None
 
     def keeping(self, points: tuple[str, ...]) -> Field:
-        """The same, but that the point that it moves keeps its distance from others."""
+        """Copy of the field whose moving point keeps its distance from others."""
         if self.measure is None or not points:
             return self
         return replace(self, put=partial(self.put, keep=points))

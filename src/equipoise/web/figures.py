@@ -47,7 +47,7 @@ def signals_of(analysis: Analysis) -> Signals:
 
 
 def _of_all_rows(analysis: Analysis) -> Signals:
-    """The same of all rows together, where there are several and they turn."""
+    """Signals of all rows together, where there are several and they turn."""
     if analysis.motion.speed == 0:
         return {}
     return {f"rows.{name}": values for name, values in analysis.together.items()}

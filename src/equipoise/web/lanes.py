@@ -104,7 +104,7 @@ class PageWork:
             self._leave(thread)
 
     def timed(self, compute: Callable[[], Answer]) -> Answer:
-        """The same, and remember how long it took."""
+        """Compute and remember how long it took."""
         begun = time.thread_time()
         try:
             return self.do(compute)

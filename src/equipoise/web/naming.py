@@ -50,7 +50,7 @@ def _names(value: Any, kind: Kind | None, what: What) -> Iterator[tuple[str, str
 
 
 def renamed_in(value: Any, what: What, old: str, new: str) -> Any:
-    """The same with a point or link by another name."""
+    """Entries with a point or link by another name."""
     return _renamed(value, None, what, (old, new))
 
 

@@ -58,7 +58,7 @@ class ViewState:
         return None if self.variants.against == STEP else self.against(None)
 
     def opening(self, computed: Computed | None) -> ViewState:
-        """The same for a machine that is opened: nothing is kept but what the page knows."""
+        """View of a machine that is opened: nothing is kept but what the page knows."""
         return ViewState(opened=computed, ghost=self.ghost, table=self.table)
 
     def compared(self, computed: Computed | None) -> Iterator[Reply]:

@@ -292,7 +292,7 @@ class Session:
 
     @property
     def shown(self) -> Computed:
-        """The same of a machine that is finished, or a `UsageError`."""
+        """Shown machine if it is finished, else a `UsageError`."""
         return finished(self.view)
 
     @property
@@ -388,7 +388,7 @@ class Session:
 
 
 def _in_file(error: EquipoiseError, name: str) -> EquipoiseError:
-    """The same error with the name of the file in front."""
+    """Copy of the error with the name of the file in front."""
     if isinstance(error, ModelError):
         return error.in_file(name)
     return UsageError(at_place(name, error.note)).with_paste(error.paste)

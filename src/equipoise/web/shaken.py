@@ -96,7 +96,7 @@ def response_of(shown: Computed) -> tuple[Values, bytes] | None:
 
 
 def swept(shown: Computed, progress: Callable[[int, int], None]) -> tuple[Values, bytes] | None:
-    """The same with the response over speeds around the machine's own, which is kept with it.
+    """Response over speeds around the machine's own, which is kept with it.
 
     progress : as of `sweep_speed`; what it raises ends the work.
     """

@@ -89,14 +89,14 @@ class Sketch(MachineDraft):
             yield from ((key, item) for item in self.rest.get(key, ()))
 
     def with_entries(self, entries: list[tuple[str, Any]]) -> Sketch:
-        """The same with other ones."""
+        """Sketch with other entries."""
         of = {key: tuple(item for name, item in entries if name == key) for key in
               ("sliders", *LISTS)}  # fmt: skip
         rest = {**self.rest, **{key: of[key] for key in LISTS}}
         return replace(self, sliders=of["sliders"], rest=rest)
 
     def taking(self, machine: Machine) -> Sketch:
-        """The same drawing of a machine whose tables are other ones; a link that is new lies in
+        """Drawing of a machine whose tables are other ones; a link that is new lies in
         the axes of the frame.
         """
         old = self.drive or self._usual_drive()

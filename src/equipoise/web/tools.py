@@ -70,7 +70,7 @@ class ToolDesk:
 
     @property
     def again(self) -> ToolDesk:
-        """The same tool for another page, as it was opened."""
+        """Desk of this tool for another page, as the tool was opened."""
         return ToolDesk(self.name, self.template, self.first)
 
     @classmethod

@@ -57,7 +57,7 @@ class Variants:
         return self.kept[name]
 
     def renamed(self, name: str, to: str) -> Variants:
-        """The same with one of another name; a `UsageError` where that is none or is taken."""
+        """Variants with one of another name; a `UsageError` where that is none or is taken."""
         self.of(name)
         to = "".join(sign for sign in to.strip() if sign.isprintable())
         if not to or len(to) > LONGEST:
@@ -77,14 +77,14 @@ class Variants:
         return Variants(MappingProxyType(by_name), against)
 
     def without(self, name: str) -> Variants:
-        """The same without one of them."""
+        """Variants without one of them."""
         self.of(name)
         by_name = {item: result for item, result in self.kept.items() if item != name}
         against = STEP if self.against == VARIANT + name else self.against
         return Variants(MappingProxyType(by_name), against)
 
     def told_against(self, what: str) -> Variants:
-        """The same, but told against something else: one of the three words, or a variant."""
+        """Variants compared with something else: one of the three words, or a variant."""
         if what not in (NOTHING, STEP, OPENED):
             self.of(what.removeprefix(VARIANT))
         return replace(self, against=what)

@@ -61,11 +61,11 @@ def test_large_cycles_are_written_row_by_row(
     """With the same cells, and in little of the memory."""
     monkeypatch.setattr(xlsx, "analyze", lambda machine: analysis)
     tracemalloc.start()
-    xlsx.made(Job(MACHINE))
+    xlsx.export_bytes(Job(MACHINE))
     _, at_once = tracemalloc.get_traced_memory()
     monkeypatch.setattr(xlsx, "LARGE", 10)
     tracemalloc.reset_peak()
-    xlsx.made(Job(MACHINE))
+    xlsx.export_bytes(Job(MACHINE))
     _, by_row = tracemalloc.get_traced_memory()
     tracemalloc.stop()
     cells = len(analysis.crank_angle) * len(analysis.outputs.arrays)
@@ -79,7 +79,7 @@ def test_more_crank_angles_than_a_sheet_takes(monkeypatch: pytest.MonkeyPatch) -
     """The library would leave the rest out, and say nothing."""
     monkeypatch.setattr(xlsx, "MOST_ROWS", 500)
     with pytest.raises(UsageError, match=r"2 turns has 720 crank angles .* takes 498 and"):
-        xlsx.made(Job(eq.load("four-stroke-engine")))
+        xlsx.export_bytes(Job(eq.load("four-stroke-engine")))
 
 
 def test_charts_show_every_signal(analysis: Any, book: Any) -> None:

@@ -283,9 +283,9 @@ def test_a_force_without_bound_is_not_asked_for() -> None:
 
 def test_formats_whose_equations_state_the_same_twice() -> None:
     with pytest.raises(UsageError, match="the linkage is overconstrained"):
-        modelica.made(Job(cranks()))
+        modelica.export_bytes(Job(cranks()))
     job = Job(guided())
-    assert "upper" not in mjcf.made(job)
+    assert "upper" not in mjcf.export_bytes(job)
     assert "the guide upper, beside which another one leads 'block'" in job.left_out
 
 

@@ -223,7 +223,7 @@ def test_formats_without_them_say_so() -> None:
 
 def test_modelica_has_their_torque() -> None:
     job = Job(MACHINE, 0.3)
-    text = modelica.made(job)
+    text = modelica.export_bytes(job)
     values = eq.move(MACHINE, [0.3]).element_values("torsion_springs", 1)
     line = next(one for one in text.splitlines() if one.strip().startswith("T_2 = "))
     law = line.partition("=")[2].rstrip(";")

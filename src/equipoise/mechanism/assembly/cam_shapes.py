@@ -189,7 +189,7 @@ class CamShape:
         return self.curvature / (1 - self.curvature * self.radius)
 
     def at(self, angle: Array) -> CamShape:
-        """The same at other angles."""
+        """Shape of the cam at other angles."""
         return replace(self, angle=angle)
 
     def of(self, which: Any) -> CamShape:

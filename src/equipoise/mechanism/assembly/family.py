@@ -156,7 +156,7 @@ class Family:
 
 
 def _stacked(calls: Sequence[Any]) -> KernelCall:
-    """The same call of all machines, with columns (P, 1) for parameters."""
+    """One call for all machines, with columns (P, 1) for parameters."""
     first = calls[0]
     columns = (_beside(values) for values in zip(*(c.parameters for c in calls), strict=True))
     return KernelCall(first.kernel, first.inputs, tuple(columns), first.outputs)

@@ -184,7 +184,7 @@ class Flank:
         return Group("coupled", (driven.body,), motion, forces, (ground, self.push))
 
     def loop(self, end: Callable[[str, str], End]) -> CouplingLoop:
-        """The same as an equation; `end` finds points of bodies from their anchors."""
+        """Flank as a loop equation; `end` finds points of bodies from their anchors."""
         coupling = self.coupling
         on, by = (end(item.body, item.point) for item in (self.driven, self.driver))
         rides = None

@@ -68,7 +68,7 @@ class Structure:
 
     @property
     def needed(self) -> Structure:
-        """The same without all but the first of the sliding joints between two bodies."""
+        """Structure without all but the first of the sliding joints between two bodies."""
         first = {frozenset((slider.link, slider.on)): slider for slider in reversed(self.sliders)}
         return replace(self, sliders=tuple(s for s in self.sliders if s in first.values()))
 

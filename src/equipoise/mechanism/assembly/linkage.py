@@ -110,7 +110,7 @@ class Linkage(Brief):
 
     @remembered
     def forces_on_flanks(self) -> tuple[Step, ...]:
-        """The same without the steps that tell which flanks, or strands, are loaded."""
+        """Force steps without those that tell which flanks, or strands, are loaded."""
         return tuple(step for step in self.forces if not tells_flanks(step))
 
     @remembered
@@ -163,7 +163,7 @@ class Linkage(Brief):
         return cycle
 
     def of(self, machine: Machine) -> Linkage:
-        """The same linkage for a machine that differs in nothing but masses, speed or gravity."""
+        """Linkage of a machine that differs in nothing but masses, speed or gravity."""
         same = replace(self, machine=machine)
         same.memory.update(self.memory)
         return same

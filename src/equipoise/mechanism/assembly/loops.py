@@ -37,7 +37,7 @@ class Pose:
         return p, p1, p2
 
     def place_of(self, arm: Any) -> Any:
-        """The same without its derivatives."""
+        """Place of a point of the body, without its derivatives."""
         return self.place[0] + self.turn[0] * arm
 
     def pick(self, part: Any) -> Pose:
@@ -47,7 +47,7 @@ class Pose:
 
     @property
     def still(self) -> Pose:
-        """The same without its rates."""
+        """Pose without its rates."""
         return Pose((self.place[0], 0.0, 0.0), (self.turn[0], 0.0, 0.0), self.angle)
 
 
@@ -75,7 +75,7 @@ class Contact(Protocol):
         """The driven link, where driver and carrier are known."""
 
     def loop(self, end: Callable[[str, str], End]) -> CouplingLoop:
-        """The same as an equation; `end` finds points of bodies from their anchors."""
+        """Contact as a loop equation; `end` finds points of bodies from their anchors."""
 
 
 class PushingContact(Contact, Protocol):

@@ -212,7 +212,7 @@ def _followed(linkage: Assembled, way: Array) -> int:
 
 
 def _solvable(linkage: Assembled, way: Array) -> int:
-    """The same, as far as groups of loops are concerned."""
+    """How many of the crank angles (N,) groups of loops can reach."""
     count = len(way)
     while count > 1:
         try:

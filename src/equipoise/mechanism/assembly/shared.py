@@ -316,7 +316,7 @@ class RedundantReactions(LoopForces):
         return poses_in(state, (*group.known, *zip(group.links, group.anchors, strict=True)))
 
     def senses(self, state: State, poses: Poses) -> list[Any]:
-        """The same, with pushes that agree with it once they are shared."""
+        """Senses of pushes, with those that agree with each other once they are shared."""
         pairs = [(k, loop.name) for k, loop in enumerate(self.loops)
                  if isinstance(loop, CouplingLoop) and loop.switches]  # fmt: skip
         known = all(f"flank({name})" in state for _, name in pairs)

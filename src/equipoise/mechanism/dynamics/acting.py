@@ -93,7 +93,7 @@ def acting_loads(motion: Motion) -> Iterator[Acting]:
 
 
 def outer_loads(motion: Motion) -> Iterator[Acting]:
-    """The same of loads from outside, and of the soil."""
+    """Demands of loads from outside, and of the soil."""
     yield from _acting(motion, None)
     yield from soil_loads(motion)
 

@@ -139,7 +139,7 @@ def _limit(name: str, forces: Forces) -> tuple[float, float]:
 
 
 def _lowest(name: str, forces: Forces, squares: Array) -> tuple[float, float]:
-    """The same, from the squares of that speed at each crank angle of the forces."""
+    """Lowest lift-off speed and its angle, from its squares at each crank angle of the forces."""
     motion, theta = forces.motion, forces.motion.crank_angle
     ends = (-np.inf, np.inf) if motion.whole_cycle else (theta[0], theta[-1])
     low = (squares <= np.roll(squares, 1)) & (squares <= np.roll(squares, -1))

@@ -109,7 +109,7 @@ class Forces(ForceReadings, Displayed):
         return self.solved_like(None)
 
     def solved_like(self, other: JointReactions | None) -> JointReactions:
-        """The same with the flanks of couplings in contact that are so in another run."""
+        """Forces with the flanks of couplings in contact that are so in another run."""
         total = dict(self.inertia)
         for wrenches in (self.weights, self.loads, self.springs):
             for link, (force, moment) in wrenches.items():
@@ -162,7 +162,7 @@ class Forces(ForceReadings, Displayed):
 
     @property
     def outer(self) -> Forces:
-        """The same without what links and frame exert on each other: springs, and loads between."""
+        """Forces without what links and frame exert on each other: springs, and loads between."""
         outside = demands_of(self.motion, acting.outer_loads(self.motion))
         return replace(self, loads=outside, springs={}, inner={})
 
@@ -220,7 +220,7 @@ class Forces(ForceReadings, Displayed):
     def at(
         self, speed: float | str | None = None, acceleration: float | str | None = None
     ) -> Forces:
-        """The same at another speed (rad/s) or acceleration (rad/s2), no position solved again."""
+        """Forces at another speed (rad/s) or acceleration (rad/s2), no position solved again."""
         return forces(self.motion.at(speed, acceleration), self.about)
 
     def _force(self, demands: Mapping[str, Demand]) -> VectorSignal:
@@ -365,7 +365,7 @@ def demand_of_inertia(
 
 
 def _inertia(motion: Motion, link: str, *numbers: Any) -> Demand:
-    """The same at any speed squared and acceleration, which come first."""
+    """Demand of inertia at any speed squared and acceleration, which come first."""
     rates = (*p(motion.linkage.anchors[link])[1:], *u(link))
     force, turning = kernels.inertia_demand(*(motion.state[name] for name in rates), *numbers)
     return force, turning

@@ -305,7 +305,7 @@ def _grows_from_none(slopes: Array) -> Array:
 
 
 def _grown(law: FrictionLaw, press: Press) -> tuple[Array, Array]:
-    """The same by coefficients that grow step by step from 0, and the share that they reach."""
+    """Efforts by coefficients that grow step by step from 0, and the share that they reach."""
     share = np.zeros(law.rates.shape[1])
     step = np.full_like(share, FIRST_STEP)
     efforts = -law.given

@@ -314,7 +314,7 @@ def reactions(
 def _pushed(
     motion: Motion, demands: Mapping[str, Demand], like: JointReactions | None
 ) -> JointReactions:
-    """The same where forces drive: as large as it takes for their links to need no torque."""
+    """Reactions where forces drive: as large as it takes for their links to need no torque."""
     pushers = motion.machine.pushers
     torques = [TORQUE.format(pusher.link) for pusher in pushers]
 

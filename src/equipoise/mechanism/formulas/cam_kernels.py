@@ -80,7 +80,7 @@ def rate_lifted(u, y1, along):
 
 
 def rate_swung(p, pivot, y1, sense):
-    """The same on a pinned follower."""
+    """Derivative of a place on a pinned follower by the cam's turn, seen from the carrier."""
     return (1j * sense * y1 * (p - pivot),)
 
 
@@ -90,7 +90,7 @@ def forth_lifted(u, along):
 
 
 def forth_swung(p, pivot, sense):
-    """The same of a pinned follower, at p."""
+    """Unit vector along which a pinned follower's material moves at p as it rises."""
     arm = p - pivot
     return (1j * sense * arm * (1 / length(arm)),)
 
@@ -102,7 +102,7 @@ def touch_round(p, axis, rate, radius):
 
 
 def touch_flat(p, axis, rate, u, y1, face, sense):
-    """The same of a flat face through p.
+    """Where a flat face through p touches the cam; the common normal.
 
     u : rotation of the follower; face : normal in its axes; sense : as of `swung`, 0 of one that
     slides.

@@ -148,7 +148,7 @@ class PeriodicCurve:
         return PeriodicCurve(self.knots, powers, self.waves)
 
     def stretched(self, length: float, rise: float) -> PeriodicCurve:
-        """The same curve over another length, and higher by a factor."""
+        """Curve over another length, and higher by a factor."""
         exponents = np.arange(MOST_POWERS)
         return PeriodicCurve(
             self.knots * length,
@@ -157,7 +157,7 @@ class PeriodicCurve:
         )
 
     def lifted(self, by: float) -> PeriodicCurve:
-        """The same curve, higher by a constant."""
+        """Curve raised by a constant."""
         powers = self.powers.copy()
         powers[:, 0] += by
         return PeriodicCurve(self.knots, powers, self.waves)

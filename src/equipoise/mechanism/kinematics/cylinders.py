@@ -106,7 +106,7 @@ class StrokeInverse:
         return tuple(part.reshape(theta.shape) for part in parts)  # type: ignore[return-value]
 
     def moved(self, crank_angle: Any) -> dict[str, tuple[Array, Array, Array]]:
-        """The same by the link's name."""
+        """Angle and rates of the driven link, by its name."""
         return {self.drive.link: self.value(crank_angle)}
 
     @property

@@ -126,7 +126,7 @@ class Motion(Displayed):
     def at(
         self, speed: float | str | None = None, acceleration: float | str | None = None
     ) -> Motion:
-        """The same positions at another speed or acceleration of the crank, as of `move`."""
+        """Motion in these positions at another speed or acceleration of the crank, as of `move`."""
         w, a = _rates(self, speed, acceleration)
         return replace(self, speed=w, acceleration=a)
 

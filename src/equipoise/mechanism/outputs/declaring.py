@@ -186,7 +186,7 @@ class Declared:
         return Note(to_say("all rows: {what}"), what=result) if self.needs == "rows" else result
 
     def title(self, item: str = "") -> str:
-        """The same as the heading of a table, in the language that is spoken."""
+        """Heading of a table of this output, in the language that is spoken."""
         said = replace(self, part="").say(item)
         if self.part in ("x", "y"):
             said = say("{what} along {axis}", what=said, axis=self.part)
@@ -215,7 +215,7 @@ class Declared:
         return whole.imag if self.part == "y" else whole
 
     def vector(self, result: Any, item: str = "") -> Array:
-        """The same, complex of a vector, whichever of its parts this is.
+        """Values of the output, complex of a vector, whichever of its parts this is.
 
         result : whatever has the motion and the forces; (..., N) where the forces have more axes.
         """
@@ -335,7 +335,7 @@ def matches(name: str) -> tuple[tuple[Declared, str], ...]:
 
 @lru_cache(8192)
 def _matches(name: str) -> tuple[tuple[Declared, str], ...]:
-    """The same, kept until something else is declared: advice asks a hundred thousand times."""
+    """Matching outputs, kept until another is declared: advice asks a hundred thousand times."""
     values = [(entry, item) for entry in DECLARED.values() for item in [entry.item_of(name)]]
     # joints.B.moment is the moment in B, and no force in a joint B.moment
     known = sorted(((entry, item) for entry, item in values if item is not None),

@@ -141,7 +141,7 @@ class JointProperties(Frozen):
 
     @property
     def without_friction(self) -> JointProperties:
-        """The same of a joint that moves freely."""
+        """Properties of this joint if it moved freely."""
         return JointProperties(self.joint, **{name: getattr(self, name) for name in APART})
 
 

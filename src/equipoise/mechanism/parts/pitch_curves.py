@@ -53,7 +53,7 @@ def _rolling(shape: GearShape, mean: float) -> Rolling:
 
 @lru_cache(maxsize=256)
 def _even(shape: GearShape) -> GearShape:
-    """The same with the phase 0, as the gears of a train mostly have it in common."""
+    """Shape with the phase 0, as the gears of a train mostly have it in common."""
     return replace(shape, phase=0.0)
 
 
