@@ -84,11 +84,12 @@ def laid_out(
     frames: int = 60,
     width: int = 640,
     arrow: ForceArrow | None = None,
+    begin: int | None = None,
 ) -> Moving:
     """Lay out a machine.
 
     traced : points whose path is drawn.  frames : instants in a turn of the crank, at most as many
-    as the scene has crank angles there.  width : pixels.
+    as the scene has crank angles there.  width : pixels.  begin : as of `Stage`.
 
     Raises
     ------
@@ -103,7 +104,7 @@ def laid_out(
             )
     if len(scene.crank_angle) < 2:
         raise UsageError(Note("got one crank angle; an animation needs two and more"))
-    stage = Stage(scene, arrow, frames, width)
+    stage = Stage(scene, arrow, frames, width, begin)
     names = tuple(dict.fromkeys(traced))
     moves: dict[Any, Moves | None] = {}
     behind: list[MovingGroup] = []
@@ -202,7 +203,7 @@ def animated_svg(
         "seconds": seconds, "frames": frames, "width": width, "arrow": arrow
     }  # fmt: skip
     if len(parts) > 1:
-        return _one_below_another(parts, title, traced, options)
+        return _one_below_another(scene, parts, title, traced, options)
     return _picture(scene, title, traced, **options)[0]
 
 
@@ -216,15 +217,16 @@ def _picture(
     width: int,
     arrow: ForceArrow | None,
     place: str = "",
+    begin: int | None = None,
 ) -> tuple[str, Stage]:
     """One picture as SVG, and its stage, which knows its width and height in pixels.
 
-    place : attributes that place it within another picture.
+    place : attributes that place it within another picture.  begin : as of `Stage`.
     """
-    moving = laid_out(scene, traced, frames, width, arrow)
+    moving = laid_out(scene, traced, frames, width, arrow, begin)
     if moving.stage.turns * frames > MOST_STEPS:
         frames = max(1, int(MOST_STEPS / moving.stage.turns))
-        moving = laid_out(scene, traced, frames, width, arrow)
+        moving = laid_out(scene, traced, frames, width, arrow, begin)
     every = list({id(part.moves): part.moves for part in moving.parts if part.moves}.values())
     numbers = {id(moves): number for number, moves in enumerate(every, 1)}
     behind, before = (
@@ -260,7 +262,13 @@ viewBox="0 0 {stage.width} {stage.height}" width="{stage.width}" height="{stage.
     return text, stage
 
 
+def traced_in(part: Scene, scene: Scene, traced: Collection[str]) -> list[str]:
+    """Of the points whose path is drawn those of a part of a scene, and those that it lacks too."""
+    return [name for name in traced if name in part.places or name not in scene.places]
+
+
 def _one_below_another(
+    scene: Scene,
     scenes: list[tuple[tuple[str, ...], Scene]],
     title: str,
     traced: Collection[str],
@@ -268,8 +276,9 @@ def _one_below_another(
 ) -> str:
     """Pictures of links that would cover each other, each scene with their names, in one."""
     pieces, width, top = [], 0, 0
+    options = {**options, "begin": clear_angle(scene)}  # all at the same instant
     for names, part in scenes:
-        own = [name for name in traced if name in part.places]
+        own = traced_in(part, scene, traced)
         piece, stage = _picture(part, ", ".join(names), own, place=f'y="{top}" ', **options)
         pieces.append(piece)
         width, top = max(width, stage.width), top + stage.height

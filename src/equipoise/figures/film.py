@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Iterator, Sequence
 from io import BytesIO
 from itertools import combinations, cycle, groupby, islice
 from typing import TYPE_CHECKING, Any
@@ -16,12 +16,14 @@ from matplotlib.patheffects import withStroke
 from matplotlib.transforms import Affine2D
 
 from equipoise.errors import UsageError, needed
-from equipoise.figures.animation import Moving, MovingGroup, PixelPath, laid_out
+from equipoise.figures.animation import Moving, MovingGroup, PixelPath, laid_out, traced_in
 from equipoise.figures.paint import settings
 from equipoise.figures.stage import RATES, ForceArrow, check_seconds, check_width, in_a_turn
 from equipoise.i18n import Note
+from equipoise.symbols.clear import clear_angle
 from equipoise.symbols.looks import DARK, LIGHT, LOOKS, Colors, Look
 from equipoise.symbols.shapes import Array
+from equipoise.symbols.stacks import in_turn
 
 if TYPE_CHECKING:
     from equipoise.symbols.scene import Scene
@@ -59,7 +61,7 @@ def gif(
     width : pixels.
     arrow : the shaking force, where it is wanted.
     dark : light lines on a dark ground.
-    told : called with how many frames are done, and how many there are.
+    progress : called with how many frames are done, and how many there are.
 
     Raises
     ------
@@ -67,13 +69,13 @@ def gif(
     """
     from PIL import Image
 
-    moving = _prepared(scene, traced, seconds, "gif", width, arrow)
+    pieces = _prepared(scene, traced, seconds, "gif", width, arrow)
     colors = DARK if dark else LIGHT
-    count = _in_a_cycle(moving)
-    check_frames(count, width)
-    shades = Shades(moving, colors)
+    count = _in_a_cycle(pieces[0])
+    check_frames(count * len(pieces), width)
+    shades = Shades(pieces, colors)
     pictures = []
-    for frame in _counted(_cycle(moving, colors), count, progress):
+    for frame in _counted(_cycle(pieces, colors), count, progress):
         picture = Image.fromarray(shades.numbers(frame))
         picture.putpalette(shades.palette.tobytes())
         pictures.append(picture)
@@ -105,15 +107,16 @@ def mp4(
     """
     av = needed("av", "a film as MP4")
     width += width % 2  # both sides are even, as hues are stored for two by two pixels
-    moving = _prepared(scene, traced, seconds, "mp4", width, arrow)
-    whole = _in_a_cycle(moving)
-    count = whole if turns is None else max(1, round(whole * turns / moving.stage.turns))
-    check_frames(count, width)
-    frames = islice(cycle(_cycle(moving, DARK if dark else LIGHT)), count)
+    pieces = _prepared(scene, traced, seconds, "mp4", width, arrow)
+    whole = _in_a_cycle(pieces[0])
+    count = whole if turns is None else max(1, round(whole * turns / pieces[0].stage.turns))
+    check_frames(count * len(pieces), width)
+    frames = islice(cycle(_cycle(pieces, DARK if dark else LIGHT)), count)
     file = BytesIO()
     with av.open(file, "w", "mp4", options={"fflags": "+bitexact"}) as film:
         stream = film.add_stream("libx264", RATES["mp4"], ENCODING)
-        stream.width, stream.height, stream.pix_fmt = width, moving.stage.height, "yuv420p"
+        stream.width, stream.height = width, sum(piece.stage.height for piece in pieces)
+        stream.pix_fmt = "yuv420p"
         for name in ("colorspace", "color_primaries", "color_trc"):
             setattr(stream.codec_context, name, BT_709)
         for number, frame in enumerate(_counted(frames, count, progress)):
@@ -132,11 +135,17 @@ def _prepared(
     kind: str,
     width: int,
     arrow: ForceArrow | None,
-) -> Moving:
+) -> list[Moving]:
+    """The scene; or those below each other whose links would cover each other in one."""
     check_seconds(seconds)
     check_width(width)
     frames = in_a_turn(kind, seconds)
-    moving = laid_out(scene, traced, frames, width, arrow)
+    begin = clear_angle(scene)
+    pieces = [
+        laid_out(part, traced_in(part, scene, traced), frames, width, arrow, begin)
+        for _, part in in_turn(scene, begin)
+    ]
+    moving = pieces[0]
     if round(frames * moving.stage.turns) > (angles := len(scene.crank_angle)):
         raise UsageError(
             Note(
@@ -146,7 +155,7 @@ def _prepared(
                 frames=frames,
             )
         )
-    return moving
+    return pieces
 
 
 def _in_a_cycle(moving: Moving) -> int:
@@ -155,11 +164,10 @@ def _in_a_cycle(moving: Moving) -> int:
     return steps if moving.stage.closed else 2 * steps
 
 
-def _cycle(moving: Moving, colors: Colors) -> Iterator[Array]:
-    from equipoise.figures.film import draw_frames
-
-    frames = draw_frames(moving, colors)
-    if moving.stage.closed:
+def _cycle(pieces: Sequence[Moving], colors: Colors) -> Iterator[Array]:
+    together = zip(*(draw_frames(piece, colors) for piece in pieces), strict=True)
+    frames = (parts[0] if len(parts) == 1 else np.vstack(parts) for parts in together)
+    if pieces[0].stage.closed:
         return frames
     there = list(frames)
     return iter(there + there[-2:0:-1])
@@ -185,8 +193,8 @@ class Shades:
     palette : (n, 3) uint8.
     """
 
-    def __init__(self, moving: Moving, colors: Colors) -> None:
-        named = sorted(_colors(moving), key=list(colors).index)
+    def __init__(self, pieces: Sequence[Moving], colors: Colors) -> None:
+        named = sorted(set().union(*map(_colors, pieces)), key=list(colors).index)
         few = [np.frombuffer(bytes.fromhex(colors[name][1:]), np.uint8) for name in named]
         between = (MOST_COLORS - len(few)) * 2 // (len(few) * (len(few) - 1))
         parts = np.arange(1, between + 1)[:, None] / (between + 1)

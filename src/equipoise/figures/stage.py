@@ -66,12 +66,15 @@ class Stage:
     """Places are complex numbers in pixels, x to the right and y downward.
 
     frames : instants in a turn.  width : pixels.
+    begin : number of the crank angle at which a cycle begins; where links are clear of each other,
+    which is what is seen where it stands, if None.
     """
 
     scene: Scene
     arrow: ForceArrow | None
     frames: int
     width: int
+    begin: int | None = None
 
     @cached_property
     def unit(self) -> float:
@@ -103,12 +106,10 @@ class Stage:
 
     @cached_property
     def chosen(self) -> Array:
-        """(K,) numbers of the crank angles of the instants; the last one closes the motion.
-
-        A cycle begins where links are clear of each other, which is what is seen where it stands.
-        """
+        """(K,) numbers of the crank angles of the instants; the last one closes the motion."""
         count = int(np.clip(round(self.frames * self.turns), 1, self._steps))
-        first = clear_angle(self.scene) if self.closed else 0
+        begin = clear_angle(self.scene) if self.begin is None else self.begin
+        first = begin if self.closed else 0
         steps = np.round(np.arange(count + 1) * self._steps / count).astype(int)
         return np.asarray(first + steps)
 

@@ -16,8 +16,10 @@ import equipoise as eq
 from equipoise.errors import UsageError
 from equipoise.figures.film import gif, mp4
 from equipoise.figures.stage import Stage
+from equipoise.symbols.clear import clear_angle
 from equipoise.symbols.looks import DARK, LIGHT
 from equipoise.symbols.scene import Scene
+from equipoise.symbols.stacks import in_turn
 from unit.animation.samples import analyzed, of_three_turns, prepared, shown
 
 SMALL = {"seconds": 0.4, "width": 320}
@@ -92,6 +94,26 @@ def test_a_gif_shows_the_motion_in_steady_colors() -> None:
     assert len(frames) == 10
     check_tip(frames, scene, LIGHT["main"], 0)
     assert len({tuple(shade) for frame in frames for shade in frame.reshape(-1, 3)}) <= 256
+
+
+@pytest.mark.parametrize(("kind", "near"), [("gif", 0), ("mp4", 60)])
+def test_links_that_cover_each_other_are_below_each_other(kind: str, near: float) -> None:
+    """Each walker has its tip where it is at the same instant as those of the others."""
+    film, read = {"gif": (gif, frames_of_gif), "mp4": (mp4, frames_of_mp4)}[kind]
+    _, scene, _ = analyzed("straw-walker", 720)
+    tips = ["T1", "T2", "T3", "T4"]
+    frames = read(film(scene, traced=tips, **SMALL))
+    begin, top = clear_angle(scene), 0
+    for (_, part), tip in zip(in_turn(scene, begin), tips, strict=True):
+        stage = Stage(part, None, len(frames), 320, begin)
+        places = stage.at(scene.places[tip])[stage.chosen[:-1] % 720]
+        for frame, place in zip(frames, places, strict=True):
+            shown = frame[top + int(place.imag), int(place.real)].astype(float)
+            assert np.abs(shown - color(LIGHT["main"])).max() <= near
+        top += stage.height
+    assert {frame.shape[0] for frame in frames} == {top}
+    with pytest.raises(UsageError, match="no point is called 'T9'"):
+        film(scene, traced=["T9"], **SMALL)
 
 
 def test_a_film_shows_the_motion() -> None:

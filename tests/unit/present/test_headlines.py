@@ -6,11 +6,13 @@ import json
 import re
 from dataclasses import replace
 from functools import cache
+from io import BytesIO
 from pathlib import Path
 
 import numpy as np
 import pytest
 import typst
+from PIL import Image
 
 import equipoise as eq
 from equipoise.errors import UsageError
@@ -31,7 +33,7 @@ from equipoise.quantities import brief
 from equipoise.results.analysis_blocks import orders_table
 from equipoise.results.blocks import SvgPicture, Table, Text, Value
 from equipoise.results.machine_blocks import angles_told
-from support.chosen import EXHAUSTIVE
+from support.chosen import EXHAUSTIVE, few
 from support.found import found as found_of
 from support.languages import COMPLETE
 
@@ -175,6 +177,25 @@ def test_the_first_page_of_the_pdf_has_the_machine(name: str) -> None:
     assert first < source.index("\n= #", source.index("= #") + 1)
     drawing = document(name).drawing
     assert drawing is not None and source.count(composed._text(drawing.svg)) == 1
+
+
+FOOT = 0.935
+"""Above the footer, of the height of a page."""
+
+
+@pytest.mark.parametrize(
+    "name",
+    few(
+        (*eq.examples("linkage"), *eq.examples("tool")),
+        {"pole-saw", "brush-cutter", "hydraulic-loader", "yamashita-rig"},
+    ),
+)
+def test_no_quarter_of_the_first_page_is_empty(name: str) -> None:
+    source = composed._source(document(name))
+    first, *_ = typst.compile(source.encode(), font_paths=fonts.installed(), format="png", ppi=30)
+    page = np.asarray(Image.open(BytesIO(first)).convert("L"))
+    rows = np.flatnonzero(np.any(page[: int(FOOT * len(page))] < 200, axis=1))
+    assert rows[-1] > 0.75 * len(page) * FOOT
 
 
 @pytest.mark.parametrize("heading", ['#topic("Part")\n= Name', "= Name", "== Name"])
