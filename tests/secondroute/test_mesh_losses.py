@@ -91,6 +91,46 @@ def test_power_and_the_law(name: str, joint: str) -> None:
     )
 
 
+def rack_and_pinion() -> eq.Machine:
+    """A slider-crank without mass whose blade is a rack that swings a pinion against a torque."""
+    crank = eq.Link({"A": (0.0, 0.0), "B": (0.05, 0.0)}, 0, (0, 0), 0)
+    rod = eq.Link({"B": (0.0, 0.0), "C": (0.2, 0.0)}, 0, (0, 0), 0)
+    bar, wheel = eq.Link({"C": (0, 0)}, 0, (0, 0), 0), eq.Link({"O": (0, 0)}, 0, (0, 0), 0)
+    return eq.Machine(
+        "rack", eq.Drive("crank", 20.0), {"A": (0.0, 0.0), "O": (0.2, 0.08)},
+        {"crank": crank, "rod": rod, "bar": bar, "wheel": wheel}, assembly={"C": "forward"},
+        sliders=(eq.mechanism.Slider("bar", "C", "frame", "A", 0.0),),
+        racks=(eq.mechanism.Rack("wheel", "bar", 0.08, "left", drives="rack"),),
+        loads=(eq.Load("wheel", torque=TORQUE),),
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("drives", ["rack", "pinion"])
+def test_a_rack_loses_a_share_of_its_force_times_its_way(drives: str) -> None:
+    """Driven either way; of the rack that drives, the force on the blade by hand: the pinion's
+    torque over radius, over what is left of 1 where the pinion takes power, and more than 1 where
+    it gives.
+    """
+    machine = rack_and_pinion() if drives == "rack" else eq.load("knife-drive")
+    (rack,) = machine.racks
+    free = eq.analyze(machine, 36)
+    joints = (JointProperties(f"racks.{rack.name}", mesh_loss=LOSS),)
+    found = eq.analyze(replace(machine, joints=joints, balance=None), 36)
+    friction = found.forces.frictions[rack.name]
+    size = np.max(np.abs(free.forces.power))
+    np.testing.assert_allclose(
+        found.forces.power - free.forces.power, friction.loss, atol=1e-10 * size
+    )
+    push = np.abs(found.forces.couplings["racks"][rack.name].parts["tangential"])
+    speed = np.abs(found.motion.slider(machine.sliders[0]).velocity)
+    np.testing.assert_allclose(friction.loss, LOSS * push * speed, rtol=1e-9, atol=1e-12 * size)
+    assert np.max(friction.loss) > 1e-3 * size
+    if drives == "rack":
+        given = -TORQUE * found.motion.links["wheel"].angular_velocity  # power that the load takes
+        wanted = np.where(given > 0, given / (1 - LOSS), given / (1 + LOSS))
+        np.testing.assert_allclose(found.forces.power, wanted, atol=1e-10 * size)
+
+
 def test_in_a_whole_cycle_what_goes_in_is_lost_or_taken() -> None:
     machine = eq.load("planetary-planting-arm")
     joints = [JointProperties(f"gears.{one.name}", mesh_loss=0.03) for one in machine.gears]
@@ -114,7 +154,7 @@ def test_they_are_reported_everywhere() -> None:
 @pytest.mark.parametrize(
     ("name", "joint", "said"),
     [
-        ("slider-crank-engine", "joints.B", "joints[1].mesh_loss: 'joints.B' is no belt or pair"),
+        ("slider-crank-engine", "joints.B", "joints[1].mesh_loss: 'joints.B' is no belt, rack or"),
         ("elliptic-quick-return", "gears.shaft to crank", "joints[1].mesh_loss: 'gears.shaft to"),
     ],
 )

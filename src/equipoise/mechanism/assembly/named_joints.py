@@ -71,7 +71,7 @@ def given_properties(
     ModelError : there is no such joint, it is named twice, or it has no such property.
     """
     named, tables = named_joints(joints, reactions), dict[str, str]()
-    varying = {(coupling.table, coupling.name) for coupling in machine.couplings
+    varying = {(coupling.table, coupling.name) for coupling in machine.gears
                if coupling.special}  # fmt: skip
     for where, item in numbered("joints", machine.joints):
         if item.joint not in named:

@@ -14,6 +14,7 @@ from equipoise.mechanism.parts.couplings import Coupling
 from equipoise.mechanism.parts.joint_kinds import JointKind
 from equipoise.mechanism.parts.joint_properties import JOINTS, JointProperties
 from equipoise.mechanism.parts.machine import Slider
+from equipoise.mechanism.parts.racks import Rack
 
 STILL = 1e-10
 """rad or lengths of the largest link, by rad of the crank: a joint that moves less is at rest, as
@@ -27,8 +28,9 @@ class RubbingJoint:
     name : in outputs.  reaction : its force.  given : what the file says of it.
     slider : the sliding joint that it is; None of a pin.  slot : that of a pin in one.
     still : rad or m by rad of the crank, below which it is at rest.
-    mesh : the gears or the belt that lose in passing their force on; None of a joint.
-    pitch_radius : of the driven one of these, m.
+    mesh : the gears, the rack or the belt that lose in passing their force on; None of a joint.
+        A driven rack has its guide as `slider`.
+    pitch_radius : of the driven one of these, m; 1 of a driven rack.
     """
 
     name: str
@@ -94,7 +96,11 @@ class RubbingJoint:
         return np.where(np.abs(rate) > self.still, rate, 0.0)
 
     def place(self, motion: Motion) -> Array:
-        """Where what slides is (N,), m, complex."""
+        """Where what slides rubs (N,), m, complex: of a rack where it meets its pinion."""
+        if isinstance(self.mesh, Rack):
+            pins = motion.linkage.joints.pins_between(self.mesh.pinion, self.mesh.carrier)
+            foot = -1j * self.mesh.left * self.mesh.radius * self.direction(motion)
+            return motion.point(pins[0]).place + foot
         guide = self.slider or self.slot
         assert guide is not None
         return motion.point(guide.point).place
@@ -144,6 +150,12 @@ def _rubbing(linkage: Linkage) -> list[RubbingJoint]:
                 result.append(RubbingJoint(name, reaction, entry, slider, still, slot=slot))
                 continue
             mesh = couplings[reaction.kind, reaction.name]
+            ends = mesh.driven, mesh.carrier
+            guide = next((item for item in machine.sliders if (item.link, item.on) == ends), None)
+            if isinstance(mesh, Rack) and guide is not None:
+                still = STILL * size
+                result.append(RubbingJoint(mesh.name, reaction, entry, guide, still, mesh, 1.0))
+                continue
             radius = _pitch_radius(linkage, mesh)
             result.append(RubbingJoint(mesh.name, reaction, entry, None, still, mesh, radius))
     return result
@@ -151,7 +163,11 @@ def _rubbing(linkage: Linkage) -> list[RubbingJoint]:
 
 def _pitch_radius(linkage: Linkage, mesh: Coupling) -> float:
     """Radius of the pitch circle of the driven gear or pulley, m."""
-    points = linkage.machine.bodies[mesh.carrier]
-    pins = [linkage.joints.pins_between(body, mesh.carrier)[0] for body in mesh.bodies[:2]]
-    driver, driven = (planar(points[pin]) for pin in pins)
-    return float(dict(mesh.circles(lambda: abs(driven - driver)))[mesh.driven])
+
+    def apart() -> float:
+        points = linkage.machine.bodies[mesh.carrier]
+        pins = [linkage.joints.pins_between(body, mesh.carrier)[0] for body in mesh.bodies[:2]]
+        driver, driven = (planar(points[pin]) for pin in pins)
+        return abs(driven - driver)
+
+    return float(dict(mesh.circles(apart))[mesh.driven])

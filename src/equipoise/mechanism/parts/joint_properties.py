@@ -18,7 +18,7 @@ JOINTS = ("pin", "slider")
 """Kinds of joints that hold bodies together, which no coupling is."""
 OF_PIN = ("radius", "torsional_damping", "drag_torque", "width", "bearing")
 OF_SLIDER = ("guide_length", "damping", "drag_force")
-MESHES = ("gears", "belts")
+MESHES = ("gears", "racks", "belts")
 """Lists of couplings of which one may lose a share of what it passes on."""
 RUBBING = ("friction", "mesh_loss", "damping", "torsional_damping", "drag_force", "drag_torque")
 """Keys of which each alone makes a joint resist its motion."""
@@ -111,8 +111,8 @@ class JointProperties(Frozen):
     )
     mesh_loss: float | None = key(
         Number(),
-        "of gears or a belt, such as `gears.crank to wheel`: the share of their tangential force "
-        "that is lost in passing it on, so that they drive with an efficiency of 1 less this",
+        "of gears, a rack or a belt, such as `gears.crank to wheel`: the share of their tangential "
+        "force that is lost in passing it on, so that they drive with an efficiency of 1 less this",
         default=None,
         example=0.02,
         at_least=0,
@@ -195,7 +195,7 @@ def wrong_of_kind(
         ratio.
     """
     if properties.mesh_loss is not None and (varies or kind not in MESHES):
-        note = Note("{joint!r} is no belt or pair of gears of one ratio; leave it out",
+        note = Note("{joint!r} is no belt, rack or pair of gears of one ratio; leave it out",
                     joint=properties.joint)  # fmt: skip
         yield ModelError(f"{where}.mesh_loss", note)
     if in_slot and (properties.bearing or properties.width) is not None:
