@@ -37,7 +37,8 @@ interface Foreground {
   step(): Bytes | undefined;
   missing: string | undefined;
   lacks(name: string): void;
-  rest(): void;
+  /** Whether there is a reply at once. */
+  rest(): boolean;
   tasks: { length: number; popleft(): Bytes };
   wants_reply(): boolean;
   result_of_task(data: unknown): void;
@@ -224,7 +225,7 @@ async function foreground(): Promise<void> {
     busy = false;
     if (shown) other ??= begin();
     timer = self.setTimeout(() => {
-      page.rest();
+      if (page.rest()) return void work();
       while (page.tasks.length) hand(own(page.tasks.popleft()));
     }, PAUSE);
   }

@@ -36,6 +36,7 @@ from equipoise.web.drawn import (
 )
 from equipoise.web.edits import Computed, settled, solved
 from equipoise.web.fields import Scale, fields_of
+from equipoise.web.figures import figures_of
 from equipoise.web.history import History, HistoryStep
 from equipoise.web.making import lost, sketch_after
 from equipoise.web.messages import MOST_LANGUAGES, Message
@@ -62,6 +63,9 @@ class Session:
     wanted : outputs that the page draws besides those that it always does.
     language : that its reader speaks.  disk : the file that is open, if it can be saved.
     seen : what else the page shows.
+    brief : whether states of a machine have the figures and numbers of the last one that was not
+        brief, as in a drag, where a page draws at every move, and writes more seldom.
+    written : those figures and numbers; None where the machine was unfinished.
     lock : held while a design takes the place of another, since balancing has a thread of its own.
     """
 
@@ -76,6 +80,8 @@ class Session:
     language: str = "en"
     disk: Disk | None = None
     seen: ViewState = field(default_factory=ViewState)
+    brief: bool = False
+    written: Values | None = None
     lock: Lock = field(default_factory=Lock)
 
     def receive(self, message: Message) -> Iterator[Reply]:
@@ -356,10 +362,13 @@ class Session:
         view, history = self.view, self._past
         if isinstance(view, Incomplete):
             content, data = state_of_sketch(view, self.scale)
+            self.written = None
         else:
             content, data = self._state_of(view)
-            fields = fields_of(view.design).values()
-            content["fields"] = [self.scale.told(item) for item in fields]
+            if self.brief and self.written is not None:
+                content |= self.written
+            else:
+                content |= self._numbers_of(view)
         now = self.found if self.preview is None else None
         file = self.disk and self.disk.kept(
             now.design.machine if isinstance(now, Computed) else None
@@ -368,6 +377,17 @@ class Session:
         content["wording"] = wording_of(words_of(self._machine))
         text = {"undo": history.undo, "redo": history.redo, "steps": steps, "file": file}
         return Reply({"type": "state", "seq": seq, **text, **content}, data)
+
+    def _numbers_of(self, computed: Computed) -> Values:
+        """The part of a state that a page writes: figures, and the numbers of the machine."""
+        assert self.scale is not None
+        against = self._against or self.seen.pale or self.before
+        fields = fields_of(computed.design).values()
+        self.written = {
+            "figures": figures_of(computed.analysis, against.analysis if against else None),
+            "fields": [self.scale.told(item) for item in fields],
+        }
+        return self.written
 
     def _state_of(self, computed: Computed) -> tuple[Values, bytes]:
         view = self.seen

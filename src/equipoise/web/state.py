@@ -21,7 +21,7 @@ from equipoise.web.arrows import arrows_of, points_of
 from equipoise.web.block import Array, FloatBlock, Values
 from equipoise.web.drawing import cams_told, ground_of, moves_of, stage_of
 from equipoise.web.edits import Computed, movable
-from equipoise.web.figures import charts_of, figures_of, least_of, signals_of
+from equipoise.web.figures import charts_of, least_of, signals_of
 from equipoise.web.following import extent_of
 from equipoise.web.lacking import forces_lack
 from equipoise.web.measured import measured_told
@@ -39,7 +39,7 @@ def state_of(
     arrows_at: str | None = None,
     record: MeasuredSignals | None = None,
 ) -> tuple[Values, bytes]:
-    """Everything that a page draws of a machine.
+    """Everything that a page draws of a machine, without its figures and numbers.
 
     before : whose curves are drawn behind its own, if any's.
     wanted : names of further outputs that it draws, as far as there are such.
@@ -75,7 +75,6 @@ def state_of(
         "scene": stage_of(scene, movable(machine), cams_told(machine, motion.linkage.joints)),
         "traced": traced(motion),
         "first": first_of(machine)[0],
-        "figures": figures_of(analysis, against.analysis if against else None),
         "outputs": outputs_of(analysis),
         "charts": charts_of(analysis, signals),
         "least": least_of(signals),

@@ -31,7 +31,8 @@ from equipoise.web.state_changes import StateChanges
 OF_MACHINE = ("balance", "download")
 """Of the questions that take long, those about the machine that is open."""
 SELDOM = 0.2
-"""s after which all that follows from an edit is computed in a drag that never pauses."""
+"""s after which all that follows from an edit is computed in a drag that never pauses, and figures
+and numbers are written anew."""
 CANCELLED = Note("cancelled; nothing was changed")
 LACKING = to_say("this needs {package}, which this site does not have and could not load")
 
@@ -79,7 +80,8 @@ class Foreground:
         self._replies: Iterator[Reply] | None = None
         self._refused_packages: set[str] = set()
         self._answered = self._reported = 0
-        self._whole = 0.0
+        self._whole = self._written = 0.0
+        self._seq: int | None = None
         self._changes = StateChanges()
 
     def take(self, text: str) -> None:
@@ -112,17 +114,25 @@ class Foreground:
         """Note that a package cannot be loaded."""
         self._refused_packages.add(package)
 
-    def rest(self) -> None:
-        """Begin what follows from the design that is shown; to be called when a hand rests."""
+    def rest(self) -> bool:
+        """Begin what follows from the design that is shown; to be called when a hand rests.
+
+        Returns whether a step is due at once: numbers of the last move have not been sent.
+        """
         session = self.desk.session
-        if self.waiting or self._replies is not None or not self.desk.has_more:
-            return
-        if any(task.message is None for task, _ in self._running):
-            return
+        if self.waiting or self._replies is not None:
+            return False
+        if session.brief:
+            session.brief = False
+            self._replies = session.told(self._seq)
+            return True
+        if not self.desk.has_more or any(task.message is None for task, _ in self._running):
+            return False
         wanted = session.more_wanted()
         if wanted is not None:
             result, against, sweep = wanted
             self._begin(None, result, against, sweep)
+        return False
 
     def wants_reply(self) -> bool:
         """Whether a reply of the task that runs is about the design that is shown."""
@@ -137,7 +147,7 @@ class Foreground:
             from equipoise.web import balanced
 
             assert task.message is not None and result is not None
-            message = task.message
+            message, self.desk.session.brief = task.message, False
             self._replies = balanced.adopted(self.desk.session, result, balancing, message)
             self._message = message
         elif task.message is not None:
@@ -188,6 +198,15 @@ class Foreground:
             self._begin(message, current, None, sweep=False)
         else:
             self._message, self._replies = message, self.desk.receive(message)
+            self._seq = message.seq
+            now = time.monotonic()
+            self.desk.session.brief = self._is_tried(message) and now - self._written < SELDOM
+            if not self.desk.session.brief:
+                self._written = now
+
+    def _is_tried(self, message: Message) -> bool:
+        """Whether a message is a move of a drag, or of a key that is held, of a machine."""
+        return message.preview and self.desk.tool is None and not self.desk.studied
 
     def _is_for_background(self, message: Message) -> bool:
         """Whether a question is about a finished machine, or about nothing that is open."""

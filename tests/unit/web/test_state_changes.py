@@ -46,17 +46,16 @@ def states() -> tuple[list[Values], list[Values]]:
     page._changes.of = both  # type: ignore[method-assign]
     mass = {"set": "links.crank.mass", "text": "2 kg"}
     drag = {"move": "C", "at": 10, "to": [0.05, 0.06]}
-    for seq, (kind, values) in enumerate(
-        [
-            ("open", {"example": "yamashita-1"}),
-            ("edit", {"label": "mass", "edits": [mass], "commit": False}),
-            ("edit", {"label": "mass", "edits": [mass]}),
-            ("edit", {"label": "drag", "edits": [drag], "commit": False}),
-            ("undo", {}),
-            ("open", {"example": "slider-crank-engine"}),
-            ("open", {"new": True}),
-        ]
-    ):
+    asked: list[tuple[str, Values]] = [
+        ("open", {"example": "yamashita-1"}),
+        ("edit", {"label": "mass", "edits": [mass], "commit": False}),
+        ("edit", {"label": "mass", "edits": [mass]}),
+        ("edit", {"label": "drag", "edits": [drag], "commit": False}),
+        ("undo", {}),
+        ("open", {"example": "slider-crank-engine"}),
+        ("open", {"new": True}),
+    ]
+    for seq, (kind, values) in enumerate(asked):
         page.take(json.dumps({"type": kind, "seq": seq, **values}))
         while (reply := page.step()) is not None:
             told = unpacked(reply)[0]

@@ -11,6 +11,7 @@ import pytest
 from equipoise.balancing import program
 from equipoise.balancing.cone_solver import interior_point_solver
 from equipoise.i18n import catalogue
+from equipoise.web import worker
 from equipoise.web.worker import Background, Foreground
 from unit.web.pages import unpacked
 
@@ -158,6 +159,32 @@ def test_a_package_is_asked_for_and_the_message_begun_again(
     page.lacks("scipy")
     (refusal,) = [one for one in asked(page, "undo") if one["type"] == "refused"]
     assert "this needs scipy" in refusal["message"]
+
+
+def test_numbers_follow_a_drag_more_seldom_and_in_full_where_it_pauses(
+    page: Foreground, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def dragged(text: str, **more: Any) -> dict[str, Any]:
+        edit = {"set": "links.crank.mass", "text": text}
+        return asked(page, "edit", label="mass", edits=[edit], **more)[0]
+
+    def changed(told: dict[str, Any]) -> set[str]:
+        return {*told, *told["since"]["items"]} & {"fields", "figures"}
+
+    numbers = {"fields", "figures"}
+    monkeypatch.setattr(worker, "SELDOM", 0.0)
+    assert changed(dragged("310 g", commit=False)) == numbers
+    monkeypatch.setattr(worker, "SELDOM", float("inf"))
+    moved = dragged("320 g", commit=False)
+    assert not changed(moved)
+    assert "arrays" in moved["since"]["same"]  # which are as long; the drawing is in them
+    assert page.rest()
+    (paused,) = [one for one in texts(page) if one["type"] == "state"]
+    assert changed(paused) == numbers
+    assert not page.rest()
+    assert not changed(dragged("330 g", commit=False))
+    assert changed(dragged("330 g")) == numbers
+    assert not page.rest()
 
 
 def without_texts(language: str) -> Any:
