@@ -213,7 +213,7 @@ def test_formats_without_them_say_so() -> None:
     told = {}
     for module in (mjcf, urdf, exudyn):
         job = Job(MACHINE, 0.3)
-        text = module.made(job)
+        text = module.export_bytes(job)
         told[module] = " and ".join(job.left_out)
         if module is mjcf:
             assert text.count("springlength") == 1
