@@ -127,12 +127,12 @@ class Bushing(BetweenPoints, RatedElement):
 
     def _laws(self) -> tuple[tuple[Any, Any, Any], ...]:
         """Preload, stiffness and damping of each way."""
-        about = (
+        stiffness, damping = (
             0.0 if number is None else number
             for number in (self.torsional_stiffness, self.torsional_damping)
         )
         pairs = zip(self.preload, self.stiffness, self.damping, strict=True)
-        return (*pairs, (self.torque, *about))
+        return (*pairs, (self.torque, stiffness, damping))
 
     def efforts(self, ways: Sequence[tuple[Any, Any]]) -> tuple[Any, ...]:
         """Forces along and across its direction, N, and torque, N m, on the link."""
