@@ -5,11 +5,11 @@ A joint that turns or slides at the speed v, rad/s or m/s, resists with the torq
     f = -(sign(v) (mu(v) P + D) + c v),    mu(v) = mu + (mu_0 - mu) exp(-(s / v_s)^2)
 
 where s is the sliding speed, D the drag and c the damping.  P presses the surfaces on each other:
-the force of a pin, at its radius; of a pin in a slot that of the slot; of a slider its normal
-force N or, with a guide of length l and a
-moment M about the slider's point, the sum max(|N|, 2 |M| / l) of the forces at both its ends.
-Gears and belts lose a share mu of what they pass on: P is their tangential force, at the pitch
-radius of the driven one, and v how fast that turns on its carrier.
+the force of a pin, at its radius; of a pin in a slot that of the slot; of a slider its normal force
+N or, with a guide of length l and a moment M about the slider's point, the sum max(|N|, 2 |M| / l)
+of the forces at both its ends.  Gears, racks and belts lose a share mu of what they pass on: P is
+their tangential force, at the pitch radius of the driven one, and v how fast that turns, or a rack
+slides, on its carrier.
 
 The pass over the joints is linear in what acts on links, friction too.  So what presses in each
 joint is known, by one stack of passes, as a sum of what it is without friction and of what a unit
