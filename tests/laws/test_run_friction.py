@@ -11,6 +11,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import UsageError
+from equipoise.mechanism.parts.bushings import Bushing
 from equipoise.mechanism.parts.dampers import Damper
 from equipoise.mechanism.parts.force_elements import Load, Motor
 from equipoise.mechanism.parts.joint_properties import JointProperties
@@ -40,6 +41,8 @@ ELEMENTS: list[dict[str, Any]] = [
     {"stops": (Stop("piston", "C", "A", 500.0, -pi / 2, restitution=0.5, speed=2.0),),
      "resistances": (Resistance("piston", "C", "A", direction=pi / 2, force=60.0, damping=4.0,
                                 speed=1e-7),)},
+    {"bushings": (Bushing("rod", "C", "A", stiffness=(200.0, 300.0), damping=(3.0, 4.0),
+                          preload=(20.0, 0.0)),)},
 ]  # fmt: skip
 
 

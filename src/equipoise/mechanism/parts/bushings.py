@@ -141,10 +141,10 @@ class Bushing(BetweenPoints, RatedElement):
             for (preload, stiffness, damping), (way, speed) in zip(self._laws(), ways, strict=True)
         )
 
-    def actions(self, at: Placed) -> Iterator[Action]:
+    def exerted(self, at: Placed, efforts: Sequence[Any]) -> Iterator[Action]:
         """Force and torque on the link, and their opposites there on the other body."""
         arm, direction, _ = self.relative_motion(at, self.direction)
-        along, across, torque = self.efforts(self.ways(at))
+        along, across, torque = efforts
         force = direction * along + 1j * direction * across
         yield self.link, self.point, force, torque
         yield self.on, self.to, -force, -cross(arm, force) - torque
