@@ -18,6 +18,8 @@ DAY = ("brush saw: 4.6 m/s^2 for 2 h", "felling: 6.0 m/s^2 for 1 h", "stripping:
 STUDY = "study-of-lengths"
 RIG = "yamashita-rig"
 """Examples of the pages."""
+DRAWN = (0.5, 4.2, 7.8, 11.4)
+"""Of a sheet of A4: left, bottom, right and top of what is not empty, inches."""
 
 
 def exposure(folder: Path) -> None:
@@ -46,12 +48,18 @@ def studies(folder: Path) -> None:
 
 def workshop(folder: Path) -> None:
     """The sheet of the counterweight that is advised for a machine on its mounts."""
+    from matplotlib.transforms import Bbox
+
     from equipoise.exchange.formats import Job
     from equipoise.figures.workshop_sheet import sheets
 
     advice = eq.balancing.advise(eq.load(RIG))
     with sheets(Job(advice.machine, changes=advice.changes)) as (sheet,):
-        sheet.savefig(folder / "counterweight.svg", metadata={"Date": None})
+        sheet.savefig(
+            folder / "counterweight.svg",
+            bbox_inches=Bbox.from_extents(*DRAWN),
+            metadata={"Date": None},
+        )
 
 
 DEMONSTRATIONS: Mapping[str, Callable[[Path], None]] = {

@@ -104,6 +104,14 @@ def test_tables_of_many_columns_are_read_without_moving_them(
         assert page.eval_on_selector_all(".table-wrapper", hidden) == 0, name
 
 
+@pytest.mark.parametrize("width", WIDTHS)
+def test_long_lines_of_code_make_no_page_wider(page: Page, site: Path, width: int) -> None:
+    page.set_viewport_size({"width": width, "height": 900})
+    for name in ("studies.html", "balancing.html"):
+        page.goto(f"{site.as_uri()}/{name}")
+        assert page.evaluate(FITS), name
+
+
 def test_a_command_stands_beside_python(page: Page, site: Path) -> None:
     """Where there is room; on a narrow page below it, and each has a button that copies it."""
     for width, beside in ((1280, True), (400, False)):
