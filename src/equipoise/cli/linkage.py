@@ -275,7 +275,7 @@ def _motor(option: str, text: str) -> Motor:
     for part in text.split(","):
         path, sign, value = (item.strip() for item in part.partition("="))
         *tables, name = path.split(".")
-        if not (sign and name and value) or len(tables) > 1:
+        if len(tables) > 1 or not all((sign, name, value)):
             wrong = Note("got {text!r}; give such as {example}", text=text, example=MOTOR)
             raise UsageError(at_place(option, wrong))
         table = content

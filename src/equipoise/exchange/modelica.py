@@ -358,12 +358,9 @@ class _Guided:
     def of(cls, model: Flat, item: Stop | Resistance, direction: float) -> _Guided:
         """direction : from the x axis of the other body, rad."""
         (link, point), (on, to) = (item.link, item.point), (item.on, item.to)
-        arm, moving = (
-            tuple(
-                f"({one} - {other})" for one, other in zip(of(link, point), of(on, to), strict=True)
-            )
-            for of in (model.place, model.velocity)
-        )
+        (x, y), (x0, y0) = model.place(link, point), model.place(on, to)
+        (vx, vy), (vx0, vy0) = model.velocity(link, point), model.velocity(on, to)
+        arm, moving = (f"({x} - {x0})", f"({y} - {y0})"), (f"({vx} - {vx0})", f"({vy} - {vy0})")
         angle = f"({model.angle(on)} + {_in_brackets(direction)})"
         return cls(model, item, arm, moving, (f"cos{angle}", f"sin{angle}"))
 

@@ -19,6 +19,7 @@ from collections.abc import Callable
 from dataclasses import fields
 from functools import cached_property
 from math import copysign, pi
+from typing import Any
 
 import numpy as np
 
@@ -272,7 +273,8 @@ class CouplingTable:
             np.array(complex(next(values), next(values)) if two else next(values))
             for two in self.complex
         ]
-        return ReducedInertia(self.mass, *items[: self.count], (*items[self.count :],))
+        parts: list[Any] = [*items[: self.count], (*items[self.count :],)]
+        return ReducedInertia(self.mass, *parts)
 
 
 def follow(
