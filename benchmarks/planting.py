@@ -18,9 +18,8 @@ import equipoise as eq
 from equipoise.design.requirements import Requirement
 from equipoise.mechanism.kinematics.tip import TipCurve
 from equipoise.mechanism.parts.gear_shapes import GearShape
-from equipoise.planting.designs import Designs
 from equipoise.planting.figures import tip_figures
-from equipoise.planting.goals import PlantingProblem
+from equipoise.planting.search import Designs, PlantingProblem
 from equipoise.planting.stroke import soil_crossings
 from timing import in_turn, report
 

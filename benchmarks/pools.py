@@ -19,7 +19,7 @@ from statistics import median
 import psutil
 from joblib.externals.loky import get_reusable_executor
 
-from equipoise.design.processes import ChunkTask, Processes, computed
+from equipoise.design.evaluator import ChunkTask, Processes, computed
 
 TASKS, LENGTH = 40, 0.1
 

@@ -19,12 +19,11 @@ import numpy as np
 
 import equipoise as eq
 from asked import Limit, Table
-from equipoise.planting.designs import Designs
-from equipoise.planting.goals import PlantingProblem
+from equipoise.planting.search import Designs, PlantingProblem
 from equipoise.schema.template import Template
 from equipoise.studies.evaluate import evaluator, pooled
 from equipoise.studies.objective_map import landscape
-from equipoise.studies.sampling import samples
+from equipoise.studies.study import samples
 
 SECONDS = 25.0
 """Of one processor that each task takes."""

@@ -22,14 +22,11 @@ from asked import Limit, Table, agree
 from equipoise.codegen.backends import FOLDER, run_loop
 from equipoise.codegen.batch import Batch, all_angles, designs_of, grid_of
 from equipoise.codegen.figures import Figure
-from equipoise.design.spreads import Range
-from equipoise.design.variables import Variable
+from equipoise.design.variables import Range, Variable
 from equipoise.schema.template import Template
-from equipoise.studies.design_space import Output, Sampling
 from equipoise.studies.run import sweep
-from equipoise.studies.sampling import samples
 from equipoise.studies.store import open_store
-from equipoise.studies.study import Study
+from equipoise.studies.study import Output, Sampling, Study, samples
 from timing import in_turn
 
 MACHINE = eq.load("yamashita-1")

@@ -33,9 +33,8 @@ from equipoise.handheld.design_plan import DesignLimit, DesignPlan, DesignVariab
 from equipoise.handheld.exposed import grips
 from equipoise.handheld.frequencies import natural_frequencies
 from equipoise.handheld.model import Tool
-from equipoise.handheld.modes import vibrate_tool
+from equipoise.handheld.modes import changed, vibrate_tool
 from equipoise.handheld.response import respond_tool
-from equipoise.handheld.studies import changed
 from equipoise.handheld.sweep import transmit
 from peers import optional
 from timing import in_turn, report

@@ -17,8 +17,8 @@ from pictures import command_of
 
 from equipoise.i18n import speaking
 from equipoise.schema.opening import bundled, kind_of
-from equipoise.web import kinds
-from equipoise.web.openings import opened_example
+from equipoise.web import gallery as kinds
+from equipoise.web.gallery import opened_example
 
 
 class Words(NamedTuple):

@@ -42,7 +42,7 @@ from .studies.searching import search as search
 from .studies.tolerances import tolerance as tolerance
 from .vibration.forced import respond as respond
 from .vibration.free import modes as modes
-from .vibration.transient import simulate as simulate
+from .vibration.free import simulate as simulate
 from .web.widget import view as view
 
 __version__: str

@@ -28,7 +28,7 @@ from playwright.sync_api import CDPSession, Error, Locator, Page, expect
 import equipoise as eq
 from browser.live import SCREENSHOTS, Live
 from equipoise import Machine
-from equipoise.mechanism.kinematics.swings import swing
+from equipoise.mechanism.kinematics.swinging import swing
 from equipoise.schema.files import to_csv
 
 MINUTES, LONG = float(os.environ.get("EQUIPOISE_MONKEY", "0")), 20

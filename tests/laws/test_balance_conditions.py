@@ -10,8 +10,13 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.balancing.least_norm import least_moments
-from equipoise.balancing.linear_conditions import Conditions, Kind, conditions, parameter_scales
+from equipoise.balancing.linear_conditions import (
+    Conditions,
+    Kind,
+    conditions,
+    least_moments,
+    parameter_scales,
+)
 from equipoise.balancing.physical_consistency import ASKED, Feasibility, feasibility
 from equipoise.balancing.sensitivity import (
     Sensitivities,

@@ -17,9 +17,8 @@ from equipoise.mechanism.parts.force_elements import Motor
 from equipoise.running.blocks import run_headline
 from equipoise.running.drivers import Driver
 from equipoise.running.equation import CrankEquation
-from equipoise.running.flywheel import Flywheel, SteadyCycle, share_of_mean, size_flywheel
+from equipoise.running.flywheel import Flywheel, Shooting, SteadyCycle, share_of_mean, size_flywheel
 from equipoise.running.integration import Instant, Integration, Limits
-from equipoise.running.shooting import Shooting
 from support.analyses import subject_of
 from support.chosen import few
 

@@ -15,11 +15,11 @@ import mpmath
 import numpy as np
 import pytest
 
-from equipoise.mechanism.formulas import joint_kernels, kernels
+from equipoise.mechanism.formulas import kernels
 from laws.formulas import FORMULAS, Formula, constants, evaluate
 
 ANGLES = np.array([0.1, 0.9, 1.7, 2.6, 3.5, 4.4, 5.8])
-BOTH = (kernels, joint_kernels)
+BOTH = (kernels, kernels)
 FUNCTIONS = {
     name: found
     for one in BOTH
@@ -49,7 +49,7 @@ def test_kernels_import_only_kernels() -> None:
         for node in ast.walk(part)
         if isinstance(node, ast.Import | ast.ImportFrom)
     ]
-    assert all(one is joint_kernels for one, _ in imports)
+    assert all(one is kernels for one, _ in imports)
     assert all(getattr(node, "module", None) == kernels.__name__ for _, node in imports)
 
 
@@ -334,7 +334,7 @@ def test_rrr_forces(trial: int) -> None:
     columns = [on_first(1, p, p), on_first(1j, p, p), on_second(1, q, q), on_second(1j, q, q),
                between(1, c, (p, q)), between(1j, c, (p, q))]  # fmt: skip
     x = solve(columns, [*rows(force_p, moment_p), *rows(force_q, moment_q)])
-    got = joint_kernels.rrr_forces(p, q, c, force_p, moment_p, force_q, moment_q)
+    got = kernels.rrr_forces(p, q, c, force_p, moment_p, force_q, moment_q)
     close(got, [complex(*x[0:2]), complex(*x[2:4]), complex(*x[4:6])])
 
 
@@ -347,7 +347,7 @@ def test_rrp_forces(trial: int) -> None:
     columns = [on_first(1, p, p), on_first(1j, p, p), on_second(normal, c, c),
                on_second(0, c, c, 1.0), between(1, c, (p, c)), between(1j, c, (p, c))]  # fmt: skip
     x = solve(columns, [*rows(force_p, moment_p), *rows(force_s, moment_s)])
-    got = joint_kernels.rrp_forces(p, c, u, force_p, moment_p, force_s, moment_s, along)
+    got = kernels.rrp_forces(p, c, u, force_p, moment_p, force_s, moment_s, along)
     close(got, [complex(*x[0:2]), normal * x[2], x[3], complex(*x[4:6])])
 
 
@@ -361,7 +361,7 @@ def test_rpr_forces(trial: int) -> None:
     columns = [on_first(1, p, p), on_first(1j, p, p), on_second(1, q, q), on_second(1j, q, q),
                between(-normal, p, (p, q)), between(0, p, (p, q), -1.0)]  # fmt: skip
     x = solve(columns, [*rows(force_p, moment_p), *rows(force_q, moment_q)])
-    got = joint_kernels.rpr_forces(p, q, u, force_p, moment_p, force_q, moment_q, back)
+    got = kernels.rpr_forces(p, q, u, force_p, moment_p, force_q, moment_q, back)
     close(got, [complex(*x[0:2]), complex(*x[2:4]), normal * x[4], x[5]])
 
 
@@ -374,7 +374,7 @@ def test_prp_forces(trial: int) -> None:
     columns = [on_first(n, 0, 0), on_first(0, 0, 0, 1.0), on_second(m, 0, 0),
                on_second(0, 0, 0, 1.0), between(1, 0, (0, 0)), between(1j, 0, (0, 0))]  # fmt: skip
     x = solve(columns, [*rows(force_g, moment_g), *rows(force_h, moment_h)])
-    got = joint_kernels.prp_forces(u, v, force_g, moment_g, force_h, moment_h, along_g, along_h)
+    got = kernels.prp_forces(u, v, force_g, moment_g, force_h, moment_h, along_g, along_h)
     close(got, [n * x[0], x[1], m * x[2], x[3], complex(*x[4:6])])
 
 
@@ -388,7 +388,7 @@ def test_rpp_forces(trial: int) -> None:
     columns = [on_first(1, p, p), on_first(1j, p, p), on_second(n, s, s), on_second(0, s, s, 1.0),
                between(-m, p, (p, s)), between(0, p, (p, s), -1.0)]  # fmt: skip
     x = solve(columns, [*rows(force_p, moment_p), *rows(force_s, moment_s)])
-    got = joint_kernels.rpp_forces(p, s, u, force_p, moment_p, force_s, moment_s, along, inner)
+    got = kernels.rpp_forces(p, s, u, force_p, moment_p, force_s, moment_s, along, inner)
     close(got, [complex(*x[0:2]), n * x[2], x[3], m * x[4], x[5]])
 
 
@@ -399,18 +399,18 @@ def test_flank_forces(trial: int, radial: float) -> None:
     force, lever = vectors(2)
     (u,) = units(1)
     moment = float(RNG.normal())
-    (sense,) = joint_kernels.flank(moment)
+    (sense,) = kernels.flank(moment)
     assert sense == pytest.approx(np.sign(moment))
     outward = u * lever / abs(lever)
     line = 1j * outward + radial * sense * outward
     columns = [rows(1, 0.0), rows(1j, 0.0), rows(line, kernels.cross(u * lever, line))]
     x = np.linalg.solve(np.array(columns).T, rows(force, moment))
-    got = joint_kernels.flank_forces(force, moment, u, sense, lever, -radial)
+    got = kernels.flank_forces(force, moment, u, sense, lever, -radial)
     close(got, [complex(*x[0:2]), line * x[2], x[2]])
 
 
 def test_flank_without_load() -> None:
-    assert joint_kernels.flank(0.0) == (0.0,)
+    assert kernels.flank(0.0) == (0.0,)
 
 
 @repeated

@@ -21,7 +21,7 @@ from equipoise.mechanism.parts.induction_motors import InductionMotor
 from equipoise.mechanism.parts.joint_properties import JointProperties
 from equipoise.mechanism.parts.servo_motors import ServoMotor
 from equipoise.running.blocks import verdict
-from equipoise.running.controllers import Controller
+from equipoise.running.drivers import Controller
 from equipoise.running.equation import CrankEquation
 from equipoise.running.integration import Instant, Integration
 from equipoise.schema.files import json_text

@@ -10,15 +10,12 @@ import numpy as np
 import pytest
 from scipy.stats import norm, sobol_indices, uniform
 
-from equipoise.design.spreads import Normal, Range, Uniform
-from equipoise.design.variables import Variable
-from equipoise.studies.design_space import Correlation, Output
+from equipoise.design.variables import Normal, Range, Uniform, Variable
 from equipoise.studies.evaluate import evaluator
 from equipoise.studies.outcomes import Evaluator, Outcome
 from equipoise.studies.searching import search
-from equipoise.studies.study import Study
-from equipoise.studies.tolerances import Tolerances, tolerance
-from equipoise.studies.variance import effects, tables
+from equipoise.studies.study import Correlation, Output, Study
+from equipoise.studies.tolerances import Tolerances, effects, tables, tolerance
 from unit.studies.samples import PATHS, study
 
 Array = np.ndarray[Any, Any]

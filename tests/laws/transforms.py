@@ -20,10 +20,10 @@ from equipoise.mechanism.parts.cams import Cam
 from equipoise.mechanism.parts.circular_slots import CircularSlot
 from equipoise.mechanism.parts.curved_slots import CurvedSlot
 from equipoise.mechanism.parts.field import Planting
+from equipoise.mechanism.parts.links import Slider
 from equipoise.mechanism.parts.machine import FRAME, FurtherDrive, Vector
 from equipoise.mechanism.parts.objectives import quantity_of
 from equipoise.mechanism.parts.racks import Rack
-from equipoise.mechanism.parts.sliders import Slider
 from equipoise.mechanism.parts.torsion_springs import TorsionSpring
 from equipoise.quantities import SI
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from equipoise.mechanism.dynamics.bearing_life import bearing_life
-from equipoise.mechanism.dynamics.fatigue import rainflow
-from equipoise.mechanism.parts.rolling_bearings import RollingBearing
+from equipoise.mechanism.dynamics.link_stress import rainflow
+from equipoise.mechanism.parts.joint_properties import RollingBearing
 
 E1049 = [-2.0, 1.0, -3.0, 5.0, -1.0, 3.0, -4.0, 4.0, -2.0]
 RPM = 2 * pi / 60

@@ -21,8 +21,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.balancing.least_norm import least_moments
-from equipoise.balancing.linear_conditions import conditions
+from equipoise.balancing.linear_conditions import conditions, least_moments
 from equipoise.balancing.physical_consistency import feasibility
 from equipoise.balancing.sensitivity import sensitivities
 from literature.yamashita import (

@@ -37,8 +37,7 @@ import equipoise as eq
 from equipoise.mechanism.parts.support import Gauge, Mount, Row
 from equipoise.signals import Periodic
 from equipoise.vibration.forced import respond
-from equipoise.vibration.linear import Linear
-from equipoise.vibration.resonance import resonances
+from equipoise.vibration.linear import Linear, resonances
 from equipoise.vibration.response import Model
 from equipoise.vibration.sweep import sweep_speed
 from literature.yamashita import (

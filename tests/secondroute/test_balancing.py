@@ -24,7 +24,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import UsageError
-from equipoise.mechanism.outputs.spoken import joint_names
+from equipoise.mechanism.outputs.declared import joint_names
 from equipoise.mechanism.parts.balance import MEASURES, Balance, Objective, Weight
 from equipoise.mechanism.parts.machine import Machine
 from support.balancing_reference import (

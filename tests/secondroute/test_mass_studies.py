@@ -15,14 +15,12 @@ import pytest
 import equipoise as eq
 from equipoise.codegen.figures import COMPUTED, Figure
 from equipoise.codegen.gram import MassBatch, can_use
-from equipoise.design.spreads import Range
-from equipoise.design.variables import Variable
+from equipoise.design.variables import Range, Variable
 from equipoise.mechanism.kinematics.jumps import resolved
 from equipoise.mechanism.outputs.declared import DECLARED, OutputSource, declared
 from equipoise.schema.template import Template
-from equipoise.studies.design_space import Output, Sampling
 from equipoise.studies.evaluate import evaluator
-from equipoise.studies.study import Study
+from equipoise.studies.study import Output, Sampling, Study
 from support import machines_cams
 from support.machines import KINDS, make
 from support.machines_redundant import REDUNDANT

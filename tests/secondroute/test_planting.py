@@ -31,7 +31,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.mechanism.parts.field import Planting
-from equipoise.planting.ground import Loop
+from equipoise.planting.figures import Loop
 from equipoise.planting.summary import PlantingFigures, plant
 from support import planting_reference as reference
 from support.chosen import few

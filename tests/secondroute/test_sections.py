@@ -21,7 +21,7 @@ from equipoise.mechanism.parts.joint_properties import JointProperties
 from equipoise.mechanism.parts.sections import LinkSection
 from equipoise.results.blocks import Table
 from equipoise.schema.files import to_csv
-from equipoise.studies.figures import dimension_of
+from equipoise.studies.commands import dimension_of
 from equipoise.web.design import Design
 from equipoise.web.fields import fields_of
 from unit.schema.samples import survives

@@ -13,9 +13,8 @@ from itertools import chain, repeat
 import numpy as np
 
 from equipoise.mechanism.parts.bodies import Body, inertia_of
-from equipoise.mechanism.parts.links import Link
+from equipoise.mechanism.parts.links import Bearing, Link
 from equipoise.mechanism.parts.machine import FRAME, Machine
-from equipoise.mechanism.parts.sliders import Bearing
 from support.free_bodies import FreeBodies, cylinder
 from support.loads import has_soil, on_links, springs_on_links, tips_of
 from support.poses import Array, Poses

@@ -20,14 +20,13 @@ from equipoise.mechanism import Machine
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.outputs.declared import GROUPS, declaring
 from equipoise.mechanism.parts.element_kinds import declare_outputs
-from equipoise.schema.places import Context
-from equipoise.schema.reading import read_table
+from equipoise.schema.reading import Context, read_table
 from equipoise.schema.writing import Writer, toml_text
 from equipoise.symbols.pieces import pieces
 from equipoise.symbols.scene import Scene
 from equipoise.web.design import Design
 from equipoise.web.fields import fields_of
-from equipoise.web.kinds import search_words
+from equipoise.web.gallery import search_words
 from equipoise.web.tables import tables_of
 from secondroute.test_javascript import run
 

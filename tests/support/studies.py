@@ -19,16 +19,13 @@ from typing import Any
 import numpy as np
 
 from equipoise.codegen.figures import NO_ASSEMBLY, NO_FULL_TURN
-from equipoise.design.processes import ChunkTask
-from equipoise.design.spreads import Choices, Normal, Range
-from equipoise.design.variables import Variable
+from equipoise.design.evaluator import ChunkTask
+from equipoise.design.variables import Choices, Normal, Range, Variable
 from equipoise.errors import UsageError
 from equipoise.studies import run
-from equipoise.studies.design_space import Output, Sampling
 from equipoise.studies.outcomes import Block, Outcome
-from equipoise.studies.sampling import samples
 from equipoise.studies.store import Store
-from equipoise.studies.study import Study, from_plain
+from equipoise.studies.study import Output, Sampling, Study, from_plain, samples
 
 Array = np.ndarray[Any, Any]
 LENGTH, MASS, SPEED = "links.rod.length", "links.crank.mass", "drive.speed"

@@ -236,7 +236,7 @@ CONES = """
 import sys
 import numpy as np
 from scipy import sparse
-from equipoise.balancing.cone_solver import clarabel_solver
+from equipoise.balancing.program import clarabel_solver
 from equipoise.errors import UsageError
 from equipoise.limits import limit_process
 

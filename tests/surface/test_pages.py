@@ -12,10 +12,10 @@ import cyclopts
 import pytest
 
 from equipoise.balancing import (
+    box_bounds,
     branch_and_bound,
     geared,
     pareto,
-    phase_bound,
     phase_grid,
     policy,
     problem,
@@ -29,8 +29,8 @@ from equipoise.measured import fits
 from equipoise.planting import search
 from equipoise.planting.figures import SAMPLES_OF_TURN
 from equipoise.schema.files import LARGEST
-from equipoise.studies import cloud, outcomes, searching, study, tolerances, variance
-from equipoise.vibration import collocation, coupled, steady, transient
+from equipoise.studies import outcomes, searching, selection, study, tolerances
+from equipoise.vibration import collocation, coupled, free, steady
 from equipoise.web import stores, variants
 from surface.running import example_text, read, written
 
@@ -165,20 +165,19 @@ CLAIMS = {
         f"q up to {geared.LARGEST_DENOMINATOR}",
         f"{geared.WAYS} directions, with {geared.COARSE} ratios",
         f"{phase_grid.MOST:,}".replace(",", " "),
-        f"{phase_bound.MOST_BOXES:,} boxes".replace(",", " "),
+        f"{box_bounds.MOST_BOXES:,} boxes".replace(",", " "),
         f"{pareto.POINTS} points, or `--points`",
         f"Orders go up to {problem.HIGHEST}",
     ],
     "decay.md": [f"more than {fits.MOST:,} samples".replace(",", " ")],
-    "figures.md": [f"Of more than {cloud.MOST} designs"],
+    "figures.md": [f"Of more than {selection.MOST} designs"],
     "live-page.md": [
         f"A, B and so on, up to {variants.MOST}",
         f"Of more than {stores.MOST} designs",
         f"A model file may have {LARGEST // 1_000_000} MB",
     ],
     "output.md": [
-        f"{transient.SAMPLES_PER_TURN} instants for each turn and {transient.LEAST_SAMPLES} at "
-        "least",
+        f"{free.SAMPLES_PER_TURN} instants for each turn and {free.LEAST_SAMPLES} at least",
         f"at most {USUAL // 2**30} GiB of memory (and {THREAD // 2**20} MiB for each processor)",
     ],
     "planting.md": [
@@ -193,7 +192,7 @@ CLAIMS = {
             f"{study.ANGLES[1]}"
         ),
         f"up to {study.CHUNK} designs of compiled figures, up to {study.SLOW_CHUNK} of others",
-        f"rows again {variance.DRAWN_AGAIN} times",
+        f"rows again {tolerances.DRAWN_AGAIN} times",
         f"and {tolerances.LEAST_ROWS} machines in each are the least",
         f"generations of {searching.POPULATION} designs",
         f"and at most {searching.GENERATIONS}",

@@ -18,8 +18,7 @@ import equipoise.present.terminal
 from equipoise.cli.outputs import Printed
 from equipoise.cli.runner import declared_of
 from equipoise.present.cells import grid
-from equipoise.present.layout import plain
-from equipoise.present.terminal import block_text
+from equipoise.present.terminal import block_text, plain
 from equipoise.results.blocks import Block, FileText, ReportSection, Table, Text
 from surface.registered import functions, line_of
 from surface.running import equipoise as equipoise_runs

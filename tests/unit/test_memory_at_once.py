@@ -18,17 +18,15 @@ from equipoise.balancing.multi_row import Cost, PhaseObjective, RowSignals
 from equipoise.balancing.phase_grid import PhaseGrid
 from equipoise.cli import run
 from equipoise.cli.worker import ToolCall, reply_to
-from equipoise.design.spreads import Range
-from equipoise.design.variables import Variable
+from equipoise.design.variables import Range, Variable
 from equipoise.limits import memory_limit, out_of_memory
 from equipoise.mechanism.assembly.shared import min_norm
 from equipoise.mechanism.parts.balance import Measure, Objective
 from equipoise.schema.template import Template
 from equipoise.signals import Array, Periodic
 from equipoise.studies.commands import analyzed
-from equipoise.studies.design_space import Output, Sampling
 from equipoise.studies.evaluate import OneByOne
-from equipoise.studies.study import Study
+from equipoise.studies.study import Output, Sampling, Study
 from surface.running import example_text
 
 TURNS, ORDERS = 200, 6000

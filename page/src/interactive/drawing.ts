@@ -172,7 +172,7 @@ export class Drawing {
     return [role, closed, radius * size(by), grown, next];
   }
 
-  /** A strand of a belt, as `mechanism/formulas/strands.py` has it. */
+  /** A strand of a belt, as `mechanism/formulas/rolling.py` has it. */
   private strand([role, closed, radius, grown]: Shape, { side, between, radii }: NonNullable<Tie["strand"]>, body: string, solution: Solution): Shape {
     const [start, end] = between.map((pin) => this.local(pin, body, solution)) as [Pair, Pair];
     const apart = minus(end, start);

@@ -19,6 +19,7 @@ import numpy as np
 
 from equipoise.balancing.balanced import Balanced, MoreRoom, Price, bending_notes
 from equipoise.balancing.beyond_masses import Beyond, beyond_masses
+from equipoise.balancing.box_bounds import PhaseProof
 from equipoise.balancing.headlines import (
     Advice,
     AssessedMachine,
@@ -31,7 +32,6 @@ from equipoise.balancing.headlines import (
 from equipoise.balancing.multi_row import PhasedRows, PhaseObjective
 from equipoise.balancing.objectives import unit_of
 from equipoise.balancing.optimisation import balance, in_phases
-from equipoise.balancing.phase_bound import PhaseProof
 from equipoise.balancing.phase_search import PhaseSearch
 from equipoise.balancing.phasing import phasing_of
 from equipoise.balancing.policy import (
@@ -74,8 +74,7 @@ from equipoise.mechanism.parts.objectives import GAUGES, OF_ROWS, ROWS
 from equipoise.results.rotors import unbalances
 from equipoise.results.yardsticks import FigureAssessment
 from equipoise.vibration.forced import check_moving
-from equipoise.vibration.linear import Linear, gauges_of
-from equipoise.vibration.resonance import resonances
+from equipoise.vibration.linear import Linear, gauges_of, resonances
 
 Solve = Callable[[Machine, Balance], Balanced]
 Remedy = tuple[Machine, tuple[Change, ...], Balance]

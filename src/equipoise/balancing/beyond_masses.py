@@ -10,18 +10,15 @@ from typing import ClassVar
 
 import numpy as np
 
-from equipoise.balancing.centered_arms import (
-    CenteredArms,
-    centered_arms_for,
-    centered_arms_sentence,
-)
 from equipoise.balancing.cylinder_sizes import Cylinder, cylinder_for, cylinder_sentences
-from equipoise.balancing.end_weights import EndWeights, end_sentences, end_weights_for
 from equipoise.balancing.first_order import (
+    EndWeights,
     FirstOrder,
     FirstOrderShafts,
     PistonBalance,
     balance_shafts_for,
+    end_sentences,
+    end_weights_for,
     piston_balance_for,
     piston_sentences,
     shafts_sentence,
@@ -39,7 +36,14 @@ from equipoise.balancing.poor_transmission import (
     transmission_sentence,
 )
 from equipoise.balancing.resonant_mounts import ResonantMounts
-from equipoise.balancing.spaced_arms import SpacedArms, arms_sentences, spaced_arms_for
+from equipoise.balancing.spaced_arms import (
+    CenteredArms,
+    SpacedArms,
+    arms_sentences,
+    centered_arms_for,
+    centered_arms_sentence,
+    spaced_arms_for,
+)
 from equipoise.balancing.workshop import weight_named
 from equipoise.dataclass import dataclass
 from equipoise.i18n import say

@@ -45,9 +45,8 @@ from equipoise.results.blocks import (
     broken_if,
     worse_if,
 )
-from equipoise.results.drive_blocks import driven
 from equipoise.results.headline import look_at_next
-from equipoise.results.machine_blocks import rows_table
+from equipoise.results.machine_blocks import driven, rows_table
 from equipoise.results.outputs import DIMENSIONS, objective_named
 from equipoise.results.yardsticks import sentence
 

@@ -1,4 +1,8 @@
-"""How small the cost of rows can be over boxes of phases, and of numbers that masses depend on.
+"""Lower bounds of the cost of rows over boxes of phases, and of masses: branch and bound.
+
+A linear program for all boxes, each in rows and columns of its own.  What is returned follows from
+its multipliers alone: any that are not negative bound the least from below, so that nothing rests
+on how closely the program was solved.
 
 Every measure is the largest of linear readings of a signal: of a mean square the reading along any
 signal of length 1 (Cauchy and Schwarz), of a peak that at any crank angle, and so on.  So is the
@@ -9,24 +13,181 @@ rows is a sum of functions of one phase each, linear in the numbers x_j of masse
 
 At given numbers its least over a box is found row by row.  About them, the slope by each number is
 that of the middle, which what is allowed bounds, and a rest that is the less the smaller the box.
+
+`box_bounds` bounds the cost over a box of phases and numbers from below.  What it takes for the
+cost is exact in the middle and wrong at the ends by the square of the box's width, so that boxes
+need not be small.  That whose bound is least is cut in two again and again, until none could hold
+anything better by more than a stated share, or until so many have been looked at; then the least
+bound of those left is told.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import field, replace
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 
 from equipoise.balancing.jump_bounds import TINY, JumpBounds
 from equipoise.balancing.jump_readings import Forms, JumpReadings, linear_forms
 from equipoise.balancing.jumping_rows import JumpingDesigns, JumpingRows, smoothed
-from equipoise.balancing.least_of_forms import FormSum, least_of_forms
 from equipoise.balancing.multi_row import AREA_SAMPLES, Cost, PhaseObjective, by_orders
+from equipoise.balancing.phase_grid import alike
 from equipoise.dataclass import dataclass
 from equipoise.mechanism.parts.balance import Measure
 from equipoise.signals import AT_ONCE, Array, Periodic
+
+PENALTY = 1e4
+"""Most that a limit may count, over what all objectives do."""
+
+
+@dataclass(frozen=True, eq=False)
+class Bounded:
+    """Of B boxes: bounds (B,), numbers (B, K) with which readings are least, and the slopes (B, K)
+    there of what counts.
+    """
+
+    bounds: Array
+    numbers: Array
+    slopes: Array
+
+
+@dataclass(frozen=True, eq=False)
+class FormSum:
+    """A sum of groups of forms, times factors (B,); at most 1 where it is a limit."""
+
+    groups: tuple[Forms, ...]
+    factors: Array
+    is_limit: bool = False
+
+
+def least_of_forms(
+    parts: Sequence[FormSum],
+    low: Array,
+    high: Array,
+    start: Array,
+    directions: Array,
+    least: Array,
+    slack: float,
+) -> Bounded:
+    """The least sum of parts with numbers between low and high (B, K), and directions (I, K) @
+    numbers of at least so much (I,); limits are kept to a share `slack`.
+
+    start : (B, K) numbers where no program is solved.
+    """
+    solution = None
+    if low.shape[1]:
+        solution = _solved(parts, low, high, directions, least, slack)
+    numbers, prices, weights, pushed = (
+        (start, None, None, np.zeros((len(low), len(least)))) if solution is None else solution
+    )
+    constant, slopes = np.zeros(len(low)), np.zeros(low.shape)
+    place = 0
+    for part in parts:
+        price = np.ones(len(low))
+        if part.is_limit:
+            price = np.zeros(len(low)) if prices is None else prices.pop(0)
+            constant -= price * (1 + slack)
+        for forms in part.groups:
+            weight = np.zeros(forms.constants.shape)
+            if weights is not None:
+                weight = weights[place]
+            place += 1
+            weight = _shared(weight, forms.at(numbers)) * (price * part.factors)[:, None]
+            constant += np.sum(weight * forms.constants, axis=1)
+            slopes += np.einsum("br,brk->bk", weight, forms.slopes)
+    left = slopes - pushed @ directions
+    bounds = constant + pushed @ least + np.sum(np.minimum(left * low, left * high), axis=1)
+    return Bounded(bounds, numbers, slopes)
+
+
+def _shared(weights: Array, values: Array) -> Array:
+    """Weights (B, R) that are not negative and sum up to 1; of the largest where all are 0."""
+    weights = np.maximum(weights, 0.0)
+    whole = np.sum(weights, axis=1, keepdims=True)
+    largest = np.eye(values.shape[1])[np.argmax(values, axis=1)]
+    return np.asarray(np.where(whole > 0, weights / np.maximum(whole, TINY), largest))
+
+
+def _solved(
+    parts: Sequence[FormSum],
+    low: Array,
+    high: Array,
+    directions: Array,
+    least: Array,
+    slack: float,
+) -> tuple[Array, list[Array], list[Array], Array] | None:
+    """Numbers (B, K); multipliers of limits (B,), of the forms of each group (B, R) and of the
+    directions (B, I); None where the program is not solved.
+
+    Columns of a box: its numbers over their ranges, the largest of each group, what limits are
+    passed by.
+    """
+    from scipy import sparse
+    from scipy.optimize import linprog
+
+    (boxes, count), width = low.shape, np.maximum(high - low, TINY)
+    groups = sum(len(part.groups) for part in parts)
+    limits = sum(part.is_limit for part in parts)
+    blocks, right = _rows(parts, low, width, directions, least, slack)
+    matrix = np.concatenate(blocks, axis=1)
+    cost = np.zeros((boxes, count + groups + limits))
+    of_terms = [not part.is_limit for part in parts for _ in part.groups]
+    cost[:, count : count + groups] = of_terms
+    cost[:, count + groups :] = PENALTY
+    ends = np.full((*cost.shape, 2), (-np.inf, np.inf))
+    ends[:, :count] = (0.0, 1.0)
+    ends[:, count + groups :, 0] = 0.0
+    result = linprog(
+        cost.ravel(),
+        sparse.block_diag(matrix, format="csr"),
+        np.concatenate(right, axis=1).ravel(),
+        bounds=ends.reshape(-1, 2),
+        method="highs",
+    )
+    if result.x is None or result.ineqlin.marginals is None:
+        return None
+    numbers = low + width * np.clip(result.x.reshape(boxes, -1)[:, :count], 0.0, 1.0)
+    prices = np.maximum(-result.ineqlin.marginals.reshape(boxes, -1), 0.0)
+    each = np.split(prices, np.cumsum([block.shape[1] for block in blocks])[:-1], axis=1)
+    return numbers, [item[:, 0] for item in each[groups:-1]], each[:groups], each[-1]
+
+
+def _rows(
+    parts: Sequence[FormSum],
+    low: Array,
+    width: Array,
+    directions: Array,
+    least: Array,
+    slack: float,
+) -> tuple[list[Array], list[Array]]:
+    """Rows (B, R, columns) of the program and what they are at most (B, R): those of the forms of
+    each group, of the limits, and of the directions.
+    """
+    boxes, count = low.shape
+    groups = [(part, forms) for part in parts for forms in part.groups]
+    limits = [part for part in parts if part.is_limit]
+    columns = count + len(groups) + len(limits)
+    blocks, right = [], []
+    for place, (part, forms) in enumerate(groups, count):
+        factors = part.factors[:, None]
+        block = np.zeros((*forms.constants.shape, columns))
+        block[..., :count] = factors[..., None] * forms.slopes * width[:, None]
+        block[..., place] = -1.0
+        blocks.append(block)
+        right.append(-factors * forms.at(low))
+    for k, part in enumerate(limits, count + len(groups)):
+        block = np.zeros((boxes, 1, columns))
+        block[..., count : count + len(groups)] = [other is part for other, _ in groups]
+        block[..., k] = -1.0
+        blocks.append(block)
+        right.append(np.full((boxes, 1), 1 + slack))
+    block = np.zeros((boxes, len(least), columns))
+    block[..., :count] = -directions * width[:, None]
+    return [*blocks, block], [*right, low @ directions.T - least]
+
 
 HALVINGS = 48
 """Of a side, below which phases are told apart no more."""
@@ -472,3 +633,148 @@ def _read_in_time(term: PhaseObjective, total: Array) -> tuple[Array, Array]:
         return (high - low)[..., 0], rising - falling
     upper = high >= -low
     return np.maximum(high, -low)[..., 0], np.where(upper[..., None], rising, -falling)
+
+
+CLOSE = 1e-4
+"""Between cost and bound, over the cost before, at which the search ends."""
+MOST_BOXES, HOPELESS, BATCH = 40_000, 10_000, 512
+"""Boxes that are looked at, half as many with numbers; where none of these bounds anything, as of
+many rows; cut in two at once."""
+BETTER, ROUNDING = 1e-9, 1e-9
+"""Shares of the cost before: what is better by less is as good; what a bound may be above by
+rounding."""
+LEAST_PART = 0.2
+"""Share of a number's range that a cut leaves on either side."""
+
+Improve = Callable[[Array, float], tuple[Array, float]]
+"""Leads from phases (m,), at which the cost looks like so much, to the best next to them with its
+cost; infinite where these are no better than is known."""
+
+
+@dataclass(frozen=True, eq=False)
+class PhaseProof:
+    """phases : the best that were found (m,), rad.  bound : of the cost.  boxes : looked at.
+
+    complete : whether the search ended as near to the best as it was to come.
+    """
+
+    phases: Array
+    bound: float
+    boxes: int
+    complete: bool
+
+
+def prove(
+    cost: Cost,
+    phases: Array,
+    improve: Improve,
+    numbers: Numbers | None = None,
+    least: float | None = None,
+    close: float = CLOSE,
+    prices: tuple[float, ...] = (),
+    progress: Callable[[int, int], None] = lambda done, total: None,
+) -> PhaseProof:
+    """Bound the cost from below over all phases, and over all numbers; row 1 is at 0.
+
+    Parameters
+    ----------
+    cost : where all numbers are 0.
+    phases : (m,) the best known, rad.  least : cost there, with the best numbers known.
+    prices : of each limit, where they are known; see `Bounder`.
+    progress : is called with the boxes looked at, and how many these are at most.
+    """
+    prices = prices or (0.0,) * len(cost.limits)
+    bounder = Bounder.of(cost, numbers, prices)
+    known = float(cost.values(phases)) if least is None else least
+    return _PhaseSearch(cost, bounder, improve, close).run(phases, known, progress)
+
+
+@dataclass(frozen=True, eq=False)
+class _PhaseSearch:
+    cost: Cost
+    bounder: Bounder
+    improve: Improve
+    close: float
+
+    def run(self, phases: Array, least: float, progress: Callable[[int, int], None]) -> PhaseProof:
+        best, looked, room = phases, 1, self.close * self.cost.whole
+        most = MOST_BOXES // (2 if len(self.numbers.low) else 1)
+        batch = min(BATCH, self.bounder.most_at_once)
+        boxes, _, _ = self.bounder.bounded(self._first)
+        left = np.inf
+        while len(boxes.bounds) and np.min(boxes.bounds) < least - room:
+            if looked >= (most if np.min(boxes.bounds) > 0 else HOPELESS):
+                break
+            progress(looked, most)
+            order = np.argsort(boxes.bounds, kind="stable")
+            cut, values, slopes = self.bounder.bounded(self._halves(boxes.of(order[:batch])))
+            looked += len(values)
+            if len(values):
+                self.numbers.cut(slopes[np.argmin(cut.bounds)])
+                if np.min(values) < least - BETTER * self.cost.whole:
+                    place = np.argmin(values)
+                    result, value = self.improve(cut.middles[place], float(values[place]))
+                    best, least = (result, value) if value < least else (best, least)
+            boxes = boxes.of(order[batch:]).with_more(cut)
+            closed = (boxes.bounds >= least - room) | (np.max(boxes.halvings, axis=1) > HALVINGS)
+            left = min(left, float(np.min(boxes.bounds[closed], initial=np.inf)))
+            boxes = boxes.of(~closed)
+        bound = min(least, left, float(np.min(boxes.bounds, initial=np.inf)))
+        return PhaseProof(best, bound, looked, bound >= least - (1 + 1e-6) * room)
+
+    @property
+    def numbers(self) -> Numbers:
+        return self.bounder.numbers
+
+    @property
+    def _first(self) -> Boxes:
+        """All phases and numbers, as one box."""
+        middles = np.full((1, self.cost.rows), self.bounder.half)
+        middles[:, 0] = 0.0
+        ends, values = self.numbers, np.zeros(1)
+        low, high, start = ends.low[None], ends.high[None], ends.start[None]
+        return Boxes(
+            middles, np.zeros(middles.shape, int), low, high, start, values, values.astype(int)
+        )
+
+    def _halves(self, boxes: Boxes) -> Boxes:
+        """Boxes cut in two, of which those are left out in which nothing is allowed.
+
+        Of equal rows only rising phases are looked at, since they may be swapped.
+        """
+        rows, each = self.cost.rows, np.arange(len(boxes.bounds))
+        turned = boxes.widest < rows
+        halvings, step = boxes.halvings.copy(), np.zeros(boxes.middles.shape)
+        at = each[turned], boxes.widest[turned]
+        halvings[at] += 1
+        step[at] = self.bounder.half / 2.0 ** halvings[at]
+        low, high = np.vstack([boxes.low] * 2), np.vstack([boxes.high] * 2)
+        at = each[~turned], boxes.widest[~turned] - rows
+        ends, width = boxes.low[at], boxes.high[at] - boxes.low[at]
+        here = (boxes.numbers[at] - ends) / np.maximum(width, TINY)
+        here = np.clip(here, LEAST_PART, 1 - LEAST_PART)
+        high[at] = low[at[0] + len(each), at[1]] = ends + width * (here + 0.5) / 2
+        twice = boxes.of(np.tile(each, 2))
+        middles = np.vstack([boxes.middles - step, boxes.middles + step])
+        numbers = np.clip(twice.numbers, low, high)
+        result = Boxes(
+            middles, np.vstack([halvings] * 2), low, high, numbers, twice.bounds, twice.widest
+        )
+        return result.of(self._possible(result))
+
+    def _possible(self, boxes: Boxes) -> Array:
+        """Whether boxes (B,) hold anything that is allowed, and nothing that others hold too."""
+        halves, values = self.bounder.half / 2.0**boxes.halvings, np.ones(len(boxes.bounds), bool)
+        for item, other in self._ordered:
+            low = boxes.middles[:, item] - halves[:, item]
+            values &= low < boxes.middles[:, other] + halves[:, other]
+        for direction, least in self.numbers.cuts:
+            most = np.sum(np.maximum(direction * boxes.low, direction * boxes.high), axis=1)
+            values &= most >= least - ROUNDING
+        return values
+
+    @cached_property
+    def _ordered(self) -> list[tuple[int, int]]:
+        """Pairs of equal rows, row 1 left out."""
+        groups = ([k for k in group if k > 0] for group in alike(self.cost, self.numbers.columns))
+        return [pair for group in groups for pair in pairwise(group)]

@@ -26,8 +26,8 @@ from equipoise.mechanism.dynamics.reactions import (
     VectorSignal,
     demands_of,
     reactions,
+    refuse_unbounded,
 )
-from equipoise.mechanism.dynamics.undecided import refuse_unbounded
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.kinematics.jumps import resolved
 from equipoise.mechanism.kinematics.motion import Motion, move

@@ -1,21 +1,25 @@
-"""Which linear conditions on the inertial parameters balance a linkage, or leave it a pure sine.
+"""Linear conditions on the inertial parameters that balance a linkage, or leave it a pure sine.
 
 The shaking force and moment are linear in the parameters of all links, values @ columns.  What must
 vanish of them, all orders or all but the crank's own, is a matrix whose null space holds every
 balanced machine; grouped like base parameters, its rows are the conditions.  Four-bars get the
 conditions of Berkof and Lowen, which are (80) and (83) of Yamashita, Ichikawa and Mori.
+
+(84) to (87) of Yamashita, Ichikawa and Mori for any linkage: the conditions are linear in the added
+moments x, rows x = -residuals, and x has the least sum of squares; moments of free links cost
+nothing.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from itertools import combinations
 from typing import Any, ClassVar, Literal
 
 import numpy as np
 
-from equipoise.balancing.readings import UNITS, ParameterSum, machine_size, reading
 from equipoise.dataclass import dataclass
-from equipoise.decompositions import lstsq, pinv
+from equipoise.decompositions import lstsq, pinv, svd
 from equipoise.errors import UsageError
 from equipoise.i18n import Note, say, to_say
 from equipoise.mechanism.assembly.linkage import assemble
@@ -28,12 +32,130 @@ from equipoise.mechanism.dynamics.parameters import (
 )
 from equipoise.mechanism.kinematics.motion import move
 from equipoise.mechanism.outputs.declared import DECLARED, OutputSource
-from equipoise.mechanism.parts.machine import Machine, unknown
+from equipoise.mechanism.parts.machine import Machine, Vector, size_of, unknown
 from equipoise.quantities import Dimension, display
-from equipoise.results.blocks import Block, Column, Facts, Table, Text, Value
+from equipoise.results.blocks import Block, Cell, Column, Facts, Table, Text, Value
 from equipoise.results.outputs import output_named
 from equipoise.results.result import Result
 from equipoise.signals import Array, harmonics
+
+UNITS = dict(zip(QUANTITIES, ("kg", "kg m", "kg m", "kg m2"), strict=True))
+
+
+WORDS = {
+    "mass": to_say("mass of {name}"),
+    "moment_x": to_say("mass*x of {name}"),
+    "moment_y": to_say("mass*y of {name}"),
+    "inertia": to_say("inertia of {name}"),
+}
+"""What a parameter of a link is called in a sum."""
+
+
+@dataclass(frozen=True)
+class ParameterTerm:
+    """A parameter of a link in a sum.
+
+    sign : ``+`` or ``-``.  size : by which it is multiplied, so that the sum is in kg; None where
+    it stands alone.
+    """
+
+    sign: str
+    link: str
+    quantity: str
+    size: float | None = None
+
+    @property
+    def around(self) -> tuple[str, str]:
+        """What stands before and behind its name, such as the length over which it stands."""
+        if self.size is None:
+            return "", ""
+        if self.quantity == "mass":
+            return "" if f"{self.size:.5g}" == "1" else f"{self.size:.5g} ", ""
+        length = 1 / (self.size**0.5 if self.quantity == "inertia" else self.size)
+        unit = display("length", [length])
+        text = f"{unit.factor * length:.5g} {unit.unit}"
+        return "", f" / ({text})^2" if self.quantity == "inertia" else f" / {text}"
+
+
+@dataclass(frozen=True)
+class ParameterSum:
+    """A combination of inertial parameters as a sum.
+
+    factor : by which the combination was multiplied for it.  unit : of the sum.
+    """
+
+    terms: tuple[ParameterTerm, ...]
+    factor: float
+    unit: str
+
+    @property
+    def text(self) -> str:
+        """Such as ``coupler.moment_x / 71.5 mm + rocker.moment_x / 80 mm``."""
+        return self._sum(lambda term: f"{term.link}.{term.quantity}")
+
+    @property
+    def words(self) -> str:
+        """Text for readers, ``mass*x of coupler / 71.5 mm + mass*x of rocker / 80 mm``."""
+        return self._sum(lambda term: say(WORDS[term.quantity], name=term.link))
+
+    def _sum(self, named: Callable[[ParameterTerm], str]) -> str:
+        parts = [
+            f"{term.sign} {term.around[0]}{named(term)}{term.around[1]}" for term in self.terms
+        ]
+        first = parts[0].removeprefix("+ ")
+        return " ".join([f"-{first[2:]}" if first.startswith("- ") else first, *parts[1:]])
+
+
+def machine_size(machine: Machine) -> float:
+    """Diagonal of the largest link, or of the frame where all links are points, m."""
+    sizes = [size_of(link.points) for link in machine.links.values()]
+    return max(sizes) or size_of(machine.frame) or 1.0
+
+
+def joint_length(machine: Machine, link: str) -> float:
+    """Distance of a link's two joints that are farthest apart; its size where there are none, m."""
+    own = machine.links[link].points
+    others = [other.points for name, other in machine.links.items() if name != link]
+    slides = {name for slider in machine.sliders for name in (slider.point, slider.through)}
+    places = [
+        complex(*place)
+        for name, place in own.items()
+        if name in slides or any(name in body for body in (machine.frame, *others))
+    ]
+    apart = max((abs(a - b) for a, b in combinations(places, 2)), default=0.0)
+    return apart or size_of(own) or machine_size(machine)
+
+
+def reading(machine: Machine, row: Array, signed: bool = False) -> ParameterSum:
+    """A combination (P,) of a machine's inertial parameters in words.
+
+    It is divided so that a mass stands alone, else so that the first moment that comes first stands
+    over the length of its link: as (80) and (83) of Yamashita, Ichikawa and Mori, divided by their
+    lengths.  Unless `signed`, it is turned so that the first term is positive.
+    """
+    names = parameter_names(machine)
+    terms = [(*names[k], float(row[k])) for k in np.flatnonzero(row)]
+    sign = -1.0 if terms[0][2] < 0 and not signed else 1.0
+    if len(terms) == 1:
+        link, quantity, value = terms[0]
+        term = ParameterTerm("-" if sign * value < 0 else "+", link, quantity)
+        return ParameterSum((term,), sign / abs(value), UNITS[quantity])
+    factor = sign / _divisor(machine, terms)
+    parts = tuple(
+        ParameterTerm("-" if factor * value < 0 else "+", link, quantity, abs(factor * value))
+        for link, quantity, value in terms
+    )
+    return ParameterSum(parts, factor, "kg")
+
+
+def _divisor(machine: Machine, terms: list[tuple[str, str, float]]) -> float:
+    """Positive, in SI units of a combination over kg."""
+    for wanted, power in (("mass", 0), ("moment", 1), ("inertia", 2)):
+        for link, quantity, value in terms:
+            if quantity.startswith(wanted):
+                return abs(value) * joint_length(machine, link) ** power
+    return 1.0
+
 
 Kind = Literal["zero", "sine"]
 
@@ -299,3 +421,129 @@ def _conditions(conditions: Conditions) -> Block:
     )
     title = say("Conditions for {what} to be {wanted}", **text)
     return Table(title, (Column(""), Column(say("now")), Column("")), rows)
+
+
+MET = 1e-9
+"""Share of a condition's largest term that may be left of it."""
+SINGULAR_RANK = 1e-10
+"""Share of the largest singular value below which one counts as none."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Added(Result):
+    """First moments to be added, in the axes of each link, kg m.
+
+    moments : link -> (x, y) to be added.  totals : link -> (x, y) that it then has, about the
+        origin of its axes.
+    cost : root of the sum of squares of the moments of all links that are not free, kg m.
+    machine : with them; masses, and moments of inertia about the centres of mass, are kept.
+    """
+
+    moments: Mapping[str, Vector]
+    totals: Mapping[str, Vector]
+    cost: float
+    machine: Machine
+
+    blocks_in = "balancing.linear_conditions.added_blocks"
+
+    def to_dict(self) -> dict[str, Any]:
+        """Everything as plain data, in SI units."""
+        centers = {link: self.machine.links[link].center_of_mass for link in self.moments}
+        return {
+            "added": {link: list(moment) for link, moment in self.moments.items()},
+            "total": {link: list(moment) for link, moment in self.totals.items()},
+            "center_of_mass": {link: list(center or ()) for link, center in centers.items()},
+            "cost": self.cost,
+        }
+
+
+def least_moments(machine: Machine, links: Sequence[str], free: Sequence[str] = ()) -> Added:
+    """First moments with the least sum of squares that make the shaking force zero.
+
+    Parameters
+    ----------
+    links : whose first moments count.
+    free : links that may take any first moment without cost.
+
+    Raises
+    ------
+    MassError : a link has no mass given.
+    MotionError : the linkage cannot turn fully.
+    UsageError : there is no such link, one is named twice or has mass 0, or these links do not
+        suffice.
+    """
+    names = [*links, *free]
+    for k, name in enumerate(names):
+        if name not in machine.links:
+            raise UsageError(unknown(name, machine.links, "link"))
+        if name in names[:k]:
+            raise UsageError(Note("{name} is named twice; name each link once", name=name))
+        if machine.links[name].mass == 0:
+            raise UsageError(
+                Note("{name} has mass 0 and so no first moment; give it a mass", name=name)
+            )
+    result = conditions(machine)
+    places = [
+        result.parameters.index((link, moment))
+        for link in names
+        for moment in ("moment_x", "moment_y")
+    ]
+    sizes = np.abs(result.coefficients * parameter_scales(machine))  # of each condition's terms
+    scale = np.max(sizes, axis=1) * (machine.mass or 1.0)
+    rows, right = result.coefficients[:, places] / scale[:, None], -result.residuals / scale
+    costed = 2 * len(links)
+    x = _least(rows[:, :costed], rows[:, costed:], right)
+    rest = np.abs(rows @ x - right)
+    if rest.size and np.max(rest) > MET:
+        worst = result.sentences[int(np.argmax(rest))]
+        raise UsageError(
+            Note(
+                "first moments of {names} cannot meet {worst}; name more links",
+                names=", ".join(names) or "no link",
+                worst=worst,
+            )
+        )
+    moments, totals = (
+        {
+            link: (float(a), float(b))
+            for link, (a, b) in zip(names, flat.reshape(-1, 2), strict=True)
+        }
+        for flat in (x, parameter_values(machine)[places] + x)
+    )
+    changed = machine
+    for link, (first, second) in totals.items():
+        mass = machine.links[link].mass
+        assert mass is not None
+        changed = changed.with_link(link, center_of_mass=(first / mass, second / mass))
+    return Added(moments, totals, float(np.linalg.norm(x[:costed])), changed)
+
+
+def _least(costed: Array, free: Array, right: Array) -> Array:
+    """Solution of costed x + free z = right with the least |x|; of least squares where none is."""
+    blind = _blind_to(free)
+    x = lstsq(blind @ costed, blind @ right, rcond=SINGULAR_RANK)[0]
+    z = lstsq(free, right - costed @ x, rcond=SINGULAR_RANK)[0]
+    return np.concatenate([x, z])
+
+
+def _blind_to(columns: Array) -> Array:
+    """Rows that are orthogonal to columns, and to each other."""
+    left, sizes, _ = svd(columns, full_matrices=True)
+    rank = int(np.sum(sizes > SINGULAR_RANK * np.max(sizes, initial=0.0)))
+    return np.asarray(left[:, rank:].T)
+
+
+def added_blocks(added: Added) -> Iterator[Block]:
+    """First moments to be added, and what that makes of the centres of mass."""
+    scale = max((abs(part) for pair in added.totals.values() for part in pair), default=0.0)
+    rows: list[tuple[Cell, ...]] = []
+    for link, moment in added.moments.items():
+        center = added.machine.links[link].center_of_mass or (0.0, 0.0)
+        size = max(map(abs, center))
+        moments = (Value(1e3 * part, 1e3 * scale) for part in (*moment, *added.totals[link]))
+        rows.append((link, *moments, *(Value(part, size) for part in center)))
+    labels = (say("added x"), say("added y"), say("then x"), say("then y"))
+    columns = (Column(""), *(Column(label, unit="kg mm") for label in labels))
+    centers = (Column(say("centre x"), "length", "mm"), Column(say("centre y"), "length", "mm"))
+    title = say("Least first moments that make the shaking force zero, in each link's axes")
+    yield Table(title, (*columns, *centers), tuple(rows))

@@ -12,8 +12,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from equipoise.balancing.balanced import Balanced, bending_notes, result_of
-from equipoise.balancing.gear_search import GearSearch, WithShafts
-from equipoise.balancing.geared import with_shafts
+from equipoise.balancing.geared import GearSearch, WithShafts, with_shafts
 from equipoise.balancing.phase_search import PhaseSearch
 from equipoise.balancing.phasing import Phasing, choose_phases
 from equipoise.balancing.problem import Problem
@@ -23,7 +22,18 @@ from equipoise.balancing.workshop import Change
 from equipoise.errors import MassError, UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism.dynamics.forces import massless
-from equipoise.mechanism.parts.balance import Balance
+from equipoise.mechanism.parts.balance import (
+    AddedMass,
+    Balance,
+    BalanceShafts,
+    CenterMove,
+    GearedWeight,
+    Limit,
+    Objective,
+    Phases,
+    SpringChoice,
+    Weight,
+)
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.objectives import WITHIN
 from equipoise.vibration.forced import check_moving
@@ -160,3 +170,17 @@ def in_phases(
         phasing=phasing,
         scope=scope,
     )
+
+
+__all__ = [
+    "AddedMass",
+    "Balance",
+    "BalanceShafts",
+    "CenterMove",
+    "GearedWeight",
+    "Limit",
+    "Objective",
+    "Phases",
+    "SpringChoice",
+    "Weight",
+]

@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy as np
 
+from equipoise.balancing.box_bounds import PhaseProof, prove
 from equipoise.balancing.multi_row import Combine, PhaseObjective
 from equipoise.balancing.objectives import unit_of
-from equipoise.balancing.phase_bound import PhaseProof, prove
 from equipoise.balancing.phase_search import PhaseSearch, Progress, with_phases
 from equipoise.dataclass import dataclass
 from equipoise.design.solvers import DesignProblem, DesignSolution, solve
-from equipoise.design.spreads import Range
+from equipoise.design.variables import Range
 from equipoise.errors import UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism.parts.balance import Limit, Objective, Phases

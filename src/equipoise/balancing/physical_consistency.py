@@ -18,10 +18,12 @@ from equipoise.balancing.linear_conditions import (
     SHOWN,
     Conditions,
     ParameterEffects,
+    ParameterSum,
+    machine_size,
     parameter_scales,
+    reading,
 )
 from equipoise.balancing.program import Affine, NoSolutionError, Program
-from equipoise.balancing.readings import ParameterSum, machine_size, reading
 from equipoise.dataclass import dataclass
 from equipoise.decompositions import pinv
 from equipoise.mechanism.dynamics.parameters import QUANTITIES

@@ -18,7 +18,7 @@ from equipoise.errors import EquipoiseError
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.checks import bodies_at
 from equipoise.mechanism.kinematics.motion import Motion, move
-from equipoise.mechanism.outputs.spoken import joint_named
+from equipoise.mechanism.outputs.declared import joint_named
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.quantities import angle, percent, told
 from equipoise.results.analysis import Analysis

@@ -40,8 +40,7 @@ from equipoise.mechanism.parts.balance import (
     Objective,
     Weight,
 )
-from equipoise.mechanism.parts.bodies import Body, Hole, place_of
-from equipoise.mechanism.parts.body_checks import fits, outlines
+from equipoise.mechanism.parts.bodies import Body, Hole, fits, outlines, place_of
 from equipoise.mechanism.parts.links import Link
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.results.yardsticks import FigureAssessment

@@ -26,11 +26,10 @@ from equipoise.dataclass import dataclass
 from equipoise.errors import ModelError, ResponseError
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.mechanism.parts.mounts import Mount
+from equipoise.mechanism.parts.support import Mount
 from equipoise.quantities import PER_RPM, brief, number, percent
 from equipoise.results.declaring import Declarations, ResultOutput
-from equipoise.vibration.linear import Linear
-from equipoise.vibration.resonance import Resonance, around, resonances
+from equipoise.vibration.linear import Linear, Resonance, around, resonances
 
 SAME_SPEED = 0.05
 """Share of a speed within which two resonances are one: along and across on like mounts."""

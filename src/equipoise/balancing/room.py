@@ -36,12 +36,11 @@ from equipoise.mechanism.assembly.steps import size_of_bodies, size_of_links
 from equipoise.mechanism.checks import bodies_at
 from equipoise.mechanism.kinematics.motion import Motion, move
 from equipoise.mechanism.kinematics.tip import surface_of
-from equipoise.mechanism.parts.bodies import Body
-from equipoise.mechanism.parts.body_checks import outlines
+from equipoise.mechanism.parts.bodies import Body, outlines
 from equipoise.mechanism.parts.links import Link
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.signals import Array
-from equipoise.symbols.wheels import wheels_of
+from equipoise.symbols.scene import wheels_of
 
 ANGLES, EDGE_SAMPLES, CIRCLE_SAMPLES = 120, 9, 24
 """Crank angles in a turn at which bodies are looked at; places on an edge, and on a circle."""

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.balancing.readings import machine_size
+from equipoise.balancing.linear_conditions import machine_size
 from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
 from equipoise.i18n import Note, number_list, say, to_say
@@ -22,8 +22,8 @@ from equipoise.mechanism.kinematics.jumps import resolved
 from equipoise.mechanism.kinematics.motion import Motion, move
 from equipoise.mechanism.kinematics.tip import roots
 from equipoise.mechanism.outputs.declared import DECLARED, OutputSource
+from equipoise.mechanism.parts.links import moments_across
 from equipoise.mechanism.parts.machine import Link, Machine, unknown
-from equipoise.mechanism.parts.planes import moments_across
 from equipoise.quantities import Dimension, angle, display, fixed
 from equipoise.results.blocks import Block, Cell, Column, Table, Text, Value
 from equipoise.results.outputs import output_named

@@ -68,13 +68,13 @@ def _keys(table: FileTable, path: str) -> Iterator[Block]:
     """What a table describes, its keys, and the tables below it."""
     from equipoise.keys import all_keys
     from equipoise.results.blocks import Table, Text
-    from equipoise.schema import key_tables, topics
+    from equipoise.schema import topics, writing
 
     yield Text(f"{_about(table)}. In the file of a {table.kind}.")
-    marked = key_tables.rows(all_keys(table.of))
+    marked = writing.rows(all_keys(table.of))
     rows = [tuple(cell.replace("`", "") for cell in row) for row in marked]
     if rows:
-        yield Table.of("", key_tables.HEADINGS, rows)
+        yield Table.of("", writing.HEADINGS, rows)
     below = [name for name in topics.tables() if name.startswith(f"{path}.")]
     if below:
         yield Text(f"Tables in it: {', '.join(below)}.")

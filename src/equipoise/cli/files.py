@@ -50,7 +50,7 @@ def check(file: AnyFile, /) -> CommandResult:
             return checks.tool_blocks(result, printable(file))
         if isinstance(result, Machine):
             return checks.machine_blocks(result)
-        from equipoise.present.check_study import study_blocks
+        from equipoise.present.checks import study_blocks
         from equipoise.schema.study_units import units_of
 
         return study_blocks(result, units_of(result), file)

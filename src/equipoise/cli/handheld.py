@@ -202,8 +202,8 @@ class Asked:
 
     def pictures(self, names: Sequence[str]) -> Mapping[str, Picture]:
         """Pictures of answers; free vibration stands in those of others, too."""
-        from equipoise.figures import tool_designs, tool_shaft, tool_side, tool_speeds
-        from equipoise.handheld.studies import determinant_chart
+        from equipoise.figures import tool_designs, tool_shaft, tool_side
+        from equipoise.handheld.modes import determinant_chart
 
         pictures_by_name: dict[str, Picture] = {}
         if "modes" in names:
@@ -212,13 +212,13 @@ class Asked:
             chart = determinant_chart(self.tool, 1.1 * highest)
             pictures_by_name |= tool_designs.determinant_charts(chart, self.modes)
         if "respond" in names and self.respond.transmissions is not None:
-            pictures_by_name |= tool_speeds.transmission_charts(
+            pictures_by_name |= tool_shaft.transmission_charts(
                 self.respond.transmissions, self.modes
             )
         if "respond" in names and self.respond.response is not None:
             pictures_by_name |= tool_shaft.response_charts(self.respond.response)
         if "exposure" in names:
-            pictures_by_name |= tool_speeds.exposure_charts(self.exposure)
+            pictures_by_name |= tool_shaft.exposure_charts(self.exposure)
         return pictures_by_name
 
 
@@ -276,7 +276,7 @@ def vary(
     import numpy as np
 
     from equipoise.handheld.design_plan import KEYS
-    from equipoise.handheld.studies import check_key, vary_tool
+    from equipoise.handheld.modes import check_key, vary_tool
     from equipoise.handheld.sweep import MODES
 
     match = VARY.fullmatch(change.strip())

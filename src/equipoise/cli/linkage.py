@@ -251,9 +251,9 @@ def simulate(
     drive
         Compute the crank speed from the motor in [drive.motor].
     """
-    from equipoise.vibration import transient
+    from equipoise.vibration import free
 
-    return transient.simulate(machine, duration, speed, drive)
+    return free.simulate(machine, duration, speed, drive)
 
 
 def _share(_: str, text: str) -> float:
@@ -268,8 +268,7 @@ def _motor(option: str, text: str) -> Motor:
     """
     from equipoise.mechanism.parts.force_elements import Motor
     from equipoise.schema.models import AdjacentFiles
-    from equipoise.schema.places import Context
-    from equipoise.schema.reading import read_table
+    from equipoise.schema.reading import Context, read_table
 
     content: dict[str, Any] = {}
     for part in text.split(","):
@@ -406,8 +405,7 @@ def fit(
     workers
         Number of processes that evaluate designs.  Default: the number of processors.
     """
-    from equipoise.planting.goals import figure_names
-    from equipoise.planting.search import fit_planting
+    from equipoise.planting.search import figure_names, fit_planting
     from equipoise.planting.summary import table
     from equipoise.schema.files import printable
     from equipoise.schema.targets import read_targets

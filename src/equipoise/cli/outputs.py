@@ -57,7 +57,7 @@ class Shown:
     def showing(self, of: Any = None) -> Iterator[None]:
         """Inside, values are shown in the units that are chosen, else in those of a file."""
         from equipoise.quantities import showing
-        from equipoise.results.own_words import in_own_words
+        from equipoise.results.result import in_own_words
 
         with showing(self.units or {}), in_own_words(of):
             yield

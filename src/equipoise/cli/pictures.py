@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     import numpy as np
 
     from equipoise.present.pictures import LazyPicture
-    from equipoise.studies.design_space import Model
+    from equipoise.studies.study import Model
 
 app = App(name="plot")
 MOST_ANGLES = 12

@@ -192,8 +192,8 @@ TOOL_FRAMES = 24
 
 
 def _tool_in_mode(file: str, mode: int | None, seconds: float, width: int) -> str:
-    from equipoise.figures.flip import flipped
     from equipoise.figures.tool_side import in_mode
+    from equipoise.figures.vector import flipped
     from equipoise.handheld.modes import vibrate_tool
     from equipoise.handheld.sweep import MODES
     from equipoise.schema.models import load_tool

@@ -37,11 +37,11 @@ from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
 from equipoise.i18n import Note
 from equipoise.keys.paths import KeyPath
-from equipoise.mechanism.assembly import cycle, full_turn
-from equipoise.mechanism.assembly.family import linkage_of, with_columns
+from equipoise.mechanism.assembly import cycle
+from equipoise.mechanism.assembly import reach as full_turn
+from equipoise.mechanism.assembly.family import invalid_designs, linkage_of, with_columns
 from equipoise.mechanism.assembly.linkage import Linkage, assemble
-from equipoise.mechanism.assembly.newton import LoopGroup
-from equipoise.mechanism.assembly.refusing import invalid_designs
+from equipoise.mechanism.assembly.loops import LoopGroup
 from equipoise.mechanism.assembly.steps import size_of_bodies
 from equipoise.mechanism.kinematics.jumps import (
     bends_of_rows,

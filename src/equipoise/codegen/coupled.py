@@ -1,4 +1,4 @@
-"""Couplings in terms: links whose angle follows from those of two others.
+"""Couplings in terms: angles that follow from those of two links, and curves on which pins run.
 
 Where the crank angle alone tells the angles of driver and carrier, it tells the driven link's too,
 up to the angle at which each design starts.
@@ -13,19 +13,28 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 from itertools import pairwise
-from math import ceil, pi, prod
+from math import ceil, pi, prod, tau
 from typing import Any
 
 import numpy as np
 
-from equipoise.codegen.terms import angle_of, floor, least, pick, rotation, select
+from equipoise.codegen.terms import (
+    VectorTerm,
+    angle_of,
+    floor,
+    greatest,
+    least,
+    pick,
+    rotation,
+    select,
+)
 from equipoise.codegen.trace import Array, Trace, links_of
 from equipoise.mechanism.assembly.cam_groups import Displacement
 from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.assembly.steps import KernelCall, u
-from equipoise.mechanism.formulas import cam_kernels, kernels, rolling_kernels
-from equipoise.mechanism.formulas.curve_kernels import piece_value
-from equipoise.mechanism.formulas.curves import ROUNDING, PeriodicCurve
+from equipoise.mechanism.formulas import cam_kernels, kernels
+from equipoise.mechanism.formulas.cam_kernels import piece_value, plane_piece
+from equipoise.mechanism.formulas.curves import MOST_POWERS, ROUNDING, PeriodicCurve, PlaneCurve
 from equipoise.mechanism.formulas.rolling import HalfAngle, PitchCurve, RatioTable, RatioWaves
 from equipoise.mechanism.parts.couplings import Coupling
 from equipoise.mechanism.parts.machine import FRAME
@@ -354,7 +363,7 @@ class _Law:
         state[f"phi({link})"] = state[f"phi({self.carrier})"] + y + offset
         state[f"ratio({link})"], state[f"bend({link})"] = ratio, bend
         rates = [state[name] for item in (self.driver, self.carrier) for name in u(item)[1:]]
-        self.trace.put(u(link)[1:], rolling_kernels.followed(ratio, bend, *rates))  # type: ignore[no-untyped-call]
+        self.trace.put(u(link)[1:], cam_kernels.followed(ratio, bend, *rates))  # type: ignore[no-untyped-call]
 
     def slot(self, what: str, read: Callable[[Linkage], Any], vector: bool = False) -> Any:
         return self.trace.slot(f"{what} of {self.link}", read, vector)
@@ -383,8 +392,8 @@ class _Law:
     def _half_angle(self, law: HalfAngle) -> tuple[Any, Any, Any]:
         lobes, mean = law.lobes, float(law.mean)
         numbers = mean, float(law.share), self.own("depth"), lobes
-        whole, twice, ratio, bend = rolling_kernels.half_angle(self.turned(lobes), *numbers)  # type: ignore[no-untyped-call]
-        (along,) = rolling_kernels.unit(whole)  # type: ignore[no-untyped-call]
+        whole, twice, ratio, bend = cam_kernels.half_angle(self.turned(lobes), *numbers)  # type: ignore[no-untyped-call]
+        (along,) = cam_kernels.unit(whole)  # type: ignore[no-untyped-call]
         self._rotate(law, along, twice)
         return mean * self.angle + float(2 * law.share / lobes) * angle_of(along), ratio, bend
 
@@ -416,7 +425,7 @@ class _Law:
                 for place, key in enumerate(("cosine", "sine"))
             ]
             wave = wave * turn
-            levels = rolling_kernels.series_term(*levels, wave, *pair, float(order))  # type: ignore[call-arg,no-untyped-call]
+            levels = cam_kernels.series_term(*levels, wave, *pair, float(order))  # type: ignore[call-arg,no-untyped-call]
         y, ratio, bend = (mean * level for level in levels)
         return y, ratio, bend
 
@@ -444,3 +453,50 @@ def _term(number: int, k: int, place: int, linkage: Linkage) -> Any:
 
 def _power(factor: Any, sign: float) -> Any:
     return factor if sign > 0 else factor.conjugate()
+
+
+FEW_PIECES = 2
+"""Pieces that are told apart by comparing: of a dozen numbers each, more take long to compile."""
+
+
+class TracedCurve:
+    """A `PlaneCurve`, which no design changes, at parameters that are terms."""
+
+    def __init__(self, trace: Trace, curve: PlaneCurve) -> None:
+        self.trace, self.curve, self.closed = trace, curve, curve.closed
+
+    def at(self, s: Any) -> tuple[Any, ...]:
+        """Place and its first three derivatives by the parameter."""
+        way, pieces = self._place(s, self.curve.knots)
+        powers = [
+            VectorTerm(pieces.value(item.real), pieces.value(item.imag))
+            for item in self.curve.powers.T
+        ]
+        return tuple(plane_piece(way, *powers))  # type: ignore[no-untyped-call]
+
+    def distance(self, s: Any) -> Any:
+        """Arc length from the beginning, m."""
+        knots, powers = self.curve.arcs
+        way, pieces = self._place(s, knots)
+        return plane_piece(way, *map(pieces.value, powers.T))[0]  # type: ignore[no-untyped-call]
+
+    def turned(self, rotation: Any) -> Any:
+        """The parameter of a closed curve, of which exp(i s) is known: by halves of a turn, as the
+        angles that loops compute are.
+        """
+        ahead = select(rotation.real, 0.0, 1.0, -1.0)
+        return angle_of(rotation * ahead) + select(rotation.real, 0.0, 0.0, pi)
+
+    def _place(self, s: Any, knots: Array) -> tuple[Any, Pieces]:
+        """The way into the piece between knots, and what finds the numbers of this."""
+        if self.closed:
+            s = s - tau * floor(s * (1 / tau))
+        count = len(knots) - 1
+        curve = PeriodicCurve(knots, np.zeros((count, MOST_POWERS)), np.zeros((count, 3)))
+        pieces = Pieces(self.trace, curve, greatest(0.0, s), FEW_PIECES)
+        return s - pieces.beginning(), pieces
+
+
+def can_look_up(curve: PlaneCurve) -> bool:
+    """Whether the piece of a curve can be looked up."""
+    return bins(curve.arcs[0]) <= MOST_BINS

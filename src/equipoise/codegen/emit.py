@@ -10,14 +10,18 @@ from contextlib import suppress
 from functools import cached_property, partial
 from typing import Any
 
-from equipoise.codegen.across import bearing_force
-from equipoise.codegen.applied import traced_element
 from equipoise.codegen.coupled import can_trace_followers
 from equipoise.codegen.figures import Figure, Gathered
 from equipoise.codegen.loops import can_trace
-from equipoise.codegen.shared_forces import check_shared
 from equipoise.codegen.source import TermSource, source_of
-from equipoise.codegen.steps import trace_demands, trace_joints, trace_motion
+from equipoise.codegen.steps import (
+    bearing_force,
+    check_shared,
+    trace_demands,
+    trace_joints,
+    trace_motion,
+    traced_element,
+)
 from equipoise.codegen.terms import angle_of
 from equipoise.codegen.trace import Trace
 from equipoise.dataclass import dataclass
@@ -26,7 +30,7 @@ from equipoise.i18n import Note
 from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.assembly.family import can_vary
 from equipoise.mechanism.assembly.linkage import Linkage, assemble
-from equipoise.mechanism.assembly.newton import LoopGroup
+from equipoise.mechanism.assembly.loops import LoopGroup
 from equipoise.mechanism.assembly.steps import Reaction, planar
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.dynamics.reactions import Push

@@ -19,9 +19,13 @@ from equipoise.decompositions import svd
 from equipoise.errors import UsageError
 from equipoise.i18n import Note
 from equipoise.keys.paths import KeyPath
-from equipoise.mechanism.assembly.family import can_vary, massive_link, with_columns
+from equipoise.mechanism.assembly.family import (
+    can_vary,
+    invalid_designs,
+    massive_link,
+    with_columns,
+)
 from equipoise.mechanism.assembly.linkage import assemble
-from equipoise.mechanism.assembly.refusing import invalid_designs
 from equipoise.mechanism.dynamics.forces import forces
 from equipoise.mechanism.dynamics.parameters import (
     parameter_names,

@@ -17,16 +17,15 @@ from typing import Any
 
 import numpy as np
 
+from equipoise.codegen.coupled import TracedCurve, can_look_up
 from equipoise.codegen.terms import ANGLE, Term, floor, greatest, least, pick, rotation
 from equipoise.codegen.trace import FAR as LOWEST
 from equipoise.codegen.trace import Read, Trace
-from equipoise.codegen.tracks import TracedCurve, can_look_up
 from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.assembly.loopgroup import FAR
-from equipoise.mechanism.assembly.loops import Free, Pose, Poses, Riding
-from equipoise.mechanism.assembly.newton import JUMP, LoopGroup, poses_in
+from equipoise.mechanism.assembly.loops import JUMP, Free, LoopGroup, Pose, Poses, Riding, poses_in
 from equipoise.mechanism.assembly.steps import along, p, planar, size_of_bodies, u
-from equipoise.mechanism.formulas.plane_curves import PlaneCurve
+from equipoise.mechanism.formulas.curves import PlaneCurve
 from equipoise.mechanism.parts.machine import FRAME
 
 Array = np.ndarray[Any, Any]

@@ -12,7 +12,7 @@ from equipoise.codegen.source import TermSource
 from equipoise.codegen.trace import Array
 from equipoise.dataclass import dataclass
 from equipoise.mechanism.assembly.linkage import Linkage
-from equipoise.mechanism.assembly.newton import JUMP, SETTLED
+from equipoise.mechanism.assembly.loops import JUMP, SETTLED
 
 STEPS = (radians(4), radians(0.5), radians(1 / 12))
 """Farthest that crank angles are apart; the next for designs that have not stayed on their branch.

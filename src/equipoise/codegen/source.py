@@ -18,10 +18,9 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.codegen.emission import PYTHON, Lines, boundary
+from equipoise.codegen.emission import PYTHON, Lines, boundary, without_calls
 from equipoise.codegen.figures import KINDS, Gathered
 from equipoise.codegen.loops import WATCHED
-from equipoise.codegen.polynomials import without_calls
 from equipoise.codegen.terms import ANGLE, BOTH, DESIGN, Term, reached
 from equipoise.codegen.trace import AngleFunction, Array, Recurrence, Slot, Trace
 from equipoise.dataclass import dataclass

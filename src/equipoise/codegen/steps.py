@@ -1,5 +1,7 @@
-"""The steps of a linkage in terms, in order: its motion, what each link demands of its joints, and
-the pass over the joints.
+"""The steps of a linkage in terms, in order: motion, applied forces, joint forces.
+
+With the equations A x = b of all free bodies these are x = A' y, where A A' y = b.  A A' is
+symmetric and positive, so that it is eliminated in the order in which it stands, without pivots.
 
 What each design has of its own is a slot, with a function that finds it in the design's linkage.
 """
@@ -7,21 +9,16 @@ What each design has of its own is a slot, with a function that finds it in the 
 from __future__ import annotations
 
 import inspect
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import partial
+from itertools import chain
+from math import tau
 from typing import Any
 
 import numpy as np
 
-from equipoise.codegen.across import trace_across
-from equipoise.codegen.applied import (
-    HoldingWrench,
-    trace_element,
-    trace_limits,
-    trace_load,
-    trace_preload,
-)
 from equipoise.codegen.coupled import (
+    TracedCurve,
     trace_coupling,
     trace_displacement,
     trace_law,
@@ -31,30 +28,422 @@ from equipoise.codegen.coupled import (
 from equipoise.codegen.loop_forces import trace_loop_forces
 from equipoise.codegen.loops import trace_loops
 from equipoise.codegen.prescribed import trace_prescribed
-from equipoise.codegen.shared_forces import trace_shared
-from equipoise.codegen.terms import rotation
-from equipoise.codegen.trace import Array, Read, Trace, links_of, running_angle
-from equipoise.errors import MassError
+from equipoise.codegen.terms import VectorTerm, angle_of, rotation
+from equipoise.codegen.trace import FAR, Array, Read, Trace, links_of, running_angle
+from equipoise.dataclass import dataclass
+from equipoise.errors import MassError, UsageError
+from equipoise.i18n import Note
+from equipoise.keys import MEMORY, Frozen, with_fields
 from equipoise.mechanism.assembly.cam_groups import Displacement
 from equipoise.mechanism.assembly.flanks import rolled
+from equipoise.mechanism.assembly.joints import coupling_pins
+from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.assembly.loopgroup import LoopForces
-from equipoise.mechanism.assembly.newton import LoopGroup
+from equipoise.mechanism.assembly.loops import CouplingLoop, LoopGroup, Pose, Poses
 from equipoise.mechanism.assembly.shared import RedundantReactions
 from equipoise.mechanism.assembly.steps import (
     KernelCall,
     Rotation,
     RunningAngle,
     Step,
+    along,
     demand_names,
     p,
     planar,
     size_of_bodies,
     u,
 )
+from equipoise.mechanism.dynamics.across import contacts, statics
 from equipoise.mechanism.dynamics.forces import inertia_moved, massless
+from equipoise.mechanism.dynamics.loads import load_at
 from equipoise.mechanism.formulas import cam_kernels, kernels
+from equipoise.mechanism.formulas.curves import PlaneCurve
+from equipoise.mechanism.kinematics.motion import ROUNDING
 from equipoise.mechanism.parts.couplings import coupled
-from equipoise.mechanism.parts.machine import FRAME, Drive, FurtherDrive
+from equipoise.mechanism.parts.element_kinds import Element
+from equipoise.mechanism.parts.force_kinds import ForceElement
+from equipoise.mechanism.parts.joint_kinds import joint_kinds
+from equipoise.mechanism.parts.links import moments_across
+from equipoise.mechanism.parts.machine import FRAME, Drive, FurtherDrive, Load
+
+ANGLE_MARGIN = 0.4
+"""Added to the cosine of an angle, which is watched as that of a running angle is: beyond 154 deg
+from its middle a design is computed by itself."""
+HoldingWrench = tuple[str, Any, Any]
+"""Link, and force and moment that hold something against it."""
+
+
+def trace_load(trace: Trace, number: int, load: Load) -> HoldingWrench:
+    """What holds the load of this number, from 1 on."""
+    parts = (
+        trace.row(f"load {number} {key}", partial(_part_of_load, load, key))
+        for key in ("x", "y", "torque")
+    )
+    x, y, torque = parts
+    force = VectorTerm(x, y)
+    if load.axes is not None:
+        force = force * trace.state[u(load.link)[0]]
+    if load.axes == "slider":
+
+        def turn(linkage: Linkage) -> Any:
+            machine = linkage.machine
+            return np.exp(1j * machine.loads[number - 1].axes_angle(machine.sliders))
+
+        force = force * trace.slot(f"load {number} axes", turn, vector=True)
+    return _holding_wrench(trace, load.link, load.point, force, torque)
+
+
+def _part_of_load(load: Load, key: str, theta: Array) -> Array:
+    force, torque = load_at(load, theta)
+    return np.asarray({"x": force.real, "y": force.imag, "torque": torque}[key] + 0.0 * theta)
+
+
+@dataclass(frozen=True)
+class TracedBodies:
+    """Bodies in terms, for the outputs of an element and what it exerts.
+
+    name : of the element.
+    """
+
+    trace: Trace
+    name: str
+
+    def point(self, body: str, point: str) -> Any:
+        """A point in the frame."""
+        on_frame = body == FRAME
+        return self.trace.state[f"p({point})"] if on_frame else self.trace.point(body, point)[0]
+
+    def velocity(self, body: str, point: str) -> Any:
+        """Velocity of a point in the frame, m/s."""
+        if body == FRAME:
+            return 0j
+        return self.trace.point(body, point)[1] * self.trace.rate("speed")
+
+    def angle(self, body: str, on: str, middle: Any) -> Any:
+        """Angle of a body from the x axis of another, within half a turn of `middle`."""
+        turn, other = (self.trace.state[u(item)[0]] for item in (body, on))
+        away = turn * other.conjugate() * rotation(middle).conjugate()
+        self.trace.running[f"{self.name}, {body} on {on}"] = away.real + ANGLE_MARGIN
+        return middle + angle_of(away)
+
+    def turn(self, body: str) -> Any:
+        """Rotation of a body."""
+        return self.trace.state[u(body)[0]]
+
+    def turned(self, body: str, angle: Any) -> Any:
+        """Unit vector at an angle from the x axis of a body."""
+        return self.turn(body) * rotation(angle)
+
+    def rate(self, body: str) -> Any:
+        """Angular velocity of a body, rad/s."""
+        return self.trace.state[u(body)[1]] * self.trace.rate("speed")
+
+    def along(self, joint: str) -> tuple[Any, Any]:
+        """How far along its track a rider is, m, and its speed along that, m/s."""
+        s, speed = (self.trace.state[name] for name in along(joint))
+        return TracedCurve(self.trace, self._curve(joint)).distance(s), speed * self.trace.rate(
+            "speed"
+        )
+
+    def on_track(self, joint: str, wrong: str) -> None:
+        """Watch how far a rider is from the ends of its track, as of `within`."""
+        if not (curve := self._curve(joint)).closed:
+            self.within(self.along(joint)[0], (0.0, curve.length), wrong)
+
+    def _curve(self, joint: str) -> PlaneCurve:
+        track = self.trace.linkage.joints.riders[joint].track
+        assert track is not None
+        return track.curve
+
+    def bearing(self, vector: Any, middle: Any) -> Any:
+        """Angle of a vector, within half a turn of `middle`."""
+        return middle + angle_of(vector * rotation(middle).conjugate())
+
+    def within(self, value: Any, ends: tuple[Any, Any], wrong: str) -> None:
+        """Watch a value, so that a design in which it leaves its range is computed by itself."""
+        for what, margin in (("lower", value - ends[0]), ("upper", ends[1] - value)):
+            self.trace.running[f"{self.name}, {what} end"] = margin + (FAR + ROUNDING)
+
+
+def trace_limits(trace: Trace) -> None:
+    """Watch whether pins stay in their slots."""
+    for table in joint_kinds(type(trace.machine)):
+        for number in range(len(getattr(trace.machine, table))):
+            element, at = traced_element(trace, table, number)
+            element.values(at)
+
+
+def trace_element(trace: Trace, table: str, number: int) -> Iterator[HoldingWrench]:
+    """What holds a force element at each of its ends on a link.
+
+    table, number : its list in the file, and its place there from 0.
+    """
+    element, at = traced_element(trace, table, number)
+    assert isinstance(element, ForceElement)
+    for link, point, force, torque in element.on_links(at):
+        yield _holding_wrench(trace, link, point, force, torque)
+
+
+def traced_element(trace: Trace, table: str, number: int) -> tuple[Element, TracedBodies]:
+    """An element with terms for its numbers, and the bodies between which it acts."""
+    name = f"{table}[{number}]"
+
+    def read(linkage: Linkage, steps: tuple[str | int, ...]) -> Any:
+        value = getattr(linkage.machine, table)[number]
+        for step in steps:
+            value = value[step] if isinstance(step, int) else getattr(value, step)
+        return value
+
+    def traced(value: Any, *steps: str | int) -> Any:
+        """A value whose numbers are slots."""
+        if isinstance(value, Frozen):
+            still = value.still if isinstance(value, Element) else ()
+            traceds = {key: traced(var, *steps, key) for key, var in vars(value).items()
+                    if key not in still and key != MEMORY}  # fmt: skip
+            return with_fields(value, **traceds)
+        if isinstance(value, tuple):
+            return tuple(traced(item, *steps, k) for k, item in enumerate(value))
+        if not isinstance(value, float):
+            return value
+        return trace.slot(f"{name}{steps}", partial(read, steps=steps))
+
+    element: Element = traced(getattr(trace.machine, table)[number])
+    return element, TracedBodies(trace, name)
+
+
+def trace_preload(trace: Trace, number: int) -> Iterator[HoldingWrench]:
+    """What holds the preload of the coupling of this number, if it has one."""
+    coupling = trace.machine.couplings[number]
+    if not coupling.preload:
+        return
+    driver, driven = coupling_pins(trace.linkage.joints, coupling)
+
+    def rate(linkage: Linkage) -> Any:
+        points = linkage.machine.points_of(coupling.carrier)
+        distance = abs(planar(points[driven]) - planar(points[driver]))
+        return linkage.machine.couplings[number].preload_rate(distance)
+
+    ends = [trace.point(coupling.carrier, pin)[0] for pin in (driver, driven)]
+    force = (ends[1] - ends[0]) * trace.slot(f"preload rate({number})", rate)
+    for link, pin, pulled in ((coupling.driver, driver, force), (coupling.driven, driven, -force)):
+        if link != FRAME:
+            yield _holding_wrench(trace, link, pin, pulled, 0.0)
+
+
+def _holding_wrench(
+    trace: Trace, link: str, point: str | None, force: Any, torque: Any
+) -> HoldingWrench:
+    """What holds a force at a point of a link, and a torque on it."""
+    anchor = trace.body(link)[0]
+    at = anchor if point is None else trace.point(link, point)[0]
+    return link, *kernels.load_demand(anchor, at, force, torque)
+
+
+def trace_across(trace: Trace, loads: Sequence[Any], springs: Sequence[Any]) -> None:
+    """Add ``Q(link)``, the sum of planes times forces that each link needs, and ``rocking
+    moment`` and ``frame rocking moment`` of all of them.
+
+    loads, springs : the force that holds each, of force elements and then of preloads of couplings,
+        at each end on a link.
+    """
+    machine, state = trace.machine, trace.state
+    moving, needed = [], {}
+    speed, acceleration = trace.rate("speed"), trace.rate("acceleration")
+    for link in machine.links:
+        _, p1, p2, turn, w, a = trace.body(link)
+        mass, moment = (
+            trace.slot(f"{key} across({link})", _moment(trace.linkage, link, place), place == 1)
+            for place, key in enumerate(("mass", "moment"))
+        )
+        rates = (speed * speed, acceleration)
+        inertia, _ = kernels.inertia_demand(p1, p2, turn, w, a, *rates, mass, moment, 0.0)
+        weight, _ = kernels.weight_demand(turn, mass, moment, state["gravity"])
+        moving.append(inertia)
+        needed[link] = [inertia, weight]
+    state["rocking moment"] = _about(moving)
+    acting = [
+        (load, _plane(trace, load.link, load.point) * force)
+        for force, load in zip(loads, machine.loads, strict=True)
+    ]
+    outer = (force for load, force in acting if load.reaction is None)
+    state["frame rocking moment"] = _about((*chain(*needed.values()), *outer))
+    for load, force in acting:
+        needed[load.link].append(force)
+    ends: list[tuple[str, str, str | None]]
+    ends = [
+        (body, body, dict(element.points).get(body))
+        for *_, element in machine.force_elements
+        for body in element.bodies
+        if body != FRAME
+    ]
+    ends += [
+        (link, coupling.driven, None)
+        for coupling in machine.couplings
+        for link in (coupling.driver, coupling.driven)
+        if coupling.preload and link != FRAME
+    ]
+    for force, (link, on, point) in zip(springs, ends, strict=True):
+        needed[link].append(_plane(trace, on, point) * force)
+    for link, forces in needed.items():
+        state[f"Q({link})"] = sum(forces)
+
+
+def _about(forces: Iterable[Any]) -> Any:
+    """Moment on the frame about x and y."""
+    return -1j * sum(forces)
+
+
+def _plane(trace: Trace, link: str, point: str | None) -> Any:
+    name = f"plane({link}/{point})"
+    return trace.slot(name, lambda linkage: linkage.machine.links[link].plane_of(point))
+
+
+def bearing_force(trace: Trace, bearing: str, exerted: Callable[[str], Any]) -> Any:
+    """The force of a bearing: both of a link bear what its pin in the frame does, with its couple.
+
+    exerted : the force in a joint or mesh, by name.
+    """
+    given = trace.machine.bearings
+    on_link = [name for name in given if given[name].link == given[bearing].link]
+    first = on_link.index(bearing)
+    own, other = (_bearing_plane(trace, on_link[k]) for k in (first, 1 - first))
+    solved = statics(trace.linkage)
+    number, pin = solved.pin_of(given[bearing].link)
+    needed, by_plane = solved.factors(number)
+    force = sum(factor * trace.state[f"Q({link})"] for link, factor in needed.items())
+    for place, contact in enumerate(solved.contacts):
+        factor = by_plane.get(contact.name, 0.0) + (contact.name == pin.name)
+        if factor:
+            force = force + factor * _joint_plane(trace, place) * exerted(contact.name)
+    return (force - other * exerted(pin.name)) * (1 / (own - other))
+
+
+def _bearing_plane(trace: Trace, name: str) -> Any:
+    return trace.slot(f"plane of {name}", lambda linkage: linkage.machine.bearings[name].plane)
+
+
+def _joint_plane(trace: Trace, place: int) -> Any:
+    return trace.slot(f"plane of joint {place}", lambda linkage: contacts(linkage)[place].plane)
+
+
+def _moment(linkage: Linkage, link: str, place: int) -> Read:
+    anchor = linkage.anchors[link]
+    return lambda linkage: moments_across(linkage.machine.links[link], anchor)[place]
+
+
+STRONG = 1e-3
+"""How well joints have to hold the machine: products of rows lose the square of it in digits, so
+that 1e-10 of the forces is left."""
+LOOKED_AT = 180
+"""Crank angles in a turn at which it is seen how well they do."""
+SWITCHING = Note(
+    "forces that joints share with teeth or strands, which bear by the sense of the force, cannot "
+    "be computed in a loop"
+)
+STIFF = Note("forces that joints share by their stiffness cannot be computed in a loop")
+SINGULAR = Note("joint forces near a singular position cannot be computed in a loop")
+
+Column = dict[int, Any]
+
+
+def check_shared(trace: Trace) -> None:
+    """Raise a `UsageError` where forces that joints share have no formula that holds."""
+    shared = trace.linkage.shared
+    assert shared is not None
+    if any(isinstance(loop, CouplingLoop) for loop in shared.loops):
+        raise UsageError(SWITCHING)
+    if shared.compliance:
+        raise UsageError(STIFF)
+    turns = trace.linkage.cycle.turns
+    theta = np.linspace(0.0, tau * turns, LOOKED_AT * turns, endpoint=False)
+    if np.min(shared.strength(trace.linkage.solve(theta))) < STRONG:
+        raise UsageError(SINGULAR)
+
+
+def trace_shared(trace: Trace, number: int) -> None:
+    """Add the forces in all joints, and what each drive gets: the step of this number of the
+    linkage's ``forces``.
+    """
+    shared = trace.linkage.forces[number]
+    assert isinstance(shared, RedundantReactions)
+    poses = _poses(trace, shared)
+    size = float(shared.group.size)
+    columns, units = [], []
+    for loop in shared.loops:
+        columns += shared.columns(loop, poses, 0.0)
+        units += [size if loop.turns and not part else 1.0 for part in range(loop.unknowns)]
+    for drive in shared.drives:
+        columns.append({3 * shared.group.links.index(drive) + 2: 1.0})
+        units.append(size)
+    rows = [1.0, 1.0, size] * len(shared.group.links)
+    columns = [
+        {row: entry * (unit / rows[row]) for row, entry in column.items() if not _is_zero(entry)}
+        for column, unit in zip(columns, units, strict=True)
+    ]
+    demand = [part for link in shared.group.links for part in _demand(trace, link)]
+    right = [part * (1.0 / row) for part, row in zip(demand, rows, strict=True)]
+    weights = _eliminated(columns, right)
+    strengths = iter([
+        unit * sum(entry * weights[row] for row, entry in column.items())
+        for column, unit in zip(columns, units, strict=True)
+    ])  # fmt: skip
+    state = trace.state
+    for loop, reaction in zip(shared.loops, shared.reactions, strict=True):
+        wrenches = loop.wrenches(poses, 0.0)
+        parts = [next(strengths) for _ in wrenches]
+        for name, unit in zip(reaction.outputs, zip(*wrenches, strict=True), strict=False):
+            state[name] = sum(part * item for part, item in zip(parts, unit, strict=True))
+        state.setdefault(f"p({reaction.at})", loop.place(poses))
+    for drive, pin in shared.pins.items():
+        state[f"F({drive})"], state[f"M({drive})"] = state[pin.force], next(strengths)
+
+
+def _poses(trace: Trace, shared: RedundantReactions) -> Poses:
+    """Where the links are, from their anchors, and the frame from the pivot of the first drive."""
+    poses = {FRAME: Pose((trace.state[f"p({shared.pivot})"], 0j, 0j), (1 + 0j, 0.0, 0.0))}
+    for link in shared.group.links:
+        x, x1, x2, turn, w, a = trace.body(link)
+        poses[link] = Pose((x, x1, x2), (turn, w, a))
+    return poses
+
+
+def _demand(trace: Trace, link: str) -> tuple[Any, Any, Any]:
+    force, moment = trace.state[f"F({link})"], trace.state[f"M({link})"]
+    return force.real, force.imag, moment
+
+
+def _is_zero(entry: Any) -> bool:
+    return isinstance(entry, int | float) and entry == 0
+
+
+def _eliminated(columns: list[Column], right: list[Any]) -> list[Any]:
+    """What the products of rows make the right-hand side of.
+
+    columns : of the equations, by row, without zeros.
+    """
+    count = len(right)
+    products = [dict[int, Any]() for _ in range(count)]  # of each row, from its own place on
+    for column in columns:
+        for i, item in column.items():
+            for j, other in column.items():
+                if j >= i:
+                    value = item * other
+                    products[i][j] = products[i][j] + value if j in products[i] else value
+    solution = [*right]
+    for i, row in enumerate(products):
+        inverse = row[i] = 1.0 / row[i]
+        for j in [j for j in row if j > i]:
+            share = row[j] * inverse
+            for k in [k for k in row if k >= j]:
+                value = share * row[k]
+                products[j][k] = products[j][k] - value if k in products[j] else -value
+            solution[j] = solution[j] - share * solution[i]
+    for i in reversed(range(count)):
+        row = products[i]
+        left = sum((row[j] * solution[j] for j in row if j > i), 0.0)
+        solution[i] = (solution[i] - left) * row[i]
+    return solution
+
 
 # -- motion ----------------------------------------------------------------------------------------
 

@@ -1,4 +1,12 @@
-"""What computes the designs of a problem, in processes of this machine where that takes long.
+"""The evaluator of a design problem: figures of designs, in threads or processes of this machine.
+
+Both are a `concurrent.futures.Executor` behind a `Pool`, as is a cluster.  A `Runner` chooses among
+them, and is all that a run sees of them.  What a chunk is does not depend on who computes it.
+
+The processes are those of the standard library.  joblib's loky was measured beside them
+(`benchmarks/pools.py`): it starts later and shares out small tasks faster, but its processes stay
+with their memory when the work is over, and some seconds after Ctrl-C or the death of whoever
+started them they were still there.
 
 A search and an analysis of tolerances draw designs as they go on, and a map has them all.  Those
 that compiled loops compute take microseconds, and the loops use all processors; the others are
@@ -7,14 +15,290 @@ shared out.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from functools import partial
+import os
+import pickle
+import signal
+import sys
+import threading
+from abc import ABC, abstractmethod
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import (
+    FIRST_COMPLETED,
+    BrokenExecutor,
+    Future,
+    ProcessPoolExecutor,
+    ThreadPoolExecutor,
+    wait,
+)
+from contextlib import contextmanager, suppress
+from functools import lru_cache, partial
+from multiprocessing import get_context
+from multiprocessing.connection import Connection
 from time import monotonic
+from types import ModuleType
 from typing import Any, Generic, NamedTuple, Self, TypeVar
 
 import numpy as np
 
-from equipoise.design.processes import ChunkTask, Pool, Runner
+from equipoise.codegen.backends import processors
+from equipoise.dataclass import dataclass
+from equipoise.errors import UsageError
+from equipoise.i18n import Note
+
+TRIES = 3
+"""How often processes may die one after the other, with nothing finished in between."""
+TICK = 1.0
+"""Time between looks after the pool, s."""
+DEAD = Note(
+    "processes that compute died {tries} times in a row, perhaps for want of "
+    "memory; give fewer workers",
+    tries=TRIES,
+)
+Chunk = TypeVar("Chunk")
+Result = TypeVar("Result")
+MOST_PROCESSES = 61 if sys.platform == "win32" else 10_000
+
+
+@dataclass(frozen=True)
+class ChunkTask:
+    """What is to be computed of a chunk.
+
+    function : at the top level of a module, so that other processes find it; it is given `study`
+        and a chunk, such as the numbers of its designs.
+    study : as the bytes that go to other processes.
+    """
+
+    function: Callable[[bytes, Any], Any]
+    study: bytes
+
+
+class StoppedError(UsageError):
+    """Nobody can go on computing; `str(error)` says why, and what would help."""
+
+
+class Pool(ABC):
+    """Somebody who computes chunks.
+
+    room : how many chunks it is given at once.
+    """
+
+    room: int
+
+    @abstractmethod
+    def submit(self, chunk: Any) -> Future[Any]:
+        """Begin to compute a chunk."""
+
+    @abstractmethod
+    def close(self) -> None:
+        """Stop, and leave what is not finished."""
+
+    def look(self) -> None:  # noqa: B027
+        """See whether somebody is still at work; `StoppedError` if not.
+
+        On this machine nobody leaves without being noticed.
+        """
+
+    def explained(self, error: Exception) -> StoppedError | None:
+        """What ended the work on a chunk, if it is not the chunk itself, as it is here."""
+        return None
+
+
+def computed(pool: Pool, chunks: Iterable[Chunk]) -> Iterator[tuple[Chunk, Any]]:
+    """Compute chunks, and give each with its result once it is finished.
+
+    They come in any order, and few are under way at a time.  What was lost because a process died
+    is begun again, which changes nothing in it.
+
+    Raises
+    ------
+    StoppedError : nobody can compute them.
+    """
+    left, under_way = deque(chunks), dict[Future[Any], Chunk]()
+    deaths, looked = 0, monotonic()
+    while left or under_way:
+        while left and len(under_way) < pool.room:
+            chunk = left.popleft()
+            under_way[pool.submit(chunk)] = chunk
+        finished, _ = wait(under_way, TICK, FIRST_COMPLETED)
+        if monotonic() - looked > TICK:
+            pool.look()
+            looked = monotonic()
+        for future in finished:
+            chunk = under_way.pop(future)
+            try:
+                block = future.result()
+            except BrokenExecutor as error:  # whatever else is under way is lost, too
+                deaths += 1
+                if deaths == TRIES:
+                    raise StoppedError(DEAD) from error
+                left.extend((chunk, *under_way.values()))
+                under_way.clear()
+                break
+            except Exception as error:
+                if (explained := pool.explained(error)) is None:
+                    raise
+                raise explained from error
+            else:
+                deaths = 0
+                yield chunk, block
+
+
+class Runner(Generic[Chunk, Result]):
+    """Computes chunks; a context manager, which ends whoever computes them.
+
+    Parameters
+    ----------
+    alone : computes a chunk in this process.
+    make : makes the same in another process, to which it goes as bytes.
+    workers : threads or processes; as many as this machine has processors if not given.
+    threads : whether threads of this process are enough, since what computes holds no lock.
+    elsewhere : begins a pool of others, such as a cluster, which is begun at once and takes the
+        place of those of this machine.
+
+    Raises
+    ------
+    UsageError : fewer than one worker; or as `elsewhere`.
+    """
+
+    def __init__(
+        self,
+        alone: Callable[[Chunk], Result],
+        make: Callable[[], Callable[[Chunk], Result]],
+        workers: int | None = None,
+        *,
+        threads: bool = False,
+        elsewhere: Callable[[ChunkTask], Pool] | None = None,
+    ) -> None:
+        self.alone, self.make, self.threads = alone, make, threads and elsewhere is None
+        self.workers = processors() if workers is None else workers
+        if self.workers < 1:
+            raise UsageError(Note("got {workers} workers; give 1 or more", workers=self.workers))
+        self.pool = None if elsewhere is None else elsewhere(self._task())
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """End whoever computes."""
+        if self.pool is not None:
+            self.pool.close()
+
+    def begin(self) -> Pool:
+        """The pool, begun where it is not yet."""
+        if self.pool is None:
+            kind = Threads if self.threads else Processes
+            self.pool = kind(self._task(), self.workers)
+        return self.pool
+
+    def each(self, chunks: Iterable[Chunk]) -> Iterator[tuple[Chunk, Result]]:
+        """Chunks, each with its result; see `computed`."""
+        return computed(self.begin(), chunks)
+
+    def _task(self) -> ChunkTask:
+        if self.threads:
+            return ChunkTask(lambda _, chunk: self.alone(chunk), b"")
+        return ChunkTask(_compute, pickle.dumps(self.make))
+
+
+def _compute(packed: bytes, chunk: Any) -> Any:
+    """In another process: a chunk."""
+    return _made(packed)(chunk)
+
+
+@lru_cache(maxsize=2)
+def _made(packed: bytes) -> Callable[[Any], Any]:
+    """What computes, made once in a process."""
+    made: Callable[[Any], Any] = pickle.loads(packed)()
+    return made
+
+
+# -- on this machine -------------------------------------------------------------------------------
+
+
+class Threads(Pool):
+    """Threads of this process, for what computes without Python's lock."""
+
+    def __init__(self, task: ChunkTask, workers: int) -> None:
+        self.task, self.room = task, workers + 1
+        self.executor = ThreadPoolExecutor(workers)
+
+    def submit(self, chunk: Any) -> Future[Any]:
+        return self.executor.submit(self.task.function, self.task.study, chunk)
+
+    def close(self) -> None:
+        """Wait for the chunks that are under way; they do not take long."""
+        self.executor.shutdown(cancel_futures=True)
+
+
+class Processes(Pool):
+    """Processes that are started for it, and started again when one of them dies.
+
+    They end when the other end of a pipe closes: at once when the work is over or stopped, and also
+    when this process is killed.
+    """
+
+    def __init__(self, task: ChunkTask, workers: int) -> None:
+        self.task, self.workers = task, min(workers, MOST_PROCESSES)
+        self.room = 2 * self.workers
+        self._start()
+
+    def _start(self) -> None:
+        context = get_context("spawn")  # others have threads of libraries in them, half alive
+        self.watched, self.held = context.Pipe(duplex=False)
+        self.executor = ProcessPoolExecutor(self.workers, context, _begin, (self.watched,))
+
+    def submit(self, chunk: Any) -> Future[Any]:
+        try:
+            return self._submitted(chunk)
+        except BrokenExecutor:
+            self.close()
+            self._start()
+            return self._submitted(chunk)
+
+    def _submitted(self, chunk: Any) -> Future[Any]:
+        with _apart():  # here is where processes are started
+            return self.executor.submit(self.task.function, self.task.study, chunk)
+
+    def close(self) -> None:
+        """End the processes."""
+        self.held.close()
+        self.executor.shutdown(cancel_futures=True)
+        self.watched.close()
+
+
+@contextmanager
+def _apart() -> Iterator[None]:
+    """Start processes that neither run the user's script again nor ever hear Ctrl-C."""
+    script = sys.modules["__main__"]
+    sys.modules["__main__"] = ModuleType("__main__")
+    try:
+        if sys.platform == "win32":
+            yield
+        else:
+            before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+            try:
+                yield
+            finally:
+                signal.pthread_sigmask(signal.SIG_SETMASK, before)
+    finally:
+        sys.modules["__main__"] = script
+
+
+def _begin(watched: Connection) -> None:
+    """In a new process: end with the one that started it."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # where it could not be kept from hearing
+    threading.Thread(target=_end_with, args=(watched,), daemon=True).start()
+
+
+def _end_with(watched: Connection) -> None:
+    with suppress(EOFError, OSError):
+        watched.recv_bytes()
+    os._exit(1)
+
 
 Array = np.ndarray[Any, Any]
 Figures = TypeVar("Figures")

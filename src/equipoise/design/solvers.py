@@ -18,7 +18,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from equipoise.dataclass import dataclass
-from equipoise.design.spreads import Choices, Range
+from equipoise.design.variables import Choices, Range
 from equipoise.i18n import Note, to_say
 from equipoise.sequences import sobol
 

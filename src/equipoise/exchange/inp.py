@@ -16,8 +16,12 @@ from equipoise.errors import ModelError, UsageError
 from equipoise.exchange.formats import Job
 from equipoise.exchange.link_loads import analysis_of, link_of
 from equipoise.i18n import Note, to_say
-from equipoise.mechanism.dynamics.nodal_loads import NodalLoads, nodal_loads, nodes_along
-from equipoise.mechanism.dynamics.section_loads import SectionLoads
+from equipoise.mechanism.dynamics.section_loads import (
+    NodalLoads,
+    SectionLoads,
+    nodal_loads,
+    nodes_along,
+)
 from equipoise.mechanism.parts.sections import LinkSection
 from equipoise.results.analysis import Analysis
 from equipoise.signals import Array

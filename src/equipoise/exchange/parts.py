@@ -17,8 +17,7 @@ from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
 from equipoise.exchange.formats import Job
 from equipoise.i18n import Note, coordinates, decimals, say, to_say
-from equipoise.mechanism.parts.bodies import Body, Points, place_of
-from equipoise.mechanism.parts.body_checks import outlines
+from equipoise.mechanism.parts.bodies import Body, Points, outlines, place_of
 from equipoise.quantities import told
 from equipoise.results.machine_blocks import SHAPES, stuff_named
 

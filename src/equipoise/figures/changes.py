@@ -17,9 +17,7 @@ from equipoise.figures.style import short
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.kinematics.motion import Motion, move
 from equipoise.results.charts import Array, Arrow, Chart, Curve, Mark, Outline, Panel, quantity
-from equipoise.symbols.clear import clear_angle
-from equipoise.symbols.scene import Scene
-from equipoise.symbols.wheels import called
+from equipoise.symbols.scene import Scene, called, clear_angle
 
 if TYPE_CHECKING:
     from equipoise.balancing.balanced import Balanced

@@ -1,22 +1,25 @@
-"""The charts of designs: all of a study, those that were chosen or found, and the model itself.
+"""Charts of the designs of a study: all of them, those chosen, and lines from axis to axis.
+
+Numbers and figures are drawn in the units that are given by name, as `schema.study_units` has them.
 
 Numbers and figures are drawn in the units that are given by name, as `schema.study_units` has them.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import cached_property
 from itertools import combinations
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from equipoise.figures.clouds import CloudDesigns, Own, Pair, counted, in_words, keys_for
-from equipoise.figures.parallel import parallel
+from equipoise.dataclass import dataclass
 from equipoise.figures.shared import by_name, continued, groups
+from equipoise.figures.sheet import lines_of
 from equipoise.figures.studies import PERCENT, Units, unit_of
-from equipoise.figures.style import short
+from equipoise.figures.style import SMALL, short
 from equipoise.i18n import say
 from equipoise.results.charts import (
     Array,
@@ -27,14 +30,222 @@ from equipoise.results.charts import (
     Line,
     Mark,
     Panel,
+    PlaceLabel,
+    Rule,
 )
 from equipoise.studies.blocks import unit_in
-from equipoise.studies.cloud import Cloud
+from equipoise.studies.selection import SOME, Blocks, Cloud, cloud_of
 
 if TYPE_CHECKING:
+    from equipoise.keys.requirement_kinds import Make
     from equipoise.studies.searching import Searched
     from equipoise.studies.selection import Best
     from equipoise.studies.store import Store
+    from equipoise.studies.study import Output
+
+Own = tuple[Array, Array]
+"""Values (d,) and figures (m,) of the model itself."""
+Pair = tuple[str, str]
+
+MARGIN = 0.05
+"""Free at each side, over what all designs reach."""
+
+
+@dataclass(frozen=True, eq=False)
+class CloudDesigns:
+    """Designs (K) that were chosen, among all.
+
+    by : what they were chosen by, and which way.  numbers : names of what varies.
+    outputs : with their limits.  units : how all of them are told.
+    table : (K, d + m) numbers and figures of the chosen ones, SI units; labels : what they are
+        called.
+    blocks, size : give all designs, of which there are so many at most.
+    own : the model itself, where it is known.
+    line : (F, M) what the whole front has of `by`.
+    aimed : whether one way of `by` is good.
+    """
+
+    title: str
+    by: Mapping[str, Make]
+    numbers: Sequence[str]
+    outputs: Sequence[Output]
+    units: Units
+    table: Array
+    labels: Sequence[str]
+    blocks: Blocks
+    size: int
+    own: Own | None = None
+    line: Array | None = None
+    aimed: bool = True
+
+    @property
+    def aim(self) -> str:
+        """What they were chosen by first."""
+        return next(iter(self.by))
+
+    @property
+    def names(self) -> list[str]:
+        """Of all columns."""
+        return [*self.numbers, *(output.name for output in self.outputs)]
+
+    @property
+    def columns(self) -> dict[str, Array]:
+        """Of the chosen designs, (K,) by name."""
+        return dict(zip(self.names, self.table.T, strict=True))
+
+    @property
+    def model(self) -> dict[str, float]:
+        """Numbers and figures of the model itself by name; none where they are not known."""
+        return {} if self.own is None else dict(zip(self.names, np.hstack(self.own), strict=True))
+
+    @property
+    def pairs(self) -> list[Pair]:
+        """What is drawn against what: the first aim over each number, and aims over each other."""
+        over = [(name, self.aim) for name in self.numbers if name != self.aim]
+        return [*over, *combinations(self.by, 2)]
+
+    @cached_property
+    def cloud(self) -> Cloud:
+        """All designs."""
+        return cloud_of(self.blocks, self.numbers, self.outputs, self.pairs, self.size)
+
+    def limits(self, name: str) -> list[float]:
+        """Of an output, SI units, as far as designs reach them."""
+        ends = ((output.at_least, output.at_most) for output in self.outputs if output.name == name)
+        spread = self.cloud.spreads[name]
+        given = (end for pair in ends for end in pair if end is not None)
+        return [end for end in given if spread.low <= end <= spread.high]
+
+    def axis(self, name: str, way: bool = True) -> Axis:
+        """Of a number or figure; way : whether it is told which way is good."""
+        unit = unit_in(self.units, name)
+        label = unit.called
+        if way and self.aimed and name in self.by:
+            good = say("large is good") if self.by[name] == "largest" else say("small is good")
+            label = f"{label} ({good})"
+        scale = "log" if self.cloud.spreads[name].log else "linear"
+        return Axis(label, unit_of(unit), scale, room=MARGIN)  # type: ignore[arg-type]
+
+
+def counted(designs: CloudDesigns) -> str:
+    """How many designs there are, and of which kinds."""
+    cloud = designs.cloud
+    counts = {"count": cloud.kept + cloud.beyond + cloud.failed}
+    texts = [say("{count} designs", **counts)]
+    if any(output.limited for output in designs.outputs):
+        texts.append(say("{count} keep every limit", count=cloud.kept))
+    if cloud.failed:
+        texts.append(say("{count} cannot be computed", count=cloud.failed))
+    if not cloud.each:
+        texts.append(say("the darker, the more"))
+    return say(", ").join(texts)
+
+
+def in_words(designs: CloudDesigns, names: Iterable[str]) -> list[str]:
+    """What numbers and figures are called."""
+    return [unit_in(designs.units, name).called for name in names]
+
+
+def keys_for(designs: CloudDesigns, pairs: Iterable[Pair] = ()) -> tuple[tuple[str, str], ...]:
+    """What a legend tells of points over these pairs; of lines from axis to axis where none."""
+    cloud, pairs = designs.cloud, [*pairs]
+    sign = "" if pairs else " line"
+    chosen = say("chosen designs") if cloud.kept else say("designs nearest to the limits")
+    keys = [(f"design{sign}", chosen)] if len(designs.table) else []
+    if not cloud.kept:
+        keys.append((f"beyond{sign}", say("all designs, none of which keeps every limit")))
+    elif cloud.beyond:
+        feasible, others = say("designs that keep every limit"), say("others")
+        keys += [(f"kept{sign}", feasible), (f"beyond{sign}", others)]
+    else:
+        keys.append((f"kept{sign}", say("all designs")))
+    if any(len(cloud.lost.get(first, ())) for first, _ in pairs):
+        keys.append(("failed", say("cannot be computed")))
+    if designs.model:
+        keys.append((f"own{sign}", say("the model itself")))
+    if any(designs.limits(name) for pair in pairs for name in pair):
+        keys.append(("bound", say("limit")))
+    return tuple(keys)
+
+
+RULES, TALL, WIDE = 8, 190.0, 470.0
+"""Axes side by side in one panel, and its height and width, points."""
+BEST = 10
+"""Chosen designs that are drawn as lines."""
+
+
+def parallel(designs: CloudDesigns) -> Iterator[Chart]:
+    """Numbers and figures as axes side by side, a line for each design."""
+    others = [name for name in designs.names if name != designs.aim]
+    some, chosen = len(designs.cloud.good), len(designs.table)
+    counteds = [counted(designs)]
+    if some > SOME or not designs.cloud.each:
+        counteds.append(say("lines of {count} designs", count=min(some, SOME)))
+    if chosen > BEST:
+        counteds.append(say("{count} of {all} chosen designs", count=BEST, all=chosen))
+    for suffix, names in groups(others, RULES - 1):
+        what = say("Designs from axis to axis") + continued(names, others)
+        keys = keys_for(designs)
+        panel = _rules(designs, [*names, designs.aim])
+        words = (say("; ").join(counteds),)
+        yield Chart(f"parallel{suffix}", designs.title, what, (panel,), keys=keys, words=words)
+
+
+def _rules(designs: CloudDesigns, names: Sequence[str]) -> Panel:
+    columns, cloud, model = designs.columns, designs.cloud, designs.model
+    axes = {}
+    for name in names:
+        axis, spread = designs.axis(name), cloud.spreads[name]
+        own = [model[name]] if name in model and not (spread.log and model[name] <= 0) else []
+        low, high = min([spread.low, *own]), max([spread.high, *own])
+        axes[name] = replace(axis, low=low, high=high if high > low else low + (abs(low) or 1.0))
+    flags = tuple(_flag(k, axis, len(names)) for k, axis in enumerate(axes.values()))
+    rules = tuple(Rule(float(k), replace(axis, label="")) for k, axis in enumerate(axes.values()))
+
+    def lines(table: Mapping[str, Array], role: str) -> Curve:
+        shares = np.array([_share(axes[name], table[name]) for name in names])
+        gap = np.full((1, shares.shape[1]), np.nan)
+        heights = np.vstack([shares, gap]).T.ravel()
+        return Curve(np.tile([*range(len(names)), np.nan], shares.shape[1]), heights, "", role)
+
+    some = picked(len(cloud.good), SOME)
+    kinds = (("beyond line", ~cloud.good[some]), ("kept line", cloud.good[some]))
+    curves = [
+        lines({name: cloud.some[name][some][mask] for name in names}, role)
+        for role, mask in kinds
+        if np.any(mask)
+    ]
+    best = picked(len(designs.table), BEST)
+    if len(best):
+        curves.append(lines({name: columns[name][best] for name in names}, "design line"))
+    if model:
+        curves.append(lines({name: np.array([model[name]]) for name in names}, "own line"))
+    x, y = Axis(low=-0.5, high=len(names) - 0.5), Axis(low=0.0, high=1.0)
+    return Panel(
+        x, y, tuple(curves), flags=flags, rules=rules, bare=True,
+        grid=False, height=TALL, zero=False,
+    )  # fmt: skip
+
+
+def picked(count: int, most: int) -> Array:
+    """Which of some designs are drawn as lines: at most so many, evenly spread over them."""
+    return np.linspace(0, count - 1, min(count, most)).round().astype(int)
+
+
+def _share(axis: Axis, values: Array | float) -> Array:
+    """How far along an axis values lie."""
+    assert axis.low is not None and axis.high is not None
+    of: Callable[[Array], Array] = np.log if axis.scale == "log" else np.asarray
+    low, high, at = (of(np.asarray(item, float)) for item in (axis.low, axis.high, values))
+    return np.asarray((at - low) / (high - low))
+
+
+def _flag(at: int, axis: Axis, count: int) -> PlaceLabel:
+    """Words above an axis, in lines as wide as there is room."""
+    lines = lines_of(axis.label, WIDE / count - 8, SMALL)
+    texts = [*lines, axis.unit_name] if axis.unit_name else lines
+    return PlaceLabel(float(at), tuple(texts))
+
 
 NAMED = 3
 """Designs nearest to limits that are named."""

@@ -1,4 +1,4 @@
-"""Where everything of a chart goes on its sheet: heading, legends, panels, words around them.
+"""Where everything of a chart goes on its sheet: heading, legends, panels, words.
 
 Every room is as large as what stands in it, so that nothing is cut and nothing lies on anything
 else; no number here is the place of a thing, only its distance from the next.
@@ -6,16 +6,294 @@ else; no number here is the place of a thing, only its distance from the next.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
+from math import floor, log10
+from typing import Any
+
 import numpy as np
 
-from equipoise.figures.cells import Cell, cell_of, make_room, share
-from equipoise.figures.legend import APART, KEY, LegendKey, draw_legend, keys_of, kind_of, rows_of
+from equipoise.dataclass import dataclass
+from equipoise.figures.curves import draw_shapes, sample_of, signs_at
 from equipoise.figures.panel import LEAD, draw, flag_height, frame
-from equipoise.figures.sheet import Canvas, Words, lines_of, width_of
-from equipoise.figures.style import INK, LARGE, LINES, NORMAL, SMALL
-from equipoise.figures.view import AxisScale, View, ticks_of
-from equipoise.i18n import said
-from equipoise.results.charts import Axis, Chart
+from equipoise.figures.sheet import MIDDLE, Canvas, CanvasStroke, Words, lines_of, set_in, width_of
+from equipoise.figures.style import INK, LARGE, LINES, NORMAL, SMALL, look_of
+from equipoise.figures.view import DECADES, AxisScale, View, corners_of, ends_of, ticks_of
+from equipoise.i18n import said, say
+from equipoise.results.charts import Axis, Chart, Panel
+from equipoise.symbols.looks import LOOKS
+
+KEY, SAMPLE, APART = 13.5, 20.0, 14.0
+"""Points: height of a legend's row; width of a sample; between two of them."""
+
+
+@dataclass(frozen=True)
+class LegendKey:
+    """An entry of a legend: how something looks, and its name."""
+
+    role: str
+    name: str
+    kind: str
+    dashed: bool = False
+
+    @property
+    def width(self) -> float:
+        """Points."""
+        return SAMPLE + 5 + width_of(self.name, NORMAL)
+
+
+def kind_of(role: str) -> str:
+    """How a role is shown in a legend."""
+    if role in LOOKS:
+        return "machine"
+    look = look_of(role)
+    return "patch" if look.fill and not look.sign else "line"
+
+
+def keys_of(panel: Panel, chart_level: bool) -> list[LegendKey]:
+    """What has a name in a panel: what the chart's legend tells, or that of the panel itself."""
+    legend_keys = [LegendKey(c.role, c.label, "line", c.dashed) for c in panel.curves if c.label]
+    if panel.keyed:
+        legend_keys = [] if chart_level else legend_keys
+    elif not chart_level:
+        return []
+    if chart_level:
+        patches: Sequence[Any] = (*panel.bars, *panel.areas, *panel.outlines)
+        kinds = ("patch", patches), ("line", panel.lines), ("sign", panel.marks)
+        for kind, every in (*kinds, ("patch", panel.bands)):
+            legend_keys += [LegendKey(item.role, item.label, kind) for item in every if item.label]
+        if panel.surface is not None and panel.surface.lacking:
+            legend_keys.append(LegendKey("off", panel.surface.lacking, "patch"))
+    return [*dict.fromkeys(legend_keys)]
+
+
+def rows_of(keys: list[LegendKey], room: float) -> list[list[LegendKey]]:
+    """Entries of a legend in rows."""
+    rows: list[list[LegendKey]] = []
+    left = 0.0
+    for key in keys:
+        wide = key.width + APART
+        if not rows or left < wide - APART:
+            rows.append([])
+            left = room
+        rows[-1].append(key)
+        left -= wide
+    return rows
+
+
+def draw_legend(
+    sheet: Canvas, keys: list[LegendKey], left: float, right: float, top: float
+) -> float:
+    """Draw entries below each other in rows; where they end."""
+    for row in rows_of(keys, right - left):
+        x = left
+        for key in row:
+            _sample(sheet, key, x, top + KEY / 2)
+            text, size = set_in(key.name, right - x - SAMPLE - 5, NORMAL)
+            y = top + KEY / 2 + MIDDLE * NORMAL
+            sheet.add(Words(x + SAMPLE + 5, y, text, size, INK), 7)
+            x += key.width + APART
+        top += KEY
+    return top
+
+
+def _sample(sheet: Canvas, key: LegendKey, x: float, y: float) -> None:
+    if key.role in LOOKS:
+        draw_shapes(sheet, sample_of(key.role), lambda z: np.array([x + SAMPLE / 2, y]), 1.0, 6.0)
+        return
+    look = look_of(key.role, key.dashed)
+    if key.kind == "patch":
+        corners = corners_of((x + 3, y - 4, x + 17, y + 4))
+        sheet.add(CanvasStroke((corners,), fill=look.inside, opacity=look.opacity, closed=True), 6)
+        return
+    if look.width and key.kind == "line" and not (look.sign and look.order >= 4):
+        ends = np.array([(x, y), (x + SAMPLE, y)])
+        sheet.add(CanvasStroke((ends,), look.color, look.width, look.lengths), 6)
+    if look.sign or key.kind == "sign":
+        shown = replace(look, size=3.0 if look.sign == "." else look.size)
+        if not look.sign:
+            shown = replace(look, sign="o", size=4.0)
+        sheet.add(signs_at(np.array([(x + SAMPLE / 2, y)]), shown), 6.1)
+
+
+LIKE, ALIGNED = 5.0, 1.3
+"""From how much less than others a panel spans that is drawn larger than they are; over the longest
+of some axes, how long all may be so that all have the same ends."""
+SHALLOW = 0.5
+"""Over the usual height, what a panel has at least that needs less than others on their scale."""
+VARIES = 1e-9
+"""Over the largest value: what varies by less is rounding."""
+
+
+@dataclass(eq=False)
+class Cell:
+    """A panel and the room it needs, points: beside, above and below its axes."""
+
+    panel: Panel
+    x_ends: tuple[float, float]
+    y_ends: tuple[float, float]
+    height: float
+    span: float
+    """Of its axis of values, of one scale the longer of both; 0 where nothing varies."""
+    least_span: float = 0.0
+    """That it is drawn as if it had, where others have one scale with it."""
+    numbered: bool = True
+    left: float = 0.0
+    right: float = 0.0
+    above: float = 0.0
+    below: float = 0.0
+    keys: tuple[LegendKey, ...] = ()
+    beside: bool = False
+    """Whether its legend stands on the line of its title."""
+    titles: tuple[str, ...] = ()
+    remarks: tuple[str, ...] = ()
+    apart: bool = False
+    """Lines of its title and of its remark; whether these begin below the last line of that."""
+    y_label: tuple[str, ...] = ()
+    x_label: tuple[str, ...] = ()
+
+
+def cell_of(panel: Panel, height: float) -> Cell:
+    """A panel with the ends of its axes, that hold what is drawn."""
+    curves = panel.curves
+    x: list[Any] = [*(curve.x for curve in curves), *(area.x for area in panel.areas)]
+    y: list[Any] = [curve.y for curve in curves]
+    y += [ends for area in panel.areas for ends in (area.low, area.high)]
+    for bars in panel.bars:
+        half = np.asarray(bars.width, float) / 2
+        along, up = np.concatenate([bars.at - half, bars.at + half]), [*bars.size, 0.0]
+        x.append(along if bars.across == "x" else up)
+        y.append(up if bars.across == "x" else along)
+    x += [cells.x for cells in panel.cells]
+    y += [cells.y for cells in panel.cells]
+    x += [[mark.x] for mark in panel.marks]
+    y += [[mark.y] for mark in panel.marks]
+    places = [np.array([arrow.tail, arrow.head]) for arrow in panel.arrows]
+    places += [outline.places for outline in panel.outlines]
+    places += [np.array(panel.held)] if panel.held is not None else []
+    places += [np.zeros(1)] if panel.rings or (panel.equal and panel.zero) else []
+    x += [place.real for place in places]
+    y += [place.imag for place in places]
+    if panel.surface is not None:
+        x.append(panel.surface.x)
+        y.append(panel.surface.y)
+    ends = ends_of(panel.x, x), ends_of(panel.y, y)
+    spans = [high - low for low, high in ends] if panel.equal else [ends[1][1] - ends[1][0]]
+    varying = _vary(y) or (panel.equal and _vary(x)) or panel.y.low is not None
+    return Cell(panel, *ends, height, max(spans) if varying and not panel.message else 0.0)
+
+
+def _vary(parts: list[Any]) -> bool:
+    """Whether values are not all the same."""
+    every = np.concatenate([np.zeros(0), *(np.ravel(np.asarray(part, float)) for part in parts)])
+    every = every[np.isfinite(every)]
+    return bool(every.size and np.ptp(every) > VARIES * np.max(np.abs(every)))
+
+
+# -- one scale -------------------------------------------------------------------------------------
+
+
+def share(cells: list[Cell], columns: int) -> None:
+    """One scale for panels of one unit over like axes; what that would flatten is drawn larger."""
+    groups: dict[tuple[str, str, bool], list[Cell]] = {}
+    for cell in cells:
+        panel = cell.panel
+        span = cell.span or panel.message  # what is constant may be far from the others
+        if span and panel.y.unit.unit and (panel.y.scale == "log" or panel.y.high is None):
+            key = panel.x.text, panel.y.unit.unit, panel.equal
+            groups.setdefault(key, []).append(cell)
+    for group in groups.values():
+        if group[0].panel.y.scale == "log":
+            low, high = (f(c.y_ends[k] for c in group) for k, f in enumerate((min, max)))
+            for cell in group if high < low * 10**DECADES else ():
+                cell.y_ends = (low, high)
+            continue
+        rate = max(cell.span / cell.height for cell in group)
+        if len(group) < 2 or not rate:
+            continue
+        larger = [_enlarged(cell, rate * cell.height) for cell in group]
+        if not group[0].panel.equal:
+            alike = [cell for cell, times in zip(group, larger, strict=True) if times == 1]
+            rate = _align([cell for cell in alike if cell.panel.y.low is None], rate)
+        for cell, times in zip(group, larger, strict=True):
+            cell.least_span = rate * cell.height / times
+            if not cell.panel.equal:
+                _stretch(cell, columns)
+
+
+def _enlarged(cell: Cell, most: float) -> float:
+    """How many times larger than others a panel is drawn, which it tells; others span `most`."""
+    if not cell.span or most < LIKE * cell.span:
+        return 1.0
+    times = most / cell.span
+    power = 10.0 ** floor(log10(times))
+    larger = power * max(digit for digit in (1, 2, 5) if digit * power <= times)
+    text = say("drawn {times} times as large", times=f"{larger:g}")
+    remark = f"{cell.panel.remark}; {text}" if cell.panel.remark else text
+    cell.panel = replace(cell.panel, remark=remark)
+    return larger
+
+
+def _align(cells: list[Cell], rate: float) -> float:
+    """Give axes equal ends, where these need not be much longer for that.
+
+    rate : of one scale, a point in the unit of the axes.  Returns that which all of them have then.
+    """
+    ends = np.array([cell.y_ends for cell in cells if cell.span])
+    if not ends.size:
+        return rate
+    low, high = float(np.min(ends)), float(np.max(ends))
+    least = (high - low) / min(cell.height for cell in cells)
+    if least > ALIGNED * rate:
+        return rate
+    for cell in cells:
+        cell.y_ends = (low, high)
+    return max(rate, least)
+
+
+def _stretch(cell: Cell, columns: int) -> None:
+    """An axis as long as its scale has it: in both senses, or from where it begins.
+
+    One that begins somewhere, with no other beside it, gets less high before it gets longer.
+    """
+    low, high = cell.y_ends
+    if cell.panel.y.low is None:
+        middle, half = (low + high) / 2, cell.least_span / 2
+        cell.y_ends = (middle - half, middle + half)
+        return
+    part = 1.0
+    if columns == 1 and cell.span and not cell.panel.height:
+        part = min(max((high - low) / cell.least_span, SHALLOW), 1.0)
+    cell.height *= part
+    cell.y_ends = (low, low + part * cell.least_span)
+
+
+NUMBERS = 15.0
+"""Points above the highest bar that its number takes."""
+
+
+def make_room(cell: Cell, over: float) -> None:
+    """Higher axes of the same scale, where numbers at bars or a word of their name need that.
+
+    over : points by which a name may be longer than its axis.
+    """
+    panel, factor = cell.panel, cell.panel.y.unit.factor
+    fixed = panel.y.ticks is not None or panel.y.high is not None or panel.y.scale == "log"
+    if panel.equal or panel.bare or fixed:
+        return
+    low, high = cell.y_ends
+    rate = (high - low) / cell.height
+    matching_bars = [bars for bars in panel.bars if bars.told and bars.across == "x"]
+    top = factor * max(
+        (float(np.max(bars.size, initial=0.0)) for bars in matching_bars), default=0.0
+    )
+    above = max(NUMBERS - (high - top) / rate, 0.0) if matching_bars else 0.0
+    longest = max((width_of(word, NORMAL) for word in panel.y.text.split()), default=0.0)
+    extra = max(longest - over - cell.height - above, 0.0)
+    below = 0.0 if panel.bars else extra / 2
+    cell.height += above + extra
+    cell.y_ends = (low - below * rate, high + (above + extra - below) * rate)
+
 
 WIDE, HALF = 518.4, 290.0
 """Points: width of a picture, and of one of a pair, which is shown half as wide as a page."""

@@ -15,14 +15,12 @@ from equipoise.figures.style import short
 from equipoise.i18n import Note, say
 from equipoise.mechanism.checks import FRAME
 from equipoise.mechanism.kinematics.motion import move
-from equipoise.mechanism.outputs.poles import instant_center, pairs, pinned
+from equipoise.mechanism.outputs.declared import instant_center, pairs, pinned
 from equipoise.results.charts import Array, Axis, Chart, Curve, Mark, Panel, shown
-from equipoise.symbols.clear import clear_angle
+from equipoise.symbols.looks import in_turn
 from equipoise.symbols.pieces import GROUND, pieces, placed
-from equipoise.symbols.scene import Scene
+from equipoise.symbols.scene import Scene, called, clear_angle
 from equipoise.symbols.shapes import Shape, line
-from equipoise.symbols.stacks import in_turn
-from equipoise.symbols.wheels import called
 
 if TYPE_CHECKING:
     from equipoise.mechanism.kinematics.motion import Motion

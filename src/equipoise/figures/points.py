@@ -19,8 +19,7 @@ from equipoise.figures.shared import (
 )
 from equipoise.figures.style import short
 from equipoise.i18n import say
-from equipoise.mechanism.outputs.poles import guided, pinned
-from equipoise.mechanism.outputs.spoken import joint_named
+from equipoise.mechanism.outputs.declared import guided, joint_named, pinned
 from equipoise.quantities import Dimension
 from equipoise.results.charts import Array, Arrow, Axis, Chart, Curve, Mark, Panel, shown
 

@@ -11,10 +11,10 @@ from equipoise.figures.linkage import told_angle
 from equipoise.figures.style import short
 from equipoise.i18n import say
 from equipoise.mechanism.checks import FRAME
-from equipoise.mechanism.dynamics.statics import contacts, pushing
+from equipoise.mechanism.dynamics.across import contacts, pushing
 from equipoise.mechanism.kinematics.motion import move
-from equipoise.mechanism.parts.body_checks import outlines
-from equipoise.mechanism.parts.planes import masses_of
+from equipoise.mechanism.parts.bodies import outlines
+from equipoise.mechanism.parts.links import masses_of
 from equipoise.results.charts import Array, Axis, Chart, Mark, Panel
 from equipoise.symbols.shapes import PIN, Shape, block, circle, cylinder, line, mass, pivot
 

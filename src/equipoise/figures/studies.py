@@ -31,8 +31,7 @@ from equipoise.studies.blocks import named_together, unit_in
 if TYPE_CHECKING:
     from equipoise.studies.blocks import Unit
     from equipoise.studies.objective_map import Landscape
-    from equipoise.studies.tolerances import Cause, Tolerances
-    from equipoise.studies.variance import IntervalEstimate, Scatter
+    from equipoise.studies.tolerances import Cause, IntervalEstimate, Scatter, Tolerances
 
 Units = Mapping[str, "Unit"]
 NARROW = 0.05

@@ -39,7 +39,7 @@ from equipoise.results.charts import (
 )
 
 if TYPE_CHECKING:
-    from equipoise.vibration.resonance import Resonance
+    from equipoise.vibration.linear import Resonance
     from equipoise.vibration.sweep import Sweep
 
 QUANTITIES = {

@@ -17,9 +17,7 @@ from equipoise.mechanism.kinematics.motion import move
 from equipoise.mechanism.parts.support import AXES, FREEDOMS, PLANAR
 from equipoise.results.charts import quantity, shown
 from equipoise.symbols.carrier import SupportSwing
-from equipoise.symbols.clear import clear_angle
-from equipoise.symbols.drives import DriveSign
-from equipoise.symbols.scene import Scene
+from equipoise.symbols.scene import DriveSign, Scene, clear_angle
 from equipoise.symbols.shapes import Array
 
 if TYPE_CHECKING:
@@ -31,7 +29,7 @@ LARGEST = 0.04
 """Largest displacement that is drawn, over the size of the drawing."""
 LEAST = 0.01
 """Share of the largest displacement below which one is not told."""
-ANGLES, INSTANTS = 360, 240
+CLEAR_ANGLES, INSTANTS = 360, 240
 """In a turn, among which a clear one is looked for; in a swing."""
 ACROSS = {"sway": to_say("sway"), "roll": to_say("roll"), "yaw": to_say("yaw")}
 """What is not in the plane of the drawing."""
@@ -129,7 +127,7 @@ def in_mode(free: FreeVibration, number: int, instants: int = INSTANTS) -> Scene
         raise UsageError(
             Note("got {number}; the machine has the modes 1 to {count}", number=number, count=count)
         )
-    still = Scene.of(move(free.machine, ANGLES))
+    still = Scene.of(move(free.machine, CLEAR_ANGLES))
     angle = still.crank_angle[clear_angle(still)]
     scene = Scene.of(move(free.machine, np.full(instants, angle)))
     drive = DriveSign(scene.drive.link, scene.drive.pivot, 0)

@@ -10,22 +10,28 @@ import numpy as np
 
 from equipoise.figures.shared import SpeedCurve, curves_of, ends, log_ends
 from equipoise.figures.style import short
-from equipoise.figures.tool_shaft import plane_named, turns_told
-from equipoise.figures.tool_speeds import RATE, engine_axis, hand_peaks, work_line, work_mark
+from equipoise.figures.tool_shaft import (
+    RATE,
+    engine_axis,
+    hand_peaks,
+    plane_named,
+    turns_told,
+    work_line,
+    work_mark,
+)
 from equipoise.handheld.design_plan import KEYS, MEASURES
 from equipoise.handheld.exposed import grips
 from equipoise.handheld.frequencies import scale_of
 from equipoise.handheld.hand_blocks import figure_named
+from equipoise.handheld.modes import number_of
 from equipoise.handheld.response import respond_tool
-from equipoise.handheld.studies import number_of
 from equipoise.i18n import decimals, say, to_say
 from equipoise.quantities import Dimension, Display, display
 from equipoise.results.charts import RPM, Array, Axis, Chart, Curve, Line, Mark, Panel, shown
 
 if TYPE_CHECKING:
     from equipoise.handheld.design import ToolDesign
-    from equipoise.handheld.modes import ToolModes
-    from equipoise.handheld.studies import DeterminantChart, Variation
+    from equipoise.handheld.modes import DeterminantChart, ToolModes, Variation
 
 
 MOST_CHANGES = 8

@@ -39,8 +39,8 @@ from equipoise.vibration.linear import Linear
 
 if TYPE_CHECKING:
     from equipoise.signals import Figures, Periodic
+    from equipoise.vibration.free import Transient
     from equipoise.vibration.response import GaugeSignals, MountForce, Response
-    from equipoise.vibration.transient import Transient
 
 
 QUANTITIES = {

@@ -16,6 +16,7 @@ from .model import Station as Station
 from .model import Tool as Tool
 from .model import Work as Work
 from .modes import ToolModes as ToolModes
+from .modes import vary_tool as vary_tool
 from .modes import vibrate_tool as vibrate_tool
 from .response import ToolResponse as ToolResponse
 from .response import respond_tool as respond_tool
@@ -23,7 +24,6 @@ from .shaft import Section as Section
 from .shaft import Segment as Segment
 from .shaft import Shaft as Shaft
 from .shaft import Tube as Tube
-from .studies import vary_tool as vary_tool
 from .sweep import ToolSweep as ToolSweep
 from .sweep import Transmissions as Transmissions
 from .sweep import sweep_tool as sweep_tool

@@ -1,4 +1,7 @@
-"""The shaft as a chain of segments and stations, carried from left to right.
+"""The shaft as a chain of segments and stations, and numbers that carry their derivatives.
+
+A kernel of plain arithmetic (`+ - * /`) runs on these as it runs on arrays, and what comes out has
+the exact derivative by every variable that went in: forward differentiation, without a step.
 
 A segment's transfer matrix, exact, as entire functions.  The state along the shaft is displacement
 w, slope angle theta, bending moment M and shear force V, both as the right part exerts them on the
@@ -35,8 +38,69 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from equipoise.dataclass import dataclass
-from equipoise.handheld.duals import value_of
 from equipoise.signals import Array
+
+
+class Dual:
+    """A value with its derivatives.
+
+    value : array (...), real or complex.
+    slopes : derivatives (P, ...) by P variables, of the value's shape or broadcast against it.
+    """
+
+    __array_ufunc__ = None  # an array on the left leaves the operation to this class
+    __slots__ = ("slopes", "value")
+
+    def __init__(self, value: Any, slopes: Any) -> None:
+        self.value, self.slopes = value, slopes
+
+    def __add__(self, other: Any) -> Dual:
+        if isinstance(other, Dual):
+            return Dual(self.value + other.value, self.slopes + other.slopes)
+        return Dual(self.value + other, self.slopes)
+
+    __radd__ = __add__
+
+    def __neg__(self) -> Dual:
+        return Dual(-self.value, -self.slopes)
+
+    def __sub__(self, other: Any) -> Dual:
+        return self.__add__(-other)
+
+    def __rsub__(self, other: Any) -> Dual:
+        return (-self).__add__(other)
+
+    def __mul__(self, other: Any) -> Dual:
+        if isinstance(other, Dual):
+            slopes = self.slopes * other.value + other.slopes * self.value
+            return Dual(self.value * other.value, slopes)
+        return Dual(self.value * other, self.slopes * other)
+
+    __rmul__ = __mul__
+
+    def __truediv__(self, other: Any) -> Dual:
+        if not isinstance(other, Dual):
+            return Dual(self.value / other, self.slopes / other)
+        ratio = self.value / other.value
+        return Dual(ratio, (self.slopes - ratio * other.slopes) / other.value)
+
+    def __rtruediv__(self, other: Any) -> Dual:
+        ratio = other / self.value
+        return Dual(ratio, -ratio * self.slopes / self.value)
+
+    def __getitem__(self, key: Any) -> Dual:
+        """A part of the value; the slopes must have its full shape."""
+        return Dual(self.value[key], self.slopes[(slice(None), *np.index_exp[key])])
+
+    def conj(self) -> Dual:
+        """Complex conjugate."""
+        return Dual(np.conj(self.value), np.conj(self.slopes))
+
+
+def value_of(number: Any) -> Any:
+    """The value of a number with or without derivatives."""
+    return number.value if isinstance(number, Dual) else number
+
 
 SHORT = 0.9
 """Share of the lowest natural frequency of a clamped segment up to which it is used, squared."""

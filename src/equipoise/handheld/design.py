@@ -10,11 +10,11 @@ import numpy as np
 
 from equipoise.dataclass import dataclass
 from equipoise.design.solvers import DesignProblem, DesignSolution, solve
-from equipoise.design.spreads import Range
+from equipoise.design.variables import Range
 from equipoise.errors import ModelError, ResponseError
 from equipoise.exposure.daily import Exposure
+from equipoise.handheld.chain import Dual
 from equipoise.handheld.design_plan import KEYS, DesignLimit, DesignPlan
-from equipoise.handheld.duals import Dual
 from equipoise.handheld.exposed import (
     BandFigures,
     SpeedBand,
@@ -24,9 +24,8 @@ from equipoise.handheld.exposed import (
     values_of,
 )
 from equipoise.handheld.model import Tool
-from equipoise.handheld.reciprocal import Number
-from equipoise.handheld.response import respond_tool, rms_over_time
-from equipoise.handheld.studies import changed
+from equipoise.handheld.modes import changed
+from equipoise.handheld.response import Number, respond_tool, rms_over_time
 from equipoise.handheld.sweep import speeds_between
 from equipoise.i18n import Note, to_say
 from equipoise.results.result import Result

@@ -14,14 +14,15 @@ from equipoise.dataclass import dataclass
 from equipoise.errors import ModelError
 from equipoise.exposure.daily import Exposure, Task, daily_exposure, equivalent
 from equipoise.exposure.weighting import squared_factor
-from equipoise.handheld.chain import carry, solve
+from equipoise.handheld.chain import Dual, carry, solve
 from equipoise.handheld.design_plan import KEYS
-from equipoise.handheld.duals import Dual
 from equipoise.handheld.layout import HarmonicField, Layout, check_coverage
 from equipoise.handheld.model import PLANES, Tool, Work
-from equipoise.handheld.reciprocal import Number, Reciprocal
+from equipoise.handheld.modes import has, number_of
 from equipoise.handheld.response import (
     NOTHING,
+    Number,
+    Reciprocal,
     ToolResponse,
     loads_on,
     loud,
@@ -29,7 +30,6 @@ from equipoise.handheld.response import (
     respond_tool,
     shakes,
 )
-from equipoise.handheld.studies import has, number_of
 from equipoise.handheld.sweep import SPEED
 from equipoise.i18n import Note
 from equipoise.results.declaring import Declarations, ResultOutput
@@ -112,7 +112,7 @@ class ToolExposure(Result):
     """
 
     blocks_in = "handheld.hand_blocks.exposure_of_tool"
-    pictures_in = "figures.tool_speeds.exposure_charts"
+    pictures_in = "figures.tool_shaft.exposure_charts"
     headline_in = "handheld.headline.exposure_headline"
 
     response: ToolResponse

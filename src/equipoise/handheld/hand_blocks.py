@@ -21,7 +21,7 @@ from equipoise.handheld.blocks import (
 from equipoise.handheld.design_plan import KEYS
 from equipoise.handheld.exposed import IDLING, RACING, WORKING
 from equipoise.handheld.model import PLANES
-from equipoise.handheld.studies import number_of
+from equipoise.handheld.modes import number_of
 from equipoise.i18n import say, to_say
 from equipoise.quantities import brief, number
 from equipoise.results.blocks import (
@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from equipoise.handheld.design import Before, ToolDesign
     from equipoise.handheld.exposed import ToolExposure
     from equipoise.handheld.model import Tool
-    from equipoise.handheld.studies import Variation
+    from equipoise.handheld.modes import Variation
 
 EDGES = {"lowest": to_say("at its lower limit"), "highest": to_say("at its upper limit")}
 VARIED = {

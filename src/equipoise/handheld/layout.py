@@ -14,14 +14,15 @@ from equipoise.dataclass import dataclass
 from equipoise.errors import ModelError, UsageError
 from equipoise.handheld.chain import (
     Chain,
+    Dual,
     NodePair,
     States,
     Transfer,
     longest,
     shear_transfer,
     transfer,
+    value_of,
 )
-from equipoise.handheld.duals import Dual, value_of
 from equipoise.handheld.model import Impedance, Station, Tool
 from equipoise.handheld.shaft import Section
 from equipoise.i18n import Note

@@ -12,10 +12,8 @@ from contextvars import ContextVar
 from types import MappingProxyType
 from typing import Any, Self
 
-from equipoise.i18n.counting import form_of, texts
 from equipoise.i18n.decimals import filled, with_sign
-from equipoise.i18n.languages import KNOWN
-from equipoise.i18n.particles import with_particles
+from equipoise.i18n.languages import KNOWN, form_of, texts, with_particles
 
 LANGUAGES = {code: language.name for code, language in KNOWN.items()}
 """Code of a language -> its own name."""

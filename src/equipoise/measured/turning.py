@@ -16,8 +16,16 @@ from equipoise.dataclass import dataclass
 from equipoise.decompositions import lstsq
 from equipoise.errors import UsageError
 from equipoise.i18n import Note
-from equipoise.measured.record import Record
-from equipoise.measured.smoothing import Local, Samples, fitted, means, steepest_time, top, zigzag
+from equipoise.measured.record import (
+    Local,
+    Record,
+    Samples,
+    fitted,
+    means,
+    steepest_time,
+    top,
+    zigzag,
+)
 from equipoise.signals import Array
 
 ROUGH = 0.3

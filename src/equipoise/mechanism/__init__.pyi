@@ -18,7 +18,6 @@ from .parts.circular_slots import CircularSlot as CircularSlot
 from .parts.curved_slots import CurvedSlot as CurvedSlot
 from .parts.dampers import Damper as Damper
 from .parts.dampers import DamperTable as DamperTable
-from .parts.duty_states import DutyState as DutyState
 from .parts.field import Planting as Planting
 from .parts.field import PlantingArm as PlantingArm
 from .parts.field import Soil as Soil
@@ -27,6 +26,7 @@ from .parts.force_elements import GasTable as GasTable
 from .parts.force_elements import Motor as Motor
 from .parts.force_elements import MotorTable as MotorTable
 from .parts.joint_properties import JointProperties as JointProperties
+from .parts.joint_properties import RollingBearing as RollingBearing
 from .parts.machine import Cam as Cam
 from .parts.machine import Drive as Drive
 from .parts.machine import Gear as Gear
@@ -39,7 +39,7 @@ from .parts.machine import Slider as Slider
 from .parts.racks import Rack as Rack
 from .parts.resistances import Resistance as Resistance
 from .parts.resistances import ResistanceTable as ResistanceTable
-from .parts.rolling_bearings import RollingBearing as RollingBearing
+from .parts.run_plans import DutyState as DutyState
 from .parts.run_plans import RunPlan as RunPlan
 from .parts.sections import LinkSection as LinkSection
 from .parts.servo_motors import ServoMotor as ServoMotor

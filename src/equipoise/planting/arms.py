@@ -8,9 +8,8 @@ from typing import TypeVar
 import numpy as np
 
 from equipoise.mechanism.kinematics.tip import TipCurve
-from equipoise.planting.figures import tip_figures
+from equipoise.planting.figures import shaking, tip_figures
 from equipoise.planting.names import SHAKING_FIGURES
-from equipoise.planting.shaking import shaking
 from equipoise.planting.stroke import Figures, release, soil_crossings
 from equipoise.signals import Array
 

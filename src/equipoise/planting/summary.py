@@ -16,19 +16,22 @@ from equipoise.i18n import Note
 from equipoise.mechanism.checks import NamedItems
 from equipoise.mechanism.dynamics.forces import Forces, forces, massless
 from equipoise.mechanism.kinematics.jumps import resolved
-from equipoise.mechanism.kinematics.motion import MOST_ANGLES, Motion, move
-from equipoise.mechanism.kinematics.rates import PointMotion
+from equipoise.mechanism.kinematics.motion import MOST_ANGLES, Motion, PointMotion, move
 from equipoise.mechanism.kinematics.tip import TipCurve
 from equipoise.mechanism.outputs.declared import declared
 from equipoise.mechanism.parts.field import Planting
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.planting.arms import SHARED, hills, of_arm
-from equipoise.planting.figures import tip_figures
-from equipoise.planting.ground import GroundPath, Loop
+from equipoise.planting.figures import GroundPath, Loop, shaking, tip_figures
 from equipoise.planting.names import dimension_of
-from equipoise.planting.shaking import shaking
-from equipoise.planting.stroke import Visit, finger_base, tray_crossings, visits, wrapped
-from equipoise.planting.twins import nearly_alike
+from equipoise.planting.stroke import (
+    Visit,
+    finger_base,
+    nearly_alike,
+    tray_crossings,
+    visits,
+    wrapped,
+)
 from equipoise.quantities import Dimension
 from equipoise.results.declaring import NOTES, PLACES, TITLE, Declarations, ResultOutput, values_of
 from equipoise.results.result import Result

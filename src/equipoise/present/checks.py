@@ -1,4 +1,4 @@
-"""What `equipoise check` tells of the file of a linkage and of a hand-held tool."""
+"""What `equipoise check` says of the file of a linkage, a tool, or a study."""
 
 from __future__ import annotations
 
@@ -6,11 +6,13 @@ from collections.abc import Iterable, Iterator, Sequence
 from math import pi
 from typing import TYPE_CHECKING
 
-from equipoise.errors import ModelError
+from equipoise.codegen.backends import engine, processors
+from equipoise.codegen.figures import COMPUTED, REASONS
+from equipoise.errors import ModelError, lacking
 from equipoise.handheld.design_plan import OUTPUTS
 from equipoise.handheld.hand_blocks import varied_named
 from equipoise.handheld.shaft import Section
-from equipoise.i18n import say, to_say
+from equipoise.i18n import Note, say, to_say
 from equipoise.mechanism.assembly.cycle import turns_given
 from equipoise.mechanism.assembly.joints import moving_links
 from equipoise.mechanism.assembly.linkage import assemble
@@ -20,11 +22,19 @@ from equipoise.mechanism.dynamics.loads import work_in_cycle
 from equipoise.mechanism.kinematics.motion import move
 from equipoise.mechanism.parts.support import idle_parts
 from equipoise.quantities import PER_RPM, SI, Dimension, angle, display, number, told
+from equipoise.quantities.numbers import rate_told, time_told
 from equipoise.results.blocks import Block, Cell, Column, FileText, Notes, Table, Text, Value
 from equipoise.results.cam_blocks import cams_told
-from equipoise.results.drive_blocks import driven
 from equipoise.results.lost_contacts import where_lost
-from equipoise.results.machine_blocks import bodies_tables, place_told
+from equipoise.results.machine_blocks import bodies_tables, driven, place_told
+from equipoise.signals import Array
+from equipoise.studies.blocks import Units, in_unit, labelled, spread_told, unit_in
+from equipoise.studies.evaluate import evaluator
+from equipoise.studies.outcomes import Evaluator, Outcome, estimated
+from equipoise.studies.run import Route
+from equipoise.studies.searching import LEAST_POPULATION, breeding_time, search_size
+from equipoise.studies.study import SLOW_CHUNK, samples
+from equipoise.studies.tolerances import machines_of
 from equipoise.vibration.body import SupportBody, at_rest
 from equipoise.vibration.linear import SupportExcitation as Shaking
 
@@ -38,6 +48,125 @@ if TYPE_CHECKING:
     from equipoise.mechanism.parts.joint_properties import JointProperties
     from equipoise.mechanism.parts.machine import Machine
     from equipoise.mechanism.parts.support import Gauge, Mount
+    from equipoise.studies.study import Study
+
+HOW_COMPUTED = {
+    "numba": to_say("computed many at once, in compiled loops"),
+    "numpy": to_say("computed many at once, by NumPy"),
+}
+"""How designs are computed, by what computes them."""
+SLOW = to_say("computed one after the other")
+
+
+def study_blocks(study: Study, units: Units, file: str) -> Iterator[Block]:
+    """Everything about a study that can be told before it is computed."""
+    compute = evaluator(study)
+    own = study.own
+    outcome = compute(own[None])
+    sampling = study.sampling
+    yield Text(say("model: {title}", title=study.model.base().title))
+    template = to_say("{count} designs, {method}, seed {seed}")
+    if sampling.method == "grid":
+        template = to_say("{count} designs, {method}")
+    yield Text(say(template, count=study.size, method=sampling.method, seed=sampling.seed))
+    varied = _varied(study, units, own)
+    yield Table.of("What varies", ("", "path", "model", "in the study"), varied)
+    for correlation in study.correlations:
+        yield Text(
+            say(
+                "correlation of {first} and {second}, coefficient {coefficient:g}",
+                first=correlation.first,
+                second=correlation.second,
+                coefficient=correlation.coefficient,
+            )
+        )
+    heads = ("", "of", "model", "at least", "at most", "make")
+    yield Table.of("What is computed", heads, _computed(study, units, outcome))
+    compiled = getattr(compute, "compiled", False)
+    yield Text(say(HOW_COMPUTED[engine()] if compiled else SLOW))
+    yield from map(Text, _times(study, compute))
+    if outcome.reason[0] != COMPUTED:
+        reason = Note(REASONS[int(outcome.reason[0])])
+        yield Notes((Note("the model itself has no figures ({reason})", reason=reason),))
+    yield FileText("", "\n".join(_ready(study, file)))
+
+
+def _times(study: Study, compute: Evaluator) -> Iterator[str]:
+    """How long each command that takes the study needs at most, and what that was taken from."""
+    route = Route(study)
+    estimate = estimated(route, study.size, route.chunk, processors())
+    yield say(
+        "time for all: {total} on {processors}; measured: {rate} on one, with {designs}",
+        total=_about(estimate.seconds),
+        processors=say("{count} processors", count=estimate.workers),
+        rate=rate_told(estimate.rate),
+        designs=say("{count} designs", count=estimate.designs),
+    )
+
+    def sample_outcome(designs: range) -> Outcome:
+        return compute(samples(study, designs.start, len(designs)))
+
+    if _is_searched(study) and study.size >= LEAST_POPULATION:
+        population, generations = search_size(study)
+        most = population * generations
+        seconds = estimated(sample_outcome, most, population, 1).seconds
+        seconds += generations * breeding_time(study, population)
+        yield say(
+            "time for a search of at most {count} designs, {generations} generations of "
+            "{population}: {time}",
+            count=most,
+            generations=generations,
+            population=population,
+            time=_about(seconds),
+        )
+    if _is_tolerance(study):
+        most = machines_of(study)
+        estimate = estimated(sample_outcome, study.size, min(study.chunk, SLOW_CHUNK), 1)
+        seconds = estimate.seconds * most / study.size
+        template = to_say("time for equipoise tolerance, of {count} machines: {time}")
+        yield say(template, count=most, time=_about(seconds))
+
+
+def _about(seconds: float) -> str:
+    return say("about {time}", time=time_told(seconds)) if seconds >= 1 else say("less than 1 s")
+
+
+def _is_searched(study: Study) -> bool:
+    aimed = bool(study.objectives) and not any(item.spread.tolerance for item in study.vary)
+    return aimed and not lacking("a search")
+
+
+def _is_tolerance(study: Study) -> bool:
+    return all(item.spread.tolerance for item in study.vary)
+
+
+def _varied(study: Study, units: Units, own: Array) -> Iterator[tuple[Cell, ...]]:
+    for variable, value in zip(study.vary, own.tolist(), strict=True):
+        unit = unit_in(units, variable.path)
+        spread = spread_told(variable.spread, unit)
+        yield labelled(unit), variable.path, in_unit(value, unit), spread
+
+
+def _computed(study: Study, units: Units, outcome: Outcome) -> Iterator[tuple[Cell, ...]]:
+    for output, figure in zip(study.outputs, outcome.figures[0].tolist(), strict=True):
+        unit = unit_in(units, output.name)
+        ends = (in_unit(end, unit) for end in (output.at_least, output.at_most))
+        own = in_unit(figure, unit)
+        yield labelled(unit), output.of, own, *ends, output.make or ""
+
+
+def _ready(study: Study, file: str) -> Iterator[str]:
+    """Commands that take it, and what those lack that might."""
+    yield lacking("a sweep") or _ready_for(f"equipoise sweep {file} -o designs.zarr")
+    if _is_tolerance(study):
+        yield _ready_for(f"equipoise tolerance {file}")
+    if study.objectives and not any(item.spread.tolerance for item in study.vary):
+        yield lacking("a search") or _ready_for(f"equipoise search {file}")
+
+
+def _ready_for(command: str) -> str:
+    return say("ready for: {command}", command=command)
+
 
 UNUSUAL = 0.5
 """Coefficient of friction above which it is asked whether it is meant."""
@@ -106,7 +235,7 @@ def _uncarried(machine: Machine) -> Iterator[str]:
         yield f"{error}; respond and modes need that"
 
 
-HOW = {
+HOW_SOLVED = {
     "loops": "by Newton's method on the loop equations",
     "pointed": "where its pins are brought",
     "hung": "pushed",
@@ -125,7 +254,7 @@ def _build_up(linkage: Linkage) -> Iterable[str]:
             else f"{r.name} ({r.kind} on {r.by})"
             for r in shown
         )  # fmt: skip
-        yield f"  {links}: {HOW.get(group.kind, group.kind)}; joints {joints}"
+        yield f"  {links}: {HOW_SOLVED.get(group.kind, group.kind)}; joints {joints}"
 
 
 MOST_SHOWN = 12

@@ -1,4 +1,4 @@
-"""A report from findings: what stands in it, in which order; and on disk."""
+"""A report from findings: what stands in it, in which order, with its sources; and on disk."""
 
 from __future__ import annotations
 
@@ -17,15 +17,12 @@ from equipoise.handheld.model import Tool
 from equipoise.i18n import LANGUAGES, Note, coordinates, said, say, speaking, to_say
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.planting.blocks import planting_blocks
-from equipoise.present.drawing import drawings
 from equipoise.present.findings import Findings, ToolFindings, find
-from equipoise.present.fonts import check_pdf
 from equipoise.present.headlines import seen_in
-from equipoise.present.pages import ReportDocument, SummaryAnswer, page, pdf
-from equipoise.present.sources import sources
+from equipoise.present.pages import ReportDocument, SummaryAnswer, check_pdf, page, pdf
+from equipoise.present.pictures import drawings
 from equipoise.present.summary import answers, check_whole_cycle, tiles
-from equipoise.present.tool_headlines import outstanding
-from equipoise.present.tool_summary import tool_answers, tool_tiles
+from equipoise.present.tool_summary import outstanding, tool_answers, tool_tiles
 from equipoise.quantities import PER_RPM, chosen_units, number
 from equipoise.results.analysis import Analysis
 from equipoise.results.analysis_blocks import force_blocks, motion_blocks, question_blocks
@@ -42,13 +39,56 @@ from equipoise.results.blocks import (
     interleave_changes,
 )
 from equipoise.results.cam_blocks import cam_blocks
-from equipoise.results.drive_blocks import driven
 from equipoise.results.headline import verdict_blocks
 from equipoise.results.joint_blocks import elements_tables, joint_blocks
-from equipoise.results.machine_blocks import angles_told, model_blocks
-from equipoise.results.own_words import in_own_words
-from equipoise.vibration.blocks import model_told, response_blocks
-from equipoise.vibration.sweep_blocks import resonances_table
+from equipoise.results.machine_blocks import angles_told, driven, model_blocks
+from equipoise.results.result import in_own_words
+from equipoise.vibration.blocks import model_told, resonances_table, response_blocks
+
+KIM_CHUNG = (
+    "Kim, K. U., Chung, C. J.: An analytical method for kinematic analysis of the planting "
+    "mechanism of a rice transplanter, c. 1977"
+)
+YAMASHITA = (
+    "山下光司, 市川真祐, 森邦男: 田植機における植付爪の振動消去に関する研究 "
+    "(Yamashita, Ichikawa, Mori: Studies on control of vibrations originating in rice "
+    "transplanting mechanism), c. 1982"
+)
+LEE_KIM = (
+    "李政基, 金景旭: 크랭크식 移秧機 植付機構의 動的 均衡에 관한 研究 "
+    "(Lee, Kim: Dynamic balancing of crank-type transplanting mechanism of rice "
+    "transplanter), c. 1990"
+)
+NAGAMINE_IRIE = (
+    "長嶺正紀, 入江敏博: 刈払機の振動特性について "
+    "(Nagamine, Irie: On the vibration characteristics of a brush cutter), 1970"
+)
+ISO_5349 = "ISO 5349-1:2001, ISO 5349-2:2001"
+DIRECTIVE = "Directive 2002/44/EC"
+ISO_22867 = "ISO 22867"
+
+USED = {
+    "force": to_say("Shaking force, drive torque, balancing, vibration on a support: {source}"),
+    "moment": to_say("Shaking moment, shaking energy, geared counterweights: {source}"),
+    "planting": to_say("Figures of planting: {source}"),
+    "shaft": to_say("Vibration of the shaft and transmission to the hands: {source}"),
+    "hands": to_say("Weighting and daily exposure of the hands: {source}"),
+}
+
+
+def sources(findings: Findings | ToolFindings) -> Iterator[str]:
+    """What was used, a line each."""
+    if isinstance(findings, ToolFindings):
+        yield say(USED["shaft"], source=NAGAMINE_IRIE)
+        if findings.exposure is not None:
+            yield say(USED["hands"], source=f"{ISO_5349}; {DIRECTIVE}; {ISO_22867}")
+        return
+    if findings.analysis.solved is not None:
+        yield say(USED["force"], source=YAMASHITA)
+        yield say(USED["moment"], source=LEE_KIM)
+    if findings.planting is not None:
+        yield say(USED["planting"], source=KIM_CHUNG)
+
 
 TITLES = {
     "model": to_say("Model"),
@@ -275,9 +315,8 @@ def _animation(findings: Findings) -> str:
     from equipoise.figures.animation import animated_svg
     from equipoise.figures.points import followed
     from equipoise.figures.stage import ForceArrow
-    from equipoise.symbols.clear import clear_angle
-    from equipoise.symbols.scene import Scene
-    from equipoise.symbols.stacks import in_turn
+    from equipoise.symbols.looks import in_turn
+    from equipoise.symbols.scene import Scene, clear_angle
 
     analysis = findings.analysis
     scene = Scene.of(analysis.motion).with_rows(analysis.motion)

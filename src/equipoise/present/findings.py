@@ -120,8 +120,7 @@ class Findings(_ComputedParts):
     @part(to_say("vibration over speed"))
     def sweep(self) -> Sweep | None:
         """Vibration over speeds around that of the machine."""
-        from equipoise.vibration.resonance import around
-        from equipoise.vibration.sampling import COARSE
+        from equipoise.vibration.linear import COARSE, around
         from equipoise.vibration.sweep import sweep_speed
 
         if self.response is None:
@@ -248,7 +247,7 @@ def find(
     ModelError : the file is wrong, or a study.
     UsageError : the tool has no speed that could be another.
     """
-    from equipoise.mechanism.kinematics.swings import swing
+    from equipoise.mechanism.kinematics.swinging import swing
 
     given, text, name = _with_text(model)
     speed = in_si(speed, "angular speed", "speed")

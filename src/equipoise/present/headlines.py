@@ -1,11 +1,13 @@
-"""What is seen in a part or a picture of a linkage's report, in one line made of its figures.
+"""What is seen in a part or a picture of a report, in one line made of its figures.
 
 Lines end without a point, as titles do; one that there is nothing to tell of is empty.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from functools import cached_property
+from math import cos, hypot, pi, sin
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,22 +15,214 @@ import numpy as np
 from equipoise.balancing.objectives import unit_of
 from equipoise.balancing.outcome import good_already
 from equipoise.balancing.told import capital, figure_named, figure_unit
+from equipoise.dataclass import dataclass
 from equipoise.i18n import said, say, to_say
 from equipoise.mechanism.assembly.joints import moving_links
-from equipoise.mechanism.outputs.spoken import joint_named, named
-from equipoise.present.shaking import NOTHING, Shaking, acting, largest_joint, largest_of
-from equipoise.present.support_headlines import first_gauge
-from equipoise.quantities import Dimension, Display, angle, brief, change, display, percent, told
+from equipoise.mechanism.outputs.declared import joint_named, named
+from equipoise.quantities import (
+    PER_RPM,
+    Dimension,
+    Display,
+    angle,
+    brief,
+    change,
+    display,
+    percent,
+    told,
+)
 from equipoise.results.analysis_blocks import display_of_totals, scale_of, shares
 from equipoise.results.joint_blocks import display_of_joints
 from equipoise.results.outputs import CAUSES, objective_named, output_named, shown_in
-from equipoise.signals import Figures
+from equipoise.signals import Array, Figures, harmonics
+from equipoise.vibration.linear import nearest_loud
 
 if TYPE_CHECKING:
     from equipoise.balancing.balanced import Balanced
+    from equipoise.mechanism.kinematics.motion import Motion
+    from equipoise.mechanism.parts.machine import Machine
     from equipoise.planting.summary import PlantingFigures
     from equipoise.present.findings import Findings
     from equipoise.results.analysis import Analysis
+    from equipoise.vibration.free import FreeVibration
+    from equipoise.vibration.response import Response
+    from equipoise.vibration.sweep import Sweep
+
+NOTHING = 1e-9
+"""Over the largest size of a signal: what is smaller is rounding."""
+
+
+@dataclass(frozen=True, eq=False)
+class Shaking:
+    """The shaking force of all rows together.
+
+    force : complex (N,), N, at the crank angles of a motion over a whole cycle.
+    """
+
+    machine: Machine
+    motion: Motion
+    force: Array
+
+    @classmethod
+    def of(cls, findings: Findings) -> Shaking:
+        """From the analysis; what is rounding is 0."""
+        analysis = findings.analysis.resolved
+        force = analysis.together.get("shaking_force", analysis.forces.shaking_force.value)
+        parts = analysis.forces.split.by_link("shaking_force").values()
+        scale = max(float(np.max(np.abs(part))) for part in parts)
+        scale = max(scale, analysis.summary["frame_force"].peak)
+        if np.max(np.abs(force)) <= NOTHING * scale:
+            force = np.zeros_like(force)
+        return cls(findings.machine, analysis.motion, force)
+
+    @cached_property
+    def size(self) -> Figures:
+        """Figures of its size."""
+        return self.motion.figures(np.abs(self.force))
+
+    @property
+    def over_weight(self) -> float:
+        """Peak over the weight of the links; 0 without gravity."""
+        weight = self.machine.mass * hypot(*self.machine.gravity)
+        return self.size.peak / (weight * max(1, len(self.machine.rows))) if weight else 0.0
+
+    @cached_property
+    def loudest(self) -> tuple[float, float]:
+        """Order with the largest share of the mean square, the mean left out, and that share."""
+        parts = (self.force.real, self.force.imag)
+        if self.motion.sampling is None:
+            orders = [harmonics(part) for part in parts]
+        else:
+            orders = [self.motion.periodic(part).amplitudes for part in parts]
+        squares = np.sum(np.abs(orders) ** 2, axis=0)
+        squares[0] = 0.0
+        top = int(np.argmax(squares))
+        return top / self.motion.turns, float(squares[top] / (np.sum(squares) or 1.0))
+
+
+def direction(force: Array) -> tuple[float, float]:
+    """Along which most of the mean square of a force (N,), complex, acts, and that share.
+
+    In rad, from 0 to less than pi.
+    """
+    parts = np.vstack([force.real, force.imag])
+    values, vectors = np.linalg.eigh(parts @ parts.T)
+    share = float(values[1] / (np.sum(values) or 1.0))
+    x, y = vectors[:, 1]
+    return float(np.arctan2(y, x) % pi), share
+
+
+STRETCHED, ROUND = 0.8, 0.6
+"""Share of the mean square along one direction: from where, and up to where, it is called so."""
+
+
+def acting(force: Array) -> str:
+    """The way in which a force (N,), complex, acts, as a title has it."""
+    way, share = direction(force)
+    if share <= ROUND:
+        return say("The force acts in all directions alike, turning with the crank")
+    if share >= STRETCHED and abs(sin(way)) > cos(pi / 6):
+        return say("The force acts mostly up and down")
+    if share >= STRETCHED and abs(cos(way)) > cos(pi / 6):
+        return say("The force acts mostly to and fro")
+    return say("The force acts mostly along {angle} from the x axis", angle=angle(way))
+
+
+def largest_joint(analysis: Analysis) -> tuple[str, Figures]:
+    """The joint whose force is the largest, and figures of that force."""
+    by_name = {name: analysis.summary[f"joints.{name}"] for name in analysis.forces.joints}
+    name = max(by_name, key=lambda name: by_name[name].peak)
+    return name, by_name[name]
+
+
+def largest_of(sizes: Mapping[str, float]) -> tuple[str, float]:
+    """Name and size of the largest of some; of equal ones the first."""
+    top = max(sizes.values(), default=0.0)
+    name = next((name for name, size in sizes.items() if size >= (1 - NOTHING) * top), "")
+    return name, top
+
+
+def first_gauge(response: Response | None) -> str:
+    """How far the support moves at the first gauge."""
+    name = next(iter(response.gauges), "") if response is not None else ""
+    return moved(response, name) if response is not None and name else ""
+
+
+def moved(response: Response, name: str) -> str:
+    """How far the support moves at a gauge."""
+    gauge = response.gauges[name]
+    size = float(gauge.displacement.peak_to_peak)
+    unit = shown_in("rad" if gauge.rotation else "m", [size])
+    swing = unit.with_unit(unit.text(size, digits=3))
+    return say("Gauge {gauge} moves by {size} peak to peak", gauge=named(name), size=swing)
+
+
+def loudest_gauge(response: Response) -> str:
+    """The loudest order at the gauge that is told first."""
+    name, gauge = next(iter(response.gauges.items()))
+    squares = gauge.displacement.sizes**2
+    squares[0] = 0.0
+    top = int(np.argmax(squares))
+    return say(
+        "{share} % of what gauge {gauge} reads is order {order}",
+        share=percent(squares[top] / (np.sum(squares) or 1.0)),
+        gauge=named(name),
+        order=f"{top / response.turns:.4g}",
+    )
+
+
+def mounted(response: Response) -> str:
+    """Which mount carries most."""
+    forces = {
+        name: max(abs(mount.largest), abs(mount.smallest))
+        for name, mount in response.mounts.items()
+        if not mount.torsional
+    }
+    name, peak = largest_of(forces)
+    size = told(peak, "force", digits=3)
+    return (
+        say("Mount {name} carries most: up to {peak}", name=named(name), peak=size) if name else ""
+    )
+
+
+def driven(response: Response) -> str:
+    """Between which torques the drive swings."""
+    torque = response.drive.torque_figures
+    low, high = (told(end, "torque", digits=3) for end in (torque.min, torque.max))
+    return say("The drive torque swings between {low} and {high}", low=low, high=high)
+
+
+def resonant(sweep: Sweep, quantity: str) -> str:
+    """At which speed the displacement of the first gauge has its highest peak."""
+    name, tops = next(iter(sweep.peaks.items()), ("", []))
+    if not tops or quantity != "displacement":
+        return ""
+    rpm = brief(abs(tops[0][0]) / PER_RPM)
+    return say("Gauge {gauge} swings most at {speed} rpm", gauge=named(name), speed=rpm)
+
+
+def met(sweep: Sweep, speed: float) -> str:
+    """Which loud resonance is nearest to the speed of the machine."""
+    if not sweep.resonances:
+        return say("No order meets a mode at these speeds")
+    resonance = nearest_loud(sweep.resonances, speed)
+    return say(
+        "The nearest loud resonance is at {speed} rpm: order {order} meets mode {mode}",
+        speed=brief(abs(resonance.speed) / PER_RPM),
+        order=f"{resonance.order:.4g}",
+        mode=resonance.mode,
+    )
+
+
+def swung(free: FreeVibration, number: int) -> str:
+    """Frequency of a mode, and the speed at which once a turn meets it."""
+    rate = free.modes[number - 1].natural_frequency
+    values = {"mode": number, "frequency": brief(rate / (2 * pi)), "speed": brief(rate / PER_RPM)}
+    if not rate:
+        return say("Mode {mode} is free, without a spring", mode=number)
+    return say(
+        "Mode {mode} swings at {frequency} Hz, which is once a turn at {speed} rpm", **values
+    )
+
 
 # -- motion ----------------------------------------------------------------------------------------
 

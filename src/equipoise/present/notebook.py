@@ -15,7 +15,7 @@ from equipoise.handheld.model import Tool
 from equipoise.i18n import said
 from equipoise.mechanism.dynamics.forces import Forces
 from equipoise.mechanism.kinematics.motion import Motion, move
-from equipoise.mechanism.kinematics.swings import swing
+from equipoise.mechanism.kinematics.swinging import swing
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.present.pages import part_of_page
 from equipoise.results.analysis import ANGLES, Analysis
@@ -23,8 +23,7 @@ from equipoise.results.analysis_blocks import force_blocks, motion_blocks
 from equipoise.results.blocks import Block, Text
 from equipoise.results.joint_blocks import joint_blocks
 from equipoise.results.machine_blocks import model_blocks
-from equipoise.results.own_words import in_own_words
-from equipoise.results.result import Result
+from equipoise.results.result import Result, in_own_words
 
 
 def html_of(value: Displayed) -> str:

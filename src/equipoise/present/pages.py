@@ -1,6 +1,4 @@
-"""A report as plain values, as a page of HTML that needs no other file, no script and no network,
-and as PDF set by Typst.
-"""
+"""A report as a page of HTML: its fonts, its colours, and plain values in its template."""
 
 from __future__ import annotations
 
@@ -13,23 +11,114 @@ from functools import cache
 from html import escape
 from importlib import resources
 from itertools import groupby
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import jinja2
 from markupsafe import Markup
 
 import equipoise
 from equipoise.dataclass import dataclass
-from equipoise.errors import EquipoiseError
+from equipoise.errors import EquipoiseError, UsageError
+from equipoise.figures.style import DIM, GRID, LOUD, POINTS, QUIET, STRETCH, STUBBLE
 from equipoise.i18n import Note, decimals, say, speaking, spoken
+from equipoise.i18n.languages import KNOWN
 from equipoise.present.cells import CellText, Grid, Head, grid, noted, printed, sign_of
-from equipoise.present.colors import PRINTED_STRESS, colored, colors
-from equipoise.present.fonts import boxes, check_pdf, families, installed
-from equipoise.present.layout import Looks
+from equipoise.present.terminal import Looks
 from equipoise.quantities import Units, showing
 from equipoise.results.blocks import Block, Emphasis, ReportSection, SvgPicture, Table
 from equipoise.results.blocks import Text as RunningText
-from equipoise.symbols.looks import LIGHT
+from equipoise.symbols.looks import DARK, LIGHT
+
+if TYPE_CHECKING:
+    import typst
+
+LATIN = "DejaVu Sans"
+"""The font of Western letters, which comes with Matplotlib: pages end alike on every computer."""
+NO_TYPST = Note('a PDF needs Typst; install it by: pip install "equipoise[report]"')
+LAST_WESTERN = "\u2e7f"
+"""Signs after it are letters of East Asia, which not every computer has."""
+
+
+def check_pdf(language: str) -> None:
+    """Tell what is missing before anything is computed."""
+    families(language)
+
+
+@cache
+def installed() -> typst.Fonts:
+    """All that this computer has, and those of Matplotlib."""
+    try:
+        import typst
+    except ImportError as error:
+        raise EquipoiseError(NO_TYPST) from error
+    from equipoise.figures.paint import font_folder
+
+    return typst.Fonts(font_paths=[font_folder()])
+
+
+def families(language: str) -> list[str]:
+    """Fonts that are there for a language, the best first."""
+    there = set(installed().families())
+    wanted = {code: item.fonts for code, item in KNOWN.items() if item.fonts}
+    eastern = {code: [name for name in names if name in there] for code, names in wanted.items()}
+    if language in eastern and not eastern[language]:
+        raise UsageError(
+            Note(
+                "this computer has no font with {languages} letters, so that a PDF would "
+                "show boxes; install one, such as {eastern} (fonts-noto-cjk), or write "
+                "the report as .html",
+                languages=KNOWN[language].name,
+                eastern=wanted[language][0],
+            )
+        )
+    order = sorted(eastern, key=lambda code: code != language)
+    return [LATIN, *(name for code in order for name in eastern[code])]
+
+
+def boxes(text: str) -> str:
+    """Letters of East Asia in a text that no font of this computer has, each once."""
+    from equipoise.figures.paint import fonts_for
+
+    signs = frozenset(sign for sign in text if sign > LAST_WESTERN)
+    return fonts_for(signs)[1] if signs else ""
+
+
+NAMES = {color: name for name, color in LIGHT.items()} | {
+    GRID: "grid",
+    STUBBLE: "stubble",
+    QUIET: "quiet",
+    LOUD: "loud",
+    STRETCH: "stretch",
+    POINTS: "points",
+    DIM: "dim",
+}
+"""Colour of a picture -> name of the page's property that takes its place."""
+DARK_ONLY = {
+    "grid": "#2b3138",
+    "soil": "#332c20",
+    "stubble": "#57492f",
+    "earth": "#c9a774",
+    "quiet": "#22272d",
+    "loud": "#343b43",
+    "stretch": "#6e4631",
+    "points": "#4f86b5",
+    "dim": "#525a63",
+}
+
+PRINTED_STRESS = "#8c3200"
+"""Colour of words on paper that have to be seen: as the same red of pictures, they would be paler
+than other words where a page is printed in grey."""
+
+
+def colored(color: str) -> str:
+    """A colour of a picture as the page has it."""
+    return f"var(--linkage-{NAMES[color]},{color})" if color in NAMES else color
+
+
+def colors(dark: bool) -> str:
+    """The properties of a page, as a style sheet has them."""
+    chosen = {**DARK, **DARK_ONLY} if dark else {**LIGHT, **{v: k for k, v in NAMES.items()}}
+    return ";".join(f"--linkage-{name}:{color}" for name, color in chosen.items())
 
 
 @dataclass(frozen=True)

@@ -1,21 +1,116 @@
-"""Every picture of what can be told of a file: its name, its place, its caption, how to draw it."""
+"""Every picture of a report: its name, its place, its caption, and how it is drawn."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Sequence
+import os
+import sys
+import threading
+import warnings
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from equipoise.dataclass import dataclass
-from equipoise.i18n import to_say
-from equipoise.present import headlines
-from equipoise.present import support_headlines as gauged
-from equipoise.present.entries import PictureEntry, pages, unchanged
+from equipoise.figures import standalone_svg as svg_of
+from equipoise.i18n import say, to_say
+from equipoise.present import headlines, tool_summary
+from equipoise.present import headlines as gauged
 from equipoise.present.findings import Findings, ToolFindings
-from equipoise.present.tool_pictures import of_tool
+from equipoise.results.blocks import SvgPicture
 
 if TYPE_CHECKING:
+    from multiprocessing.connection import Connection
+
     from equipoise.figures import Picture as Drawing
+    from equipoise.results.charts import Chart
+
+
+class PictureEntry(NamedTuple):
+    """Name, caption, what draws it, what is seen in it, and whether a report has it in its
+    appendix.
+    """
+
+    name: str
+    caption: str
+    draw: Callable[[], Drawing]
+    seen: Callable[[], str] = str
+    detail: bool = False
+
+
+def pages(
+    name: str,
+    caption: str,
+    make: Callable[[], Iterable[Chart]],
+    headline: Callable[[], str] = str,
+    detail: bool = False,
+) -> Iterator[PictureEntry]:
+    """What goes on over several pictures; how many, only their charts tell."""
+    for number, chart in enumerate(make(), 1):
+        if number == 1:
+            yield PictureEntry(name, caption, partial(unchanged, chart), headline, detail)
+        else:
+            yield PictureEntry(
+                f"{name}-{number}", caption, partial(unchanged, chart), detail=detail
+            )
+
+
+def unchanged(chart: Chart) -> Chart:
+    return chart
+
+
+def of_tool(findings: ToolFindings) -> Iterator[PictureEntry]:
+    """The tool itself, modes, transmission, what the hands get, and the design."""
+    from equipoise.figures import tool_designs, tool_shaft, tool_side
+
+    modes, transmission = findings.modes, findings.transmission
+    planes = ("", "-lateral")[: 1 if findings.tool.alike else 2]
+    caption = to_say("The tool from the side, at rest and as it is deflected at work.")
+    yield PictureEntry("side", caption, partial(tool_side.side, findings.tool))
+    if modes is not None:
+        caption = to_say("The tool from the side in its lowest natural vibrations.")
+        draw = partial(tool_side.side_modes, modes)
+        yield PictureEntry("side-modes", caption, draw, detail=True)
+        caption = to_say("Shapes of the natural vibrations of the shaft.")
+        for plane, name in enumerate(planes):
+            shapes_chart = partial(tool_shaft.shapes, modes, plane)
+            value = partial(tool_summary.lowest, modes, plane)
+            yield from pages(f"modes{name}", caption, shapes_chart, value, detail=True)
+    if transmission is not None:
+        caption = to_say("Share of a shaking force that comes to what holds the tool.")
+        for plane, name in enumerate(planes):
+            draw = partial(tool_shaft.transmission, transmission, plane, modes)
+            value = partial(tool_summary.passed, transmission, plane)
+            yield PictureEntry(f"transmission{name}", caption, draw, value, plane > 0)
+    if findings.sweep is not None and findings.sweep.response is not None:
+        caption = to_say("Bending moment and displacement along the shaft.")
+        draw = partial(tool_shaft.moment, findings.sweep.response, None)
+        yield PictureEntry("moment", caption, draw, detail=True)
+    if findings.exposure is not None:
+        caption = to_say("Acceleration of the hands against speed of the engine.")
+        yield PictureEntry(
+            "acceleration",
+            caption,
+            partial(tool_shaft.acceleration, findings.exposure),
+            partial(tool_summary.worst, findings),
+            detail=True,
+        )
+        caption = to_say("Daily exposure of the hands, with what is allowed.")
+        yield PictureEntry(
+            "exposure",
+            caption,
+            partial(tool_shaft.weighted, findings.exposure),
+            partial(tool_summary.judged, findings),
+        )
+    if findings.design is not None:
+        caption = to_say("The tool from the side before and after what is changed.")
+        yield PictureEntry("side-design", caption, partial(tool_side.side_design, findings.design))
+        caption = to_say("Vibration of the worst hand over the band of speeds, before and after.")
+        yield PictureEntry(
+            "design",
+            caption,
+            partial(tool_designs.design, findings.design),
+            partial(tool_summary.improved, findings),
+        )
 
 
 SECTIONS = (
@@ -307,8 +402,7 @@ def _balance(findings: Findings) -> Iterator[PictureEntry]:
     balanced = findings.balanced
     if balanced is None or not findings.helped:
         return
-    from equipoise.figures.aims import aims
-    from equipoise.figures.balancing import combined, phases, signals
+    from equipoise.figures.balancing import aims, combined, phases, signals
     from equipoise.figures.changes import changes
 
     of_linkage = any(change.kind != "phases" for change in balanced.changes)
@@ -356,3 +450,67 @@ OF_LINKAGE: dict[str, Callable[[Findings], Iterator[PictureEntry]]] = {
     "modes": _modes,
     "balance": _balance,
 }
+
+
+Drawings = dict[str, list[SvgPicture]]
+"""Pictures by section."""
+
+
+def drawings(findings: Findings | ToolFindings, parallel: bool = False) -> Drawings:
+    """All pictures.
+
+    together : whether a copy of this process may draw half of them, where there are two processors,
+        Linux, and no other thread, which the copy would lack.
+    """
+    processors = len(os.sched_getaffinity(0)) if sys.platform == "linux" else 1
+    may_fork = parallel and processors > 1 and threading.active_count() == 1
+    other = _others(findings) if may_fork else ()
+    if not other:
+        return _draw(findings, SECTIONS)
+    _ = findings.notes  # everything that both need is computed once
+    import multiprocessing
+
+    context = multiprocessing.get_context("fork")
+    here, there = context.Pipe(duplex=False)
+    helper = context.Process(target=_send, args=(there, findings, other), daemon=True)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", DeprecationWarning)  # threads of BLAS can be forked
+        helper.start()
+    there.close()
+    try:
+        pictures = _draw(findings, [section for section in SECTIONS if section not in other])
+        of_helper: Drawings = here.recv()
+        return pictures | of_helper
+    except EOFError:  # the helper failed, and what it failed of is to be told
+        return pictures | _draw(findings, other)
+    finally:
+        helper.kill()
+        helper.join()
+
+
+def _others(findings: Findings | ToolFindings) -> Collection[str]:
+    """Sections that hold about half of the pictures."""
+    if isinstance(findings, ToolFindings):
+        return ()
+    if findings.response is not None:
+        return ("vibration",) if findings.planting is None else ("vibration", "modes", "balance")
+    return ("motion", "forces") if findings.planting is None else ("motion", "planting")
+
+
+def _send(pipe: Connection, findings: Findings | ToolFindings, sections: Collection[str]) -> None:
+    try:
+        pipe.send(_draw(findings, sections))
+    except BaseException:  # what goes wrong here goes wrong again where it can be told
+        pipe.close()
+
+
+def _draw(findings: Findings | ToolFindings, sections: Collection[str]) -> Drawings:
+    pictures: Drawings = {}
+    for picture in each(findings, sections=sections):
+        chart = picture.draw()
+        text = say("; ").join((chart.what, *chart.words))
+        svg, wide = svg_of(chart)
+        headline, caption = picture.seen(), say(picture.caption)
+        block = SvgPicture(picture.name, text, svg, headline, caption, wide, picture.detail)
+        pictures.setdefault(picture.section, []).append(block)
+    return pictures

@@ -10,11 +10,11 @@ from equipoise.balancing.outcome import good_already, helps_told
 from equipoise.balancing.told import capital, listed, worse_told
 from equipoise.errors import UsageError
 from equipoise.i18n import Note, say, to_say
-from equipoise.mechanism.outputs.spoken import joint_named, named
+from equipoise.mechanism.outputs.declared import joint_named, named
 from equipoise.planting.summary import PlantingFigures
 from equipoise.present.findings import Findings
+from equipoise.present.headlines import Shaking, acting, largest_joint
 from equipoise.present.pages import SummaryAnswer, Tile
-from equipoise.present.shaking import Shaking, acting, largest_joint
 from equipoise.quantities import (
     PER_RPM,
     Dimension,
@@ -27,10 +27,10 @@ from equipoise.quantities import (
 )
 from equipoise.results.analysis_blocks import CANCELLING, display_of_totals, scale_of, shares
 from equipoise.results.blocks import worse_if
-from equipoise.results.drive_blocks import pushed_named
 from equipoise.results.joint_blocks import display_of_joints
+from equipoise.results.machine_blocks import pushed_named
 from equipoise.results.outputs import CAUSES, objective_named, shown_in
-from equipoise.vibration.resonance import resonance_note, within
+from equipoise.vibration.linear import resonance_note, within
 
 SMALL = 0.005
 """Share of a link or cause below which it is not named."""

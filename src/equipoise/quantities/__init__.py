@@ -5,16 +5,10 @@
 keeps quantities in sentences until it is known how they were written.
 """
 
-from equipoise.quantities.clean import DIGITS as DIGITS
-from equipoise.quantities.clean import clean as clean
-from equipoise.quantities.clean import clean_place as clean_place
 from equipoise.quantities.expressions import Amount as Amount
 from equipoise.quantities.expressions import parse_amount as parse_amount
 from equipoise.quantities.expressions import parse_expression as parse_expression
 from equipoise.quantities.expressions import parse_number as parse_number
-from equipoise.quantities.measured import Measured as Measured
-from equipoise.quantities.measured import as_written as as_written
-from equipoise.quantities.measured import with_measured as with_measured
 from equipoise.quantities.numbers import DEGREE as DEGREE
 from equipoise.quantities.numbers import PER_RPM as PER_RPM
 from equipoise.quantities.numbers import Display as Display
@@ -36,7 +30,12 @@ from equipoise.quantities.numbers import showing_by_default as showing_by_defaul
 from equipoise.quantities.numbers import span as span
 from equipoise.quantities.numbers import told as told
 from equipoise.quantities.numbers import typeset as typeset
+from equipoise.quantities.reading import DIGITS as DIGITS
 from equipoise.quantities.reading import NUMBER as NUMBER
+from equipoise.quantities.reading import Measured as Measured
+from equipoise.quantities.reading import as_written as as_written
+from equipoise.quantities.reading import clean as clean
+from equipoise.quantities.reading import clean_place as clean_place
 from equipoise.quantities.reading import described as described
 from equipoise.quantities.reading import format_exact as format_exact
 from equipoise.quantities.reading import in_si as in_si
@@ -44,6 +43,7 @@ from equipoise.quantities.reading import parse as parse
 from equipoise.quantities.reading import pattern as pattern
 from equipoise.quantities.reading import plain_unit as plain_unit
 from equipoise.quantities.reading import rounded as rounded
+from equipoise.quantities.reading import with_measured as with_measured
 from equipoise.quantities.units import FACTORS as FACTORS
 from equipoise.quantities.units import HUGE as HUGE
 from equipoise.quantities.units import KINDS as KINDS

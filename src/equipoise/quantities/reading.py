@@ -1,23 +1,30 @@
-"""Quantities at the door: strict text such as ``"33.5 mm"`` to SI floats, and back without loss.
+"""Quantities at the door: strict text to SI floats, and back, also in sentences.
 
 The grammar is number, space, unit; the units are an explicit list for each dimension.  Conversion
 is in decimal arithmetic, so that ``parse("33.5 mm", "length")`` is the float nearest to 0.0335.
 What is wrong with a text is said in one sentence: what was given and what would be right.
+
+What checks a machine knows floats in SI units.  Who wrote ``"-12 mm"`` into a file looks for -12
+mm, so a sentence keeps its numbers as `Measured` values, and where the file is read each gets the
+text that stands there (`as_written`).
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from contextlib import suppress
+from dataclasses import replace
 from decimal import Decimal, localcontext
 from functools import cache
-from math import isfinite
-from typing import overload
+from math import floor, isfinite, log10
+from typing import Any, overload
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError, at_place
 from equipoise.i18n import Note, to_say
-from equipoise.quantities.numbers import chosen_unit
-from equipoise.quantities.units import FACTORS, HUGE, KINDS, TINY, Dimension, QuantityKind
+from equipoise.quantities.numbers import chosen_unit, in_unit
+from equipoise.quantities.units import FACTORS, HUGE, KINDS, SI, TINY, Dimension, QuantityKind
 
 # -- grammar ---------------------------------------------------------------------------------------
 
@@ -431,3 +438,92 @@ def _rounded(value: float, unit: str, digits: int) -> Decimal:
 
 def _digits_of(number: Decimal) -> str:
     return f"{number:f}" if -5 <= number.adjusted() < 9 else str(number).lower()
+
+
+DIGITS, SHORT = 12, 9
+"""Significant ones that are kept, and those of a number that somebody may have meant in SI."""
+MEANT, ROUNDING = 6, 1e-8
+"""Digits of a number that is meant where another differs by no more than this share from it: what a
+program finds at a limit of 100 mm is 99.999999637 mm."""
+OTHER: dict[Dimension, str] = {"angle": "deg", "angular speed": "rpm"}
+"""Units of files that are no power of ten of the SI unit."""
+
+
+def clean(value: float, dimension: Dimension | None = None) -> float:
+    """A value (SI units, radians) of 12 digits, in the unit in which a file has it."""
+    plain = float(f"{value:.{DIGITS}g}")
+    if dimension is None or not TINY < abs(value) < HUGE:
+        return plain
+    unit = chosen_unit(dimension) or OTHER.get(dimension, SI[dimension])
+    meant = parse(rounded(value, unit, MEANT), dimension)
+    if abs(meant - value) <= ROUNDING * abs(value):
+        return meant
+    short = plain == float(f"{value:.{SHORT}g}")
+    return plain if short else parse(rounded(value, unit, DIGITS), dimension)
+
+
+def clean_place(place: complex, size: float = 0.0, digits: int = DIGITS) -> tuple[float, float]:
+    """Coordinates (m) whose last digit is such a one of the longer of them, or of a size."""
+    longest = max(abs(place.real), abs(place.imag), size)
+    if not longest or not isfinite(longest):
+        return place.real, place.imag
+    last = digits - 1 - floor(log10(longest))
+    return round(place.real, last) + 0.0, round(place.imag, last) + 0.0
+
+
+@dataclass(frozen=True)
+class Measured:
+    """A quantity in a sentence.
+
+    Attributes
+    ----------
+    value : in SI units and radians.
+    dimension : what it is; None for a number without a unit.
+    unit : in which it stands where nobody has written it; the SI unit if empty, degrees of angles.
+    limit : whether it is set here, so that no equal number of a file is meant.
+    """
+
+    value: float
+    dimension: Dimension | None
+    unit: str = ""
+    limit: bool = False
+
+    def __str__(self) -> str:
+        if self.dimension is None:
+            return f"{self.value:g}"
+        unit = self.unit or ("deg" if self.dimension == "angle" else SI[self.dimension])
+        return f"{in_unit(unit).factor * self.value:g} {unit}"
+
+
+def with_measured(sentence: Note, change: Callable[[Measured], Any]) -> Note:
+    """A sentence with other values for the quantities in it."""
+
+    return sentence.with_values(lambda item: change(item) if isinstance(item, Measured) else item)
+
+
+def as_written(sentence: Note, texts: Iterable[str]) -> Note:
+    """A sentence with each quantity as it was written, and what else is of its dimension, such as
+    a limit, in the unit of the first of those.
+
+    texts : of a file, such as ``"-12 mm"``, whatever they are of; of equal quantities the first
+        counts.
+    """
+    written = [*texts]
+    units: dict[Dimension | None, str] = {}
+
+    def typed(amount: Measured) -> Any:
+        if amount.dimension is None or amount.limit:
+            return amount
+        for text in written:
+            match = re.fullmatch(pattern(amount.dimension), text)
+            with suppress(UsageError):
+                if match and parse(text, amount.dimension) == amount.value:
+                    units.setdefault(amount.dimension, plain_unit(match[2]))
+                    short = f"{float(match[1]):g} {match[2]}"  # of -1.0 kg, as programs write it
+                    return short if parse(short, amount.dimension) == amount.value else text
+        return amount
+
+    def alike(amount: Measured) -> Any:
+        return replace(amount, unit=units.get(amount.dimension, amount.unit))
+
+    return with_measured(with_measured(sentence, typed), alike)

@@ -20,13 +20,11 @@ from equipoise.mechanism.dynamics.cam_contacts import CamFigures, cam_figures
 from equipoise.mechanism.dynamics.forces import Forces, forces, massless
 from equipoise.mechanism.dynamics.link_stress import LinkStress, link_stresses
 from equipoise.mechanism.dynamics.losses import Losses, losses_of
-from equipoise.mechanism.dynamics.undecided import undecided
+from equipoise.mechanism.dynamics.reactions import undecided
 from equipoise.mechanism.formulas import kernels
-from equipoise.mechanism.kinematics.dwell import Dwell
 from equipoise.mechanism.kinematics.jumps import jumps_of, resolved
 from equipoise.mechanism.kinematics.motion import Motion, move, move_again
-from equipoise.mechanism.kinematics.stroke_figures import Stroke
-from equipoise.mechanism.kinematics.strokes import dwell, strokes
+from equipoise.mechanism.kinematics.strokes import Dwell, Stroke, dwell, strokes
 from equipoise.mechanism.outputs.declared import DECLARED, OutputSource
 from equipoise.mechanism.parts.machine import Machine, Vector
 from equipoise.mechanism.parts.places import in_frame
@@ -34,8 +32,7 @@ from equipoise.mechanism.parts.support import idle_parts
 from equipoise.quantities import Dimension, column_heading
 from equipoise.results.declaring import OWN, Declarations, ResultOutput, values_of
 from equipoise.results.lost_contacts import lost_contacts
-from equipoise.results.named_figures import figures_by_name
-from equipoise.results.outputs import AnalysisOutput, AnalysisOutputs
+from equipoise.results.outputs import AnalysisOutput, AnalysisOutputs, figures_by_name
 from equipoise.results.result import Result
 from equipoise.results.slender_links import slender_links
 from equipoise.signals import Array, Figures, Periodic

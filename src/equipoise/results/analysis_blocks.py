@@ -12,19 +12,19 @@ import numpy as np
 from equipoise.i18n import say
 from equipoise.mechanism.dynamics.assessment import questions
 from equipoise.mechanism.dynamics.forces import massless
-from equipoise.mechanism.kinematics.dwell import Dwell
-from equipoise.mechanism.kinematics.strokes import SHARE
-from equipoise.mechanism.outputs.spoken import joint_named
+from equipoise.mechanism.kinematics.strokes import SHARE, Dwell
+from equipoise.mechanism.outputs.declared import joint_named
 from equipoise.mechanism.parts.support import idle_parts
 from equipoise.quantities import Dimension, Display, angle, display, percent
 from equipoise.quantities.numbers import ROUNDING
 from equipoise.results.belt_blocks import belt_blocks
 from equipoise.results.blocks import Block, Cell, Column, Facts, Many, Notes, Table, Text, Value
 from equipoise.results.cam_blocks import cam_blocks
-from equipoise.results.drive_blocks import driven, drives_table
 from equipoise.results.joint_blocks import elements_tables, joint_blocks
 from equipoise.results.machine_blocks import (
     angles_told,
+    driven,
+    drives_table,
     four_bar_facts,
     four_bar_table,
     largest,

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from equipoise.i18n import say
-from equipoise.mechanism.outputs.spoken import joint_named
+from equipoise.mechanism.outputs.declared import joint_named
 from equipoise.quantities import percent
 from equipoise.results.blocks import Block, Cell, Column, Table, Value
 from equipoise.results.machine_blocks import largest

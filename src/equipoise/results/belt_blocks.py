@@ -8,7 +8,7 @@ import numpy as np
 
 from equipoise.i18n import Note, say
 from equipoise.mechanism.dynamics.forces import Forces
-from equipoise.mechanism.outputs.spoken import body_named
+from equipoise.mechanism.outputs.declared import body_named
 from equipoise.quantities import angle, told
 from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Value
 from equipoise.results.machine_blocks import largest, smallest

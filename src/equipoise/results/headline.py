@@ -15,7 +15,7 @@ from equipoise.mechanism.dynamics.forces import massless
 from equipoise.mechanism.parts.objectives import GAUGES
 from equipoise.quantities import told
 from equipoise.results.blocks import Block, Facts, Notes, Text, broken_if
-from equipoise.results.drive_blocks import driven
+from equipoise.results.machine_blocks import driven
 from equipoise.results.rotors import rotor_sentence
 from equipoise.results.yardsticks import (
     FigureAssessment,

@@ -8,10 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from equipoise.i18n import say, to_say
-from equipoise.mechanism.dynamics.reactions import JointForce, SliderForce
-from equipoise.mechanism.dynamics.undecided import idle_told, undecided
-from equipoise.mechanism.outputs.declared import DECLARED
-from equipoise.mechanism.outputs.spoken import body_named, joint_named
+from equipoise.mechanism.dynamics.reactions import JointForce, SliderForce, idle_told, undecided
+from equipoise.mechanism.outputs.declared import DECLARED, body_named, joint_named
 from equipoise.mechanism.parts.element_kinds import Element, element_kinds
 from equipoise.quantities import Display, display
 from equipoise.results.bearing_blocks import bearing_blocks

@@ -8,7 +8,7 @@ from equipoise.i18n import Note, all_of
 from equipoise.mechanism.dynamics.cam_contacts import LetGo, let_go
 from equipoise.mechanism.dynamics.forces import Forces, forces, massless
 from equipoise.mechanism.kinematics.motion import move
-from equipoise.mechanism.outputs.spoken import body_named
+from equipoise.mechanism.outputs.declared import body_named
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.quantities import PER_RPM, angle, told
 

@@ -1,4 +1,4 @@
-"""What a machine shows: its parts, how it is driven, its points and four-bar."""
+"""What a machine shows: its parts, its drives and their work, its points and four-bar."""
 
 from __future__ import annotations
 
@@ -8,10 +8,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from equipoise.i18n import coordinates, say, to_say
-from equipoise.mechanism.outputs.spoken import body_named
+from equipoise.i18n import Note, coordinates, said, say, to_say
+from equipoise.mechanism.assembly.cycle import turns_given
+from equipoise.mechanism.outputs.declared import body_named, joint_named
 from equipoise.mechanism.parts.bodies import combined, inertia_of, material_of
-from equipoise.quantities import Dimension, Display, angle, display, told
+from equipoise.mechanism.parts.drives import Drive, FurtherDrive
+from equipoise.mechanism.parts.laws import Law
+from equipoise.quantities import PER_RPM, Dimension, Display, angle, display, number, told
 from equipoise.results.blocks import Block, Cell, Column, Facts, Span, Table, Value
 from equipoise.signals import Array, Figures
 
@@ -327,3 +330,78 @@ def four_bar_facts(four_bar: FourBar) -> Iterator[str]:
         )
     yield say(TURNS[four_bar.condition_5])
     yield say(APART[four_bar.condition_6])
+
+
+def driven(machine: Machine, speed: float) -> str:
+    """How the drive runs."""
+    drive = machine.drive
+    law = drive.stroke or drive.motion
+    if machine.drives and all(item.pushes for item in machine.driven):
+        return say(
+            "{drives}, {rate} cycles a minute",
+            drives=say(", ").join(map(drive_told, machine.driven)),
+            rate=number(abs(speed) / PER_RPM / turns_given(machine)),
+        )
+    if machine.drives or (law is not None and law.windings):
+        return say(
+            "crank angle at {speed} rpm ({rate} rad/s): {drives}",
+            speed=number(speed / PER_RPM),
+            rate=number(speed),
+            drives=say(", ").join(map(drive_told, machine.driven)),
+        )
+    if law is not None:
+        return say(
+            "{what} from {low} to {high} and back, {rate} cycles a minute",
+            what=pushed_named(drive) if drive.pushes else drive.link,
+            **told_between(law),
+            rate=number(abs(speed) * 60 / law.period),
+        )
+    return say(
+        "{link} driven at {speed} rpm ({rate} rad/s)",
+        link=machine.drive.link,
+        speed=number(speed / PER_RPM),
+        rate=number(speed),
+    )
+
+
+def drives_table(analysis: Analysis) -> Iterator[Table]:
+    """What each drive does in a cycle, where there is more to it than one crank."""
+    if not analysis.machine.has_crank and analysis.motion.whole_cycle:
+        columns = (say("drive"), Column(say("work"), "energy"))
+        forces = analysis.resolved.forces
+        both = forces.work_both_ways
+        work = ((link, Value(value, both[link])) for link, value in forces.work.items())
+        yield Table.of(say("Work of the drives in a cycle"), columns, work)
+
+
+def drive_told(drive: Drive | FurtherDrive) -> str:
+    """How a driven link goes with the crank angle."""
+    if drive.stroke is not None:
+        ends = told_between(drive.stroke)
+        return say("{what} goes from {low} to {high} and back", what=pushed_named(drive), **ends)
+    if drive.motion is None:
+        ratio = number(getattr(drive, "ratio", 1.0))
+        return say("{link} turns {ratio} times as fast", link=drive.link, ratio=ratio)
+    low, high = map(angle, drive.motion.extremes)
+    if turns := drive.motion.windings:
+        return say("{link} makes {turns} turns in a cycle by a law", link=drive.link, turns=turns)
+    return say("{link} moves from {low} to {high} by a law", link=drive.link, low=low, high=high)
+
+
+def told_between(law: Law) -> dict[str, str]:
+    """The ends of a law's range, the unit behind the second."""
+    low, high = law.extremes
+    unit = display(law.dimension, [low, high])
+    return {"low": unit.text(low), "high": unit.with_unit(unit.text(high))}
+
+
+def pushed_named(drive: Drive | FurtherDrive) -> str:
+    """What pushes, in words."""
+    return said(pushing(drive))
+
+
+def pushing(drive: Drive | FurtherDrive) -> Note | str:
+    """What pushes: a cylinder by its ends, or a sliding joint."""
+    if drive.between is None:
+        return joint_named(drive.slider)
+    return Note("cylinder {a} to {b}", a=drive.between[0], b=drive.between[1])

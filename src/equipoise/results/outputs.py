@@ -1,4 +1,4 @@
-"""The outputs of an analysis: as `mechanism.outputs` declares them, and what they are called."""
+"""The outputs of an analysis, as `mechanism.outputs` declares them."""
 
 from __future__ import annotations
 
@@ -15,8 +15,11 @@ from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
 from equipoise.i18n import Note, say, to_say
 from equipoise.mechanism.checks import unknown
-from equipoise.mechanism.dynamics.undecided import refuse_unbounded
-from equipoise.mechanism.kinematics.stroke_figures import DeadPosition, Stroke, declared_figures
+from equipoise.mechanism.dynamics.bearing_life import BearingLife
+from equipoise.mechanism.dynamics.cam_contacts import CamFigures
+from equipoise.mechanism.dynamics.link_stress import LinkStress
+from equipoise.mechanism.dynamics.reactions import refuse_unbounded
+from equipoise.mechanism.kinematics.strokes import DeadPosition, Stroke, declared_figures
 from equipoise.mechanism.outputs.declared import DECLARED, GROUPS, Declared, declared
 from equipoise.quantities import SI, Dimension, Display, display
 from equipoise.signals import Array, Figures, Periodic
@@ -342,3 +345,25 @@ def tops_of(outputs: Iterable[tuple[AnalysisOutput, Array]]) -> dict[Dimension |
             tops.get(output.dimension, 0.0), float(np.max(sizes, initial=0.0))
         )
     return tops
+
+
+NAMED_FIGURES: dict[str, type] = {"cams": CamFigures, "rolling_bearings": BearingLife,
+                                  "sections": LinkStress}  # fmt: skip
+"""Classes with declared figures by attribute of an `Analysis`, which maps names to them, and key
+of the JSON object."""
+
+
+def dimensions_by_path() -> dict[str, Dimension | None]:
+    """Dimension of each figure by a regular expression for its path."""
+    return {
+        rf"{table}\..*\.{declared_figure.name}": declared_figure.metadata["dimension"]
+        for table, of in NAMED_FIGURES.items()
+        for declared_figure in declared_figures(of)
+    }
+
+
+def figures_by_name(analysis: Any) -> Iterator[tuple[str, str, Any]]:
+    """Key of the JSON object, name and figures of each part of an `Analysis` that has some."""
+    for table in NAMED_FIGURES:
+        for name, figures in getattr(analysis, table).items():
+            yield table, name, figures

@@ -41,14 +41,13 @@ from equipoise.dataclass import dataclass
 from equipoise.i18n import Note, say, to_say
 from equipoise.mechanism.assembly.steps import size_of_links
 from equipoise.mechanism.dynamics import acting
-from equipoise.mechanism.outputs.declared import DECLARED, declared
-from equipoise.mechanism.outputs.spoken import named
+from equipoise.mechanism.outputs.declared import DECLARED, declared, named
 from equipoise.mechanism.parts.drives import Drive, FurtherDrive
 from equipoise.mechanism.parts.machine import STANDARD_GRAVITY, Machine
 from equipoise.mechanism.parts.objectives import GAUGES
 from equipoise.quantities import SI, Dimension, angle, display, number, percent
 from equipoise.results.analysis import Analysis
-from equipoise.results.drive_blocks import pushing
+from equipoise.results.machine_blocks import pushing
 from equipoise.results.outputs import FIGURES, AnalysisOutput
 from equipoise.results.rotors import unbalances
 

@@ -21,8 +21,7 @@ from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.schema.models import HeldFiles, machine_of, plain_of
-from equipoise.schema.places import Context
-from equipoise.schema.reading import read_table
+from equipoise.schema.reading import Context, read_table
 from equipoise.schema.template import named_parts
 
 Content = dict[str, Any]

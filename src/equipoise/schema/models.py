@@ -15,8 +15,7 @@ from equipoise.i18n import Note
 from equipoise.keys import Frozen
 from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.mechanism.parts.parameters import PARAMETERS, amounts_of
-from equipoise.mechanism.parts.shown_units import units_of
+from equipoise.mechanism.parts.shown_units import PARAMETERS, amounts_of, units_of
 from equipoise.quantities import format_exact, parse, showing_by_default
 from equipoise.schema.files import printable, write
 from equipoise.schema.numbers import format_share, parse_share
@@ -29,8 +28,7 @@ from equipoise.schema.opening import (
     opened,
     opened_example,
 )
-from equipoise.schema.places import Context
-from equipoise.schema.reading import read_table
+from equipoise.schema.reading import Context, read_table
 from equipoise.schema.writing import WorkedOut, Writer, file_tables, toml_text
 
 if TYPE_CHECKING:

@@ -25,19 +25,22 @@ from equipoise.exposure.weighting import AXES
 from equipoise.i18n import Note
 from equipoise.measured.record import Record
 from equipoise.mechanism.parts.support import TIME_IN_PERIOD
-from equipoise.schema.csv_rows import check_width, rows_of, shortened, wrong
 from equipoise.schema.files import read_text
 from equipoise.schema.tables import (
     TIMES,
     Forms,
     Taken,
     arrays_of,
+    check_width,
     header_of,
     headers_of,
     headers_wanted,
     in_table,
     one_header_of,
+    rows_of,
+    shortened,
     value_of,
+    wrong,
 )
 
 Array = np.ndarray[Any, Any]

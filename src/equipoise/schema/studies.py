@@ -8,8 +8,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from equipoise.design.spreads import Choices, Normal, Range, Spread, Uniform
-from equipoise.design.variables import Variable
+from equipoise.design.variables import Choices, Normal, Range, Spread, Uniform, Variable
 from equipoise.errors import EquipoiseError, ModelError, UsageError
 from equipoise.i18n import Note, all_of
 from equipoise.keys.requirement_kinds import REQUIREMENT_KINDS
@@ -25,8 +24,7 @@ from equipoise.schema.opening import (
     opened_example,
     toml_content,
 )
-from equipoise.schema.places import Context
-from equipoise.schema.reading import read_table
+from equipoise.schema.reading import Context, read_table
 from equipoise.schema.study_keys import (
     SPREADS,
     AccuracyTable,
@@ -40,9 +38,8 @@ from equipoise.schema.study_keys import (
 )
 from equipoise.schema.template import Template
 from equipoise.schema.writing import Writer, toml_text
-from equipoise.studies.design_space import Correlation, Output, Sampling
-from equipoise.studies.figures import dimension_of
-from equipoise.studies.study import Study, from_plain
+from equipoise.studies.commands import dimension_of
+from equipoise.studies.study import Correlation, Output, Sampling, Study, from_plain
 
 MODEL = "model "
 """Begins the names of the model's texts among those of a study."""

@@ -25,7 +25,7 @@ from equipoise.keys import (
 )
 from equipoise.keys.requirement_kinds import RequirementKeys, split_asks
 from equipoise.quantities import NUMBER
-from equipoise.studies.design_space import COMMANDS, METHODS, Sampling
+from equipoise.studies.study import COMMANDS, METHODS, Sampling
 
 SPREADS = ("range", "list", "normal", "uniform")
 VALUE = Anything(

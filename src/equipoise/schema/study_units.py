@@ -25,10 +25,9 @@ if TYPE_CHECKING:
     from equipoise.design.variables import Variable
     from equipoise.handheld.model import Tool
     from equipoise.mechanism.parts.machine import Machine
-    from equipoise.studies.design_space import Output
     from equipoise.studies.run import OnProgress
     from equipoise.studies.store import Store
-    from equipoise.studies.study import Study
+    from equipoise.studies.study import Output, Study
 
 
 def resume(

@@ -30,15 +30,12 @@ from equipoise.keys import (
 )
 from equipoise.keys.requirement_kinds import REQUIREMENT_KINDS, RequirementKeys, split_asks
 from equipoise.mechanism.parts.machine import unknown
-from equipoise.planting.designs import Sense
-from equipoise.planting.goals import check_asks
 from equipoise.planting.names import dimension_of
-from equipoise.planting.search import GENERATIONS, POPULATION
+from equipoise.planting.search import GENERATIONS, POPULATION, Sense, check_asks
 from equipoise.schema.files import FileError, printable, read_text
 from equipoise.schema.numbers import si_value
 from equipoise.schema.opening import in_file, toml_content
-from equipoise.schema.places import Context
-from equipoise.schema.reading import read_table
+from equipoise.schema.reading import Context, read_table
 
 Quantity = str | float
 VALUE = Anything()

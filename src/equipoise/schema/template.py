@@ -31,12 +31,12 @@ from equipoise.schema.finding import (
     key_at,
     replaced,
     unit_in,
+    words_of,
 )
 from equipoise.schema.models import AdjacentFiles, HeldFiles, machine_of, parts_of, text_of, tool_of
 from equipoise.schema.numbers import FileNumber
 from equipoise.schema.opening import Kind, Opened, in_file, kind_of, model_content, opened
 from equipoise.schema.tables import TABLES
-from equipoise.schema.words import words_of
 
 if TYPE_CHECKING:
     from equipoise.handheld.model import Tool

@@ -1,6 +1,3 @@
-from .design_space import Correlation as Correlation
-from .design_space import Output as Output
-from .design_space import Sampling as Sampling
 from .objective_map import Landscape as Landscape
 from .objective_map import landscape as landscape
 from .run import sweep as sweep
@@ -10,6 +7,9 @@ from .selection import Best as Best
 from .selection import best as best
 from .store import Store as Store
 from .store import open_store as open_store
+from .study import Correlation as Correlation
+from .study import Output as Output
+from .study import Sampling as Sampling
 from .study import Study as Study
 from .tolerances import Tolerances as Tolerances
 from .tolerances import tolerance as tolerance

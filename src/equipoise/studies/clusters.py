@@ -14,7 +14,7 @@ from time import monotonic, sleep
 from typing import Any
 
 from equipoise.dataclass import dataclass
-from equipoise.design.processes import DEAD, ChunkTask, Pool, StoppedError
+from equipoise.design.evaluator import DEAD, ChunkTask, Pool, StoppedError
 from equipoise.errors import UsageError, needed
 from equipoise.i18n import Note
 from equipoise.studies.store import brief, versions

@@ -33,8 +33,17 @@ from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.results.declaring import PLACES
 from equipoise.studies.clusters import elsewhere
-from equipoise.studies.commands import ANGLES, COMMANDS, Request, analyzed, find_outputs
-from equipoise.studies.figures import Step, figure_name, read, scale
+from equipoise.studies.commands import (
+    ANGLES,
+    COMMANDS,
+    Request,
+    Step,
+    analyzed,
+    figure_name,
+    find_outputs,
+    read,
+    scale,
+)
 from equipoise.studies.outcomes import Evaluator, Outcome
 
 if TYPE_CHECKING:

@@ -28,13 +28,11 @@ from equipoise.balancing.objectives import (
 from equipoise.balancing.problem import Problem
 from equipoise.balancing.room import pin_of
 from equipoise.dataclass import dataclass
-from equipoise.design.evaluator import PooledEvaluator
-from equipoise.design.processes import ChunkTask, Pool
+from equipoise.design.evaluator import ChunkTask, Pool, PooledEvaluator
 from equipoise.errors import EquipoiseError, MassError, ModelError, UsageError, at_place
 from equipoise.i18n import Note, to_say
-from equipoise.mechanism.assembly.family import with_columns
+from equipoise.mechanism.assembly.family import invalid_designs, with_columns
 from equipoise.mechanism.assembly.linkage import assemble
-from equipoise.mechanism.assembly.refusing import invalid_designs
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.dynamics.forces import massless
 from equipoise.mechanism.dynamics.parameters import parameters_of
@@ -44,7 +42,7 @@ from equipoise.mechanism.parts.objectives import GAUGES, output_of
 from equipoise.results.result import Result
 from equipoise.signals import highest_at
 from equipoise.studies.clusters import elsewhere
-from equipoise.studies.design_space import Model
+from equipoise.studies.study import Model
 
 Array = np.ndarray[Any, Any]
 Point = Mapping[str, float]

@@ -16,7 +16,7 @@ from equipoise.i18n import Note
 
 if TYPE_CHECKING:
     from equipoise.keys.requirement_kinds import Make
-    from equipoise.studies.design_space import Output
+    from equipoise.studies.study import Output
 
 Array = np.ndarray[Any, Any]
 

@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
 from equipoise.codegen.figures import REASONS
-from equipoise.design.processes import Runner, StoppedError
-from equipoise.design.spreads import Choices
+from equipoise.design.evaluator import Runner, StoppedError
+from equipoise.design.variables import Choices
 from equipoise.errors import UsageError, at_place, needed
 from equipoise.fence import place_of
 from equipoise.folders import Folder
@@ -24,7 +24,6 @@ from equipoise.quantities import SI
 from equipoise.studies.clusters import elsewhere
 from equipoise.studies.evaluate import evaluator
 from equipoise.studies.outcomes import Block, Progress, Tally
-from equipoise.studies.sampling import samples
 from equipoise.studies.store import (
     ABOUT,
     CHECKSUM,
@@ -42,7 +41,7 @@ from equipoise.studies.store import (
     open_store,
     versions,
 )
-from equipoise.studies.study import SLOW_CHUNK
+from equipoise.studies.study import SLOW_CHUNK, samples
 
 if TYPE_CHECKING:
     from equipoise.quantities import Dimension

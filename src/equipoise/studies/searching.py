@@ -19,7 +19,7 @@ import numpy as np
 from equipoise.codegen.figures import COMPUTED, NO_ASSEMBLY, NO_FULL_TURN, NO_MACHINE
 from equipoise.dataclass import dataclass
 from equipoise.design.solvers import DesignProblem, solve
-from equipoise.design.spreads import Choices, Range
+from equipoise.design.variables import Choices, Range
 from equipoise.errors import ModelError, UsageError
 from equipoise.i18n import Note
 from equipoise.keys.requirement_kinds import Make
@@ -39,8 +39,7 @@ from equipoise.studies.outcomes import (
     signs_of,
     why_none,
 )
-from equipoise.studies.sampling import canonical, values_at
-from equipoise.studies.study import Study
+from equipoise.studies.study import Study, canonical, values_at
 
 if TYPE_CHECKING:
     from equipoise.handheld.model import Tool

@@ -35,8 +35,8 @@ from equipoise.folders import NOWHERE, Folder, LinkError, is_nowhere
 from equipoise.i18n import Note, worded
 from equipoise.partial import locked
 from equipoise.results.result import Result
-from equipoise.studies.design_space import Output
 from equipoise.studies.outcomes import Block, Outcome
+from equipoise.studies.study import Output
 
 if TYPE_CHECKING:
     import zarr

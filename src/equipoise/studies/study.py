@@ -1,23 +1,137 @@
-"""A study as a value: what varies of which model, how, and what is computed; and its checks."""
+"""A study as a value: what varies of which model, how, what is computed; its designs by number.
+
+Nothing that was drawn before matters, so that designs can be computed in any order, by any number
+of threads, processes and machines: a grid is counted through, a Sobol sequence is wound forward to
+where it is asked for, pseudorandom numbers come from a generator that can jump, and the lists of a
+Latin hypercube are shuffled number by number.
+"""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping, Sequence
+import threading
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import asdict, field, fields, replace
-from math import prod
-from typing import Any
+from functools import lru_cache
+from math import isqrt, prod
+from typing import TYPE_CHECKING, Any, Literal, Protocol, get_args
 
 import numpy as np
 
 from equipoise.dataclass import dataclass
-from equipoise.design.spreads import KEYS, SPREADS, Choices, Range
-from equipoise.design.variables import Variable
+from equipoise.design.requirements import Requirement
+from equipoise.design.variables import KEYS, LEAST, MOST, SPREADS, Choices, Range, Variable
 from equipoise.errors import ModelError, UsageError, at_place
 from equipoise.i18n import Note, any_of, worded
+from equipoise.keys.requirement_kinds import Asks, RequiredFigure, asks_of
 from equipoise.limits import OUTPUTS, most_outputs
 from equipoise.mechanism.checks import unknown, wrong_text
-from equipoise.studies.design_space import COMMANDS, METHODS, Correlation, Model, Output, Sampling
+from equipoise.sequences import sobol
+
+if TYPE_CHECKING:
+    from scipy.stats.qmc import Sobol
+
+    from equipoise.handheld.model import Tool
+    from equipoise.mechanism.parts.machine import Machine
+
+Method = Literal["grid", "sobol", "latin-hypercube", "monte-carlo"]
+Command = Literal["analyze", "plant", "respond", "balance", "tool"]
+METHODS, COMMANDS = get_args(Method), get_args(Command)
+
+
+class Model(Protocol):
+    """A model file in which numbers can be replaced; `equipoise.schema.template.Template`."""
+
+    @property
+    def kind(self) -> Literal["linkage", "tool"]: ...
+
+    def number(self, path: str) -> tuple[float, str | None]:
+        """Number in the file in SI units, and its dimension; None for a plain number.
+
+        An `int` where only whole numbers will do.
+        """
+
+    def words(self, path: str, others: Collection[str] = ()) -> Note | str:
+        """Number in the file in words, beside others, or its path where it has none."""
+
+    def base(self) -> Machine | Tool:
+        """The model as its file has it."""
+
+    def machine(self, values: Mapping[str, float]) -> Machine | Tool:
+        """The model with other numbers, by path, in SI units."""
+
+    def texts(self) -> dict[str, str]:
+        """Everything that is needed to have the same model elsewhere."""
+
+
+@dataclass(frozen=True, init=False)
+class Output(RequiredFigure):
+    """A figure that is computed of every design.
+
+    name : of its column.
+    of : the command that has it.  value : its place in that command's JSON object.
+    dimension : where it is known.
+    more : what is asked of it, by the key of a `RequirementKind`: `at_least` and `at_most`, limits
+        in SI units, outside of which a design is not kept; `make`, whether it is to become the
+        ``smallest`` or ``largest``.
+    """
+
+    name: str
+    of: Command = "analyze"
+    value: str = ""
+    dimension: str | None = None
+
+    def __init__(
+        self,
+        name: str,
+        of: Command = "analyze",
+        value: str = "",
+        dimension: str | None = None,
+        *,
+        asks: Asks = (),
+        **options: Any,
+    ) -> None:
+        given = {"name": name, "of": of, "value": value or name, "dimension": dimension}
+        for key, item in (given | {"asks": asks_of(options, asks)}).items():
+            object.__setattr__(self, key, item)
+
+    @property
+    def requirement(self) -> Requirement:
+        """What it has to be."""
+        return Requirement(
+            self.value, asks=self.asks, turning=False
+        )  # a cycle may have several turns
+
+    def to_plain(self) -> dict[str, Any]:
+        """As plain values, in SI units; ``Output(**plain)`` is the same again."""
+        fields = {name: getattr(self, name) for name in ("name", "of", "value", "dimension")}
+        return fields | self.asked_in("outputs")
+
+
+@dataclass(frozen=True)
+class Correlation:
+    """Two tolerances that go together.
+
+    coefficient : of the normal variables behind both; of two normal spreads it is their own.
+    """
+
+    first: str
+    second: str
+    coefficient: float
+
+
+@dataclass(frozen=True)
+class Sampling:
+    """Which designs are computed.
+
+    designs : their number; None of a grid.
+    seed : of all random numbers.
+    """
+
+    method: Method = "sobol"
+    designs: int | None = None
+    seed: int = 1
+
 
 Array = np.ndarray[Any, Any]
 
@@ -400,3 +514,186 @@ def _wrong_output(where: str, output: Output, kind: str) -> Iterator[ModelError]
         yield ModelError(f"{where}.{key}", Note("got {given}; {right}", given=given, right=right))
     if None not in (output.at_least, output.at_most) and output.at_least > output.at_most:  # type: ignore[operator]
         yield ModelError(where, Note("at_least is above at_most"))
+
+
+BITS = 30
+"""Of a Sobol number; 2**30 designs are more than any study has."""
+ROUNDS = 4
+"""Of shuffling: two hardly leave a pattern."""
+SHUFFLES, JITTER, SEQUENCE, DRAWS = range(4)
+"""What random numbers are for: each has a stream of its own."""
+
+
+def samples(study: Study, start: int, count: int) -> Array:
+    """Values of the designs from number `start` on, (count, d) in SI units, a column a number.
+
+    Raises
+    ------
+    UsageError : there are not so many designs.
+    """
+    if study.sampling.method != "grid":
+        return values_at(study, unit_samples(study, start, count))
+    places = _grid(study, start, count)
+    levels = (item.spread.levels for item in study.vary)
+    return np.column_stack([level[place] for level, place in zip(levels, places, strict=True)])
+
+
+def unit_samples(study: Study, start: int, count: int) -> Array:
+    """Places of the same designs in the spread of each number, (count, d), above 0 and below 1.
+
+    They are not correlated yet; `values_at` makes values of them.
+    """
+    if start < 0 or count < 0 or start + count > study.size:
+        raise UsageError(
+            Note(
+                "got designs {start} to {start_2}; the study has {size}, from 0",
+                start=start,
+                start_2=start + count,
+                size=study.size,
+            )
+        )
+    method = study.sampling.method
+    if method == "grid":
+        places = zip(_grid(study, start, count), study.shape, strict=True)
+        return np.column_stack([(place + 0.5) / levels for place, levels in places])
+    if method == "monte-carlo":
+        return _uniform(study, DRAWS, start, count)
+    return (_sobol if method == "sobol" else _latin_hypercube)(study, start, count)
+
+
+def values_at(study: Study, unit: Array) -> Array:
+    """Values (n, d), SI units, at places (n, d) between 0 and 1, correlated as the study says.
+
+    Correlations are those of a Gaussian copula: normal variables behind the places are mixed, which
+    leaves the spread of each number as it is.
+    """
+    places = list(np.asarray(unit).T)
+    if study.correlations:
+        from scipy.special import ndtr, ndtri
+
+        columns, matrix = correlation_matrix(study.paths, study.correlations)
+        behind = ndtri(np.clip([places[column] for column in columns], LEAST, MOST))
+        mixed = np.clip(ndtr(np.linalg.cholesky(matrix) @ behind), LEAST, MOST)
+        for column, place in zip(columns, mixed, strict=True):
+            places[column] = place
+    values = np.empty(np.shape(unit))
+    for column, (item, place) in enumerate(zip(study.vary, places, strict=True)):
+        values[:, column] = item.spread.at(place)
+    return values
+
+
+def canonical(study: Study, places: Array) -> Array:
+    """Designs with each value of a list in one place only, so that equal ones are seen."""
+    settled = np.clip(places, 0.0, 1.0)
+    for k, item in enumerate(study.vary):
+        spread: Any = item.spread
+        if spread.count:
+            step = np.minimum(np.floor(settled[:, k] * spread.count), spread.count - 1)
+            settled[:, k] = (step + 0.5) / spread.count
+    return settled
+
+
+# -- each method -----------------------------------------------------------------------------------
+
+
+def _grid(study: Study, start: int, count: int) -> tuple[Array, ...]:
+    """Place of each number in its levels, (count,) each; the last runs fastest."""
+    return np.unravel_index(np.arange(start, start + count), study.shape)
+
+
+def _latin_hypercube(study: Study, start: int, count: int) -> Array:
+    places = _uniform(study, JITTER, start, count)
+    for column in range(len(study.vary)):
+        places[:, column] += _shuffled(study.sampling.seed, column, study.size, start, count)
+    places /= study.size
+    return np.clip(places, LEAST, MOST, out=places)
+
+
+def _sobol(study: Study, start: int, count: int) -> Array:
+    width = len(study.vary)
+    if count == 0:
+        return np.empty((0, width))
+    key = (study.sampling.seed, width)
+    engine = _engine(key, start)
+    _ENGINES.key = None  # while it draws: if it is interrupted, nobody goes on with it
+    # SciPy warns of a first draw that is no power of two long; one is such a power.
+    first = engine.random(1)
+    places: Array = np.concatenate([first, engine.random(count - 1)]) if count > 1 else first.copy()
+    _ENGINES.key = key
+    places += 0.5 / 2**BITS  # the middle of a cell: 0 is the end of a normal spread
+    return places
+
+
+# -- random numbers --------------------------------------------------------------------------------
+
+
+def random_numbers(seed: int, *use: int) -> np.random.Generator:
+    """The stream of random numbers of one use; it can jump."""
+    sequence = np.random.SeedSequence(seed, spawn_key=use)
+    return np.random.Generator(np.random.PCG64DXSM(sequence))
+
+
+def _uniform(study: Study, use: int, start: int, count: int) -> Array:
+    """Rows of one endless table of random numbers, (count, d), above 0 and below 1."""
+    source, width = random_numbers(study.sampling.seed, use), len(study.vary)
+    source.bit_generator.advance(start * width)  # type: ignore[attr-defined]  # one step a number
+    random = source.random((count, width))
+    return np.maximum(random, LEAST, out=random)
+
+
+def _shuffled(seed: int, column: int, size: int, start: int, count: int) -> Array:
+    """A part (count,) of the numbers below `size` in an order of their own for each column.
+
+    By a Feistel network: a number is taken for a place in a square table of rows and columns, and
+    its row is moved on by what a random table says for its column, then the column for the row,
+    and so on.  Each step can be undone, so no two numbers become one.
+    """
+    sides, tables = _tables(seed, column, size)
+    shuffled = np.arange(start, start + count)
+    again = np.arange(count)  # which are not below `size`: the square is somewhat larger
+    while again.size:
+        row, place = np.divmod(shuffled[again], sides[1])
+        for of_row, of_place in tables:
+            _move_on(row, of_row[place], sides[0])
+            _move_on(place, of_place[row], sides[1])
+        shuffled[again] = row * sides[1] + place
+        again = again[shuffled[again] >= size]
+    return shuffled
+
+
+def _move_on(values: Array, by: Array, limit: int) -> None:
+    """Add, and begin again at 0 from the limit on, in place."""
+    values += by
+    values -= limit * (values >= limit)
+
+
+@lru_cache(maxsize=4096)
+def _tables(seed: int, column: int, size: int) -> tuple[tuple[int, int], list[tuple[Array, Array]]]:
+    """Rows and columns of the square, and for each round a table for both."""
+    rows = isqrt(size - 1) + 1
+    columns = -(-size // rows)
+    random = random_numbers(seed, SHUFFLES, column)
+    tables = [
+        (random.integers(0, rows, columns), random.integers(0, columns, rows))
+        for _ in range(ROUNDS)
+    ]
+    return (rows, columns), tables
+
+
+_ENGINES = threading.local()
+
+
+def _engine(key: tuple[int, int], start: int) -> Sobol:
+    """A scrambled sequence that stands at `start`; each thread goes on with the one it has.
+
+    key : seed, and how many numbers a design has.
+    """
+    if getattr(_ENGINES, "key", None) != key:
+        seed, width = key
+        _ENGINES.engine = sobol(width, random_numbers(seed, SEQUENCE), BITS)
+    engine: Sobol = _ENGINES.engine
+    if engine.num_generated > start:
+        engine.reset()
+    if engine.num_generated < start:
+        engine.fast_forward(start - engine.num_generated)
+    return engine

@@ -11,9 +11,8 @@ from equipoise.dataclass import dataclass
 from equipoise.mechanism.parts.machine import FRAME
 from equipoise.mechanism.parts.support import Mount, unit_vector
 from equipoise.symbols.carrier import foot, gauge, ground, strut, turning
-from equipoise.symbols.drives import DriveSign
 from equipoise.symbols.looks import LAYERS
-from equipoise.symbols.scene import WIDE, GuideSign, LinkOutline, Scene
+from equipoise.symbols.scene import WIDE, DriveSign, GuideSign, LinkOutline, Scene
 from equipoise.symbols.shapes import (
     PIN,
     Array,

@@ -1,28 +1,195 @@
-"""What there is to draw of a machine: for pictures, animations and the live page."""
+"""What there is to draw of a machine, at a clear crank angle."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from functools import cached_property
-from typing import Any
+from functools import cached_property, partial
+from itertools import combinations, pairwise, repeat
+from math import dist
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from equipoise.dataclass import dataclass
 from equipoise.errors import EquipoiseError
-from equipoise.mechanism.kinematics.motion import Motion
+from equipoise.i18n import say
+from equipoise.mechanism.assembly.joints import Structure, coupling_pins
+from equipoise.mechanism.checks import Bodies
+from equipoise.mechanism.formulas.kernels import cross
+from equipoise.mechanism.kinematics.motion import Motion, move
 from equipoise.mechanism.kinematics.tip import surface_of
-from equipoise.mechanism.parts.bodies import place_of
-from equipoise.mechanism.parts.body_checks import Outline, outlines
-from equipoise.mechanism.parts.machine import FRAME, Link
+from equipoise.mechanism.parts.bodies import Outline, outlines, place_of
+from equipoise.mechanism.parts.couplings import Coupling, Law
+from equipoise.mechanism.parts.gears import Gear
+from equipoise.mechanism.parts.machine import FRAME, Drive, FurtherDrive, Link
 from equipoise.symbols.carrier import MOUNT, Carrier, SupportSwing
 from equipoise.symbols.constraints import constraint_marks
-from equipoise.symbols.drives import DriveSign
 from equipoise.symbols.part_signs import Surroundings, in_order, signs_of
-from equipoise.symbols.rows import SINGLE_ROW, Rows, rows_of
-from equipoise.symbols.shapes import Array, BodyMark, hull
-from equipoise.symbols.wheels import Wheel, wheels_of
+from equipoise.symbols.shapes import Array, BodyMark, hull, off_outline
+
+if TYPE_CHECKING:
+    from equipoise.mechanism.kinematics.motion import Motion
+
+CORNERS = 180
+"""Of a pitch curve that is no circle."""
+Curves = Iterator[Array]
+
+
+@dataclass(frozen=True, eq=False)
+class Wheel:
+    """The pitch curve of a gear.
+
+    link : what turns with it, maybe the frame.  center : the point on its axis.
+    radius : of a circle, or the largest, m.  part : list and name of the coupling that has it.
+    curve : (n,) of what is no circle: from the center, in the link's axes, complex, m.
+    """
+
+    link: str
+    center: str
+    radius: float
+    part: tuple[str, str]
+    curve: Array | None = None
+
+
+def called(wheels: Sequence[Wheel]) -> str:
+    """What these are called together."""
+    if any(wheel.curve is not None for wheel in wheels):
+        return say("pitch curves of gears")
+    if any(wheel.part[0] == Gear.table for wheel in wheels):
+        return say("pitch circles of gears")
+    return say("pitch circles of pulleys and pinions")
+
+
+def wheels_of(joints: Structure, bodies: Bodies, angles: Mapping[str, float]) -> Iterator[Wheel]:
+    """Gears, pulleys and pinions, of which each has its pin on the carrier.
+
+    angles : of the links in one pose, rad, which tell how curves lie that are no circles.
+    """
+    for coupling in joints.couplings:
+        wheels = [*coupling.circles(partial(_distance, joints, bodies, coupling))]
+        shared = [joints.pins_between(body, coupling.carrier) for body, _ in wheels]
+        if not all(shared):
+            continue  # a sketch may lack a pin
+        pins = [points[0] for points in shared]
+        curves: Iterable[Array | None] = repeat(None)
+        if isinstance(coupling, Gear) and coupling.law is not None:
+            driver, driven = (complex(*bodies[coupling.carrier][pin]) for pin in pins)
+            curves = _curves(coupling, coupling.law, driver - driven, angles)
+        for (body, radius), pin, curve in zip(wheels, pins, curves, strict=False):
+            size = radius if curve is None else float(np.max(np.abs(curve)))
+            yield Wheel(body, pin, size, (coupling.table, coupling.name), curve)
+
+
+def _distance(joints: Structure, bodies: Bodies, coupling: Coupling) -> float:
+    """Of the pins of driver and driven body, m."""
+    points = bodies[coupling.carrier]
+    return dist(*(points[pin] for pin in coupling_pins(joints, coupling)))
+
+
+def _curves(gear: Gear, law: Law, centres: complex, angles: Mapping[str, float]) -> Curves:
+    """Corners of driver's and driven gear's curve, in their axes: where the pitch point comes."""
+    turned = {FRAME: 0.0, **angles}
+    driver, driven = (turned[item] - turned[gear.carrier] for item in (gear.driver, gear.driven))
+    offset = driven - law(driver)[0]
+    for turns, of_driver in ((1.0, True), (1 / abs(gear.speed_ratio), False)):
+        x = np.linspace(0.0, 2 * np.pi * turns, CORNERS, endpoint=False)
+        y, ratio, _ = law(x)
+        angle, share = (x, ratio) if of_driver else (y + offset, 1.0)
+        yield centres * share / (1 - ratio) * np.exp(-1j * angle)
+
+
+CLOSE = 1e-9
+"""rad and m within which rows cover each other."""
+FAR = 1.0
+"""Over the size of the linkage: rows that stand further beside it are not drawn."""
+
+
+@dataclass(frozen=True, eq=False)
+class Ghost:
+    """Rows that move alike, but not as the linkage of the file.
+
+    numbers : of these rows, from 1.  phase : by which their crank is ahead, rad.
+    places : of points by name, (N,) complex, m; none where they stand too far beside the linkage.
+    angles : of each link, (N,) rad.
+    """
+
+    numbers: tuple[int, ...]
+    phase: float
+    places: Mapping[str, Array]
+    angles: Mapping[str, Array]
+
+
+@dataclass(frozen=True, eq=False)
+class Rows:
+    """Rows of a machine.  drawn : numbers of those that move as the linkage of the file."""
+
+    drawn: tuple[int, ...] = ()
+    others: tuple[Ghost, ...] = ()
+
+    @property
+    def shown(self) -> tuple[Ghost, ...]:
+        """Those of the others that are drawn."""
+        return tuple(part for part in self.others if part.places)
+
+
+SINGLE_ROW = Rows()
+"""Of a machine that has no rows, or whose rows are not to be seen."""
+
+
+def rows_of(motion: Motion, size: float) -> Rows:
+    """All rows of a machine in motion, whose linkage has a size, m."""
+    rows = motion.machine.rows
+    if len(rows) < 2:
+        return SINGLE_ROW
+    alike: dict[tuple[int, ...], list[int]] = {}
+    for number, row in enumerate(rows, 1):
+        turned = round(float(np.angle(np.exp(1j * row.phase)) / CLOSE))
+        place = (round(part / CLOSE) for part in row.offset)
+        alike.setdefault((turned, *place), []).append(number)
+    in_place = tuple(alike.pop((0, 0, 0), ()))
+    others = []
+    for numbers in alike.values():
+        row = rows[numbers[0] - 1]
+        offset, phase = complex(*row.offset), float(np.angle(np.exp(1j * row.phase)))
+        if abs(offset) > FAR * size:
+            others.append(Ghost(tuple(numbers), phase, {}, {}))
+            continue
+        there = move(motion.machine, motion.crank_angle + phase, motion.speed, motion.acceleration)
+        places = {name: point.place + offset for name, point in there.points.items()}
+        angles = {name: link.angle for name, link in there.links.items()}
+        others.append(Ghost(tuple(numbers), phase, places, angles))
+    return Rows(in_place, tuple(others))
+
+
+@dataclass(frozen=True)
+class DriveSign:
+    """The link that is driven, the point that it turns about, and its sense: 1, -1, or 0.
+
+    swings : angles of the link between which it goes to and fro, rad, where it does not turn.
+    between : points that a cylinder pushes apart, where one drives.
+    """
+
+    link: str
+    pivot: str
+    sense: int
+    swings: tuple[float, float] | None = None
+    between: tuple[str, str] | None = None
+
+    @classmethod
+    def each(cls, motion: Motion) -> tuple[DriveSign, ...]:
+        """Those of a machine in motion."""
+        return tuple(cls._of(drive, motion) for drive in motion.machine.driven)
+
+    @classmethod
+    def _of(cls, drive: Drive | FurtherDrive, motion: Motion) -> DriveSign:
+        angle, pivot = motion.links[drive.link].angle, motion.linkage.anchors[drive.link]
+        law = drive.stroke or drive.motion
+        if law is None or law.windings:
+            ahead = getattr(drive, "ratio", 1.0) if law is None else law.windings
+            return cls(drive.link, pivot, int(np.sign(motion.speed * ahead)))
+        swings = None if drive.pushes else (float(angle.min()), float(angle.max()))
+        return cls(drive.link, pivot, 0, swings, drive.between)
 
 
 @dataclass(frozen=True)
@@ -364,3 +531,84 @@ def _guides(motion: Motion) -> Iterator[GuideSign]:
         ends = along - along.min(), along.max() - along
         side = meshing.get((slider.link, slider.on), 0)
         yield GuideSign(slider.name, slider.point, way, slider.on, *ends, side)
+
+
+CANDIDATES = 24
+"""Crank angles in a turn among which the clearest is chosen."""
+ROOM, OPEN = 80.0, np.radians(60.0)
+"""Units from a sign to a link, and angle between links that meet, of which more is no clearer."""
+
+
+def clear_angle(scene: Scene) -> int:
+    """At which of a scene's crank angles (of the first turn) links hide each other least.
+
+    Signs keep away from links that they are no part of, links do not cross, and those that meet at
+    a point do not lie in one line.  Each adds the cube of what it lacks, so that many that are
+    near weigh less than one that is hidden, and what never changes does not count.
+    """
+    count = int(np.searchsorted(scene.crank_angle, 2 * np.pi - 1e-9))
+    at = np.unique(np.linspace(0, max(count, 1), CANDIDATES, endpoint=False).astype(int))
+    shares = [*_off_links(scene, at), *_uncrossed(scene, at), *_opened(scene, at)]
+    lacking = sum((np.clip(1 - share, 0, 1) ** 3 for share in shares), np.zeros(len(at)))
+    return int(at[np.argmin(np.round(lacking, 3))])
+
+
+def _off_links(scene: Scene, at: Array) -> Iterator[Array]:
+    """How far signs are from links and springs, over the room that they should have, (M,) each."""
+    outlines = [(body.name, set(body.points), body.outline) for body in scene.bodies]
+    outlines += [("", set(ends), ends) for ends in _springs(scene)]
+    signs = [("", name, place[at]) for name, place in scene.places.items()]
+    middles = ((scene.places[item] + scene.places[other]) / 2 for item, other in _springs(scene))
+    signs += [("", "", middle[at]) for middle in middles]
+    signs += [(link, "", center[at]) for link, center in scene.mass_centers.items()]
+    if scene.carrier is not None:
+        below = -0.5j * MOUNT[0] * scene.unit
+        mount_points = (
+            item.point for item in scene.carrier.items.values() if item.point is not None
+        )
+        signs += [("", "", np.full(len(at), complex(*point[:2]) + below)) for point in mount_points]
+    for link, points, outline in outlines:
+        corners = np.array([scene.places[name][at] for name in outline])
+        for own, point, place in signs:
+            if point not in points and own != link:
+                yield off_outline(place, corners) / (ROOM * scene.unit)
+
+
+def _springs(scene: Scene) -> list[tuple[str, str]]:
+    return [*scene.stretched]
+
+
+def _uncrossed(scene: Scene, at: Array) -> Iterator[Array]:
+    """Whether edges of links, and springs, cross each other, (M,) each."""
+    edges = [{*ends} for ends in _springs(scene)]
+    for body in scene.bodies:
+        edges += [{*ends} for ends in pairwise((*body.outline, body.outline[0]))]
+    for edge, other in combinations([ends for ends in edges if len(ends) == 2], 2):
+        if not edge & other:
+            a, b, c, d = (scene.places[name][at] for name in (*sorted(edge), *sorted(other)))
+            yield 1.0 * (_overlap(scene, a, b, c, d) | _overlap(scene, c, d, a, b))
+
+
+def _overlap(scene: Scene, a: Array, b: Array, c: Array, d: Array) -> Array:
+    """Whether c and d lie on one side of the line from a to b, or one of them on it, (M,)."""
+    ends = cross(b - a, c - a) * cross(b - a, d - a)
+    return np.asarray(ends > -((scene.unit * np.abs(b - a)) ** 2))
+
+
+def _opened(scene: Scene, at: Array) -> Iterator[Array]:
+    """Angles between what meets at a point, over what they should be, (M,) each."""
+    arms: dict[str, list[Array]] = {}
+    bars = [body.outline for body in scene.bodies if len(body.outline) == 2]
+    for start, end in (*bars, *_springs(scene)):
+        along = scene.places[end][at] - scene.places[start][at]
+        arms.setdefault(start, []).append(along)
+        arms.setdefault(end, []).append(-along)
+    for guide in scene.guides:
+        arms.setdefault(guide.point, []).append(guide.way[at])
+    for point, ways in arms.items():
+        for number, way in enumerate(ways):
+            if point in scene.standing:
+                yield np.abs(np.angle(way / scene.ground(point))) / OPEN
+            for other in ways[:number]:
+                angle = np.abs(np.angle(way * other.conj()))
+                yield np.minimum(angle, np.pi - angle) / OPEN

@@ -9,7 +9,7 @@ import numpy as np
 
 from equipoise.mechanism.assembly.builder import Guide
 from equipoise.mechanism.assembly.joints import coupling_pins
-from equipoise.mechanism.formulas.strands import LEFT, RIGHT
+from equipoise.mechanism.formulas.rolling import LEFT, RIGHT
 from equipoise.mechanism.parts.belts import Belt
 from equipoise.mechanism.parts.racks import Rack
 from equipoise.symbols.part_signs import Surroundings

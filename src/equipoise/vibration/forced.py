@@ -20,8 +20,7 @@ from equipoise.mechanism.parts.support import idle_parts
 from equipoise.quantities import HUGE, in_si
 from equipoise.vibration.body import MISSING
 from equipoise.vibration.exact import solve_exact
-from equipoise.vibration.linear import DEFAULT_EXCITATION_MODEL, ExcitationModel, Linear
-from equipoise.vibration.resonance import warned
+from equipoise.vibration.linear import DEFAULT_EXCITATION_MODEL, ExcitationModel, Linear, warned
 from equipoise.vibration.response import MODELS, GaugeSignals, Model, Response, range_shown
 from equipoise.vibration.small_motion import respond_coupled, respond_linear
 

@@ -1,26 +1,31 @@
-"""Free vibration of a machine on its support."""
+"""Free vibration of a machine on its support, and the start from rest."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import cached_property
+from math import pi
 from typing import ClassVar
 
 import numpy as np
 
 from equipoise.dataclass import dataclass
-from equipoise.errors import MassError, ModelError
+from equipoise.errors import MassError, ModelError, ResponseError, UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism.dynamics.forces import massless
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.support import Place
+from equipoise.quantities import Dimension, in_si
 from equipoise.results.declaring import NOTES, TITLE, Declarations, ResultOutput
 from equipoise.results.result import Result
 from equipoise.signals import Array
-from equipoise.vibration.body import MISSING
-from equipoise.vibration.forced import excitation_model_of
+from equipoise.vibration.body import MISSING, Reading, SupportBody
+from equipoise.vibration.coupled import Coupled, follow
+from equipoise.vibration.exact import solve_exact
+from equipoise.vibration.forced import chosen_model, excitation_model_of, steady_speed
 from equipoise.vibration.linear import Linear, gauges_of
-from equipoise.vibration.response import Mode, members_of
+from equipoise.vibration.response import Mode, members_of, of_support
+from equipoise.vibration.steady import equations, motor_setting
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,7 +52,7 @@ class FreeVibration(Result):
     notes : what a reader has to know.
     """
 
-    blocks_in = "vibration.sweep_blocks.free_blocks"
+    blocks_in = "vibration.blocks.free_blocks"
     pictures_in = "figures.pictures.mode_pictures"
     records: ClassVar[str] = "modes"
 
@@ -142,3 +147,132 @@ def modes(machine: Machine, model: str | None = None) -> FreeVibration:
         raise MassError(missing)
     linear = Linear.of(machine, excitation_model_of(model))
     return FreeVibration(linear, linear.modes, linear.rest.preload, tuple(linear.unsettled))
+
+
+MOST_TURNS = 2000
+"""Turns that are integrated at most, some minutes of computing."""
+LEAST_SAMPLES, SAMPLES_PER_TURN, MOST_SAMPLES = 2001, 72, 1_000_000
+"""Instants where none are asked for, at least and in a turn (every 5 deg); at most."""
+
+
+def _signal(name: str, dimension: Dimension, turned: Dimension) -> ResultOutput:
+    """A signal (M,) of a gauge or mount."""
+    return ResultOutput(name, dimension, turned, read=lambda values: values, column=name)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Transient(Result):
+    """A machine on its support from rest, at M instants.
+
+    time : (M,) s.  states : (n, M), displacements and velocities of the free coordinates.
+    crank_angle, crank_speed : (M,), rad and rad/s.
+    """
+
+    machine: Machine
+    system: Coupled
+    time: Array
+    states: Array
+    crank_angle: Array
+    crank_speed: Array
+
+    @cached_property
+    def gauges(self) -> Mapping[str, Array]:
+        """Displacement (M,) at each gauge, m or rad."""
+        if self.machine.support is None:
+            return {}
+        body = SupportBody(self.machine)
+        place, _ = self.system.place_and_rate(self.states)
+        return {
+            name: Reading.of(body, gauge).displacement(place)
+            for name, gauge in gauges_of(body).items()
+        }
+
+    @cached_property
+    def mounts(self) -> Mapping[str, Array]:
+        """Force (M,) of each mount, N or N m."""
+        ride = self.system.place_and_rate(self.states)
+        return {contact.name: contact.force(*ride) for contact in self.system.contacts}
+
+    blocks_in = "vibration.blocks.transient_blocks"
+    pictures_in = "figures.vibration.transient_charts"
+    declared: ClassVar[Declarations] = {
+        "title": TITLE,
+        "time": ResultOutput("instants", "time", column="time"),
+        "crank_angle": ResultOutput("crank angle since the start", "angle", column="crank_angle"),
+        "crank_speed": ResultOutput("speed of the crank", "angular speed", column="crank_speed"),
+        "gauges": of_support(
+            "gauges", "of each gauge", {"displacement": _signal("displacement", "length", "angle")}
+        ),
+        "mounts": of_support(
+            "mounts", "of each mount", {"force": _signal("force", "force", "torque")}
+        ),
+    }
+
+
+def simulate(
+    machine: Machine,
+    duration: float | str,
+    speed: float | str | None = None,
+    drive: bool = False,
+    samples: int | None = None,
+) -> Transient:
+    """Follow a machine from rest in the drawn position.
+
+    Parameters
+    ----------
+    duration : s, or a text such as ``"2 s"``.
+    speed : of the crank, rad/s, or a text such as ``"300 rpm"``, which it has at once; with
+        `drive` it stands still at first, and the motor brings it up.
+    samples : number of instants that are told; 72 in each turn, and 2000 at least, if None.
+
+    Raises
+    ------
+    ModelError, UsageError, ResponseError.
+    """
+    duration = in_si(duration, "time", "duration")
+    chosen_model(machine, "exact", drive)
+    if missing := massless(machine):
+        raise MassError(missing)
+    speed = steady_speed(machine, speed, drive)
+    if samples is not None and not 2 <= samples <= MOST_SAMPLES:
+        raise UsageError(
+            Note(
+                "got {samples!r} for samples; give 2 to {most_samples}",
+                samples=samples,
+                most_samples=MOST_SAMPLES,
+            )
+        )
+    turns = abs(speed) * duration / (2 * pi)
+    if not 0 < turns <= MOST_TURNS:
+        raise UsageError(
+            Note(
+                "got {duration:g} s, in which the crank makes {turns:.4g} turns; give a "
+                "time of more than 0 and at most {most_turns} turns, {longest:.4g} s",
+                duration=duration,
+                turns=turns,
+                most_turns=MOST_TURNS,
+                longest=MOST_TURNS * 2 * pi / abs(speed),
+            )
+        )
+    system, _ = equations(machine, speed, drive)
+    shift = _shift(machine, speed) if drive else 0.0
+    states_of = 2 * len(system.free)
+    begin = np.zeros(states_of + 2)
+    begin[states_of] = 0.0 if drive else speed
+    count = max(LEAST_SAMPLES, round(SAMPLES_PER_TURN * turns)) if samples is None else samples
+    time = np.linspace(0.0, duration, count)
+    states = follow(system, time, begin, shift)
+    moved, crank_speed, crank_angle = np.split(states, [states_of, states_of + 1])
+    return Transient(machine, system, time, moved, crank_angle[0], crank_speed[0])
+
+
+def _shift(machine: Machine, speed: float) -> float:
+    """Shift of the motor's curve that holds the mean speed in the steady state."""
+    motor = machine.drive.motor
+    assert motor is not None
+    if motor.mean_speed == "free":
+        return 0.0
+    try:
+        return float(solve_exact(machine, speed, True).found.orbit.starts[-1, 0])
+    except ResponseError:  # then as if the speed were constant
+        return motor_setting(machine, speed)[1]

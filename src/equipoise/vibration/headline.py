@@ -11,14 +11,13 @@ from equipoise.quantities import PER_RPM, brief
 from equipoise.results import headline
 from equipoise.results.analysis import Analysis, analyze
 from equipoise.results.blocks import Block, Facts, Notes, Text, broken_if
-from equipoise.results.drive_blocks import driven
 from equipoise.results.headline import look_at_next
+from equipoise.results.machine_blocks import driven
 from equipoise.results.outputs import shown_in
 from equipoise.results.rotors import rotor_sentence
 from equipoise.results.yardsticks import assess, sentence, verdict
 from equipoise.vibration.forced import excitation_model_of, readings_of
-from equipoise.vibration.linear import Linear
-from equipoise.vibration.resonance import around, resonance_note, resonances
+from equipoise.vibration.linear import Linear, around, resonance_note, resonances
 from equipoise.vibration.response import MODELS
 
 if TYPE_CHECKING:

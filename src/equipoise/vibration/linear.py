@@ -1,4 +1,4 @@
-"""Linear response: what linkages do to the support, and its small motion under it, by orders.
+"""Linear response, modes and resonances: what linkages do to the support by orders.
 
 ``moment``, the default: the whole force and moment of all joints on the frame.  By name, the
 simplifications of Yamashita, Ichikawa and Mori: (59) ``linear``, the shaking force at the drive's
@@ -10,29 +10,32 @@ the linkage's mass rides at the drive's pivot, in the first it is spread as in t
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
 from functools import cached_property, reduce
+from math import copysign, pi, sqrt
 from operator import add
-from typing import Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 
 from equipoise.dataclass import dataclass
-from equipoise.decompositions import cond, lstsq
+from equipoise.decompositions import cond, lstsq, svd
 from equipoise.errors import ModelError, ResponseError
 from equipoise.i18n import Note, all_of, to_say
+from equipoise.limits import check_memory
 from equipoise.mechanism.dynamics.acting import outer_loads, soil_loads
 from equipoise.mechanism.dynamics.forces import Forces, forces
 from equipoise.mechanism.dynamics.reactions import demands_of
 from equipoise.mechanism.formulas.kernels import cross
 from equipoise.mechanism.kinematics.jumps import resolved
 from equipoise.mechanism.kinematics.motion import Motion, move
-from equipoise.mechanism.parts.machine import Machine
-from equipoise.mechanism.parts.planes import moments_across
+from equipoise.mechanism.parts.links import moments_across
+from equipoise.mechanism.parts.machine import Drive, Machine
 from equipoise.mechanism.parts.support import AXES, FREEDOMS, Gauge, Row
-from equipoise.quantities import Dimension, told
-from equipoise.signals import Array, Periodic
+from equipoise.quantities import PER_RPM, Dimension, brief, number, told
+from equipoise.results.declaring import Declarations, ResultOutput
+from equipoise.signals import Array, Periodic, highest_at
 from equipoise.vibration.body import (
     Rest,
     SupportBody,
@@ -42,9 +45,43 @@ from equipoise.vibration.body import (
     rigid_mass,
     unbounded_at,
 )
-from equipoise.vibration.eigen import find_modes
 from equipoise.vibration.linkages import rows_of, spread
-from equipoise.vibration.response import Mode
+from equipoise.vibration.response import Mode, Response
+
+STILL = 1e-7
+"""Share of the largest frequency below which a motion counts as free, without a spring."""
+
+
+def find_modes(mass: Array, damping: Array, stiffness: Array) -> tuple[Mode, ...]:
+    """Modes of M x'' + C x' + K x = 0, by frequency; overdamped and growing ones are told twice.
+
+    mass, damping, stiffness : (D, D).
+    """
+    count = len(mass)
+    system = np.zeros((2 * count, 2 * count))
+    system[:count, count:] = np.eye(count)
+    system[count:, :count] = -np.linalg.solve(mass, stiffness)
+    system[count:, count:] = -np.linalg.solve(mass, damping)
+    values, vectors = np.linalg.eig(system)
+    least = STILL * float(np.max(np.abs(values), initial=0.0))
+    # Eigenvectors of a zero that stands twice, for standing and drifting, are one; the stiffness
+    # tells free motions apart.
+    _, sizes, shapes = svd(stiffness)
+    free = sizes <= STILL**2 * np.max(sizes, initial=0.0)
+    modes = [Mode(0j, _scaled(shape)) for shape in shapes[free].astype(complex)]
+    for value, vector in zip(values, vectors.T, strict=True):
+        if abs(value) > least and value.imag >= -STILL * abs(value):
+            swinging = value.imag > STILL * abs(value)
+            eigenvalue = complex(value if swinging else value.real)
+            modes.append(Mode(eigenvalue, _scaled(vector[:count])))
+    return tuple(sorted(modes, key=lambda mode: (mode.natural_frequency, mode.eigenvalue.real)))
+
+
+def _scaled(shape: Array) -> Array:
+    """The shape with its largest part 1."""
+    largest = shape[highest_at(np.abs(shape), smooth=False)]
+    return np.asarray(shape / largest) if largest else shape
+
 
 ExcitationModel = Literal["linear", "torque", "moment"]
 EXCITATION_MODELS: tuple[ExcitationModel, ...] = ("linear", "torque", "moment")
@@ -461,3 +498,286 @@ def gauges_of(body: SupportBody) -> dict[str, Gauge]:
             first, second, third = map(float, np.eye(3)[FREEDOMS.index(name)])
             gauges[name] = Gauge((x, y, z), (first, second, third))
     return gauges
+
+
+QUIET = 1e-3
+"""Share of the loudest resonance at every gauge below which one is not told."""
+LOUD = 0.1
+"""Share of the loudest resonance from which one matters to whoever chooses a speed."""
+LEAST_DAMPING = 1e-4
+"""Damping ratio below which modes are compared as if they had it."""
+AMPLIFIED = 3.0
+"""A speed is to be kept away from where the mode amplifies the order more often than this."""
+
+
+@dataclass(frozen=True)
+class Resonance:
+    """One order that meets one mode.
+
+    speed : of the crank, rad/s.  order : events in a turn.  mode : its number, from 1.
+    frequency : of the mode, rad/s.
+    share : amplitude at the gauge that this resonance shakes most, over the largest there.
+    avoid : speeds between which the mode amplifies this order more than three times, the slower one
+        first; None where its damping never lets it.
+    """
+
+    speed: float
+    order: float
+    mode: int
+    frequency: float
+    share: float
+    avoid: tuple[float, float] | None
+
+    @property
+    def is_loud(self) -> bool:
+        """Whether it matters to whoever chooses a speed."""
+        return self.share >= LOUD
+
+    declared: ClassVar[Declarations] = {
+        "speed": ResultOutput("speed of the crank", "angular speed"),
+        "order": ResultOutput("events in a turn"),
+        "mode": ResultOutput("number of the mode, from 1"),
+        "frequency": ResultOutput("natural frequency of the mode", "angular speed"),
+        "share": ResultOutput("amplitude over that of the loudest resonance at a gauge"),
+        "avoid": ResultOutput(
+            "speeds between which the order is amplified more than three times, or null",
+            "angular speed",
+            read=lambda item: None if item.avoid is None else list(item.avoid),
+        ),
+    }
+
+
+AROUND = (0.2, 2.0)
+"""Ends of the range of speeds about one of the crank, over that."""
+
+
+def around(drive: Drive, speed: float) -> tuple[float, float]:
+    """Speeds (rad/s) about one of the crank, among them all at which the machine runs."""
+    slow, fast = (share * speed for share in AROUND)
+    for end in drive.speeds:
+        slow, fast = (
+            min(slow, copysign(end, speed), key=abs),
+            max(fast, copysign(end, speed), key=abs),
+        )
+    return slow, fast
+
+
+def nearest_loud(resonances: Iterable[Resonance], speed: float) -> Resonance:
+    """Of the loud ones of some resonances the one whose speed is nearest to a speed, rad/s.
+
+    One that shakes a few per cent of what the loudest does is no reason to change a speed, however
+    near it is.
+    """
+    every = tuple(resonances)
+    loud = [item for item in every if item.is_loud] or every
+    return min(loud, key=lambda resonance: abs(abs(resonance.speed / speed) - 1))
+
+
+def resonance_note(resonances: Iterable[Resonance], speed: float) -> Note:
+    """The nearest loud resonance (speed in rad/s), and between which speeds it is to be avoided."""
+    resonance = nearest_loud(resonances, speed)
+    of_one = to_say(
+        "the nearest loud resonance is at {speed} rpm, where order {order} meets mode {mode} "
+        "({frequency} Hz); no speed about it has to be avoided"
+    )
+    avoided = to_say(
+        "the nearest loud resonance is at {speed} rpm, where order {order} meets mode {mode} "
+        "({frequency} Hz); keep away from {low} to {high} rpm"
+    )
+    low, high = sorted(map(abs, resonance.avoid or (0.0, 0.0)))
+    return Note(
+        of_one if resonance.avoid is None else avoided,
+        speed=brief(abs(resonance.speed) / PER_RPM),
+        order=f"{resonance.order:.4g}",
+        mode=resonance.mode,
+        frequency=brief(resonance.frequency / (2 * pi)),
+        low=number(low / PER_RPM),
+        high=number(high / PER_RPM),
+    )
+
+
+def within(resonances: Iterable[Resonance], speed: float) -> Iterator[Note]:
+    """Which resonances amplify at a speed (rad/s) so much that it is to be kept away from."""
+    for item in resonances:
+        low, high = sorted(map(abs, item.avoid or (0.0, 0.0)))
+        if low <= abs(speed) <= high and item.avoid is not None:
+            said = to_say(
+                "the crank turns at a speed that is to be avoided: between {low} and {high} rpm "
+                "order {order} meets mode {mode} ({frequency} Hz), which amplifies it more than "
+                "three times"
+            )
+            yield Note(
+                said,
+                low=brief(low / PER_RPM),
+                high=brief(high / PER_RPM),
+                order=f"{item.order:.4g}",
+                mode=item.mode,
+                frequency=brief(item.frequency / (2 * pi)),
+            )
+
+
+def warned(linear: Linear, speed: float) -> tuple[Note, ...]:
+    """Warning of a resonance of a machine whose crank turns at a speed, rad/s."""
+    turns = linear.excitation.motion.turns
+    meets = False
+    for mode in linear.modes:  # told apart first by modes alone, which takes no time
+        order = max(1, round(mode.natural_frequency / abs(speed) * turns)) / turns
+        low, high = _avoid(mode.natural_frequency / order, mode) or (0.0, 0.0)
+        meets = meets or low <= abs(speed) <= high
+    if not meets:
+        return ()
+    drive = linear.body.machine.drive
+    return tuple(within(resonances(linear, *around(drive, speed)), speed))
+
+
+def resonances(linear: Linear, slowest: float, fastest: float) -> list[Resonance]:
+    """Resonances between two speeds of the crank of the same sign, rad/s; the fastest first.
+
+    Those whose order the linkages do not excite in that mode are left out.
+    """
+    parts: list[tuple[float, float, int, Mode]] = []
+    low, high = sorted((abs(slowest), abs(fastest)))
+    orders = linear.wrench(high).orders[1:]
+    for place, mode in enumerate(linear.modes, 1):
+        rate = mode.natural_frequency
+        # The ends belong to the range, whatever rounding says.
+        inside = (rate >= orders * low * (1 - 1e-12)) & (rate <= orders * high * (1 + 1e-12))
+        parts += [
+            (copysign(rate / order, fastest), order, place, mode)
+            for order in map(float, orders[inside & mode.swings])
+        ]
+    loud = _loudness(linear, parts)
+    return sorted(
+        (
+            Resonance(speed, order, place, mode.natural_frequency, share, _avoid(speed, mode))
+            for (speed, order, place, mode), share in zip(parts, loud, strict=True)
+            if share >= QUIET
+        ),
+        key=lambda resonance: -abs(resonance.speed),
+    )
+
+
+def _loudness(linear: Linear, resonances: list[tuple[float, float, int, Mode]]) -> list[float]:
+    """Amplitude of each resonance at the gauge where it is loudest beside the others there."""
+    rows = np.array([linear.body.row(g)[linear.body.free] for g in gauges_of(linear.body).values()])
+    amplitudes = np.zeros((len(resonances), len(rows)))
+    speeds, orders = (
+        np.array([(speed, order) for speed, order, _, _ in resonances]).reshape(-1, 2).T
+    )
+    places = np.rint(orders * linear.excitation.motion.turns).astype(int)
+    wrenches = linear.excitation.at_orders(speeds, places)[linear.body.free].T
+    for k, (wrench, (_, _, _, mode)) in enumerate(zip(wrenches, resonances, strict=True)):
+        force = abs(mode.shape @ wrench)
+        inertia = abs(mode.shape @ linear.mass @ mode.shape)
+        damping = max(abs(mode.damping_ratio), LEAST_DAMPING)
+        size = force / (2 * damping * mode.natural_frequency**2 * inertia)
+        amplitudes[k] = np.abs(rows @ mode.shape) * size
+    largest = np.max(amplitudes, axis=0, initial=0.0)
+    shares = np.divide(amplitudes, largest, out=np.zeros_like(amplitudes), where=largest > 0)
+    return [float(share) for share in np.max(shares, axis=1, initial=0.0)]
+
+
+def _avoid(speed: float, mode: Mode) -> tuple[float, float] | None:
+    """Where (1 - r^2)^2 + (2 D r)^2 < 1 / amplified^2, with r the frequency over the mode's."""
+    damping = mode.damping_ratio
+    half = 1 - 2 * damping**2
+    inner = half**2 - 1 + 1 / AMPLIFIED**2
+    if inner <= 0 or half <= 0:
+        return None
+    low, high = half - sqrt(inner), half + sqrt(inner)
+    return (speed * sqrt(max(low, 0.0)), speed * sqrt(high))
+
+
+Answers = dict[float, Response | None]
+"""Speed of the crank, rad/s -> the response; None where there is none."""
+
+OFFSETS = (-8.0, -4.0, -2.0, -1.0, -0.5, -0.2, 0.0, 0.2, 0.5, 1.0, 2.0, 4.0, 8.0)
+"""Speeds about a resonance, in damping ratios of its mode: a peak is as wide as two."""
+ACROSS, UP = 480.0, 160.0
+"""Points: size of a picture with a curve in it, whose values have a log axis."""
+OFF, SHORT = 0.7, 2.5
+"""Points: how far a place of a curve lies off the line between its neighbours where it bends, a
+quarter of which is left when both sides are halved; length of a piece that nobody sees."""
+COARSE = 30
+"""Equally spaced speeds from which curves that bend little are smooth already."""
+SAME = 1e-12
+"""Over the fastest speed: less is rounding."""
+ROUNDS = 6
+"""In each of which pieces are halved."""
+
+
+def about(
+    slowest: float, fastest: float, count: int, met: Iterable[Resonance], linear: Linear
+) -> Array:
+    """Speeds, rad/s: equally spaced, the machine's own, and about resonances; rising in size."""
+    own = np.copysign(linear.body.machine.drive.speed, fastest)
+    grid = [np.linspace(slowest, fastest, count), np.array([own])]
+    for resonance in met:
+        damping = np.clip(linear.modes[resonance.mode - 1].damping_ratio, 1e-5, 0.05)
+        grid.append(resonance.speed * (1 + np.array(OFFSETS) * damping))
+    low, high = sorted((slowest, fastest))
+    speeds = np.concatenate(grid)
+    inside = np.unique(speeds[(speeds >= low) & (speeds <= high)])
+    inside = inside[np.diff(inside, prepend=-np.inf) > SAME * max(-low, high)]
+    return inside if fastest > 0 else inside[::-1]
+
+
+def answered(
+    respond: Callable[[float], Response], speeds: Array, progress: Callable[[int, int], None]
+) -> Answers:
+    """Responses at some speeds, and at those between where curves would be drawn with corners.
+
+    respond : of a speed, whatever the others are.  progress : called with how many are done of how
+    many that are known to be wanted.
+
+    Raises
+    ------
+    UsageError : all of them would take more memory than may be used.
+    """
+    answers: Answers = {}
+    wanted = speeds.tolist()
+    for _ in range(ROUNDS):
+        total = len(answers) + len(wanted)
+        for speed in wanted:
+            try:
+                answer = respond(speed)
+            except ResponseError:
+                answer = None
+            answers[speed] = answer
+            if answer is not None:
+                speeds_of = to_say("{count} speeds of a cycle of {turns} turns")
+                what = Note(speeds_of, count=total, turns=answer.turns)
+                check_memory(answer.nbytes * total, what)
+            progress(len(answers), total)
+        answers = dict(sorted(answers.items(), key=lambda pair: abs(pair[0])))
+        wanted = between(answers)
+    return answers
+
+
+def between(answers: Mapping[float, Response | None]) -> list[float]:
+    """Middles of the pieces that meet where any curve bends."""
+    speeds = np.array([*answers])
+    there = np.array([answer is not None for answer in answers.values()])
+    if len(speeds) < 3 or not np.any(there):
+        return []
+    levels = [_levels(answer) for answer in answers.values() if answer is not None]
+    curves = np.full((len(levels[0]), len(speeds)), np.nan)
+    curves[:, there] = np.array(levels).T
+    x = np.broadcast_to(ACROSS * speeds / np.ptp(speeds), curves.shape)
+    ways = np.diff(x) + 1j * np.diff(curves)
+    both = ways[:, 1:] + ways[:, :-1]
+    off = np.abs((ways[:, :-1].conj() * both).imag) / np.abs(both)
+    bent = np.pad(off > OFF, ((0, 0), (1, 1)))
+    split = np.any((bent[:, 1:] | bent[:, :-1]) & (np.abs(ways) > SHORT), axis=0)
+    return [float(speed) for speed in (speeds[1:] + speeds[:-1])[split] / 2]
+
+
+def _levels(answer: Response) -> Array:
+    """RMS of whatever is drawn against speed, (C,), as points of a log axis; NaN where it is 0."""
+    read = [
+        (gauge.displacement, gauge.velocity, gauge.acceleration) for gauge in answer.gauges.values()
+    ]
+    signals = [*(signal for three in read for signal in three)]
+    signals += [mount.force for mount in answer.mounts.values()]
+    sizes = np.array([float(signal.vibration_rms) for signal in signals])
+    return UP / 3 * np.log10(np.where(sizes > 0, sizes, np.nan))

@@ -39,8 +39,8 @@ from equipoise.mechanism.dynamics.reduced import generalized_force, reduced_iner
 from equipoise.mechanism.formulas.kernels import cross, dot
 from equipoise.mechanism.kinematics.motion import Motion, move
 from equipoise.mechanism.parts.force_kinds import rated_elements
+from equipoise.mechanism.parts.links import masses_of, moments_across
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.mechanism.parts.planes import masses_of, moments_across
 from equipoise.mechanism.parts.support import Row
 from equipoise.signals import Array
 from equipoise.vibration.body import PITCH

@@ -27,8 +27,7 @@ from equipoise.vibration.forced import (
     left_out,
     steady_speed,
 )
-from equipoise.vibration.linear import Linear
-from equipoise.vibration.resonance import Resonance, resonances
+from equipoise.vibration.linear import Linear, Resonance, about, answered, resonances
 from equipoise.vibration.response import (
     GaugeSignals,
     Mode,
@@ -37,7 +36,6 @@ from equipoise.vibration.response import (
     of_support,
     range_shown,
 )
-from equipoise.vibration.sampling import about, answered
 from equipoise.vibration.small_motion import respond_coupled, respond_linear
 
 SPEEDS = 200
@@ -129,7 +127,7 @@ class Sweep(Result):
     NaN and `notes` tell.
     """
 
-    blocks_in = "vibration.sweep_blocks.sweep_blocks"
+    blocks_in = "vibration.blocks.sweep_blocks"
     pictures_in = "figures.sweep.sweep_charts"
     headline_in = "vibration.headline.sweep_headline"
 

@@ -20,8 +20,8 @@ from equipoise.schema.opening import kind_of_text, opened
 from equipoise.web.design import Design
 from equipoise.web.disk import on_disk
 from equipoise.web.edits import solved
+from equipoise.web.gallery import opened_file, wants_tool
 from equipoise.web.messages import Message
-from equipoise.web.openings import opened_file, wants_tool
 from equipoise.web.replies import Reply, refused
 from equipoise.web.seen import NO_STORE
 from equipoise.web.session import Session

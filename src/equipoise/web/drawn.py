@@ -13,25 +13,22 @@ from equipoise.dataclass import dataclass
 from equipoise.errors import EquipoiseError, MobilityError, UsageError
 from equipoise.i18n import Note, listed, say
 from equipoise.keys.paths import KeyPath
-from equipoise.mechanism.assembly.named_joints import pin_radii
+from equipoise.mechanism.assembly.joints import pin_radii
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.parts.machine import FRAME, Machine
 from equipoise.quantities import DIGITS, display
 from equipoise.symbols.constraints import constraint_marks
-from equipoise.symbols.drives import DriveSign
 from equipoise.symbols.part_signs import Surroundings, in_order, signs_of
-from equipoise.symbols.scene import GuideSign, Scene, bodies_of
+from equipoise.symbols.scene import DriveSign, GuideSign, Scene, Wheel, bodies_of, wheels_of
 from equipoise.symbols.shapes import BodyMark
-from equipoise.symbols.wheels import Wheel, wheels_of
 from equipoise.web.block import FloatBlock, Values
 from equipoise.web.design import Design
 from equipoise.web.drawing import moves_of, stage_of
 from equipoise.web.edits import Computed, edited, settled, solved
-from equipoise.web.fields import Field, Scale
+from equipoise.web.fields import Field, Measure, Scale, constrained_place, measures_of
 from equipoise.web.lacking import lacking
-from equipoise.web.measures import Measure, constrained_place, measures_of
 from equipoise.web.messages import Change, Entry, Setting
-from equipoise.web.moving import moved, with_constraints_met
+from equipoise.web.remaking import moved, with_constraints_met
 from equipoise.web.sketch import Sketch
 from equipoise.web.state import turning
 from equipoise.web.tables import entered

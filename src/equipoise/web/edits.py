@@ -19,16 +19,15 @@ from equipoise.i18n import Note, to_say
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.checks import ALTERNATIVES, unknown
 from equipoise.mechanism.kinematics.motion import Motion
-from equipoise.mechanism.kinematics.swings import SWUNG, swing
+from equipoise.mechanism.kinematics.swinging import SWUNG, swing
 from equipoise.mechanism.parts.drives import Pushing
 from equipoise.mechanism.parts.machine import Machine, Position, Vector
 from equipoise.quantities import clean, clean_place
 from equipoise.results.analysis import ANGLES, LEAST_ANGLES, Analysis, analyze
 from equipoise.symbols.scene import Scene
 from equipoise.web.design import DRAGGED, Design
-from equipoise.web.fields import fields_of
+from equipoise.web.fields import constrained_place, fields_of
 from equipoise.web.following import Goals, extent_of, following
-from equipoise.web.measures import constrained_place
 from equipoise.web.messages import Change, Drag, Setting
 
 MOST_SAMPLES = 2880

@@ -13,7 +13,7 @@ import numpy as np
 
 from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.assembly.joints import coupling_pins
-from equipoise.mechanism.formulas.strands import LEFT, RIGHT
+from equipoise.mechanism.formulas.rolling import LEFT, RIGHT
 from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.parts.couplings import coupling_kinds
 from equipoise.mechanism.parts.machine import FRAME

@@ -24,7 +24,7 @@ from equipoise.exchange.formats import Job
 from equipoise.i18n import Note, catalogue, decimal_sign, said, say, spoken
 from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.assembly.family import can_vary
-from equipoise.mechanism.assembly.full_turn import CHANGE_POINT
+from equipoise.mechanism.assembly.reach import CHANGE_POINT
 from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.outputs.declared import GROUPS
 from equipoise.mechanism.parts.machine import FRAME, Machine
@@ -33,21 +33,18 @@ from equipoise.quantities import FACTORS, KINDS, display, display_rules
 from equipoise.quantities.numbers import Display, in_unit
 from equipoise.results.analysis import Analysis, analyze
 from equipoise.results.outputs import AnalysisOutput
-from equipoise.results.own_words import words_of
+from equipoise.results.result import words_of
 from equipoise.schema.numbers import POLAR, FileNumber
 from equipoise.schema.template import Template
 from equipoise.symbols.scene import Scene
-from equipoise.web.assets import asset
 from equipoise.web.block import Array, Values
-from equipoise.web.documents import ALONE, data, document, script, style
+from equipoise.web.documents import ALONE, asset, data, document, script, style, wording_of
 from equipoise.web.drawing import stage_of
 from equipoise.web.edits import movable
-from equipoise.web.fields import SECTIONS
+from equipoise.web.fields import SECTIONS, measures_of
 from equipoise.web.figures import told_signals
 from equipoise.web.following import extent_of
 from equipoise.web.following_signs import ties_of
-from equipoise.web.measures import measures_of
-from equipoise.web.words import wording_of
 
 
 def export_bytes(job: Job) -> str:

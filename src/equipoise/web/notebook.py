@@ -7,7 +7,7 @@ import traitlets
 
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.web.answers import answers
-from equipoise.web.assets import assets
+from equipoise.web.documents import assets
 from equipoise.web.session import Session
 
 

@@ -24,9 +24,8 @@ from equipoise.mechanism.outputs.declared import DECLARED
 from equipoise.quantities import FACTORS, KINDS, Dimension, plain_unit, told, typeset
 from equipoise.quantities.units import OF_UNIT
 from equipoise.results.analysis import Analysis
-from equipoise.schema.csv_rows import check_width, rows_of, shortened, wrong
 from equipoise.schema.files import printable
-from equipoise.schema.tables import TIMES
+from equipoise.schema.tables import TIMES, check_width, rows_of, shortened, wrong
 from equipoise.web.block import Array
 
 HEAD = re.compile(r"(?P<name>[^\[\]]+?)\s*\[(?P<unit>[^\[\]]*)\]")

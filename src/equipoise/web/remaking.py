@@ -1,22 +1,32 @@
-"""What is joined, taken apart, taken away, renamed in a machine that is made.
+"""What is joined, moved, renamed or taken away in a machine that is made.
 
 Each function takes a sketch to another one, or refuses in a `UsageError`.
 """
 
 from __future__ import annotations
 
+from cmath import phase
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
-from typing import Any
+from math import pi, remainder
+from typing import Any, Literal
 
 from equipoise.errors import UsageError
-from equipoise.i18n import Note
-from equipoise.mechanism.assembly.named_joints import joint_names
+from equipoise.i18n import Note, all_of
+from equipoise.keys import Frozen, Kind, Point, TextKind, innermost, keys_of
+from equipoise.mechanism.assembly.joints import joint_names
 from equipoise.mechanism.checks import Bodies, unknown
+from equipoise.mechanism.kinematics.outline import LinkPlacement, length_between, pose_between
 from equipoise.mechanism.parts.balance import Balance
-from equipoise.mechanism.parts.couplings import Coupling, coupling_kinds
-from equipoise.mechanism.parts.element_kinds import Element
-from equipoise.mechanism.parts.machine import FRAME, Machine
+from equipoise.mechanism.parts.constraint_solver import constrained
+from equipoise.mechanism.parts.constraints import changed_points
+from equipoise.mechanism.parts.couplings import Coupling, Turning, coupling_kinds, name_of
+from equipoise.mechanism.parts.element_kinds import Element, PartKind
+from equipoise.mechanism.parts.machine import FRAME, Machine, Slider
+from equipoise.mechanism.parts.objectives import JOINTS
+from equipoise.quantities import DIGITS, clean, clean_place
 from equipoise.web.adding import (
+    COINCIDENT,
     check_body,
     check_link,
     check_point,
@@ -24,10 +34,240 @@ from equipoise.web.adding import (
     the,
     with_point,
 )
+from equipoise.web.design import DRAGGED
 from equipoise.web.messages import Spot
-from equipoise.web.moving import straight
-from equipoise.web.naming import What, named_in, renamed_in
 from equipoise.web.sketch import Sketch
+
+What = Literal["point", "link"]
+NAMING = {"point": {"point"}, "link": {"link", "body"}}
+"""What a text has to be the name of, as its key declares it."""
+COUPLED = tuple(f"{table}." for table in coupling_kinds(Machine))
+"""How outputs of couplings begin, which are called after both their links."""
+SLIDING = " on "
+"""In the name of a sliding joint."""
+COMPONENTS = (".x", ".y")
+"""Of the force in a joint, behind its name."""
+MESHING = ("driver", "driven")
+"""Of couplings whose file has both in one list."""
+
+
+def named_in(value: Any, what: What) -> set[str]:
+    """Every point or link that a table, or a list of them, names; the frame is no link."""
+    return {name for _, name in _names(value, None, what)} - {FRAME}
+
+
+def _names(value: Any, kind: Kind | None, what: What) -> Iterator[tuple[str, str]]:
+    if isinstance(value, Frozen):
+        for field, inner in _fields(value):
+            yield from _names(getattr(value, field), inner, what)
+    elif isinstance(value, tuple):
+        for item in value:
+            yield from _names(item, kind, what)
+    elif isinstance(value, Mapping):
+        for item in value.values():
+            yield from _names(item, kind, what)
+    elif isinstance(value, str) and _is_name(kind, what):
+        yield what, value
+    elif isinstance(value, str) and value.startswith(JOINTS):
+        point, links, _ = _joint(value)
+        named = links if what == "link" else (point,) if point else ()
+        yield from ((what, name) for name in named)
+    elif isinstance(value, str) and value.startswith(COUPLED) and what == "link":
+        yield from ((what, name) for name in _ends(value)[1:3])
+
+
+def renamed_in(value: Any, what: What, old: str, new: str) -> Any:
+    """Entries with a point or link by another name."""
+    return _renamed(value, None, what, (old, new))
+
+
+def _renamed(value: Any, kind: Kind | None, what: What, names: tuple[str, str]) -> Any:
+    if isinstance(value, Frozen):
+        renameds = {
+            f: _renamed(getattr(value, f), inner, what, names) for f, inner in _fields(value)
+        }
+        changes = {field: item for field, item in renameds.items() if item != getattr(value, field)}
+        return replace(value, **changes) if changes else value
+    if isinstance(value, tuple):
+        return tuple(_renamed(item, kind, what, names) for item in value)
+    if isinstance(value, Mapping):
+        return {key: _renamed(item, kind, what, names) for key, item in value.items()}
+    if isinstance(value, str) and value.startswith(JOINTS):
+        return _joint_renamed(value, what, *names)
+    if isinstance(value, str) and value.startswith(COUPLED) and what == "link":
+        table, *ends, part = _ends(value)
+        driver, driven = (names[1] if end == names[0] else end for end in ends)
+        return f"{table}.{name_of(driver, driven)}{part}"
+    return names[1] if value == names[0] and _is_name(kind, what) else value
+
+
+def _joint(force: str) -> tuple[str, tuple[str, ...], str]:
+    """The name of a joint's force without its component: a point, links with what joins them to
+    that, and the component with its dot.  Of a slide there is no point.
+    """
+    name, component = force.removeprefix(JOINTS), ""
+    if name.endswith(COMPONENTS):
+        name, component = name[:-2], name[-2:]
+    link, _, guide = name.partition(SLIDING)
+    if guide:
+        return "", (link, guide), component
+    point, _, body = name.partition("/")
+    return point, (body,) if body else (), component
+
+
+def _joint_renamed(force: str, what: What, old: str, new: str) -> str:
+    """The name of a joint's force with a point or a link by another name."""
+    point, links, component = _joint(force)
+    if what == "point" and point == old:
+        point = new
+    elif what == "link" and old in links:
+        links = tuple(new if link == old else link for link in links)
+    else:
+        return force
+    name = "/".join((point, *links)) if point else SLIDING.join(links)
+    return f"{JOINTS}{name}{component}"
+
+
+def _ends(output: str) -> tuple[str, str, str, str]:
+    """Of a coupling's output: its list, driver and driven link, and what follows, with its dot."""
+    table, _, rest = output.partition(".")
+    driver, _, rest = rest.partition(name_of("", ""))
+    driven, dot, part = rest.partition(".")
+    return table, driver, driven, dot + part
+
+
+def _fields(value: Frozen) -> Iterator[tuple[str, Kind]]:
+    """Fields of a table, with the kinds of their values."""
+    for key in keys_of(type(value)).values():
+        if hasattr(value, key.field):
+            yield key.field, key.kind
+    if isinstance(value, Turning):
+        yield from ((field, TextKind(of="link")) for field in MESHING)
+
+
+def _is_name(kind: Kind | None, what: What) -> bool:
+    kind = None if kind is None else innermost(kind)
+    if isinstance(kind, TextKind):
+        return kind.of in NAMING[what]
+    return isinstance(kind, Point) and kind.named and what == "point"
+
+
+def moved(sketch: Sketch, point: str, to: complex, digits: int = DRAGGED) -> Sketch:
+    """A point elsewhere, in all bodies that have it; all other points stay where they are.
+
+    A block goes along its line, and a line turns with the point that it goes through.
+    """
+    check_point(sketch, point)
+    for slider in sketch.sliders:
+        if slider.point == point:
+            to = _onto(sketch, slider, to)
+    for body in sketch.holders(point):
+        if body != FRAME and len(sketch.links[body].points) == 1:
+            pose = sketch.poses[body]
+            shift = to - pose.out(sketch.links[body].points[point])
+            sketch = _posed(sketch, body, replace(pose, origin=pose.origin + shift))
+        else:
+            sketch = sketch.with_place(body, point, to, digits)
+    sketch = straight(sketch, sketch.holders(point), digits)
+    for number, slider in enumerate(sketch.sliders):
+        if slider.through == point:
+            sketch = _aimed(sketch, number, slider)
+    return sketch
+
+
+def with_constraints_met(before: Sketch, sketch: Sketch) -> Sketch:
+    """A sketch that was changed, with points moved so that its constraints hold.
+
+    before : points that lie elsewhere in it stay.
+
+    Raises
+    ------
+    ModelError : no places were found at which all of them hold.
+    """
+    constraints = sketch.rest.get("constraints", ())
+    changed = changed_points(before.bodies, sketch.bodies)
+    for _ in constraints:  # a pin that goes elsewhere changes its other link too
+        places = constrained(constraints, sketch.bodies, changed)
+        if not places:
+            break
+        for (body, point), place in places.items():
+            sketch = moved(sketch, point, sketch.pose(body).out(place), DIGITS)
+        changed |= places.keys()
+    return sketch
+
+
+def _posed(sketch: Sketch, link: str, pose: LinkPlacement) -> Sketch:
+    return replace(sketch, poses={**sketch.poses, link: pose})
+
+
+def _onto(sketch: Sketch, slider: Slider, to: complex) -> complex:
+    """The nearest place on the line of a slider, m."""
+    through = sketch.places[slider.through]
+    way = LinkPlacement(0j, sketch.pose(slider.on).angle + slider.direction).turn
+    return through + way * ((to - through) * way.conjugate()).real
+
+
+def _aimed(sketch: Sketch, number: int, slider: Slider) -> Sketch:
+    """The line of a slider from the point that it goes through to its block, in the old sense."""
+    place, other = sketch.places[slider.point], sketch.places[slider.through]
+    if abs(place - other) <= COINCIDENT * sketch.size:
+        raise UsageError(
+            Note(
+                "{through} and {point} would lie at one place; the line of {link} goes through "
+                "both",
+                through=slider.through,
+                point=slider.point,
+                link=slider.link,
+            )
+        )
+    way = phase(place - other) - sketch.pose(slider.on).angle
+    if abs(remainder(way - slider.direction, 2 * pi)) > pi / 2:
+        way += pi
+    aimed = replace(slider, direction=clean(remainder(way, 2 * pi), "angle"))
+    sliders = (*sketch.sliders[:number], aimed, *sketch.sliders[number + 1 :])
+    pose = sketch.poses[slider.link]
+    if len(sketch.links[slider.link].points) == 1:
+        pose = replace(pose, angle=way + sketch.pose(slider.on).angle + slider.angle)
+    return _posed(replace(sketch, sliders=sliders), slider.link, pose)
+
+
+def straight(sketch: Sketch, links: Iterable[str], digits: int = DIGITS) -> Sketch:
+    """Links in whose axes nothing but points is told get axes from their first to their second."""
+    values = {body for key, item in sketch.entries() for body in _axes_of(key, item)}
+    for name in links:
+        link = sketch.links.get(name)
+        given = link is not None and link.has_mass and not link.only_assumed
+        if link is None or given or name in values or len(link.points) < 2:
+            continue
+        places = {point: sketch.pose(name).out(at) for point, at in link.points.items()}
+        first, second, *_ = places.values()
+        if abs(second - first) <= COINCIDENT * sketch.size:
+            raise UsageError(
+                Note(
+                    "{names} of {name} would lie at one place",
+                    names=all_of([*places][:2]),
+                    name=name,
+                )
+            )
+        pose = pose_between(first, second)
+        points = {
+            point: clean_place(pose.into(at), sketch.size, digits) for point, at in places.items()
+        }
+        points[[*places][1]] = (points[[*places][1]][0] if digits < DIGITS else
+                                length_between(first, second), 0.0)  # fmt: skip
+        sketch = _posed(sketch.with_points(name, points), name, pose)
+    return sketch
+
+
+def _axes_of(key: str, entry: Any) -> Iterator[str]:
+    """Bodies in whose axes an entry tells something."""
+    if key == "sliders":
+        yield from (entry.link, entry.on)
+    if key == "loads":
+        yield entry.link
+    if isinstance(entry, PartKind):
+        yield from entry.axed
+
 
 TABLES = ("planting", "balance")
 """Tables of which there is one, and which go with a point or link that they name."""

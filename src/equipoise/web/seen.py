@@ -1,25 +1,118 @@
-"""What a page shows besides the machine itself: arrows at a point, and what it is compared with."""
+"""What a page shows besides the machine itself: arrows, records, comparisons."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import field
 from threading import Lock
 from typing import Any, Protocol
 
+import numpy as np
+
 from equipoise.dataclass import dataclass
-from equipoise.errors import UsageError
+from equipoise.errors import EquipoiseError, UsageError
 from equipoise.i18n import Note, say
 from equipoise.mechanism.checks import unknown
-from equipoise.web.arrows import points_of
-from equipoise.web.block import FloatBlock
+from equipoise.mechanism.outputs.declared import body_named
+from equipoise.quantities import Dimension, display
+from equipoise.results.analysis import Analysis
+from equipoise.web.block import Array, FloatBlock, Values
 from equipoise.web.drawing import ground_of, moves_of, stage_of
 from equipoise.web.edits import Computed
-from equipoise.web.measured import charted, gauges_of
+from equipoise.web.figures import told_signals
 from equipoise.web.messages import MOST_OUTPUTS, Message
 from equipoise.web.recorded import MeasuredSignals, compared_with, record_of_text
 from equipoise.web.replies import Reply
+from equipoise.web.shaken import SAMPLES
 from equipoise.web.variants import NOTHING, OPENED, STEP, VARIANT, Variants
+
+
+def points_of(analysis: Analysis) -> list[str]:
+    """Points that arrows can be at: those that move, then those of the frame."""
+    frame = analysis.machine.frame
+    return sorted(analysis.motion.points, key=lambda name: name in frame)
+
+
+def arrows_of(analysis: Analysis, point: str, block: FloatBlock) -> list[Values]:
+    """What there is to show at a point; vectors over the crank angle go to the block.
+
+    kind : ``velocity``, ``acceleration`` or ``force``.  array : its name in the block, (2 N,).
+    """
+    items = [*_arrows_at(analysis, point)]
+    for entry, values in items:
+        block.add(entry["array"], values)
+    return [item for item, _ in items]
+
+
+def _arrows_at(analysis: Analysis, point: str) -> Iterator[tuple[Values, Array]]:
+    motion = analysis.motion.points.get(point)
+    if motion is None:
+        return
+    if point not in analysis.machine.frame and analysis.motion.speed:
+        moved: Mapping[str, tuple[Dimension, Array]] = {
+            "velocity": ("speed", motion.velocity),
+            "acceleration": ("acceleration", motion.acceleration_vector),
+        }
+        for kind, (dimension, values) in moved.items():
+            label = analysis.outputs[f"points.{point}.{kind}"].label()
+            yield _quantity(kind, f"arrow.{kind}", label, dimension), values
+    joints = {} if analysis.solved is None else analysis.solved.joints
+    for name in _joints_at(analysis, point, joints):
+        joint = joints[name]
+        label = analysis.outputs[f"joints.{name}"].label()
+        label = say("{force}, on {body}", force=label, body=body_named(joint.on))
+        yield _quantity("force", f"arrow.force.{name}", label, "force"), joint.value
+
+
+def _quantity(kind: str, array: str, label: str, dimension: Dimension) -> Values:
+    unit = display(dimension)
+    return {"kind": kind, "array": array, "label": label, "unit": unit.name, "factor": unit.factor}
+
+
+def _joints_at(analysis: Analysis, point: str, joints: Mapping[str, Any]) -> list[str]:
+    """Names of pins and sliding joints at a point."""
+    slides = {slider.name for slider in analysis.machine.sliders if slider.point == point}
+    return [name for name in joints if name.partition("/")[0] == point or name in slides]
+
+
+GAUGES = "gauges."
+
+
+def gauges_of(computed: Computed) -> tuple[str, ...]:
+    """Names of the gauges of a machine's support."""
+    support = computed.design.machine.support
+    return () if support is None else tuple(support.gauges)
+
+
+def charted(output: str) -> bool:
+    """Whether an output has a chart without being asked for."""
+    if output.startswith("joints."):
+        return output.count(".") == 1
+    return output in told_signals()
+
+
+def measured_told(
+    record: MeasuredSignals | None, computed: Computed, block: FloatBlock
+) -> Values | None:
+    """A record beside a design: its name and what is to be said; signals go to the block.
+
+    ``measured.`` and the name of an output : (N,) SI units, NaN in gaps; what gauges read has as
+    many numbers as their response.
+    """
+    if record is None:
+        return None
+    try:
+        compared = compared_with(record, computed.analysis, gauges_of(computed))
+    except EquipoiseError as error:  # of a machine that has been changed meanwhile
+        return {"name": record.name, "told": [str(error)], "left_out": []}
+    for name, values in compared.signals.items():
+        count, own = len(values), len(values)
+        if name.startswith(GAUGES):
+            count = SAMPLES * computed.motion.turns
+        at = np.arange(count) * own / count
+        block.add(f"measured.{name}", np.interp(at, np.arange(own), values, period=own))
+    text = {"told": [*compared.told], "left_out": [*compared.left_out]}
+    return {"name": record.name, **text}
 
 
 @dataclass

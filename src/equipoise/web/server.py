@@ -1,4 +1,4 @@
-"""The local server of the live page: its HTML, script and style, and a WebSocket a page.
+"""The local server of the live page, and requests as they come in.
 
 Only the page whose address was printed may talk to it, from this machine.  A page of another site
 can send requests to 127.0.0.1, and a name of another site can be made to point there.  So every
@@ -8,21 +8,24 @@ Origin that is this server too.
 
 from __future__ import annotations
 
+import asyncio
 import os
 import socket
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from secrets import compare_digest, token_urlsafe
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+import h11
+from uvicorn.protocols.http.h11_impl import H11Protocol
 
 from equipoise.errors import UsageError
 from equipoise.i18n import Note
 from equipoise.interrupts import answered
 from equipoise.schema.files import reason
-from equipoise.web.assets import TYPES, assets
 from equipoise.web.desk import PageBackend
-from equipoise.web.documents import document
+from equipoise.web.documents import TYPES, assets, document
 from equipoise.web.lanes import Lanes
 from equipoise.web.messages import LARGEST_MESSAGE
 from equipoise.web.page import Page, turn_away
@@ -32,6 +35,46 @@ if TYPE_CHECKING:
     from starlette.requests import Request
     from starlette.types import ASGIApp, Message, Receive, Scope, Send
     from starlette.websockets import WebSocket
+
+LONGEST = 10.0
+"""s in which a request has to come, from the opening of its connection or its first byte on.
+
+A browser sends one at once; a connection that is held open with half of it would stay for ever,
+and each takes one of the files that the server may open."""
+
+
+class Incoming(H11Protocol):
+    """A connection, with a limit to how long a request may take to come in."""
+
+    def __init__(self, *args: Any, **options: Any) -> None:
+        super().__init__(*args, **options)
+        self.limit: asyncio.TimerHandle | None = None
+
+    def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
+        """Begin to wait for the first request."""
+        super().connection_made(transport)
+        self._wait(True)
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        """Wait no more."""
+        self._wait(False)
+        super().connection_lost(exc)
+
+    def handle_events(self) -> None:
+        """Take what has come, or was kept back while an answer was on its way."""
+        super().handle_events()
+        state = self.conn.their_state
+        begun = state is h11.SEND_BODY or (state is h11.IDLE and bool(self.conn.trailing_data[0]))
+        # A request for a WebSocket has handed its connection over, and is never taken to its end.
+        self._wait(begun and self.transport.get_protocol() is self)
+
+    def _wait(self, begun: bool) -> None:
+        if self.limit is not None and not begun:
+            self.limit.cancel()
+            self.limit = None
+        elif self.limit is None and begun:  # what trickles in does not put it off
+            self.limit = self.loop.call_later(LONGEST, self.transport.close)
+
 
 HOSTS = ("127.0.0.1", "localhost")
 TOKEN = "this address has no valid token; open the one that `equipoise serve` has printed"
@@ -182,8 +225,6 @@ def served(
     UsageError : the port is taken, or the page has not been built.
     """
     import uvicorn
-
-    from equipoise.web.incoming import Incoming
 
     token = token_urlsafe(24)
     with (

@@ -18,13 +18,14 @@ from equipoise.mechanism.kinematics.outline import USUAL_SIZE
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.shown_units import units_of
 from equipoise.quantities import display_rules, showing_by_default
-from equipoise.results.own_words import words_of
+from equipoise.results.result import words_of
 from equipoise.schema.files import LARGEST
 from equipoise.schema.template import named_parts
 from equipoise.web import entering, kept
 from equipoise.web.block import Values
 from equipoise.web.design import Design
 from equipoise.web.disk import Disk
+from equipoise.web.documents import language_of, spoken_in, wording_of
 from equipoise.web.drawn import (
     Incomplete,
     changed,
@@ -37,17 +38,16 @@ from equipoise.web.drawn import (
 from equipoise.web.edits import Computed, settled, solved
 from equipoise.web.fields import Scale, fields_of
 from equipoise.web.figures import figures_of
+from equipoise.web.gallery import opened_example, opened_text, titles, tool_titles
 from equipoise.web.history import History, HistoryStep
 from equipoise.web.making import lost, sketch_after
 from equipoise.web.messages import MOST_LANGUAGES, Message
-from equipoise.web.openings import opened_example, opened_text, titles, tool_titles
 from equipoise.web.recorded import MeasuredSignals
 from equipoise.web.replies import Reply, refused
 from equipoise.web.seen import ASKED, ViewState
 from equipoise.web.shaken import deferred_replies, response_of
 from equipoise.web.sketch import Sketch
 from equipoise.web.state import first_of, state_of
-from equipoise.web.words import language_of, spoken_in, wording_of
 
 
 @dataclass

@@ -13,14 +13,13 @@ from equipoise.dataclass import dataclass
 from equipoise.errors import EquipoiseError
 from equipoise.i18n import said, say, to_say
 from equipoise.mechanism.dynamics.forces import massless
-from equipoise.mechanism.kinematics.stroke_figures import declared_figures, dimension_of
-from equipoise.mechanism.outputs.declared import DECLARED
-from equipoise.mechanism.outputs.spoken import joint_named
+from equipoise.mechanism.kinematics.strokes import declared_figures, dimension_of
+from equipoise.mechanism.outputs.declared import DECLARED, joint_named
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.support import FREEDOMS, PLANAR
 from equipoise.quantities import Dimension, display
 from equipoise.results.analysis import Analysis
-from equipoise.results.named_figures import figures_by_name
+from equipoise.results.outputs import figures_by_name
 from equipoise.symbols.scene import Scene
 from equipoise.web.block import FloatBlock
 from equipoise.web.edits import Computed
@@ -66,8 +65,7 @@ def responded(shown: Computed) -> Response:
 @kept_with_design
 def _curves(shown: Computed, speed: float, progress: Callable[[int, int], None]) -> Sweep:
     """The response of a design over speeds around one, rad/s."""
-    from equipoise.vibration.resonance import around
-    from equipoise.vibration.sampling import COARSE
+    from equipoise.vibration.linear import COARSE, around
     from equipoise.vibration.sweep import sweep_speed
 
     ends = around(shown.analysis.machine.drive, speed)

@@ -34,8 +34,7 @@ from equipoise.errors import UsageError
 from equipoise.folders import Folder, LinkError
 from equipoise.i18n import Note
 from equipoise.i18n.languages import ENDING, KNOWN, ORIGINAL, head_of, package_of
-from equipoise.web.assets import MAKE
-from equipoise.web.documents import document
+from equipoise.web.documents import MAKE, document
 
 RUNTIME = "314.0.3"
 """Version of the npm package `pyodide` that the page was tried with."""

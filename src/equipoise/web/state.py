@@ -10,22 +10,20 @@ import numpy as np
 from equipoise.figures.points import traced
 from equipoise.i18n import said, say, speaking, spoken
 from equipoise.mechanism.dynamics.forces import assumed_masses
-from equipoise.mechanism.outputs.declared import GROUPS, declared
-from equipoise.mechanism.outputs.poles import guided, pinned
+from equipoise.mechanism.outputs.declared import GROUPS, declared, guided, pinned
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.quantities import Dimension, Display, display
 from equipoise.results.analysis import Analysis
-from equipoise.results.drive_blocks import driven
+from equipoise.results.machine_blocks import driven
 from equipoise.signals import Periodic
-from equipoise.web.arrows import arrows_of, points_of
 from equipoise.web.block import Array, FloatBlock, Values
 from equipoise.web.drawing import cams_told, ground_of, moves_of, stage_of
 from equipoise.web.edits import Computed, movable
 from equipoise.web.figures import charts_of, least_of, signals_of
 from equipoise.web.following import extent_of
 from equipoise.web.lacking import forces_lack
-from equipoise.web.measured import measured_told
 from equipoise.web.recorded import MeasuredSignals
+from equipoise.web.seen import arrows_of, measured_told, points_of
 
 MOST_ORDER = 20
 """Highest order of the spectra."""

@@ -21,9 +21,9 @@ from equipoise.mechanism.parts.machine import Machine
 from equipoise.schema.study_units import machine_of, owner_of, units_in
 from equipoise.studies.evaluate import evaluator
 from equipoise.studies.outcomes import feasible
-from equipoise.studies.sampling import random_numbers
 from equipoise.studies.selection import best
 from equipoise.studies.store import ABOUT, MARK, UNKNOWN, Store, open_store
+from equipoise.studies.study import random_numbers
 from equipoise.web.block import Array, FloatBlock, Values
 from equipoise.web.replies import Reply
 

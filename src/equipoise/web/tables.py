@@ -15,7 +15,7 @@ from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.outputs.declaring import declared
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.objectives import balanced_names
-from equipoise.mechanism.parts.parameters import SIGN, amounts_of
+from equipoise.mechanism.parts.shown_units import SIGN, amounts_of
 from equipoise.quantities import clean, format_exact, parse_expression, pattern, told
 from equipoise.quantities.expressions import Names, names_in
 from equipoise.schema.entries import Document, entry_of, kind_at, own_keys, tables_below

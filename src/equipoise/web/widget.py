@@ -9,7 +9,7 @@ from equipoise.errors import UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.web.design import Design
-from equipoise.web.openings import opened_file
+from equipoise.web.gallery import opened_file
 from equipoise.web.session import Session
 
 if TYPE_CHECKING:

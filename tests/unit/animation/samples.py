@@ -7,8 +7,7 @@ import numpy as np
 import equipoise as eq
 from equipoise.figures.stage import ForceArrow
 from equipoise.results.analysis import Analysis
-from equipoise.symbols.clear import clear_angle
-from equipoise.symbols.scene import Scene
+from equipoise.symbols.scene import Scene, clear_angle
 from unit.figures.samples import three_turns
 
 

@@ -16,10 +16,8 @@ import equipoise as eq
 from equipoise.errors import UsageError
 from equipoise.figures.film import gif, mp4
 from equipoise.figures.stage import Stage
-from equipoise.symbols.clear import clear_angle
-from equipoise.symbols.looks import DARK, LIGHT
-from equipoise.symbols.scene import Scene
-from equipoise.symbols.stacks import in_turn
+from equipoise.symbols.looks import DARK, LIGHT, in_turn
+from equipoise.symbols.scene import Scene, clear_angle
 from unit.animation.samples import analyzed, of_three_turns, prepared, shown
 
 SMALL = {"seconds": 0.4, "width": 320}

@@ -15,7 +15,7 @@ import support.found
 from equipoise.balancing.advice import advise, running_speeds
 from equipoise.balancing.balanced import Balanced
 from equipoise.balancing.blocks import outcome_blocks
-from equipoise.balancing.end_weights import end_weights_for
+from equipoise.balancing.first_order import end_weights_for
 from equipoise.balancing.headlines import Saving, worse_headlines
 from equipoise.balancing.outcome import helps_told, why_not
 from equipoise.balancing.policy import LEAST_GAIN, LEAST_GAIN_OF_ADDED
@@ -28,8 +28,8 @@ from equipoise.balancing.workshop import in_short, sentences
 from equipoise.errors import EquipoiseError, MassError
 from equipoise.mechanism.parts.balance import AddedMass, Balance, Limit, Objective, Phases, Weight
 from equipoise.mechanism.parts.bodies import Body
+from equipoise.mechanism.parts.links import Bearing
 from equipoise.mechanism.parts.machine import Drive, Link, Slider
-from equipoise.mechanism.parts.sliders import Bearing
 from equipoise.results.blocks import Text as TextBlock
 from equipoise.results.yardsticks import assess
 from equipoise.signals import Array

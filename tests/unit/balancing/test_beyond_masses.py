@@ -32,8 +32,7 @@ from equipoise.mechanism.parts.force_elements import Motor
 from equipoise.results.blocks import Text
 from equipoise.results.yardsticks import assess
 from equipoise.running.flywheel import size_flywheel
-from equipoise.vibration.linear import Linear
-from equipoise.vibration.resonance import around, resonances
+from equipoise.vibration.linear import Linear, around, resonances
 
 RPM = pi / 30
 ADVISED = Path(support.found.__file__).parent / "advised"

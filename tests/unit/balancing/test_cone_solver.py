@@ -10,7 +10,7 @@ from scipy import sparse
 
 import equipoise as eq
 from equipoise.balancing import program
-from equipoise.balancing.cone_solver import clarabel_solver, interior_point_solver
+from equipoise.balancing.program import clarabel_solver, interior_point_solver
 from support.chosen import few
 
 TOLERANCE = 1e-8

@@ -10,7 +10,7 @@ from math import radians
 import pytest
 
 import equipoise as eq
-from equipoise.balancing import gear_search
+from equipoise.balancing import geared as gear_search
 from equipoise.errors import UsageError
 from equipoise.mechanism.parts.balance import Balance, GearedWeight, Limit, Objective, Weight
 from unit.mechanism.build import crank_rocker

@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from equipoise.balancing import least_of_forms as module
+from equipoise.balancing import box_bounds as module
+from equipoise.balancing.box_bounds import FormSum, least_of_forms
 from equipoise.balancing.jump_readings import Forms
-from equipoise.balancing.least_of_forms import FormSum, least_of_forms
 
 Array = np.ndarray
 BOXES, READINGS, SLACK = 4, 9, 1e-6

@@ -9,10 +9,14 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.balancing.least_norm import least_moments
-from equipoise.balancing.linear_conditions import conditions, conditions_blocks
+from equipoise.balancing.linear_conditions import (
+    conditions,
+    conditions_blocks,
+    joint_length,
+    least_moments,
+    reading,
+)
 from equipoise.balancing.physical_consistency import feasibility
-from equipoise.balancing.readings import joint_length, reading
 from equipoise.balancing.sensitivity import known_outputs, sensitivities
 from equipoise.errors import MassError, RangeError, UsageError
 from support.printing import words

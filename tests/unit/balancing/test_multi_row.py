@@ -12,10 +12,10 @@ import numpy as np
 import pytest
 
 import equipoise as eq
+from equipoise.balancing.box_bounds import CLOSE
 from equipoise.balancing.effects import Effects
 from equipoise.balancing.multi_row import PhasedRows
 from equipoise.balancing.objectives import of_all_rows
-from equipoise.balancing.phase_bound import CLOSE
 from equipoise.balancing.phasing import choose_phases
 from equipoise.balancing.problem import Problem
 from equipoise.errors import ModelError, UsageError

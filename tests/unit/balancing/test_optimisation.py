@@ -26,7 +26,7 @@ from equipoise.mechanism.parts.balance import (
     SpringChoice,
     Weight,
 )
-from equipoise.mechanism.parts.planes import Bearing
+from equipoise.mechanism.parts.links import Bearing
 from support.chosen import EXHAUSTIVE, few
 
 MACHINE = eq.load("yamashita-1")

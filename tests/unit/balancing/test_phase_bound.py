@@ -9,9 +9,8 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.balancing.box_bounds import largest_reading
+from equipoise.balancing.box_bounds import CLOSE, Improve, largest_reading, prove
 from equipoise.balancing.multi_row import Combine, Cost, PhasedRows, PhaseObjective, RowSignals
-from equipoise.balancing.phase_bound import CLOSE, Improve, prove
 from equipoise.balancing.phase_search import PhaseSearch
 from equipoise.balancing.phasing import choose_phases
 from equipoise.mechanism.parts.balance import MEASURES, Objective, Phases

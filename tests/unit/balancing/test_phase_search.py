@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
+from equipoise.balancing.box_bounds import CLOSE
 from equipoise.balancing.multi_row import PhasedRows
 from equipoise.balancing.patterns import (
     PATTERNS,
@@ -21,7 +22,6 @@ from equipoise.balancing.patterns import (
     pattern_named,
     patterns_for,
 )
-from equipoise.balancing.phase_bound import CLOSE
 from equipoise.balancing.phase_grid import PhaseGrid, alike, coarsened, distinct, sorted_choices
 from equipoise.balancing.phase_polish import most_steps
 from equipoise.balancing.phase_search import MOST_KINKED, PhaseSearch

@@ -15,12 +15,12 @@ from equipoise.balancing.problem import Problem
 from equipoise.balancing.told import freedoms
 from equipoise.errors import ModelError
 from equipoise.mechanism.assembly.linkage import assemble
+from equipoise.mechanism.dynamics.across import statics
 from equipoise.mechanism.dynamics.assessment import remarks
-from equipoise.mechanism.dynamics.statics import statics
 from equipoise.mechanism.parts.balance import AddedMass, Balance, Objective, Weight
 from equipoise.mechanism.parts.bodies import Body
+from equipoise.mechanism.parts.links import Bearing
 from equipoise.mechanism.parts.machine import Drive, Link, Machine
-from equipoise.mechanism.parts.sliders import Bearing
 from equipoise.mechanism.parts.support import Row
 from equipoise.vibration.forced import respond
 from unit.vibration.build import cart

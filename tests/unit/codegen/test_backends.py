@@ -20,9 +20,9 @@ import equipoise as eq
 from equipoise.codegen import backends
 from equipoise.codegen.backends import NOTICE, engine, run_loop
 from equipoise.codegen.batch import Batch, all_angles, designs_of, grid_of
+from equipoise.codegen.emission import without_calls
 from equipoise.codegen.emit import emit
 from equipoise.codegen.figures import Gathered
-from equipoise.codegen.polynomials import without_calls
 from equipoise.codegen.source import TermSource, on_arrays, pick_from
 from equipoise.codegen.terms import BOTH, Graph, VectorTerm, angle_of, reached, rotation
 from equipoise.mechanism.assembly.linkage import assemble

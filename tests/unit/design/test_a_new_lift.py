@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.design import processes
+from equipoise.design import evaluator as processes
 from equipoise.design.lifts import LIFTS, Draft, Lift, lift_named, with_lifts
 from equipoise.design.requirements import Requirement
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.planting.designs import Designs
+from equipoise.planting.search import Designs
 from equipoise.schema.template import Template
 from equipoise.studies.evaluate import evaluator
 from equipoise.web.stores import StoreDesk

@@ -16,7 +16,7 @@ from equipoise.keys.requirement_kinds import REQUIREMENT_KINDS, RequirementKind
 from equipoise.schema.targets import read_targets
 from equipoise.studies import sweep
 from equipoise.web.desk import begun
-from equipoise.web.openings import opened_file
+from equipoise.web.gallery import opened_file
 from surface.running import example_text
 from unit.web.pages import Session, ask
 from unit.web.test_stores import ask as ask_desk

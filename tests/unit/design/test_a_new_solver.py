@@ -15,7 +15,7 @@ import pytest
 import equipoise as eq
 from equipoise.design.requirements import Requirement
 from equipoise.design.solvers import SOLVERS, DesignProblem, DesignSolution
-from equipoise.design.spreads import Choices, Range
+from equipoise.design.variables import Choices, Range
 from equipoise.handheld.design import design_tool
 from equipoise.i18n import Note
 from equipoise.planting.search import fit_planting

@@ -11,23 +11,20 @@ import pytest
 
 from equipoise import load
 from equipoise.design import evaluator as pooling
-from equipoise.design import processes
+from equipoise.design import evaluator as processes
 from equipoise.design.evaluator import PooledEvaluator
 from equipoise.design.requirements import Requirement
 from equipoise.errors import UsageError
 from equipoise.mechanism.kinematics.tip import TipCurve
 from equipoise.mechanism.parts.objectives import Objective
 from equipoise.planting.arms import machine_figures
-from equipoise.planting.designs import Designs
-from equipoise.planting.search import fit_planting
+from equipoise.planting.search import Designs, fit_planting
 from equipoise.schema.studies import load_study
 from equipoise.schema.template import Template
-from equipoise.studies.design_space import Output
 from equipoise.studies.evaluate import evaluator, pooled
 from equipoise.studies.objective_map import landscape
-from equipoise.studies.sampling import samples
 from equipoise.studies.searching import search
-from equipoise.studies.study import Study
+from equipoise.studies.study import Output, Study, samples
 from equipoise.studies.tolerances import tolerance
 
 

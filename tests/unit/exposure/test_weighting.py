@@ -22,7 +22,7 @@ from equipoise.exposure.weighting import (
     squared_factor,
     weighting,
 )
-from equipoise.handheld.duals import Dual
+from equipoise.handheld.chain import Dual
 
 SPAN = np.geomspace(1e-3, 1e7, 400)
 

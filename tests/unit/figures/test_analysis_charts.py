@@ -26,8 +26,7 @@ from equipoise.planting.summary import plant
 from equipoise.results.analysis import Analysis
 from equipoise.results.charts import Chart, Panel
 from equipoise.signals import Periodic
-from equipoise.symbols.clear import clear_angle
-from equipoise.symbols.scene import Scene
+from equipoise.symbols.scene import Scene, clear_angle
 from unit.figures.checks import check
 from unit.figures.samples import BUNDLED, drawn, long_cycle, one_link, read_off, words
 

@@ -11,7 +11,7 @@ import pytest
 import equipoise as eq
 from equipoise.balancing.balanced import Balanced
 from equipoise.figures import balancing as view
-from equipoise.figures.aims import aims_of
+from equipoise.figures.balancing import aims_of
 from equipoise.figures.forces import order_panel
 from equipoise.figures.layout import lay_out
 from equipoise.results.charts import Chart

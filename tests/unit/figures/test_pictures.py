@@ -19,7 +19,7 @@ from equipoise.planting.summary import plant
 from equipoise.present.findings import Findings, ToolFindings
 from equipoise.present.pictures import each
 from equipoise.results.charts import Chart
-from equipoise.results.own_words import in_own_words
+from equipoise.results.result import in_own_words
 from support.chosen import DISTINCT, few
 from support.found import found
 from support.gallery import Kept, keep

@@ -11,8 +11,8 @@ import pytest
 from scipy.interpolate import RectBivariateSpline
 
 from equipoise.figures import designs, render, studies
-from equipoise.figures.contours import finer, levels_of
 from equipoise.figures.layout import lay_out
+from equipoise.figures.panel import finer, levels_of
 from equipoise.figures.sheet import CanvasStroke
 from equipoise.figures.style import INK
 from equipoise.mechanism.parts.objectives import Objective
@@ -21,11 +21,10 @@ from equipoise.results.outputs import objective_named
 from equipoise.schema.studies import load_study
 from equipoise.schema.study_units import units_of
 from equipoise.schema.template import Template
-from equipoise.studies.cloud import MOST, SOME
 from equipoise.studies.objective_map import Landscape, landscape
 from equipoise.studies.outcomes import Block, Outcome
 from equipoise.studies.searching import Searched, search
-from equipoise.studies.selection import Best
+from equipoise.studies.selection import MOST, SOME, Best
 from equipoise.studies.tolerances import Tolerances, tolerance
 from unit.figures.checks import check
 from unit.figures.samples import words

@@ -10,14 +10,13 @@ import pytest
 
 from equipoise.exposure.daily import partial_exposure
 from equipoise.exposure.weighting import factor
-from equipoise.figures import tool_designs, tool_shaft, tool_side, tool_speeds
+from equipoise.figures import tool_designs, tool_shaft, tool_side
 from equipoise.handheld.design import Before, ToolDesign
 from equipoise.handheld.design_plan import KEYS
 from equipoise.handheld.exposed import expose_tool, grips
 from equipoise.handheld.frequencies import scale_of
-from equipoise.handheld.modes import vibrate_tool
+from equipoise.handheld.modes import changed, determinant_chart, vary_tool, vibrate_tool
 from equipoise.handheld.response import respond_tool
-from equipoise.handheld.studies import changed, determinant_chart, vary_tool
 from equipoise.handheld.sweep import transmit
 from equipoise.i18n import Note
 from equipoise.results.charts import Curve, Panel
@@ -55,8 +54,8 @@ def test_names_in_order() -> None:
 
 def test_a_speed_that_stands_alone() -> None:
     tool, speed = machine("paper"), np.array([700.0])
-    drawn = tool_speeds.transmission_charts(transmit(tool, speed))
-    drawn |= tool_speeds.exposure_charts(expose_tool(tool, speed))
+    drawn = tool_shaft.transmission_charts(transmit(tool, speed))
+    drawn |= tool_shaft.exposure_charts(expose_tool(tool, speed))
     for chart in drawn.values():
         check(chart)
         x = chart.panels[0].x
@@ -236,7 +235,7 @@ def test_transmission_of_each_station() -> None:
     inside = [one for one in modes if SPEEDS[0] <= one <= SPEEDS[-1]]
     for panel in chart.panels:
         assert [line.at for line in panel.lines if line.role == "natural"] == pytest.approx(inside)
-    assert "natural frequency" not in words(tool_speeds.transmission_charts(found)["transmission"])
+    assert "natural frequency" not in words(tool_shaft.transmission_charts(found)["transmission"])
 
 
 def test_acceleration_and_what_is_allowed() -> None:
@@ -246,14 +245,14 @@ def test_acceleration_and_what_is_allowed() -> None:
     assert panel.y.text == "RMS, m/s²" and panel.y.scale == "log"
     (curve,) = curves(panel, "kind 0")
     np.testing.assert_allclose(curve.y, np.hypot(*exposure.grips["handle"].acceleration))
-    assert tool_speeds.duration_of(exposure) == 2.5 * 3600
+    assert tool_shaft.duration_of(exposure) == 2.5 * 3600
     for role, a8 in (("action", 2.5), ("limit", 5.0)):
         (line,) = curves(panel, role)
         for each in (line.y * factor(line.x / (2 * np.pi))).tolist():
             assert partial_exposure(each, 2.5 * 3600) == pytest.approx(a8)
     assert "2.5 h a day" in words(chart) and " m/s² at 7" in words(chart)
     undamped = expose_tool(load_tool("nagamine-irie"), SPEEDS)
-    assert " m/s² at " not in words(tool_speeds.exposure_charts(undamped)["acceleration"])
+    assert " m/s² at " not in words(tool_shaft.exposure_charts(undamped)["acceleration"])
 
 
 def test_exposure_and_levels() -> None:
@@ -262,7 +261,7 @@ def test_exposure_and_levels() -> None:
     for number, grip in enumerate(exposure.grips.values()):
         (curve,) = curves(chart.panels[0], f"kind {number}")
         np.testing.assert_allclose(curve.y, grip.a_hv)
-    hours = tool_speeds.duration_of(exposure) / 3600
+    hours = tool_shaft.duration_of(exposure) / 3600
     flat = [curves(chart.panels[0], role)[0].y[0] for role in ("action", "limit")]
     assert flat == pytest.approx([2.5 * np.sqrt(8 / hours), 5 * np.sqrt(8 / hours)])
     limit = flat[1]
@@ -276,8 +275,8 @@ def test_exposure_and_levels() -> None:
     assert "limit: A(8) of 5 m/s²" in told and "action: A(8) of 2.5 m/s²" in told
     assert all(text in told for text in ("rear-grip", "front-handle", "work, 7500 rpm"))
     idle = expose_tool(replace(machine("paper"), work=(), operation=None), SPEEDS)
-    assert tool_speeds.levels(idle) == {"action": 2.5, "limit": 5.0}
-    told = words(tool_speeds.exposure_charts(idle)["exposure"])
+    assert tool_shaft.levels(idle) == {"action": 2.5, "limit": 5.0}
+    told = words(tool_shaft.exposure_charts(idle)["exposure"])
     assert "8 h a day" in told and "A(8) =" not in told and "work," not in told
     for name in ("exposure", "transmission"):
         assert "quieter ones" in words(pictures("crowded")[name])

@@ -17,9 +17,9 @@ from equipoise.figures.sweep import fraction, meeting, merged, sweep_charts
 from equipoise.figures.vibration import response_charts, transient_charts
 from equipoise.results.charts import Chart, Curve
 from equipoise.vibration.forced import respond
-from equipoise.vibration.resonance import Resonance
+from equipoise.vibration.free import simulate
+from equipoise.vibration.linear import Resonance
 from equipoise.vibration.sweep import Sweep, sweep_speed
-from equipoise.vibration.transient import simulate
 from unit.figures.checks import views
 from unit.figures.samples import words
 from unit.figures.vibration_samples import (

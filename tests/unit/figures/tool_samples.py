@@ -7,12 +7,11 @@ from functools import cache
 
 import numpy as np
 
-from equipoise.figures import tool_designs, tool_shaft, tool_side, tool_speeds
+from equipoise.figures import tool_designs, tool_shaft, tool_side
 from equipoise.handheld.exposed import expose_tool
 from equipoise.handheld.model import Absorber, Excitation, Hand, Station, Tool, Work
-from equipoise.handheld.modes import vibrate_tool
+from equipoise.handheld.modes import determinant_chart, vary_tool, vibrate_tool
 from equipoise.handheld.response import respond_tool
-from equipoise.handheld.studies import determinant_chart, vary_tool
 from equipoise.handheld.sweep import transmit
 from equipoise.results.charts import Chart
 from equipoise.schema.models import load_tool
@@ -128,6 +127,6 @@ def drawn_anew(kind: str) -> Drawn:
     values = np.geomspace(1e3, 1e5, 9) if "stiffness" in key else np.linspace(0.0, 0.8, 9)
     drawn |= tool_designs.variation_charts(vary_tool(tool, station, key, values, 6))
     if tool.grips:
-        drawn |= tool_speeds.transmission_charts(transmit(tool, SPEEDS), modes)
-        drawn |= tool_speeds.exposure_charts(expose_tool(tool, SPEEDS))
+        drawn |= tool_shaft.transmission_charts(transmit(tool, SPEEDS), modes)
+        drawn |= tool_shaft.exposure_charts(expose_tool(tool, SPEEDS))
     return drawn | tool_shaft.response_charts(respond_tool(tool, SPEEDS))

@@ -12,6 +12,7 @@ import pytest
 from equipoise.handheld.chain import (
     Chain,
     CondensedStiffness,
+    Dual,
     NodePair,
     carry,
     count,
@@ -21,7 +22,6 @@ from equipoise.handheld.chain import (
     solve,
     transfer,
 )
-from equipoise.handheld.duals import Dual
 from unit.handheld.samples import THEORIES
 
 Array = np.ndarray[Any, Any]

@@ -12,10 +12,10 @@ from numpy.polynomial import legendre
 from scipy import linalg
 
 from equipoise.handheld import frequencies
-from equipoise.handheld.elements import element
 from equipoise.handheld.frequencies import (
     characteristic,
     eigenvalues,
+    element,
     natural_frequencies,
     scale_of,
 )

@@ -9,7 +9,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from equipoise.handheld.duals import Dual
+from equipoise.handheld.chain import Dual
 
 OPERATIONS: dict[str, Callable[[Any, Any], Any]] = {
     "x + y": lambda x, y: x + y,

@@ -14,10 +14,10 @@ import equipoise as eq
 from equipoise.errors import ModelError
 from equipoise.exposure.spectra import weigh_signal
 from equipoise.exposure.weighting import weighting
-from equipoise.handheld import exposed, reciprocal
-from equipoise.handheld.chain import carry, solve
+from equipoise.handheld import exposed
+from equipoise.handheld import response as reciprocal
+from equipoise.handheld.chain import Dual, carry, solve
 from equipoise.handheld.design_plan import KEYS
-from equipoise.handheld.duals import Dual
 from equipoise.handheld.exposed import (
     SpeedBand,
     expose_tool,
@@ -28,9 +28,9 @@ from equipoise.handheld.exposed import (
     weighted_squares,
 )
 from equipoise.handheld.model import Excitation, Hand, Impedance, Operation, Station, Tool, Work
+from equipoise.handheld.modes import changed, has, number_of
 from equipoise.handheld.response import ToolResponse, respond_tool
 from equipoise.handheld.shaft import Section
-from equipoise.handheld.studies import changed, has, number_of
 from unit.handheld.samples import THEORIES, bare, both, random_tool, shaken
 
 Array = np.ndarray[Any, Any]

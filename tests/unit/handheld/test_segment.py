@@ -9,8 +9,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from equipoise.handheld.chain import Transfer, longest, shear_transfer, transfer
-from equipoise.handheld.duals import Dual
+from equipoise.handheld.chain import Dual, Transfer, longest, shear_transfer, transfer
 from support.beam_reference import Piece, Reference
 
 Array = np.ndarray[Any, Any]

@@ -9,7 +9,7 @@ from equipoise.errors import ModelError, UsageError
 from equipoise.handheld.design_plan import KEYS
 from equipoise.handheld.frequencies import natural_frequencies, scale_of
 from equipoise.handheld.model import Hand, Impedance, Station, Tool
-from equipoise.handheld.studies import (
+from equipoise.handheld.modes import (
     changed,
     determinant_chart,
     number_of,

@@ -17,9 +17,9 @@ from equipoise.handheld.design_plan import DesignLimit, DesignPlan, DesignVariab
 from equipoise.handheld.exposed import grips
 from equipoise.handheld.hand_blocks import design_blocks
 from equipoise.handheld.model import Absorber, Excitation, Hand, Harness, Station, Tool, Work
+from equipoise.handheld.modes import changed, number_of
 from equipoise.handheld.response import respond_tool
 from equipoise.handheld.shaft import Section, Shaft
-from equipoise.handheld.studies import changed, number_of
 from equipoise.quantities import brief
 from equipoise.results.blocks import Text
 from unit.handheld.samples import both

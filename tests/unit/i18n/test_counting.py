@@ -5,9 +5,8 @@ from __future__ import annotations
 import pytest
 
 from equipoise.i18n import LANGUAGES, Note, catalogue, say, speaking
-from equipoise.i18n.counting import BY, OTHER, category, counted
-from equipoise.i18n.languages import KNOWN
-from equipoise.web.words import spoken_in
+from equipoise.i18n.languages import BY, KNOWN, OTHER, category, counted
+from equipoise.web.documents import spoken_in
 from unit.i18n.test_words import placeholders, texts_of_all
 
 

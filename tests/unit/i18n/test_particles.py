@@ -7,8 +7,8 @@ import re
 import pytest
 
 from equipoise.i18n import Note, catalogue, say, speaking
-from equipoise.i18n.particles import rules, with_particles
-from equipoise.web.words import spoken_in
+from equipoise.i18n.languages import rules, with_particles
+from equipoise.web.documents import spoken_in
 
 SPOKEN = {
     "질량": "질량을 질량으로 질량과", "스프링": "스프링을 스프링으로 스프링과",

@@ -32,8 +32,8 @@ from equipoise.keys import (
     all_keys,
 )
 from equipoise.schema.entries import entry_of, own_keys, tables_below
+from equipoise.schema.finding import plain_word
 from equipoise.schema.opening import document_of
-from equipoise.schema.words import plain_word
 from support.languages import COMPLETE
 
 SOURCES = Path(equipoise.__file__).parent

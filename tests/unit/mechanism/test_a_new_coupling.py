@@ -28,9 +28,9 @@ from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.outputs.declared import CONTACT, FORCES, GROUPS, of_coupling
 from equipoise.mechanism.parts.couplings import LineOfAction, Pushed, Relation, Seat, Turning
 from equipoise.results.machine_blocks import model_blocks
-from equipoise.schema.key_tables import key_table
+from equipoise.schema.writing import key_table
 from equipoise.symbols.pieces import pieces
-from equipoise.web.kinds import sections
+from equipoise.web.gallery import sections
 from support.own_kinds import (
     designs_by_numbers,
     drawn,

@@ -21,8 +21,8 @@ from equipoise.keys import KeyTable, Tables, TextKind, declared, key, with_field
 from equipoise.mechanism import Machine
 from equipoise.mechanism.parts.element_kinds import Placed
 from equipoise.mechanism.parts.joint_kinds import JointKind, Rider
+from equipoise.mechanism.parts.links import Slider
 from equipoise.mechanism.parts.machine import Link
-from equipoise.mechanism.parts.sliders import Slider
 from equipoise.present.checks import machine_blocks
 from equipoise.quantities import Dimension
 from equipoise.symbols.shapes import BodyMark, circle

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 import equipoise as eq
-from equipoise.mechanism.outputs.spoken import joint_names
+from equipoise.mechanism.outputs.declared import joint_names
 from equipoise.mechanism.parts.balance import (
     LISTS,
     MOST,

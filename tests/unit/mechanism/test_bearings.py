@@ -12,12 +12,11 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import ModelError
-from equipoise.mechanism.parts.duty_states import DutyState
-from equipoise.mechanism.parts.joint_properties import JointProperties
-from equipoise.mechanism.parts.rolling_bearings import RollingBearing
+from equipoise.mechanism.parts.joint_properties import JointProperties, RollingBearing
+from equipoise.mechanism.parts.run_plans import DutyState
 from equipoise.results.blocks import Table
 from equipoise.schema.files import json_text, to_csv
-from equipoise.studies.figures import dimension_of
+from equipoise.studies.commands import dimension_of
 from surface.running import equipoise
 from unit.schema.samples import survives
 

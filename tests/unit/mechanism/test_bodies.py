@@ -20,9 +20,8 @@ from equipoise.balancing.design_variables import with_parameters
 from equipoise.codegen.figures import Figure
 from equipoise.codegen.gram import MassBatch, can_use
 from equipoise.errors import ModelError, UsageError
-from equipoise.mechanism.assembly.family import can_vary, linkage_of, with_columns
+from equipoise.mechanism.assembly.family import can_vary, invalid_designs, linkage_of, with_columns
 from equipoise.mechanism.assembly.linkage import Linkage, assemble
-from equipoise.mechanism.assembly.refusing import invalid_designs
 from equipoise.mechanism.dynamics.parameters import parameters_of
 from equipoise.mechanism.parts.bodies import Body, Hole, inertia_of, polygon
 from equipoise.mechanism.parts.machine import Link, Machine

@@ -17,12 +17,12 @@ from equipoise.codegen.javascript import javascript
 from equipoise.errors import ModelError, UsageError
 from equipoise.mechanism import Belt, Link, Machine
 from equipoise.mechanism.assembly.linkage import assemble
-from equipoise.mechanism.kinematics.crossing import crossings
+from equipoise.mechanism.kinematics.motion import crossings
 from equipoise.mechanism.parts.circular_slots import CircularSlot
 from equipoise.mechanism.parts.joint_properties import JointProperties
 from equipoise.symbols.pieces import pieces
 from equipoise.symbols.scene import Scene
-from equipoise.web.openings import opened_file
+from equipoise.web.gallery import opened_file
 from equipoise.web.session import Session
 from secondroute.test_javascript import run
 from support import free_bodies, newton

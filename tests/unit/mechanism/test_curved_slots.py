@@ -18,7 +18,7 @@ from equipoise.codegen.figures import Figure
 from equipoise.errors import EquipoiseError, ModelError, MotionError, UsageError
 from equipoise.mechanism import Machine
 from equipoise.mechanism.assembly.linkage import assemble
-from equipoise.mechanism.formulas.plane_curves import curve_through
+from equipoise.mechanism.formulas.curves import curve_through
 from equipoise.mechanism.parts.circular_slots import CircularSlot
 from equipoise.mechanism.parts.curved_slots import CurvedSlot, CurveTable
 from equipoise.mechanism.parts.joint_properties import JointProperties
@@ -28,8 +28,8 @@ from equipoise.symbols.scene import Scene
 from equipoise.web.design import Design
 from equipoise.web.drawn import sketch_of
 from equipoise.web.edits import solved
-from equipoise.web.moving import straight
-from equipoise.web.openings import opened_file
+from equipoise.web.gallery import opened_file
+from equipoise.web.remaking import straight
 from equipoise.web.session import Session
 from support import free_bodies, newton
 from support.analyses import ANGLES

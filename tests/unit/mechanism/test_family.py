@@ -12,9 +12,15 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import UsageError
-from equipoise.mechanism.assembly.family import Family, _beside, can_vary, linkage_of, with_columns
+from equipoise.mechanism.assembly.family import (
+    Family,
+    _beside,
+    can_vary,
+    invalid_designs,
+    linkage_of,
+    with_columns,
+)
 from equipoise.mechanism.assembly.linkage import Linkage, assemble
-from equipoise.mechanism.assembly.refusing import invalid_designs
 from equipoise.mechanism.parts.gear_shapes import GearShape
 from equipoise.mechanism.parts.machine import Gear, Machine
 from equipoise.mechanism.parts.pitch_curves import law_of

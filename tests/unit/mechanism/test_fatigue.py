@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from equipoise.errors import UsageError
-from equipoise.mechanism.dynamics.fatigue import (
+from equipoise.mechanism.dynamics.link_stress import (
     LoadCycles,
     WoehlerLine,
     amplitudes_about_zero,

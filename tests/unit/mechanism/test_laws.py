@@ -10,13 +10,14 @@ import pytest
 from scipy.interpolate import make_interp_spline
 
 from equipoise.mechanism.formulas.curves import NORMAL, spline
-from equipoise.mechanism.parts.law_checks import CAM, wrong_law
 from equipoise.mechanism.parts.laws import (
+    CAM,
     LAWS,
     AngleLaw,
     AngleSegment,
     LengthLaw,
     LengthSegment,
+    wrong_law,
 )
 
 PEAKS = {  # of velocity and acceleration, as of Norton, Cam Design, table 3-1, and closed forms

@@ -14,7 +14,7 @@ import pytest
 import equipoise as eq
 from equipoise.errors import ChangePointError, EquipoiseError, ModelError, MotionError
 from equipoise.mechanism.assembly.linkage import assemble
-from equipoise.mechanism.assembly.newton import LoopGroup
+from equipoise.mechanism.assembly.loops import LoopGroup
 from laws.subjects import families_of, is_force, outputs, sizes
 from laws.transforms import shifted, turned
 from support.machines import make
@@ -147,7 +147,7 @@ def test_wide_steps_lead_where_narrow_ones_do(
     strides: tuple[float, ...], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     wide = eq.move(eq.load("class-three"), 48)
-    monkeypatch.setattr("equipoise.mechanism.assembly.newton.STRIDES", strides)
+    monkeypatch.setattr("equipoise.mechanism.assembly.loops.STRIDES", strides)
     narrow = eq.move(eq.load("class-three"), 48)
     for name, point in wide.points.items():
         for part in ("place", "place_1", "place_2"):

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.mechanism.outputs.poles import pairs
+from equipoise.mechanism.outputs.declared import pairs
 
 MACHINES = ["yamashita-1", "quick-return", "watt-six-bar", "stephenson-six-bar", "drag-link",
             "class-three", "geared-counterweight"]  # fmt: skip

@@ -12,8 +12,8 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import ChangePointError, EquipoiseError, MotionError, RangeError, UsageError
-from equipoise.mechanism.assembly import stuck
-from equipoise.mechanism.kinematics.swings import swing
+from equipoise.mechanism.assembly import reach as stuck
+from equipoise.mechanism.kinematics.swinging import swing
 from equipoise.mechanism.parts.machine import FRAME
 from unit.mechanism.build import ORIGIN, crank_rocker, four_bar, heavy, machine, slider_crank
 

@@ -12,7 +12,7 @@ from equipoise.errors import RangeError
 from equipoise.figures.linkage import linkage
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.assembly.reach import Reach, reach
-from equipoise.mechanism.kinematics.swings import swing
+from equipoise.mechanism.kinematics.swinging import swing
 from equipoise.mechanism.parts.laws import AngleLaw
 from unit.mechanism.build import crank_rocker, four_bar, heavy
 

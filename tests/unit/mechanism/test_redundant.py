@@ -15,7 +15,7 @@ from equipoise.exchange.formats import Job
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.assembly.shared import IDLE
 from equipoise.mechanism.dynamics.across import exerted_in
-from equipoise.mechanism.dynamics.undecided import idle_told, undecided
+from equipoise.mechanism.dynamics.reactions import idle_told, undecided
 from equipoise.mechanism.parts.joint_properties import JointProperties
 from equipoise.mechanism.parts.machine import FRAME, FurtherDrive, Link, Slider, Vector
 from support.machines import make

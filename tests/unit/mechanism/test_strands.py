@@ -7,7 +7,7 @@ from math import pi
 import numpy as np
 import pytest
 
-from equipoise.mechanism.formulas.strands import LEFT, RIGHT, Strands
+from equipoise.mechanism.formulas.rolling import LEFT, RIGHT, Strands
 
 APART = 0.31 * np.exp(0.7j)
 BELTS = [Strands(APART, 0.05, 0.12), Strands(APART, 0.12, 0.05), Strands(APART, 0.08, 0.08)]

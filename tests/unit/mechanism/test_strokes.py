@@ -10,9 +10,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import UsageError
-from equipoise.mechanism.kinematics.dwell import Path, longest_dwell
-from equipoise.mechanism.kinematics.stroke_figures import DeadPosition
-from equipoise.mechanism.kinematics.strokes import _turning
+from equipoise.mechanism.kinematics.strokes import DeadPosition, Path, _turning, longest_dwell
 from equipoise.mechanism.parts.laws import AngleLaw, AngleSegment
 from equipoise.results.analysis_blocks import force_blocks
 from support.chosen import DISTINCT, few

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import equipoise as eq
-from equipoise.mechanism.kinematics.rates import PointMotion
+from equipoise.mechanism.kinematics.motion import PointMotion
 from equipoise.mechanism.parts.field import Planting, PlantingArm
 from equipoise.planting.summary import PlantingFigures
 

@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 
 import equipoise as eq
 from equipoise.mechanism.kinematics.tip import TipCurve
-from equipoise.planting.ground import GroundPath, Loop
+from equipoise.planting.figures import GroundPath, Loop
 from equipoise.planting.summary import plant
 from unit.planting.build import Array, apart, over_ground, planetary, spinner, tip_at, twice
 

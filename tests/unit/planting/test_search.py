@@ -14,10 +14,8 @@ from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.parts.gear_shapes import GearShape
 from equipoise.mechanism.parts.gears import closed
 from equipoise.mechanism.parts.machine import FRAME
-from equipoise.planting.designs import Designs
-from equipoise.planting.fit_blocks import fit_blocks
-from equipoise.planting.goals import PlantingProblem
-from equipoise.planting.search import Fit, fit_planting
+from equipoise.planting.blocks import fit_blocks
+from equipoise.planting.search import Designs, Fit, PlantingProblem, fit_planting
 from equipoise.results.blocks import Notes
 from support.chosen import EXHAUSTIVE
 from support.machines import make

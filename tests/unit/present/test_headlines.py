@@ -19,15 +19,14 @@ from equipoise.errors import UsageError
 from equipoise.figures.paint import font_folder
 from equipoise.figures.style import SMALL
 from equipoise.i18n.languages import KNOWN
-from equipoise.present import fonts
 from equipoise.present import pages as composed
+from equipoise.present import pages as fonts
 from equipoise.present.checks import machine_blocks
 from equipoise.present.composition import SHORT, build
 from equipoise.present.findings import Findings, ToolFindings, find
-from equipoise.present.headlines import caused, longest, ordered, pushed
+from equipoise.present.headlines import Shaking, caused, longest, ordered, pushed
 from equipoise.present.pages import ReportDocument, page, paired, pdf
 from equipoise.present.pictures import each
-from equipoise.present.shaking import Shaking
 from equipoise.present.summary import answers, tiles
 from equipoise.quantities import brief
 from equipoise.results.analysis_blocks import orders_table

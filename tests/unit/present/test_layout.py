@@ -6,7 +6,7 @@ import pytest
 from rich.cells import cell_len
 
 from equipoise.present.cells import grid
-from equipoise.present.layout import Looks, size, table_lines, wrapped
+from equipoise.present.terminal import Looks, size, table_lines, wrapped
 from equipoise.results.blocks import Cell, Column, Many, Table, Value
 
 PLAIN = Looks(coloured=False)

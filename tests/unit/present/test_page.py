@@ -12,11 +12,10 @@ import equipoise as eq
 from equipoise.errors import EquipoiseError, UsageError
 from equipoise.figures import paint
 from equipoise.figures.style import LOOKS
-from equipoise.present import fonts
-from equipoise.present.colors import PRINTED_STRESS, colored, colors
+from equipoise.present import pages
 from equipoise.present.composition import build
 from equipoise.present.findings import ToolFindings, find
-from equipoise.present.pages import boxed_in_pdf, page, pdf
+from equipoise.present.pages import PRINTED_STRESS, boxed_in_pdf, colored, colors, page, pdf
 from equipoise.present.pictures import pictures
 from support.found import found as found_of
 from surface.running import equipoise
@@ -141,11 +140,11 @@ def test_missing_fonts_and_a_missing_extra_are_told(monkeypatch, tmp_path):
         def families(self):
             return ["DejaVu Sans"]
 
-    monkeypatch.setattr(fonts, "installed", Latin)
+    monkeypatch.setattr(pages, "installed", Latin)
     with pytest.raises(UsageError, match="no font with 한국어 letters, so that a PDF would"):
         eq.report("scotch-yoke", tmp_path / "report.pdf", language="ko")
     monkeypatch.undo()
-    fonts.installed.cache_clear()
+    pages.installed.cache_clear()
     monkeypatch.setitem(sys.modules, "typst", None)
     with pytest.raises(EquipoiseError, match=r'pip install "equipoise\[report\]"'):
         eq.report("scotch-yoke", tmp_path / "report.pdf")

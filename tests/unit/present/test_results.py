@@ -19,17 +19,16 @@ from equipoise.balancing.pareto import trade_off
 from equipoise.balancing.sensitivity import sensitivities
 from equipoise.exposure.daily import Exposure, Task, daily_exposure
 from equipoise.handheld.exposed import expose_tool
-from equipoise.handheld.modes import vibrate_tool
+from equipoise.handheld.modes import vary_tool, vibrate_tool
 from equipoise.handheld.response import respond_tool
-from equipoise.handheld.studies import vary_tool
 from equipoise.handheld.sweep import sweep_tool
 from equipoise.i18n import speaking
 from equipoise.mechanism.parts.balance import Objective
 from equipoise.planting.summary import plant
 from equipoise.present import html_of, terminal
 from equipoise.present.cells import grid, printed
-from equipoise.present.layout import plain
 from equipoise.present.pages import ReportDocument, page, pdf, printed_grid
+from equipoise.present.terminal import plain
 from equipoise.present.tool_summary import tool_tiles
 from equipoise.quantities import showing
 from equipoise.results.analysis import Analysis

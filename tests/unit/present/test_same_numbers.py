@@ -29,10 +29,10 @@ from equipoise.results.analysis import ANGLES, order_values
 from equipoise.results.analysis_blocks import display_of_totals
 from equipoise.results.blocks import Block, Many, ReportSection, SvgPicture, Table, Value
 from equipoise.signals import highest_at
-from equipoise.vibration.resonance import nearest_loud
+from equipoise.vibration.linear import nearest_loud
 from equipoise.web.edits import solved
 from equipoise.web.figures import figures_of
-from equipoise.web.openings import opened_example
+from equipoise.web.gallery import opened_example
 from support.chosen import DISTINCT, few
 from support.found import found as found_of
 

@@ -21,8 +21,8 @@ from equipoise.mechanism.parts.balance import AddedMass, Balance, Objective, Wei
 from equipoise.present.composition import report_page
 from equipoise.present.findings import Findings
 from equipoise.results.blocks import Column, Table
-from equipoise.results.named_figures import NAMED_FIGURES
 from equipoise.results.outputs import (
+    NAMED_FIGURES,
     documented,
     documented_figures,
     documented_strokes,
@@ -30,9 +30,9 @@ from equipoise.results.outputs import (
 )
 from equipoise.schema.documents import dumps
 from equipoise.schema.files import json_text, to_csv
-from equipoise.studies.figures import dimension_of
+from equipoise.studies.commands import dimension_of
+from equipoise.web.gallery import opened_example
 from equipoise.web.messages import message_of
-from equipoise.web.openings import opened_example
 from equipoise.web.session import Session
 from support.printing import words
 

@@ -13,8 +13,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.balancing.balanced import Balanced
-from equipoise.design.spreads import Range
-from equipoise.design.variables import Variable
+from equipoise.design.variables import Range, Variable
 from equipoise.exposure.daily import Exposure
 from equipoise.handheld.exposed import ToolExposure, expose_tool
 from equipoise.handheld.modes import ToolModes, vibrate_tool
@@ -25,14 +24,12 @@ from equipoise.results.declaring import Declarations, ResultOutput, documented
 from equipoise.results.result import Result
 from equipoise.schema.files import csv_text, json_text
 from equipoise.schema.template import Template
-from equipoise.studies.design_space import Output, Sampling
+from equipoise.studies.commands import dimension_of
 from equipoise.studies.evaluate import OneByOne
-from equipoise.studies.figures import dimension_of
-from equipoise.studies.study import Study
-from equipoise.vibration.free import FreeVibration
+from equipoise.studies.study import Output, Sampling, Study
+from equipoise.vibration.free import FreeVibration, Transient
 from equipoise.vibration.response import SIGNAL, GaugeSignals, Joint, MountForce, Response
 from equipoise.vibration.sweep import GaugeCurve, Sweep, sweep_speed
-from equipoise.vibration.transient import Transient
 
 ROOT = Path(__file__).parents[3] / "docs"
 BEGIN, END = "<!-- declared {} -->\n", "<!-- end of declared {} -->\n"

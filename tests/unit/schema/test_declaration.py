@@ -28,10 +28,8 @@ from equipoise.mechanism.parts import (
     joint_properties,
     laws,
     links,
-    mounts,
     objectives,
     shown_units,
-    sliders,
     support,
     weights,
 )
@@ -41,13 +39,12 @@ from equipoise.mechanism.parts.circular_slots import CircularSlot
 from equipoise.mechanism.parts.curved_slots import CurvedSlot
 from equipoise.mechanism.parts.dampers import Damper
 from equipoise.mechanism.parts.dc_motors import DcMotor
-from equipoise.mechanism.parts.duty_states import DutyState
 from equipoise.mechanism.parts.induction_motors import InductionMotor
+from equipoise.mechanism.parts.joint_properties import RollingBearing
 from equipoise.mechanism.parts.machine import Frame, Machine, Position
 from equipoise.mechanism.parts.racks import Rack
 from equipoise.mechanism.parts.resistances import Resistance
-from equipoise.mechanism.parts.rolling_bearings import RollingBearing
-from equipoise.mechanism.parts.run_plans import RunPlan
+from equipoise.mechanism.parts.run_plans import DutyState, RunPlan
 from equipoise.mechanism.parts.sections import LinkSection
 from equipoise.mechanism.parts.servo_motors import ServoMotor
 from equipoise.mechanism.parts.springs import Spring
@@ -56,12 +53,10 @@ from equipoise.mechanism.parts.torsion_dampers import TorsionDamper
 from equipoise.mechanism.parts.torsion_springs import TorsionSpring
 from equipoise.schema import finding, models, schemas
 from equipoise.schema.documents import dumps, loads
-from equipoise.schema.key_tables import key_table
-from equipoise.schema.places import Context
-from equipoise.schema.reading import read_table
+from equipoise.schema.reading import Context, read_table
 from equipoise.schema.schemas import json_schema
 from equipoise.schema.template import Template
-from equipoise.schema.writing import Writer, toml_text
+from equipoise.schema.writing import Writer, key_table, toml_text
 from equipoise.web.design import Design
 from equipoise.web.fields import fields_of
 from equipoise.web.messages import Entry
@@ -76,7 +71,7 @@ DOCUMENTED: dict[str, type[Frozen]] = {
         laws.AngleSegment, laws.LengthLaw, laws.LengthSegment, force_elements.Motor, DcMotor,
         InductionMotor, ServoMotor, Frame,
         links.Link, LinkSection,
-        bodies.Body, bodies.Hole, sliders.Bearing, sliders.Slider, gears.Gear,
+        bodies.Body, bodies.Hole, links.Bearing, links.Slider, gears.Gear,
         joint_properties.JointProperties, RollingBearing,
         gear_shapes.GearShape, Belt, Rack, cams.Cam,
         CircularSlot, CurvedSlot,
@@ -85,7 +80,7 @@ DOCUMENTED: dict[str, type[Frozen]] = {
         Position, field.Planting,
         field.PlantingArm,
         field.Soil, support.Support,
-        mounts.Mount, support.Row, DutyState, RunPlan, balance.Balance, weights.CenterMove,
+        support.Mount, support.Row, DutyState, RunPlan, balance.Balance, weights.CenterMove,
         weights.AddedMass, weights.Weight, counterweights.GearedWeight,
         counterweights.BalanceShafts,
         balance.SpringChoice, balance.Phases, objectives.Objective, objectives.Limit, tool.Tool,

@@ -15,17 +15,14 @@ from hypothesis import strategies as st
 from jsonschema import Draft202012Validator
 
 import equipoise as eq
-from equipoise.design.spreads import Choices, Normal, Range, Spread, Uniform
-from equipoise.design.variables import Variable
+from equipoise.design.variables import Choices, Normal, Range, Spread, Uniform, Variable
 from equipoise.errors import ModelError, UsageError
 from equipoise.quantities import parse
 from equipoise.schema.files import printable
 from equipoise.schema.schemas import json_schema
 from equipoise.schema.studies import load_study, restore
 from equipoise.schema.template import Template
-from equipoise.studies.design_space import Correlation, Output, Sampling
-from equipoise.studies.sampling import samples
-from equipoise.studies.study import Study
+from equipoise.studies.study import Correlation, Output, Sampling, Study, samples
 from unit.schema.samples import FOUR_BAR
 
 SCHEMA = Draft202012Validator(json_schema("study"))

@@ -6,15 +6,13 @@ from pathlib import Path
 
 import pytest
 
-from equipoise.design.spreads import Range
-from equipoise.design.variables import Variable
+from equipoise.design.variables import Range, Variable
 from equipoise.errors import ModelError
 from equipoise.schema.studies import load_study
 from equipoise.schema.study_units import unit_named, units_of
 from equipoise.schema.template import Template
 from equipoise.studies.blocks import Unit
-from equipoise.studies.design_space import Output, Sampling
-from equipoise.studies.study import Study
+from equipoise.studies.study import Output, Sampling, Study
 
 UNITS = {
     # model, path, unit in which the file gives it

@@ -10,7 +10,7 @@ import pytest
 import equipoise as eq
 from equipoise.design.requirements import Requirement
 from equipoise.errors import ModelError
-from equipoise.planting.goals import figure_names
+from equipoise.planting.search import figure_names
 from equipoise.schema.targets import SearchTable, Targets, read_targets
 
 KNOWN = figure_names(eq.load("kim-chung-a"))

@@ -6,11 +6,9 @@ from dataclasses import replace
 from functools import cache
 from typing import Any
 
-from equipoise.design.spreads import Normal, Range, Spread, Uniform
-from equipoise.design.variables import Variable
+from equipoise.design.variables import Normal, Range, Spread, Uniform, Variable
 from equipoise.schema.template import Template
-from equipoise.studies.design_space import Correlation, Output, Sampling
-from equipoise.studies.study import Study
+from equipoise.studies.study import Correlation, Output, Sampling, Study
 
 MASS, LENGTH, SPEED = "links.crank.mass", "links.coupler.points.C.x", "drive.speed"
 PATHS = (MASS, LENGTH, SPEED, "links.rocker.mass", "links.crank.inertia")

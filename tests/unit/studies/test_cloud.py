@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from equipoise.studies.cloud import BINS, MOST, SOME, Cloud, cloud_of
-from equipoise.studies.design_space import Output
 from equipoise.studies.outcomes import Block, Outcome
+from equipoise.studies.selection import BINS, MOST, SOME, Cloud, cloud_of
 from equipoise.studies.store import UNKNOWN
+from equipoise.studies.study import Output
 
 NUMBERS = ("length", "mass")
 OUTPUTS = (Output("force", at_most=50.0), Output("torque", at_least=0.2))

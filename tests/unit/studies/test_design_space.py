@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from equipoise.design.spreads import SPREADS, Choices, Normal, Range, Spread, Uniform
+from equipoise.design.variables import SPREADS, Choices, Normal, Range, Spread, Uniform
 from equipoise.errors import UsageError
 
 EVEN = (np.arange(20_000) + 0.5) / 20_000

@@ -14,20 +14,17 @@ import pytest
 
 import equipoise as eq
 from equipoise.codegen.figures import REASONS
-from equipoise.design.spreads import Range
-from equipoise.design.variables import Variable
+from equipoise.design.variables import Range, Variable
 from equipoise.errors import ModelError, UsageError
 from equipoise.quantities import SI
 from equipoise.results import analysis as analysis_module
 from equipoise.results.analysis import ABOUT, BESIDE_OUTPUTS, BY_ORDER, FOUR_BAR, order_values
 from equipoise.results.outputs import unit_of
 from equipoise.schema.template import Template
-from equipoise.studies.commands import find_outputs
-from equipoise.studies.design_space import Command, Output, Sampling
+from equipoise.studies.commands import dimension_of, find_outputs, read, resolve, scale
 from equipoise.studies.evaluate import OneByOne
-from equipoise.studies.figures import dimension_of, read, resolve, scale
 from equipoise.studies.outcomes import Outcome
-from equipoise.studies.study import Study
+from equipoise.studies.study import Command, Output, Sampling, Study
 from surface.running import equipoise, example_text, succeeded
 from unit.studies.samples import template
 

@@ -1,4 +1,4 @@
-"""Threads, processes and a cluster compute the same chunks, also when some of them are killed."""
+"""Threads, evaluator and a cluster compute the same chunks, also when some of them are killed."""
 
 from __future__ import annotations
 
@@ -20,19 +20,18 @@ import numpy as np
 import psutil
 import pytest
 
-from equipoise.design import evaluator, processes
-from equipoise.design.processes import Processes, StoppedError, Threads, computed
+from equipoise.design import evaluator
+from equipoise.design.evaluator import Processes, StoppedError, Threads, computed
 from equipoise.errors import UsageError
 from equipoise.mechanism.parts.objectives import Objective
 from equipoise.schema.studies import load_study
 from equipoise.schema.template import Template
 from equipoise.studies import clusters
 from equipoise.studies.clusters import Cluster
-from equipoise.studies.design_space import Output, Sampling
 from equipoise.studies.objective_map import landscape
 from equipoise.studies.outcomes import Block
-from equipoise.studies.sampling import samples
 from equipoise.studies.searching import search
+from equipoise.studies.study import Output, Sampling, samples
 from support import studies
 from support.chosen import few
 from support.studies import Formulas, Orders, short_study
@@ -91,11 +90,11 @@ def test_designs_at_which_processes_always_die_end_the_sweep(tmp_path: Path) -> 
     with (
         closing(Processes(orders.task, 1)) as pool,
         pytest.raises(
-            StoppedError, match=f"died {processes.TRIES} times in a row, .* give fewer w"
+            StoppedError, match=f"died {evaluator.TRIES} times in a row, .* give fewer w"
         ),
     ):
         list(computed(pool, CHUNKS[:1]))
-    assert len(list(tmp_path.glob("0-*"))) == processes.TRIES
+    assert len(list(tmp_path.glob("0-*"))) == evaluator.TRIES
 
 
 def test_processes_stop_at_once_when_they_are_closed(tmp_path: Path) -> None:
@@ -114,7 +113,7 @@ IN_A_PROCESS = """
 import sys
 from contextlib import closing
 from pathlib import Path
-from equipoise.design.processes import Processes, computed
+from equipoise.design.evaluator import Processes, computed
 from support.studies import Orders, short_study
 orders = Orders(short_study(200), Path(sys.argv[1]), pause=60.0)
 with closing(Processes(orders.task, 2)) as pool:  # not below a question for __main__
@@ -230,7 +229,7 @@ def test_workers_with_other_versions_are_refused(
 
 
 def test_what_the_study_itself_raises_passes_through(address: str, tmp_path: Path) -> None:
-    task = processes.ChunkTask(studies.refuse, b"")
+    task = evaluator.ChunkTask(studies.refuse, b"")
     for pool in (Threads(task, 1), Cluster(task, address)):
         with closing(pool), pytest.raises(UsageError, match="no study at 0") as caught:
             list(computed(pool, CHUNKS[:1]))

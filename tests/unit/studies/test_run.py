@@ -19,12 +19,10 @@ from equipoise.errors import UsageError
 from equipoise.folders import Folder
 from equipoise.studies import run
 from equipoise.studies import store as storing
-from equipoise.studies.design_space import Output
 from equipoise.studies.outcomes import Progress, Tally
 from equipoise.studies.run import chunk_of, resume, sweep
-from equipoise.studies.sampling import samples
 from equipoise.studies.store import Store, open_store
-from equipoise.studies.study import Study
+from equipoise.studies.study import Output, Study, samples
 from support import studies
 from support.studies import Formulas, contents, restore, short_study
 

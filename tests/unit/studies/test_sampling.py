@@ -12,11 +12,9 @@ import pytest
 from scipy import stats
 from scipy.stats import qmc
 
-from equipoise.design.spreads import Choices, Normal, Range, Uniform
+from equipoise.design.variables import Choices, Normal, Range, Uniform
 from equipoise.errors import UsageError
-from equipoise.studies.design_space import Correlation
-from equipoise.studies.sampling import samples, unit_samples, values_at
-from equipoise.studies.study import Study
+from equipoise.studies.study import Correlation, Study, samples, unit_samples, values_at
 from unit.studies.samples import correlated, study
 
 RANDOM = ("sobol", "latin-hypercube", "monte-carlo")

@@ -11,17 +11,15 @@ import numpy as np
 import pytest
 
 from equipoise.codegen.figures import NO_ASSEMBLY, NO_MACHINE
-from equipoise.design.spreads import Choices, Normal, Range
-from equipoise.design.variables import Variable
+from equipoise.design.variables import Choices, Normal, Range, Variable
 from equipoise.errors import ModelError, UsageError
 from equipoise.keys.requirement_kinds import Make
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.studies import searching
-from equipoise.studies.design_space import Correlation, Output
 from equipoise.studies.evaluate import evaluator
 from equipoise.studies.outcomes import Evaluator, Outcome, feasible, non_dominated
 from equipoise.studies.searching import search, search_size
-from equipoise.studies.study import Study
+from equipoise.studies.study import Correlation, Output, Study
 from support.chosen import EXHAUSTIVE
 from unit.studies.samples import LENGTH, MASS, PATHS, study
 

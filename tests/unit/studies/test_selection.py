@@ -11,14 +11,14 @@ import numpy as np
 import pytest
 
 from equipoise.codegen.figures import NO_ASSEMBLY, NO_FULL_TURN
-from equipoise.design.spreads import Range
+from equipoise.design.variables import Range
 from equipoise.errors import UsageError
 from equipoise.keys.requirement_kinds import Make
-from equipoise.studies.design_space import Output
 from equipoise.studies.outcomes import Block, Outcome, far_apart, non_dominated
 from equipoise.studies.run import create_store
 from equipoise.studies.selection import best
 from equipoise.studies.store import Store
+from equipoise.studies.study import Output
 from unit.studies.samples import LENGTH, MASS, study
 
 Array = np.ndarray[Any, Any]

@@ -15,15 +15,13 @@ import xarray
 import zarr
 
 from equipoise.codegen.figures import REASONS
-from equipoise.design.spreads import Range
-from equipoise.design.variables import Variable
+from equipoise.design.variables import Range, Variable
 from equipoise.errors import UsageError
 from equipoise.folders import Folder
 from equipoise.partial import beside
-from equipoise.studies.design_space import Output, Sampling
 from equipoise.studies.run import create_store, resume
-from equipoise.studies.sampling import samples
 from equipoise.studies.store import UNKNOWN, DamagedError, open_store, versions
+from equipoise.studies.study import Output, Sampling, samples
 from support.studies import LENGTH, MASS, SPEED, Formulas, contents, filled, restore, short_study
 
 STUDY = short_study(250)

@@ -10,13 +10,11 @@ from typing import Any
 import pytest
 
 import equipoise as eq
-from equipoise.design.spreads import Choices, Normal, Range, Uniform
-from equipoise.design.variables import Variable
+from equipoise.design.variables import Choices, Normal, Range, Uniform, Variable
 from equipoise.errors import ModelError
 from equipoise.schema.studies import restore
 from equipoise.schema.template import Template
-from equipoise.studies.design_space import Correlation, Output, Sampling
-from equipoise.studies.study import Study
+from equipoise.studies.study import Correlation, Output, Sampling, Study
 from unit.studies.samples import LENGTH, MASS, SPEED, correlated, study, template
 
 GRID = {"method": "grid", "designs": None}

@@ -14,10 +14,9 @@ import pytest
 
 from equipoise.codegen.figures import REASONS
 from equipoise.errors import UsageError
-from equipoise.studies.design_space import Output
 from equipoise.studies.run import create_store
-from equipoise.studies.sampling import samples
 from equipoise.studies.selection import write_designs
+from equipoise.studies.study import Output, samples
 from support.studies import LENGTH, MASS, SPEED, Formulas, filled, short_study
 
 STUDY = short_study(250)

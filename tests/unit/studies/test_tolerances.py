@@ -12,13 +12,11 @@ from scipy.stats import norm
 
 import equipoise as eq
 from equipoise.codegen.figures import NO_ASSEMBLY
-from equipoise.design.spreads import Choices, Normal, Range, Uniform
+from equipoise.design.variables import Choices, Normal, Range, Uniform
 from equipoise.errors import ModelError, UsageError
-from equipoise.studies.design_space import Correlation, Output
 from equipoise.studies.outcomes import Outcome
-from equipoise.studies.study import Study
-from equipoise.studies.tolerances import rows_of, tolerance
-from equipoise.studies.variance import causes_of, tables
+from equipoise.studies.study import Correlation, Output, Study
+from equipoise.studies.tolerances import causes_of, rows_of, tables, tolerance
 from unit.studies.samples import LENGTH, MASS, SPEED, study
 
 Array = np.ndarray[Any, Any]

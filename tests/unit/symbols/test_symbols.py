@@ -9,10 +9,9 @@ import equipoise as eq
 from equipoise.figures.animation import laid_out
 from equipoise.mechanism import Body, Hole
 from equipoise.mechanism.formulas import kernels
-from equipoise.symbols.clear import clear_angle
 from equipoise.symbols.looks import DARK, LIGHT, LOOKS
 from equipoise.symbols.pieces import Piece, pieces
-from equipoise.symbols.scene import Scene
+from equipoise.symbols.scene import Scene, clear_angle
 from equipoise.symbols.shapes import Shape, hull
 
 NAMES = sorted(eq.examples("linkage"))

@@ -18,7 +18,7 @@ from equipoise.present.summary import vibration_told
 from equipoise.vibration.blocks import disagreement
 from equipoise.vibration.exact import solve_exact
 from equipoise.vibration.forced import chosen_model, excitation_model_of, respond
-from equipoise.vibration.resonance import around
+from equipoise.vibration.linear import around
 from equipoise.vibration.response import MODELS, Model
 from equipoise.vibration.sweep import sweep_speed
 from support.chosen import few

@@ -16,10 +16,15 @@ from equipoise.mechanism.parts.field import Planting, Soil
 from equipoise.mechanism.parts.force_elements import Motor
 from equipoise.mechanism.parts.support import Row
 from equipoise.signals import Periodic
-from equipoise.vibration.eigen import find_modes
 from equipoise.vibration.forced import respond
-from equipoise.vibration.linear import Linear, SupportExcitation
-from equipoise.vibration.resonance import AMPLIFIED, Resonance, resonances
+from equipoise.vibration.linear import (
+    AMPLIFIED,
+    Linear,
+    Resonance,
+    SupportExcitation,
+    find_modes,
+    resonances,
+)
 from equipoise.vibration.response import Mode, Model
 from equipoise.vibration.sweep import sweep_speed
 from support.machines_planes import set_apart

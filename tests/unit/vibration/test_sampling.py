@@ -11,10 +11,8 @@ import pytest
 import equipoise as eq
 from equipoise.errors import ResponseError
 from equipoise.vibration.forced import respond
-from equipoise.vibration.linear import Linear
-from equipoise.vibration.resonance import around
+from equipoise.vibration.linear import ACROSS, COARSE, UP, Linear, answered, around, between
 from equipoise.vibration.response import Response
-from equipoise.vibration.sampling import ACROSS, COARSE, UP, answered, between
 from equipoise.vibration.small_motion import respond_linear
 from equipoise.vibration.sweep import Sweep, sweep_speed
 

@@ -17,7 +17,7 @@ from equipoise.mechanism.parts.force_elements import Motor
 from equipoise.mechanism.parts.support import Row
 from equipoise.vibration.coupled import StallError
 from equipoise.vibration.forced import respond
-from equipoise.vibration.transient import Transient
+from equipoise.vibration.free import Transient
 from unit.mechanism.build import slider_crank
 from unit.vibration.build import DAMPING, PIVOT, SPEED, STIFFNESS, Mount, block, cart, rig
 

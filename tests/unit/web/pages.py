@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
+from equipoise.web.gallery import opened_example
 from equipoise.web.messages import message_of
-from equipoise.web.openings import opened_example
 from equipoise.web.replies import Reply
 from equipoise.web.session import Session
 from unit.web.typed import misfits_of_reply

@@ -9,16 +9,16 @@ from types import ModuleType
 import pytest
 
 from equipoise.errors import UsageError
-from equipoise.web import assets
+from equipoise.web import documents
 
 
 def test_a_site_takes_them_from_beside_the_page(monkeypatch: pytest.MonkeyPatch, tmp_path) -> None:
     """Its own package has none, so that nothing is loaded twice."""
-    monkeypatch.setattr(assets, "files", lambda name: tmp_path)
+    monkeypatch.setattr(documents, "files", lambda name: tmp_path)
     with pytest.raises(UsageError, match="has not been built"):
-        assets.assets()
+        documents.assets()
     browser = ModuleType("pyodide.http")
     browser.open_url = lambda name: io.StringIO(f"of {name}")  # type: ignore[attr-defined]
     monkeypatch.setattr(sys, "platform", "emscripten")
     monkeypatch.setitem(sys.modules, "pyodide.http", browser)
-    assert assets.assets() == {name: f"of {name}".encode() for name in assets.TYPES}
+    assert documents.assets() == {name: f"of {name}".encode() for name in documents.TYPES}

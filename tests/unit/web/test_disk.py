@@ -10,7 +10,7 @@ import pytest
 import equipoise as eq
 from equipoise.web.desk import begun
 from equipoise.web.disk import on_disk
-from equipoise.web.openings import opened_file
+from equipoise.web.gallery import opened_file
 from equipoise.web.session import Session
 from surface.running import example_text
 from unit.web.pages import ask, edit, refusal, state

@@ -10,10 +10,10 @@ from xml.etree import ElementTree
 import pytest
 
 from equipoise.i18n import catalogue
+from equipoise.web import documents as played_module
 from equipoise.web import interactive as interactive_module
-from equipoise.web import played as played_module
-from equipoise.web.explained import CHARTS
-from equipoise.web.openings import titles
+from equipoise.web.figures import CHARTS
+from equipoise.web.gallery import titles
 from equipoise.web.replies import Reply
 from equipoise.web.session import Session
 from unit.web.pages import ask, opened, refusal

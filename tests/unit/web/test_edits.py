@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.mechanism.assembly.newton import LoopGroup
+from equipoise.mechanism.assembly.loops import LoopGroup
 from equipoise.quantities import clean, format_exact, showing
 from equipoise.web import edits
 from equipoise.web.edits import edited, movable

@@ -13,7 +13,7 @@ from equipoise.web.design import Design
 from equipoise.web.drawn import drawn, sketch_of
 from equipoise.web.edits import solved
 from equipoise.web.fields import Scale, fields_of
-from equipoise.web.openings import opened_example
+from equipoise.web.gallery import opened_example
 from equipoise.web.remaking import renamed, without_link
 from equipoise.web.session import Session
 from unit.web.pages import edit, opened

@@ -7,8 +7,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.i18n import said, speaking
-from equipoise.web.gallery import SAMPLES
-from equipoise.web.openings import titles
+from equipoise.web.gallery import SAMPLES, titles
 from equipoise.web.session import Session
 from unit.web.pages import State, ask
 

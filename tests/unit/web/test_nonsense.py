@@ -9,8 +9,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from equipoise.errors import UsageError
+from equipoise.web.gallery import opened_example
 from equipoise.web.messages import KINDS, read
-from equipoise.web.openings import opened_example
 from equipoise.web.page import packed
 from equipoise.web.session import Session
 

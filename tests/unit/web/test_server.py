@@ -25,17 +25,26 @@ from websockets.sync.client import ClientConnection, connect
 from equipoise.balancing.balanced import Balanced
 from equipoise.errors import UsageError
 from equipoise.web import balanced as balanced_module
-from equipoise.web import incoming as incoming_module
 from equipoise.web import page as page_module
+from equipoise.web import server as incoming_module
 from equipoise.web import server as served_module
 from equipoise.web import session as session_module
 from equipoise.web.balanced import balanced
 from equipoise.web.design import Design
-from equipoise.web.incoming import LONGEST, Incoming
+from equipoise.web.gallery import opened_example
 from equipoise.web.lanes import MOMENT, EndedError, Lanes, PageWork, print_no_endings
-from equipoise.web.openings import opened_example
 from equipoise.web.page import MOST_WAITING
-from equipoise.web.server import FULL, HOST, MOST_PAGES, ORIGIN, POLICY, TOKEN, served
+from equipoise.web.server import (
+    FULL,
+    HOST,
+    LONGEST,
+    MOST_PAGES,
+    ORIGIN,
+    POLICY,
+    TOKEN,
+    Incoming,
+    served,
+)
 from equipoise.web.session import Session
 from unit.web.pages import Content, unpacked
 

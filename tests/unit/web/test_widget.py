@@ -9,7 +9,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import UsageError
-from equipoise.web import assets, notebook
+from equipoise.web import documents, notebook
 
 BUILT = {"equipoise.js": b"export default {}", "equipoise.css": b".equipoise {}"}
 
@@ -37,7 +37,7 @@ def test_a_widget_answers_as_the_server_does(monkeypatch: pytest.MonkeyPatch) ->
 
 
 def test_what_is_missing_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(assets, "files", lambda _: __import__("pathlib").Path("nowhere"))
+    monkeypatch.setattr(documents, "files", lambda _: __import__("pathlib").Path("nowhere"))
     with pytest.raises(UsageError, match="run `make page`"):
         eq.view("yamashita-1")
     monkeypatch.setitem(sys.modules, "anywidget", None)

@@ -8,9 +8,9 @@ from collections.abc import Iterator
 import pytest
 
 from equipoise.i18n import LANGUAGES, catalogue
-from equipoise.results.own_words import OF_CYCLES
-from equipoise.web.openings import opened_example
-from equipoise.web.words import said_by_page
+from equipoise.results.result import OF_CYCLES
+from equipoise.web.documents import said_by_page
+from equipoise.web.gallery import opened_example
 from unit.web.pages import ask, opened, refusal, state
 
 

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from equipoise.balancing import program
-from equipoise.balancing.cone_solver import interior_point_solver
+from equipoise.balancing.program import interior_point_solver
 from equipoise.i18n import catalogue
 from equipoise.web import worker
 from equipoise.web.worker import Background, Foreground

@@ -12,7 +12,7 @@ import numpy as np
 
 from equipoise.dataclass import dataclass
 from equipoise.errors import ModelError, at_place
-from equipoise.exchange.reading import geoms
+from equipoise.exchange.reading import spatial
 from equipoise.exchange.reading.found import Read
 from equipoise.exchange.reading.markup import called, number, numbers
 from equipoise.exchange.reading.planar import planar
@@ -120,7 +120,7 @@ class _Model:
                 self._site(element, at)
             elif element.tag == "geom":
                 node = self._with_defaults(element, at.kind)
-                result = geoms.lumps(node, self._axes(node))
+                result = spatial.lumps(node, self._axes(node))
                 lumps += [None if own is None else own.placed(at.axes) for own in result]
         return lumps
 
@@ -222,7 +222,7 @@ class _Model:
             y = direction(where, tuple(y - (y @ x) * x))
             return np.column_stack([x, y, np.cross(x, y)])
         if element.get("zaxis"):
-            return geoms.toward(direction(where, numbers(element, "zaxis", count=(3,))))
+            return spatial.toward(direction(where, numbers(element, "zaxis", count=(3,))))
         return np.eye(3)
 
     def _of_class(self, element: Element, at: _Within) -> _Within:

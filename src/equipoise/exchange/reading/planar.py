@@ -1,18 +1,20 @@
-"""From bodies in space to a machine in the plane: the plane is found, everything else projected."""
+"""From bodies in space to a machine in the plane: its plane, its pins and its gears."""
 
 from __future__ import annotations
 
 from cmath import phase
+from collections import Counter
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
+from dataclasses import field, replace
+from itertools import chain, count, permutations
 from typing import Any
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
+from equipoise.decompositions import lstsq
 from equipoise.errors import ModelError, UsageError, at_place, unknown
 from equipoise.exchange.reading.found import Read
-from equipoise.exchange.reading.gearing import gears
-from equipoise.exchange.reading.pinning import Pinning
 from equipoise.exchange.reading.spatial import (
     WORLD,
     Array,
@@ -24,8 +26,183 @@ from equipoise.exchange.reading.spatial import (
     combined,
 )
 from equipoise.i18n import Note
-from equipoise.mechanism.kinematics.outline import LinkPlacement, MachineDraft
-from equipoise.mechanism.parts.machine import FRAME, Link, Slider, Spring
+from equipoise.mechanism.kinematics.outline import STILL, LinkPlacement, MachineDraft
+from equipoise.mechanism.parts.machine import FRAME, Gear, Link, Slider, Spring, Vector
+
+SAME = 1e-9
+"""Distance over the size of the machine below which two places are one."""
+
+
+@dataclass(eq=False)
+class Pinning:
+    """Points of the frame and of links, by number; links that have the same number are pinned.
+
+    poses : of every link.  wishes : names that a point should have, by its number.
+    """
+
+    poses: dict[str, LinkPlacement]
+    points: dict[str, dict[int, Vector]] = field(init=False)
+    wishes: dict[int, list[str]] = field(default_factory=dict)
+    size: float = 1e-9
+
+    def __post_init__(self) -> None:
+        self.points = {link: {} for link in (FRAME, *self.poses)}
+
+    def pose(self, link: str) -> LinkPlacement:
+        return STILL if link == FRAME else self.poses[link]
+
+    def at(self, link: str, place: complex) -> int | None:
+        """The point of a link at a place of the frame, m."""
+        tolerance, pose = SAME * self.size, self.pose(link)
+        result = (item for item, local in self.points[link].items()
+                 if abs(pose.out(local) - place) <= tolerance)  # fmt: skip
+        return next(result, None)
+
+    def put(self, link: str, place: complex, wish: str) -> int:
+        """One more point of a link."""
+        number = len(self.wishes)
+        local = self.pose(link).into(place)
+        self.points[link][number] = (local.real, local.imag)
+        self.wishes[number] = [wish]
+        self.size = max(self.size, abs(place))
+        return number
+
+    def held(self, link: str, place: complex, wish: str) -> int:
+        """The point of a link at a place, new where there is none."""
+        there = self.at(link, place)
+        return self.put(link, place, wish) if there is None else there
+
+    def pin(self, name: str, first: tuple[str, complex], other: tuple[str, complex]) -> None:
+        """Make one of a point of each of two links.
+
+        Raises
+        ------
+        ModelError : the links are pinned elsewhere already.
+        """
+        remaining, gone = (self.held(*end, name) for end in (first, other))
+        if remaining == gone:
+            return
+        if any({remaining, gone} <= points.keys() for points in self.points.values()):
+            links = f"{first[0]!r} and {other[0]!r}"
+            raise ModelError(
+                f"joint {name!r}",
+                Note(
+                    "{links} are pinned at another place already; a second pin leaves no motion",
+                    links=links,
+                ),
+            )
+        self.wishes[remaining] += self.wishes.pop(gone)
+        self.wishes[gone] = []
+        for points in self.points.values():
+            if gone in points:
+                points[remaining] = points.pop(gone)
+
+    def named(self) -> dict[int, str]:
+        """A name for every point, those of pins first; no two have the same."""
+        holders = Counter(chain.from_iterable(self.points.values()))
+        taken: dict[str, int] = {}
+        for number, _ in sorted(holders.items(), key=lambda item: (-item[1], item[0])):
+            taken[next(name for name in self._names(number) if name not in taken)] = number
+        return {number: name for name, number in taken.items()}
+
+    def _names(self, number: int) -> Iterator[str]:
+        wishes = [item for item, _ in Counter(self.wishes[number]).most_common()]
+        yield from wishes
+        link = next(link for link, points in self.points.items() if number in points)
+        yield f"{link}-{wishes[0]}"
+        yield from (f"{wishes[0]} {n}" for n in count(2))
+
+
+EXACT = 1e-9
+"""Share of a factor by which another may differ from it: rounding."""
+Chains = Mapping[str, frozenset[str]]
+
+
+def gears(
+    space: Space, link_of: Mapping[str, str], normal: Array, outline: MachineDraft, crank: str
+) -> Iterator[Gear]:
+    """Pairs of gears that hold the sums of a system.
+
+    link_of : the link of each body.  normal : of the plane, (3,).  crank : the driven link.
+
+    Raises
+    ------
+    ModelError : there is none on a common carrier that does.
+    """
+    chains = {body: frozenset(_chain(space, link_of, body)) for body in outline.bodies}
+    around = _around(outline)
+    moved = {crank, FRAME}
+    for name, factors in space.sums:
+        wanted = {joint: factor * float(np.sign(space.joints[joint].axis @ normal))
+                  for joint, factor in factors.items()}  # fmt: skip
+        able = [item for item in _fitting(around, chains, wanted) if item.driven not in moved]
+        if not able:
+            raise ModelError(
+                name,
+                Note(
+                    "it ties joints together otherwise than a pair of gears on a common "
+                    "carrier does; leave it out"
+                ),
+            )
+        gear = min(able, key=lambda gear: (gear.driver not in moved, _joints(outline, gear.driven)))
+        moved.add(gear.driven)
+        yield gear
+
+
+def _joints(outline: MachineDraft, link: str) -> int:
+    """At how many points a link is pinned; what is driven by gears alone has one."""
+    return sum(link in bodies for bodies in outline.joints.pins.values())
+
+
+def _chain(space: Space, link_of: Mapping[str, str], body: str) -> Iterator[str]:
+    """Hinges whose angles add up to that of a link."""
+    holding = {link_of[joint.child]: joint for joint in space.joints.values()}
+    while body != FRAME and (joint := holding.pop(body, None)) is not None:
+        if joint.kind == "hinge":
+            yield joint.name
+        body = link_of[joint.parent]
+
+
+def _around(outline: MachineDraft) -> dict[str, list[str]]:
+    """Of every body those that share one pin with it, about which they can turn on it."""
+    bodies = outline.bodies
+    return {body: [other for other in bodies if other != body
+                   and len(bodies[body].keys() & bodies[other].keys()) == 1]
+            for body in bodies}  # fmt: skip
+
+
+def _fitting(
+    around: Mapping[str, list[str]], chains: Chains, wanted: Mapping[str, float]
+) -> Iterator[Gear]:
+    """Pairs of gears that hold such a sum."""
+    for carrier, bodies in around.items():
+        for driven, driver in permutations(bodies, 2):
+            three = [chains[body] for body in (driven, driver, carrier)]
+            if frozenset().union(*three) - frozenset.intersection(*three) != wanted.keys():
+                continue
+            ratio = _ratio(wanted, *three)
+            if driven != FRAME and ratio not in (None, 0.0, 1.0):
+                yield Gear(driver, driven, ratio=ratio, carrier=carrier)
+
+
+def _ratio(
+    wanted: Mapping[str, float],
+    driven: frozenset[str],
+    driver: frozenset[str],
+    carrier: frozenset[str],
+) -> float | None:
+    """The ratio r of which driven - r driver + (r - 1) carrier is a multiple of a sum, if any."""
+    joints = [*(driven | driver | carrier | wanted.keys())]
+    values = np.array([[joint in chain for joint in joints] for chain in (driven, driver, carrier)])
+    own, geared, carried = values.astype(float)
+    sides = np.column_stack([own - carried, carried - geared])
+    right = np.array([wanted.get(joint, 0.0) for joint in joints])
+    (scale, scaled), _, rank, _ = lstsq(sides, right)
+    left = np.abs(sides @ (scale, scaled) - right).max()
+    if rank < 2 or left > EXACT * np.abs(right).max() or abs(scale) < EXACT:
+        return None
+    return float(scaled / scale)
+
 
 SKEW = 1e-6
 """Of the sine of an angle between axes that are to be parallel: files have six digits at least."""

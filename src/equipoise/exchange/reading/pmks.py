@@ -14,8 +14,7 @@ from urllib.parse import unquote
 
 from equipoise.dataclass import dataclass
 from equipoise.errors import ModelError
-from equipoise.exchange.reading.found import Read
-from equipoise.exchange.reading.joined import SlotLine, free, outline_of
+from equipoise.exchange.reading.found import Read, SlotLine, free, outline_of
 from equipoise.i18n import Note
 from equipoise.mechanism.parts.machine import FRAME
 

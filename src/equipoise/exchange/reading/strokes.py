@@ -11,8 +11,7 @@ from string import ascii_uppercase
 
 from equipoise.dataclass import dataclass
 from equipoise.errors import ModelError, at_place, unknown
-from equipoise.exchange.reading.found import Read
-from equipoise.exchange.reading.joined import SlotLine, free, outline_of
+from equipoise.exchange.reading.found import Read, SlotLine, free, outline_of
 from equipoise.i18n import Note
 from equipoise.mechanism.parts.machine import FRAME
 

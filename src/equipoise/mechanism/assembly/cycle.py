@@ -18,7 +18,7 @@ from equipoise.dataclass import dataclass
 from equipoise.errors import ChangePointError, MotionError
 from equipoise.i18n import Note, all_of
 from equipoise.mechanism.assembly.builder import Group
-from equipoise.mechanism.assembly.full_turn import WITHOUT_CURE, FullTurn, bifurcation
+from equipoise.mechanism.assembly.reach import WITHOUT_CURE, FullTurn, bifurcation
 from equipoise.mechanism.assembly.steps import Array, State, initial_state, run, running_angle
 from equipoise.mechanism.parts.machine import FRAME, Machine
 

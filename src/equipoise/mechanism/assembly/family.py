@@ -1,4 +1,4 @@
-"""Machines of the same build side by side: designs whose numbers are columns, one row a design.
+"""Machines of the same build side by side, and designs that no machine can have.
 
 Their steps differ in nothing but parameters.  With the parameters stacked, one run of the steps
 solves all machines at all their crank angles.
@@ -14,6 +14,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from contextlib import suppress
 from dataclasses import replace
 from functools import partial
+from itertools import combinations
 from typing import Any, TypeVar
 
 import numpy as np
@@ -30,7 +31,8 @@ from equipoise.keys import (
     with_fields,
 )
 from equipoise.keys.paths import KeyPath
-from equipoise.mechanism.assembly.joints import Structure, all_sliders
+from equipoise.mechanism.assembly.cam_fits import can_be_made, fits_of
+from equipoise.mechanism.assembly.joints import Structure, all_sliders, coupling_pins
 from equipoise.mechanism.assembly.linkage import Linkage, ordered
 from equipoise.mechanism.assembly.steps import (
     Array,
@@ -40,16 +42,18 @@ from equipoise.mechanism.assembly.steps import (
     State,
     Step,
     p,
+    planar,
     run,
     u,
 )
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.formulas.rolling import stacked
-from equipoise.mechanism.parts.bodies import Body
-from equipoise.mechanism.parts.body_checks import outlined_by_columns
-from equipoise.mechanism.parts.couplings import coupling_kinds
+from equipoise.mechanism.parts.bodies import Body, outlined_by_columns
+from equipoise.mechanism.parts.couplings import Coupling, coupling_kinds
 from equipoise.mechanism.parts.element_kinds import element_kinds
+from equipoise.mechanism.parts.links import demands_across
 from equipoise.mechanism.parts.machine import FRAME, Machine, Vector
+from equipoise.quantities.units import HUGE, TINY
 
 Triple = tuple[Array, Array, Array]
 
@@ -362,3 +366,47 @@ def massive_link(path: str) -> str | None:
             case ("links", str(link), "center_of_mass" | "bodies", *_):
                 return link
     return None
+
+
+def invalid_designs(machine: Machine, base: Linkage, columns: Columns) -> Array:
+    """Which of the designs (P,) no machine can have."""
+    count = max((len(column) for column in columns.values()), default=1)
+    values = np.zeros((count, 1), dtype=bool)
+    with np.errstate(all="ignore"):
+        for column in columns.values():
+            size = np.abs(column)
+            values |= ~((size <= HUGE) & ((size >= TINY) | (size == 0)))
+        for right in _demands(machine, base):
+            values |= np.logical_not(right)
+    return values[:, 0]
+
+
+def _demands(machine: Machine, base: Linkage) -> Iterator[Any]:
+    """What has to be true of the numbers of a machine: flags, or columns of them."""
+    for body in (FRAME, *machine.links):
+        points = machine.bodies[body]
+        places = [planar(points[point]) for point in points if point in base.joints.pins]
+        yield from (place != other for place, other in combinations(places, 2))
+    for link in machine.links.values():
+        if link.mass is not None and link.inertia is not None:
+            yield (link.mass >= 0) & (link.inertia >= 0)
+            yield (link.mass > 0) | (np.asarray(link.inertia) == 0)
+        yield from link.demands()
+    for coupling in machine.couplings:
+        yield from coupling.demands(partial(_distance, machine, base, coupling))
+    fits = fits_of(machine, joints_of(machine, base)) if _has_surfaces(machine) else ()
+    yield from (can_be_made(fit) for fit in fits if np.ndim(fit.rest))
+    yield from demands_across(machine)
+    for *_, element in machine.elements:
+        yield from element.demands()
+
+
+def _has_surfaces(machine: Machine) -> bool:
+    return any(coupling.contact == "surface" for coupling in machine.couplings)
+
+
+def _distance(machine: Machine, base: Linkage, coupling: Coupling) -> Any:
+    """Of the pins of driver and driven body."""
+    points = machine.points_of(coupling.carrier)
+    driver, driven = (planar(points[pin]) for pin in coupling_pins(base.joints, coupling))
+    return abs(driven - driver)

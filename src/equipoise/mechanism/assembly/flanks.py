@@ -29,7 +29,7 @@ from equipoise.mechanism.assembly.steps import (
     run,
     u,
 )
-from equipoise.mechanism.formulas import joint_kernels, kernels
+from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.parts.couplings import (
     Coupling,
     Law,
@@ -125,23 +125,21 @@ class Flank:
         """
         line, name, turn = self.line, self.coupling.name, f"u({self.coupling.carrier})"
         sense, (force, moment) = f"flank({name})", demand_names(self.driven.body)
-        asked = KernelCall(joint_kernels.flank, (moment,), (), (sense,))
+        asked = KernelCall(kernels.flank, (moment,), (), (sense,))
         inputs: tuple[str, ...] = (force, moment, turn, sense)
         outputs = (*ground.outputs, *self.push.outputs, f"T({name})")
         numbers: tuple[Any, ...]
         if isinstance(line, StrandLine):
             numbers = (line.radius, line.across, line.along)
-            return asked, KernelCall(joint_kernels.strand_forces, inputs, numbers, outputs)
+            return asked, KernelCall(kernels.strand_forces, inputs, numbers, outputs)
         pitch = f"p({self.push.at})"
         if isinstance(line, RollingLine):
             place = lever, _ = f"lever({name})", f"slope({name})"
             angles = (f"phi({self.driver.body})", f"phi({self.coupling.carrier})")
-            kernel = joint_kernels.rolling_forces
+            kernel = kernels.rolling_forces
             return (
                 KernelCall(rolled, angles, (line.law, line.centres), place),
-                KernelCall(
-                    joint_kernels.pitch_place, (f"p({self.pin})", turn, lever), (), (pitch,)
-                ),
+                KernelCall(kernels.pitch_place, (f"p({self.pin})", turn, lever), (), (pitch,)),
                 asked,
                 KernelCall(kernel, (*inputs, *place), (line.radial,), outputs),
             )
@@ -149,13 +147,13 @@ class Flank:
                   p(self.push.at))  # fmt: skip
         if self.driven.guide is None:
             numbers = (line.lever, line.slope)
-            return at, asked, KernelCall(joint_kernels.flank_forces, inputs, numbers, outputs)
+            return at, asked, KernelCall(kernels.flank_forces, inputs, numbers, outputs)
         along = self.driven.guide.along
         inputs = (force, moment, f"p({self.driven.point})", pitch, turn, sense)
         return (
             at,
-            KernelCall(joint_kernels.flank_ahead, (force, turn), (along,), (sense,)),
-            KernelCall(joint_kernels.sliding_forces, inputs, (along, line.slope), outputs),
+            KernelCall(kernels.flank_ahead, (force, turn), (along,), (sense,)),
+            KernelCall(kernels.sliding_forces, inputs, (along, line.slope), outputs),
         )
 
     def group(self, builder: Builder, joints: Structure) -> Group:
@@ -207,7 +205,7 @@ class Flank:
             return [(turn * (line.across + sense * line.along), line.radius)]
         lever, bend = self._placed(poses)
         if isinstance(line, RollingLine):
-            slope = -joint_kernels.slant(sense, line.radial, bend)
+            slope = -kernels.slant(sense, line.radial, bend)
         else:
             slope = line.slope * sense
         guide = self.driven.guide

@@ -15,7 +15,7 @@ import numpy as np
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note
-from equipoise.mechanism.assembly import parallels
+from equipoise.mechanism.assembly import sides
 from equipoise.mechanism.assembly.builder import (
     Builder,
     Group,
@@ -35,7 +35,7 @@ from equipoise.mechanism.assembly.steps import (
     u,
 )
 from equipoise.mechanism.checks import MODES
-from equipoise.mechanism.formulas import joint_kernels, kernels
+from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.parts.machine import Slider
 
 AHEAD = ("forward", "backward")
@@ -94,19 +94,19 @@ def _dyad(
 def rrr(builder: Builder, first: Outer, second: Outer, pin: str) -> Group:
     """Two links and three pins."""
     link, other = first.link, second.link
-    if closed := parallels.parallel_by(builder, first, second, pin):
+    if closed := sides.parallel_by(builder, first, second, pin):
         return _through(builder, first, second, pin, closed)
     meaning = f"{pin} lies left or right of the line from {first.point} to {second.point}"
     side = builder.side(pin, ("left", "right"), meaning)
     arms = (builder.arm(link, first.point, pin), builder.arm(other, second.point, pin))
     places = (f"p({first.point})", f"p({second.point})", f"p({pin})")
-    closed = parallels.closed_by(builder, first, second, pin)
+    closed = sides.closed_by(builder, first, second, pin)
     group = _dyad(
         builder,
         (first, second),
         (first.reaction(), second.reaction(), pin_reaction(pin, other, link)),
         (kernels.rrr, (*arms, side)),
-        (joint_kernels.rrr_forces, places, ()),
+        (kernels.rrr_forces, places, ()),
         at=pin,
         dead=Note("{link!r} and {other!r} lie in line", link=link, other=other),
     )
@@ -114,7 +114,7 @@ def rrr(builder: Builder, first: Outer, second: Outer, pin: str) -> Group:
 
 
 def _through(
-    builder: Builder, first: Outer, second: Outer, pin: str, closed: parallels.Closed
+    builder: Builder, first: Outer, second: Outer, pin: str, closed: sides.Closed
 ) -> Group:
     """Two links and three pins that close a four-bar of equal opposite sides."""
     link, other, pivot = first.link, second.link, closed.pivot
@@ -128,7 +128,7 @@ def _through(
         (first, second),
         (first.reaction(), second.reaction(), pin_reaction(pin, other, link)),
         (kernels.parallelogram, (*arms, side)),
-        (joint_kernels.rrr_forces, places, ()),
+        (kernels.rrr_forces, places, ()),
         at=pin,
         extra=(*p(pivot), *u(closed.here)[1:], *u(closed.there)[1:]),
     )
@@ -148,7 +148,7 @@ def rrp(builder: Builder, pinned: Outer, sliding: Outer, pin: str) -> Group:
         (pinned, sliding),
         (pinned.reaction(), sliding.reaction(pin), pin_reaction(pin, other, link)),
         (kernels.rrp, (arm, guide.along, shift, guide.turn, side)),
-        (joint_kernels.rrp_forces, places, (guide.along,)),
+        (kernels.rrp_forces, places, (guide.along,)),
         at=pin,
         dead=Note("{link!r} stands square to the line of {guide!r}", link=link, guide=guide.name),
     )
@@ -170,7 +170,7 @@ def rpr(builder: Builder, block: Outer, other: Outer, slider: Slider) -> Group:
         (block, other),
         (block.reaction(), other.reaction(), guide_reaction(guide, link, on, block.point)),
         (kernels.rpr, (offset, guide.turn, back, (NEAR_PIVOT * builder.size()) ** 2, side)),
-        (joint_kernels.rpr_forces, places, (guide.turn.conjugate(),)),
+        (kernels.rpr_forces, places, (guide.turn.conjugate(),)),
         point=short,
         dead=Note(
             "{point} comes to {other}, or square to it across {slider!r}",
@@ -194,7 +194,7 @@ def prp(builder: Builder, first: Outer, second: Outer, pin: str) -> Group:
         (first, second),
         (first.reaction(pin), second.reaction(pin), pin_reaction(pin, second.link, first.link)),
         (kernels.prp, tuple(shapes)),
-        (joint_kernels.prp_forces, turns, (rail.along, far.along)),
+        (kernels.prp_forces, turns, (rail.along, far.along)),
         at=pin,
         dead=Note("the lines of {near!r} and {far!r} are parallel", near=rail.name, far=far.name),
     )
@@ -229,7 +229,7 @@ def rpp(builder: Builder, pinned: Outer, sliding: Outer, slider: Slider) -> Grou
         (pinned, sliding),
         (pinned.reaction(), sliding.reaction(guide.point), on_inner),
         (kernels.rpp, (guide.along, guide.turn, line, turn, shift)),
-        (joint_kernels.rpp_forces, places, (guide.along, line)),
+        (kernels.rpp_forces, places, (guide.along, line)),
         at=guide.point,
         point=short,
     )

@@ -30,12 +30,19 @@ from equipoise.mechanism.assembly import sides
 from equipoise.mechanism.assembly.builder import Builder, Group
 from equipoise.mechanism.assembly.cycle import Cycle, close
 from equipoise.mechanism.assembly.groups import hung
-from equipoise.mechanism.assembly.joints import Structure, drive_pivot, name_in_outputs, structure
-from equipoise.mechanism.assembly.named_joints import given_properties, pin_radii
-from equipoise.mechanism.assembly.newton import BranchError
+from equipoise.mechanism.assembly.joints import (
+    Structure,
+    drive_pivot,
+    given_properties,
+    name_in_outputs,
+    pin_radii,
+    structure,
+)
+from equipoise.mechanism.assembly.loops import BranchError
 from equipoise.mechanism.assembly.ordering import has_two_known_pins, next_group
-from equipoise.mechanism.assembly.parallels import surplus_cranks
+from equipoise.mechanism.assembly.reach import with_cures
 from equipoise.mechanism.assembly.shared import RedundantReactions, shared
+from equipoise.mechanism.assembly.sides import surplus_cranks
 from equipoise.mechanism.assembly.steps import (
     Reaction,
     State,
@@ -46,7 +53,6 @@ from equipoise.mechanism.assembly.steps import (
     run,
     tells_flanks,
 )
-from equipoise.mechanism.assembly.stuck import with_cures
 from equipoise.mechanism.checks import MODE, MODES, meant
 from equipoise.mechanism.parts.machine import FRAME, LINKAGE, Machine
 

@@ -22,6 +22,7 @@ from equipoise.mechanism.assembly.loops import (
     Free,
     Hinge,
     Loop,
+    LoopGroup,
     PinLoop,
     Place,
     Poses,
@@ -29,8 +30,8 @@ from equipoise.mechanism.assembly.loops import (
     Riding,
     SlideLoop,
     TrackLoop,
+    poses_in,
 )
-from equipoise.mechanism.assembly.newton import LoopGroup, poses_in
 from equipoise.mechanism.assembly.steps import (
     Array,
     Reaction,
@@ -40,7 +41,7 @@ from equipoise.mechanism.assembly.steps import (
     pin_reaction,
     run,
 )
-from equipoise.mechanism.formulas import joint_kernels, kernels
+from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.parts.couplings import Coupling
 from equipoise.mechanism.parts.joint_kinds import Rider
 from equipoise.mechanism.parts.machine import FRAME, Position, Slider
@@ -87,7 +88,7 @@ class LoopForces:
             strengths = self.solve(state, poses, [0.0] * len(self.loops))
             for name, parts in zip(names, strengths, strict=True):
                 if name:
-                    (state[name],) = joint_kernels.flank(parts[0])
+                    (state[name],) = kernels.flank(parts[0])
         return [state[name] if name else 0.0 for name in names]
 
     def solve(self, state: State, poses: Poses, senses: Sequence[Any]) -> list[list[Array]]:

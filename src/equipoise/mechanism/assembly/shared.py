@@ -28,11 +28,14 @@ from equipoise.decompositions import singular_values, svd
 from equipoise.errors import MobilityError, ModelError
 from equipoise.i18n import Note, all_of, to_say
 from equipoise.mechanism.assembly.builder import Builder, Group
-from equipoise.mechanism.assembly.joints import Structure, name_in_outputs, no_motion
+from equipoise.mechanism.assembly.joints import (
+    Structure,
+    given_properties,
+    name_in_outputs,
+    no_motion,
+)
 from equipoise.mechanism.assembly.loopgroup import LoopForces, Maker
-from equipoise.mechanism.assembly.loops import CouplingLoop, Loop, Poses
-from equipoise.mechanism.assembly.named_joints import given_properties
-from equipoise.mechanism.assembly.newton import LoopGroup, poses_in
+from equipoise.mechanism.assembly.loops import CouplingLoop, Loop, LoopGroup, Poses, poses_in
 from equipoise.mechanism.assembly.steps import Array, Reaction, State, planar, running_angle
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.parts.joint_properties import family_of

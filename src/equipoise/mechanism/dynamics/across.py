@@ -1,4 +1,13 @@
-"""What links beside each other do across the plane: rocking moment, couples in joints, bearings.
+"""Links beside each other: out-of-plane moments, planes of joints, couples in joints.
+
+With R the force and C the couple that a joint in the plane z exerts on a link, and Q the sum of
+z times the forces that the link needs, every link asks for sum(z R + C) = Q.  Forces are complex,
+x + i y, so that i times such a sum is the moment about x and y.
+
+A chain that closes has more couples than equations.  A pin in the frame is taken for as stiff as
+its bearings, which bear whatever its link needs; a link without one hands its couple on by its
+joints, in equal shares (least squares).  Where all that acts on such a link lies in one plane there
+is none to hand on, and nothing is open.
 
 A force in the plane z has the moment i z F about the axes x and y, complex as all planar vectors
 are.  Everything here is linear in the demands, as the forces in the plane are.
@@ -6,7 +15,7 @@ are.  Everything here is linear in the demands, as the forces in the plane are.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import field, replace
 from functools import cached_property
 from typing import Any
@@ -14,8 +23,10 @@ from typing import Any
 import numpy as np
 
 from equipoise.dataclass import dataclass
+from equipoise.decompositions import pinv
+from equipoise.i18n import Note, all_of
 from equipoise.mechanism.assembly.steps import p, u
-from equipoise.mechanism.checks import NamedItems
+from equipoise.mechanism.checks import FRAME, NamedItems
 from equipoise.mechanism.dynamics.acting import acting_elements, acting_preloads
 from equipoise.mechanism.dynamics.reactions import (
     PUSH,
@@ -25,12 +36,230 @@ from equipoise.mechanism.dynamics.reactions import (
     VectorSignal,
     full,
 )
-from equipoise.mechanism.dynamics.statics import Statics, statics
 from equipoise.mechanism.formulas import kernels
+from equipoise.mechanism.kinematics.cylinders import ends_of, pushes
 from equipoise.mechanism.kinematics.motion import Motion
-from equipoise.mechanism.kinematics.pushing import pushes
 from equipoise.mechanism.parts.joint_properties import JOINTS
-from equipoise.mechanism.parts.planes import moments_across
+from equipoise.mechanism.parts.links import Mechanism, masses_of, moments_across
+
+Array = np.ndarray[Any, Any]
+
+
+@dataclass(frozen=True)
+class BodyContact:
+    """Where the body `by` exerts a force on the body `on`: in which plane (m), and whether it can
+    exert a couple across it, as pins and sliders can.
+    """
+
+    name: str
+    on: str
+    by: str
+    plane: float
+    bears: bool
+
+    @property
+    def ends(self) -> tuple[str, str]:
+        """Both bodies."""
+        return self.on, self.by
+
+
+def contacts(linkage: Any) -> tuple[BodyContact, ...]:
+    """Every joint and push of a linkage, as `exerted_in` has them.
+
+    A joint lies in the plane of the link that no joint holds in the frame; one with the frame in
+    that of its link; one of two links that are alike midway between them.
+    """
+    machine, order = linkage.machine, linkage.joints.bodies.index
+    ends = {name: _ends(linkage, item) for name, item in linkage.named_reactions
+            if item.kind in JOINTS}  # fmt: skip
+    on_frame = {end for both in ends.values() for end in both if FRAME in both}
+    body_contacts = []
+    for name, entry in linkage.named_reactions:
+        if entry.kind not in JOINTS:
+            plane = machine.links[entry.on].plane
+            body_contacts.append(BodyContact(name, entry.on, entry.by, plane, False))
+            continue
+        by, on = sorted(ends[name], key=order)
+        points = {entry.on: entry.at, entry.by: entry.at}
+        if rider := linkage.joints.riders.get(entry.name):
+            points = {body: next(iter(own.values())) for body, own in rider.held.items()}
+            by, on = rider.on, rider.link
+        elif entry.kind == "slider":
+            slider = next(s for s in machine.sliders if s.name == entry.name)
+            points = {slider.link: slider.point, slider.on: slider.through}
+        body_contacts.append(
+            BodyContact(name, on, by, _plane_between(machine, points, on_frame), True)
+        )
+    return tuple(body_contacts)
+
+
+def pushing(linkage: Any) -> Iterator[BodyContact]:
+    """Every drive that pushes: along a sliding joint in the plane of that, and between two points
+    in the plane of a link's, midway between those of two links.
+    """
+    machine, planes = (
+        linkage.machine,
+        {contact.name: contact.plane for contact in contacts(linkage)},
+    )
+    for drive in machine.pushers:
+        by, on = ends_of(machine, drive)
+        if drive.slider:
+            plane = planes[drive.slider]
+        else:
+            points = zip((by, on), drive.between, strict=True)
+            own_planes = [
+                machine.links[body].plane_of(item) for body, item in points if body != FRAME
+            ]
+            plane = sum(own_planes) / len(own_planes)
+        yield BodyContact(PUSH.format(drive.link), on, by, plane, False)
+
+
+def _ends(linkage: Any, reaction: Any) -> tuple[str, str]:
+    rider = linkage.joints.riders.get(reaction.name)
+    return (reaction.on, reaction.by) if rider is None else (rider.link, rider.on)
+
+
+def _plane_between(machine: Mechanism, points: Mapping[str, str], on_frame: set[str]) -> float:
+    """Plane of a joint of two bodies, each with its point there."""
+    ends = [(body, machine.links[body], point) for body, point in points.items() if body != FRAME]
+    values = [link.planes[point] for _, link, point in ends if point in link.planes]
+    loose = [link.plane for body, link, _ in ends if body not in on_frame]
+    planes = values[:1] or (loose if len(loose) == 1 else [link.plane for _, link, _ in ends])
+    return sum(planes) / len(planes)
+
+
+@dataclass(frozen=True, eq=False)
+class Statics:
+    """Couples across the plane as sums of what the links need and of what the joints exert.
+
+    contacts : K of them, pushing drives last, of which J bear couples.
+    by_needed : (J, L) of sums Q of each link.
+    by_plane : (J, K) of each contact's plane times force.
+    """
+
+    machine: Any
+    contacts: tuple[BodyContact, ...]
+    by_needed: Array
+    by_plane: Array
+
+    @property
+    def links(self) -> tuple[str, ...]:
+        return tuple(self.machine.links)
+
+    @cached_property
+    def bearing(self) -> tuple[BodyContact, ...]:
+        """Those that bear couples."""
+        return tuple(contact for contact in self.contacts if contact.bears)
+
+    @cached_property
+    def open(self) -> tuple[str, ...]:
+        """Names of joints whose couples statics leaves open."""
+        on_frame = {end for item in self.bearing for end in item.ends if FRAME in item.ends}
+        free = [link for link in self.links if link not in on_frame]
+        return tuple(_open(self.machine, self.contacts, free))
+
+    def factors(self, number: int) -> tuple[dict[str, float], dict[str, float]]:
+        """Of the couple of one of `bearing`: those of what links need, and of planes of contacts
+        times their forces, by name.
+        """
+        needed = _used(self.by_needed[number], self.links)
+        return needed, _used(self.by_plane[number], [contact.name for contact in self.contacts])
+
+    def pin_of(self, link: str) -> tuple[int, BodyContact]:
+        """The joint by which a link turns in its bearings, and its number among `bearing`."""
+        return next(
+            (k, item) for k, item in enumerate(self.bearing) if (item.on, item.by) == (link, FRAME)
+        )
+
+    def couples(self, needed: Mapping[str, Array], exerted: Mapping[str, Array]) -> dict[str, Any]:
+        """Couple of each joint by name, as a sum of planes times forces, N m; of those that follow
+        from the forces that are told.
+        """
+        values, planes = {}, {contact.name: contact.plane for contact in self.contacts}
+        for number, item in enumerate(self.bearing):
+            by_needed, by_plane = self.factors(number)
+            levers = {k: factor * planes[k] for k, factor in by_plane.items() if planes[k]}
+            if not {item.name, *levers} <= exerted.keys():
+                continue
+            terms = [factor * needed[link] for link, factor in by_needed.items()]
+            terms += [lever * exerted[name] for name, lever in levers.items()]
+            values[item.name] = sum(terms, start=0.0)
+        return values
+
+    def told(self) -> Iterator[Note]:
+        """A sentence on what is open."""
+        if self.open:
+            yield Note(
+                "the tilting moments in {joints} are statically indeterminate, because forces on "
+                "a link act in several planes and no joint connects it to the frame: reported "
+                "are those of least squares; rocking moments do not depend on this choice",
+                joints=all_of([*self.open], commas=True),
+            )
+
+
+def _used(row: Array, names: Sequence[str]) -> dict[str, float]:
+    """Factors that are not rounding, by what they belong to."""
+    least = 1e-12 * max(float(np.max(np.abs(row), initial=0.0)), 1e-300)
+    return {name: float(f) for f, name in zip(row, names, strict=True) if abs(f) > least}
+
+
+def _signs(links: Sequence[str], joints: Sequence[BodyContact]) -> Array:
+    """(L, K): 1 where a joint acts on a link, -1 where the link is what acts."""
+    return np.array(
+        [[(joint.on == k) - (joint.by == k) for joint in joints] for k in links], dtype=float
+    )
+
+
+def statics(linkage: Any) -> Statics:
+    """How couples go from link to link in a linkage."""
+    machine, all_of = linkage.machine, (*contacts(linkage), *pushing(linkage))
+    links, bearing = tuple(machine.links), [item for item in all_of if item.bears]
+    signs = _signs(links, bearing)
+    fixed = np.array([FRAME in (item.on, item.by) for item in bearing])
+    is_so = np.any(signs[:, fixed] != 0, axis=1)
+    values = np.zeros((len(bearing), len(links)))
+    # first what links without a joint in the frame hand on, then what all others bear
+    values[np.ix_(~fixed, ~is_so)] = pinv(signs[np.ix_(~is_so, ~fixed)])
+    rest = np.eye(len(links)) - signs[:, ~fixed] @ values[~fixed]
+    values[fixed] = pinv(signs[np.ix_(is_so, fixed)]) @ rest[is_so]
+    return Statics(machine, all_of, values, -values @ _signs(links, all_of))
+
+
+def _open(machine: Any, joints: Sequence[BodyContact], free: Sequence[str]) -> Iterator[str]:
+    """Joints by which links hand couples on that could go another way as well."""
+    bearing = [joint for joint in joints if joint.bears]
+    for group in _chains(free, bearing):
+        own = [item for item in bearing if group & {item.on, item.by}]
+        if len(own) > len(group) and not all(_flat(machine, link, joints) for link in group):
+            yield from (item.name for item in own)
+
+
+def _chains(links: Iterable[str], joints: Sequence[BodyContact]) -> list[set[str]]:
+    """Links in sets that hang together by joints among themselves."""
+    groups = [{link} for link in links]
+    for joint in joints:
+        met = [group for group in groups if group & {joint.on, joint.by}]
+        if len(met) == 2:
+            met[0].update(met[1])
+            groups.remove(met[1])
+    return groups
+
+
+def _flat(machine: Any, link: str, joints: Sequence[BodyContact]) -> bool:
+    """Whether all that acts on a link lies in one plane."""
+    body = machine.links[link]
+    planes = {joint.plane for joint in joints if link in (joint.on, joint.by)}
+    planes |= {plane for mass, _, plane in masses_of(body) if mass}
+    planes |= {
+        body.plane_of(item.point) for item in machine.loads if item.link == link and item.point
+    }
+    ends = (end for *_, element in machine.force_elements for end in element.points)
+    planes |= {body.plane_of(point) for on, point in ends if on == link}
+    planting = machine.planting
+    if planting is not None and planting.soil is not None:
+        planes |= {body.plane_of(arm.tip) for arm in planting.every_arm if arm.tip in body.points}
+    return len(planes) <= 1
+
 
 Needed = Mapping[str, Any]
 """Link -> sum of planes times the forces that it needs, N m, complex (..., N)."""

@@ -11,11 +11,11 @@ from equipoise.i18n import Note
 from equipoise.mechanism.assembly.linkage import Linkage, assemble
 from equipoise.mechanism.assembly.steps import KernelCall, size_of_links
 from equipoise.mechanism.checks import bodies_at, numbered
+from equipoise.mechanism.dynamics.across import statics
 from equipoise.mechanism.dynamics.forces import assumed_masses, massless
-from equipoise.mechanism.dynamics.statics import statics
-from equipoise.mechanism.dynamics.undecided import undecided
+from equipoise.mechanism.dynamics.reactions import undecided
 from equipoise.mechanism.formulas import kernels
-from equipoise.mechanism.kinematics.crossing import crossings
+from equipoise.mechanism.kinematics.motion import crossings
 from equipoise.mechanism.parts.constraints import HOLDS
 from equipoise.mechanism.parts.machine import FRAME, Machine, size_of
 from equipoise.quantities import told

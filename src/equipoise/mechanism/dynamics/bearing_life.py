@@ -30,8 +30,8 @@ from equipoise.mechanism.assembly.steps import Array, Reaction
 from equipoise.mechanism.dynamics.forces import Forces
 from equipoise.mechanism.dynamics.forces import forces as forces_of
 from equipoise.mechanism.dynamics.pin_bearings import joint_properties, ring_speed
-from equipoise.mechanism.kinematics.stroke_figures import figure
-from equipoise.mechanism.parts.rolling_bearings import RollingBearing
+from equipoise.mechanism.kinematics.strokes import figure
+from equipoise.mechanism.parts.joint_properties import RollingBearing
 
 MILLION = 1e6
 LEAST, SCALE, SHAPE = 0.02, 4.439, 1.483

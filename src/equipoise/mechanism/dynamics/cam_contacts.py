@@ -17,7 +17,7 @@ from equipoise.mechanism.dynamics.forces import Forces
 from equipoise.mechanism.dynamics.forces import forces as forces_of
 from equipoise.mechanism.dynamics.reactions import reactions
 from equipoise.mechanism.kinematics.motion import MOST_ANGLES, Motion, move
-from equipoise.mechanism.kinematics.stroke_figures import figure
+from equipoise.mechanism.kinematics.strokes import figure
 from equipoise.mechanism.parts.cams import Cam
 from equipoise.signals import ROUNDING, highest_at
 

@@ -36,9 +36,9 @@ from equipoise.mechanism.dynamics.reactions import JointReactions, pushed, react
 from equipoise.mechanism.dynamics.shares import Shares
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.kinematics.motion import Motion, move
+from equipoise.mechanism.parts.links import moments_across
 from equipoise.mechanism.parts.machine import Link, Machine, Vector, unknown
 from equipoise.mechanism.parts.places import in_frame
-from equipoise.mechanism.parts.planes import moments_across
 
 QUANTITIES = ("mass", "moment_x", "moment_y", "inertia")
 """Inertial parameters of a link: kg, kg m, kg m, kg m2; moments and inertia about its origin."""

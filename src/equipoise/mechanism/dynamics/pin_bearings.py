@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from equipoise.dataclass import dataclass
-from equipoise.mechanism.assembly.named_joints import given_properties
+from equipoise.mechanism.assembly.joints import given_properties
 from equipoise.mechanism.assembly.steps import Array, Reaction
 from equipoise.mechanism.dynamics.reactions import JointForce
 from equipoise.mechanism.kinematics.motion import Motion

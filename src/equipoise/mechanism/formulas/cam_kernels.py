@@ -1,14 +1,19 @@
-"""The formulas of a cam and its follower, each written once, as in `mechanism.formulas.kernels`.
+"""Formulas of cams, of pieces of curves and of gears of varying ratio, each written once.
 
 `d` is the way from the cam's axis to what rides on the cam (a roller's centre, a knife's edge, or
 a point of a flat face), as seen from the cam's carrier, and d1, d2 its derivatives by the angle
 that the cam has turned against the carrier.  The common normal points from the cam to the
 follower.  Derived in ``docs/theory.md``.
+
+x is the angle of the driver and y that of the driven gear, both seen from the carrier.  Derived in
+``docs/theory.md``.
 """
 
-# mypy: disable-error-code="no-untyped-def, no-untyped-call"
+from __future__ import annotations
 
-from equipoise.mechanism.formulas.kernels import cross, dot, length, slid
+from equipoise.mechanism.formulas.kernels import cross, dot, inverse, length, slid
+
+# mypy: disable-error-code="no-untyped-def, no-untyped-call"
 
 
 def round_contact(d, d1, radius):
@@ -133,3 +138,101 @@ def swung_forces(force, moment, pivot, at, normal):
     push = moment / cross(at - pivot, normal)
     cam = push * normal
     return force - cam, cam, push
+
+
+# mypy: disable-error-code="no-untyped-def"
+
+
+def piece_value(t, c0, c1, c2, c3, c4, c5, c6, c7, amplitude, rate, cosine, sine):
+    """Value of a piece at the way t into it, and its two derivatives by t.
+
+    c0 to c7 : coefficients of t**0 to t**7.  cosine, sine : of the wave's angle at t.
+    """
+    value = ((((((c7 * t + c6) * t + c5) * t + c4) * t + c3) * t + c2) * t + c1) * t + c0
+    first = (((((7 * c7 * t + 6 * c6) * t + 5 * c5) * t + 4 * c4) * t + 3 * c3) * t + 2 * c2) * t
+    second = ((((42 * c7 * t + 30 * c6) * t + 20 * c5) * t + 12 * c4) * t + 6 * c3) * t + 2 * c2
+    wave = amplitude * rate
+    return (
+        value + amplitude * sine,
+        first + c1 + wave * cosine,
+        second - wave * rate * sine,
+    )
+
+
+def plane_piece(t, c0, c1, c2, c3, c4, c5):
+    """Place on a piece of a plane curve at the way t into it, and three derivatives by t.
+
+    c0 to c5 : vectors, coefficients of t**0 to t**5.
+    """
+    value = ((((c5 * t + c4) * t + c3) * t + c2) * t + c1) * t + c0
+    first = (((5 * c5 * t + 4 * c4) * t + 3 * c3) * t + 2 * c2) * t + c1
+    second = ((20 * c5 * t + 12 * c4) * t + 6 * c3) * t + 2 * c2
+    return value, first, second, (60 * c5 * t + 24 * c4) * t + 6 * c3
+
+
+def on_track(g, g1, g2, n, w, a, c, c1, c2, c3, s1, s2):
+    """A body whose anchor is on a curve and whose x axis goes along this.
+
+    g : the curve's origin.  n : rotation of its axes, which turn by w, a.
+    c to c3 : place in these axes and three derivatives by the parameter.  s1, s2 : of that.
+    Returns place, rotation, and speed along the curve.
+    """
+    steep = c1.real * c1.real + c1.imag * c1.imag
+    pace, over = steep**0.5, 1 / steep
+    bend = (c1.conjugate() * c2).imag * over  # of the tangent's angle by the parameter
+    bend_rate = ((c1.conjugate() * c3).imag - 2 * (c1.conjugate() * c2).real * bend) * over
+    slip = n * c1 * s1
+    place = n * c
+    return (
+        g + place,
+        g1 + 1j * w * place + slip,
+        g2 + (1j * a - w * w) * place + 2j * w * slip + n * (c2 * (s1 * s1) + c1 * s2),
+        n * c1 * (1 / pace),
+        w + bend * s1,
+        a + bend * s2 + bend_rate * (s1 * s1),
+        pace * s1,
+    )
+
+
+# mypy: disable-error-code="no-untyped-def, no-untyped-call"
+
+
+def back(turn):
+    """A rotation the other way."""
+    return turn.conjugate()
+
+
+def half_angle(turned, mean, share, depth, lobes):
+    """A law by half angles, at ``turned`` = exp(i lobes x).
+
+    Returns 1 + depth turned, whose angle adds 2 share / lobes of itself to mean x; the rotation by
+    twice that angle; the derivatives of y by x.
+    """
+    swung = depth * turned
+    whole = 1 + swung
+    over = inverse(whole)
+    part = swung * over
+    twice = whole * over.conjugate()
+    return whole, twice, mean + 2 * share * part.real, -2 * lobes * share * (part * over).imag
+
+
+def unit(whole):
+    """The vector of length 1 along another."""
+    return (whole * (1 / length(whole)),)
+
+
+def series_term(y, first, second, wave, cosine, sine, order):
+    """A sum, what it is the integral of and the derivative of that, with one more term.
+
+    wave : exp(i order x); the term is cosine times its real part and sine times its imaginary part.
+    """
+    share = (cosine - 1j * sine) * wave
+    return y + share.imag / order, first + share.real, second - order * share.imag
+
+
+def followed(first, second, w_r, a_r, w_c, a_c):
+    """Derivatives by crank angle of a body's angle that is a function of that of the driver r, both
+    seen from the carrier c; first, second : derivatives of the function.
+    """
+    slip = w_r - w_c
+    return w_c + first * slip, a_c + first * (a_r - a_c) + second * slip * slip

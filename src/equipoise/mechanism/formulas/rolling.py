@@ -1,4 +1,4 @@
-"""Gears whose ratio varies: how far the driven one turns for the driver, both against the carrier.
+"""Gears whose ratio varies, and the straight strands of a belt.
 
 A law takes the driver's angle x, counted on through the turns, and returns the driven gear's
 angle y with its first and second derivative by x.  The first is the ratio i; the pitch point
@@ -11,6 +11,10 @@ and above 1 of a ring that drives the gear in it.
 Numbers of a law may be columns (P, 1), one for each of P designs; it then takes angles (P, K).
 
 Formulas: ``docs/theory.md``.
+
+Complex vectors in the carrier's axes, m, from the driver's pin.  The left strand leaves the driver
+on the left of the way to the driven pulley, the right one on its right.  Every number may be a
+column.
 """
 
 from __future__ import annotations
@@ -19,11 +23,12 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import fields, is_dataclass, replace
 from itertools import zip_longest
 from math import pi
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
 from equipoise.dataclass import dataclass
+from equipoise.mechanism.formulas.cam_kernels import half_angle, series_term
 from equipoise.mechanism.formulas.curves import (
     MOST_POWERS,
     Array,
@@ -32,7 +37,6 @@ from equipoise.mechanism.formulas.curves import (
     direction,
     spline,
 )
-from equipoise.mechanism.formulas.rolling_kernels import half_angle, series_term
 
 Levels = tuple[Array, Array, Array]
 """Value, first and second derivative."""
@@ -292,3 +296,78 @@ def stacked(values: Sequence[Any]) -> Any:
     if isinstance(first, float):
         return np.array(values)[:, None]
     raise ValueError(values)
+
+
+Side = Literal[1, -1]
+LEFT: Side = 1
+RIGHT: Side = -1
+
+
+@dataclass(frozen=True)
+class Strands:
+    """A belt about two pulleys.
+
+    apart : from the driver's pin to the driven pulley's.
+    radius : of the driver.  other : of the driven pulley, below 0 where the belt is crossed.
+    """
+
+    apart: Any
+    radius: Any
+    other: Any
+
+    @property
+    def distance(self) -> Any:
+        """Of the pins, m."""
+        return abs(self.apart)
+
+    @property
+    def sine(self) -> Any:
+        """Of the angle between a strand and the line of the pins."""
+        return (self.radius - self.other) / self.distance
+
+    @property
+    def cosine(self) -> Any:
+        return np.sqrt(1 - self.sine * self.sine)
+
+    @property
+    def length(self) -> Any:
+        """Of a strand, m; both are as long."""
+        return self.distance * self.cosine
+
+    def way(self, side: Side) -> Any:
+        """Unit vector along a strand, from the driver to the driven pulley."""
+        return self.apart * (self.cosine - 1j * side * self.sine) / self.distance
+
+    @property
+    def toward(self) -> Any:
+        """Sum of the unit vectors along both, which points from pin to pin."""
+        return self.apart * (2 * self.cosine / self.distance)
+
+    def ends(self, side: Side) -> tuple[Any, Any]:
+        """Where a strand leaves the driver, and where it comes to the driven pulley."""
+        out = 1j * side * self.way(side)
+        return self.radius * out, self.apart + self.other * out
+
+    def run_through(self, place: Any, share: float) -> bool:
+        """Whether a strand comes to a place, from the driver's pin (complex, m), as near as this
+        share of the distance of the pins.
+        """
+        for side in (LEFT, RIGHT):
+            start, _ = self.ends(side)
+            way = (place - start) * np.conj(self.way(side))
+            inside = (way.real >= 0) & (way.real <= self.length)
+            if np.all(inside & (abs(way.imag) <= share * self.distance)):
+                return True
+        return False
+
+    @property
+    def wraps(self) -> tuple[Any, Any]:
+        """Angles over which the belt lies on driver and driven pulley, rad."""
+        lean = 2 * np.arcsin(self.sine)
+        return pi + lean, pi - lean * np.sign(self.other)
+
+    @property
+    def belt_length(self) -> Any:
+        """Of the whole belt, m."""
+        first, second = self.wraps
+        return 2 * self.length + self.radius * first + abs(self.other) * second

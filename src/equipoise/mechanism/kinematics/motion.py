@@ -1,10 +1,8 @@
-"""How a linkage moves: rotations and points with their derivatives by crank angle (kinematic
-coefficients), and what they are in time.
-"""
+"""How a linkage moves: rotations and points with their derivatives by crank angle, and by time."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property, lru_cache
 from math import degrees, pi
@@ -15,23 +13,132 @@ import numpy as np
 
 from equipoise import signals
 from equipoise.dataclass import dataclass
-from equipoise.displays import Displayed
+from equipoise.displays import Brief, Displayed
 from equipoise.errors import ChangePointError, ModelError, RangeError, UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism.assembly.builder import Group
 from equipoise.mechanism.assembly.cam_fits import CamFit, fits_of, pressure_angle
+from equipoise.mechanism.assembly.joints import coupling_pins, place_in_file
 from equipoise.mechanism.assembly.linkage import Linkage, assemble
 from equipoise.mechanism.assembly.steps import Array, State, along, p, plain_angle, running_angle, u
 from equipoise.mechanism.checks import NamedItems, Vector, bodies_at
 from equipoise.mechanism.formulas import kernels
-from equipoise.mechanism.formulas.plane_curves import PlaneCurve
-from equipoise.mechanism.kinematics.rates import LinkMotion, PointMotion, SliderMotion
+from equipoise.mechanism.formulas.curves import PlaneCurve
+from equipoise.mechanism.formulas.kernels import cross
+from equipoise.mechanism.formulas.rolling import LEFT, RIGHT
 from equipoise.mechanism.kinematics.swinging import middle_angle, solve_swinging
+from equipoise.mechanism.parts.belts import Belt
 from equipoise.mechanism.parts.element_kinds import Element
 from equipoise.mechanism.parts.joint_kinds import joint_kinds
 from equipoise.mechanism.parts.machine import FRAME, Drive, FurtherDrive, Machine, Slider
 from equipoise.quantities import HUGE, Dimension, in_si
 from equipoise.signals import Figures, JumpSampling, Periodic, first_below
+
+
+def in_time(first: Array, second: Array, speed: float, acceleration: float) -> Array:
+    """Second derivative by time, from the derivatives by crank angle."""
+    steady = second * speed**2
+    return steady + first * acceleration if acceleration else steady
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class LinkMotion(Brief):
+    """Motion of one link; every array (N,).
+
+    angle : rad, counted on through the turns.
+    angle_1, angle_2 : first and second derivative by crank angle (kinematic coefficients).
+    """
+
+    angle: Array
+    angle_1: Array
+    angle_2: Array
+    speed: float
+    acceleration: float
+
+    @property
+    def angular_velocity(self) -> Array:
+        """rad/s."""
+        return self.angle_1 * self.speed
+
+    @property
+    def angular_acceleration(self) -> Array:
+        """rad/s2."""
+        return in_time(self.angle_1, self.angle_2, self.speed, self.acceleration)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class PointMotion(Brief):
+    """Motion of one point; complex arrays (N,), x + i y.
+
+    place : m.  place_1, place_2 : first and second derivative by crank angle, m.  The parts x and
+    y of place (m), velocity (m/s) and acceleration (m/s2) are real.
+    """
+
+    place: Array
+    place_1: Array
+    place_2: Array
+    speed: float
+    acceleration: float
+
+    @property
+    def x(self) -> Array:
+        return self.place.real
+
+    @property
+    def y(self) -> Array:
+        return self.place.imag
+
+    @property
+    def velocity(self) -> Array:
+        """m/s, complex."""
+        return self.place_1 * self.speed
+
+    @property
+    def acceleration_vector(self) -> Array:
+        """m/s2, complex."""
+        return in_time(self.place_1, self.place_2, self.speed, self.acceleration)
+
+    @property
+    def vx(self) -> Array:
+        return self.velocity.real
+
+    @property
+    def vy(self) -> Array:
+        return self.velocity.imag
+
+    @property
+    def ax(self) -> Array:
+        return self.acceleration_vector.real
+
+    @property
+    def ay(self) -> Array:
+        return self.acceleration_vector.imag
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class SliderMotion(Brief):
+    """Motion along the guide of a sliding joint; arrays (N,).
+
+    travel : m, of the slider's point from the guide's point along the guide's direction.
+    travel_1, travel_2 : first and second derivative by crank angle, m.
+    """
+
+    travel: Array
+    travel_1: Array
+    travel_2: Array
+    speed: float
+    acceleration: float
+
+    @property
+    def velocity(self) -> Array:
+        """m/s, as seen from the guide."""
+        return self.travel_1 * self.speed
+
+    @property
+    def along_acceleration(self) -> Array:
+        """m/s2, as seen from the guide."""
+        return in_time(self.travel_1, self.travel_2, self.speed, self.acceleration)
+
 
 MOST_ANGLES = 400_000
 """In one analysis; it takes about a kilobyte for each crank angle and link."""
@@ -592,3 +699,58 @@ def _rates(usual: Drive | Motion, *given: float | str | None) -> tuple[float, fl
             )
         rates.append(float(rate))
     return rates[0], rates[1]
+
+
+ANGLES = 72
+"""In a turn, at which it is looked."""
+
+
+def crossings(linkage: Linkage) -> Iterator[Note]:
+    """A sentence on each belt and link of its carrier that do not pass each other.
+
+    Links that turn about the pin of a pulley lie beside it anyway, and so do those in a plane of
+    their own.
+    """
+    machine, joints = linkage.machine, linkage.joints
+    if not machine.belts:
+        return
+    motion = move(machine, ANGLES)
+    for belt in machine.belts:
+        pulleys = [machine.links[item] for item in (belt.driver, belt.driven) if item != FRAME]
+        planes = {pulley.plane for pulley in pulleys}
+        for pin, bodies in joints.pins.items():
+            if belt.carrier not in bodies or pin in coupling_pins(joints, belt):
+                continue
+            for link in bodies:
+                if link in (belt.carrier, FRAME) or link in joints.riders:
+                    continue
+                if machine.links[link].plane not in planes:
+                    continue
+                at = motion.crank_angle[_across(motion, belt, pin, link)]
+                if at.size:
+                    yield Note(
+                        "{place}: a strand lies across {link!r} at crank angle {angle:.4g} deg; "
+                        "move {pin}, change the radii, or give {link!r} a plane of its own",
+                        place=place_in_file(joints, belt),
+                        link=link,
+                        angle=degrees(float(at[0])),
+                        pin=pin,
+                    )
+
+
+def _across(motion: Motion, belt: Belt, pin: str, link: str) -> Array:
+    """Whether a strand lies across the way from a link's pin to any other of its points (N,)."""
+    first, second = (
+        motion.point(coupling_pin).place
+        for coupling_pin in coupling_pins(motion.linkage.joints, belt)
+    )
+    strands = belt.strands(second - first)
+    root, values = motion.point(pin).place, np.zeros(motion.crank_angle.shape, bool)
+    for tip in motion.machine.links[link].points:
+        arm = motion.point(tip).place - root
+        for side in (LEFT, RIGHT):
+            begin, end = (first + end - root for end in strands.ends(side))
+            way = end - begin
+            apart = cross(arm, begin) * cross(arm, end) < 0
+            values |= apart & (cross(way, begin) * cross(way, begin - arm) < 0)
+    return values

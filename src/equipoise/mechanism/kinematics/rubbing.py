@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from equipoise.dataclass import dataclass
+from equipoise.mechanism.assembly.joints import given_properties
 from equipoise.mechanism.assembly.linkage import Linkage
-from equipoise.mechanism.assembly.named_joints import given_properties
 from equipoise.mechanism.assembly.steps import Array, Reaction, planar, size_of_links
 from equipoise.mechanism.formulas.kernels import dot
 from equipoise.mechanism.kinematics.motion import Motion

@@ -1,4 +1,6 @@
-"""The outputs of a machine, each declared once; everything that lists outputs reads them here.
+"""The outputs of a machine, each declared once; everything that lists outputs follows.
+
+Where there is none, for it lies at infinity, or has no bound, values are NaN.
 
 An analysis reads them: `found` has its machine, motion and forces, and in `together` the signals of
 all rows.
@@ -6,11 +8,13 @@ all rows.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
-from typing import Any
+from itertools import combinations
+from typing import TYPE_CHECKING, Any
 
-from equipoise.i18n import to_say
-from equipoise.mechanism.checks import bodies_at
+from equipoise.i18n import say, to_say
+from equipoise.mechanism.checks import FRAME, bodies_at
 from equipoise.mechanism.outputs.declaring import (
     DECLARED,
     GROUPS,
@@ -25,9 +29,126 @@ from equipoise.mechanism.outputs.declaring import (
     matches,
     output,
 )
-from equipoise.mechanism.outputs.poles import advantage, guided, instant_center, pairs, pinned
-from equipoise.mechanism.outputs.spoken import joint_named, joint_names, pair_named, slider_names
 from equipoise.quantities import Dimension
+
+if TYPE_CHECKING:
+    from equipoise.signals import Array
+
+PARALLEL = 1e-12
+"""Difference of two rates of turning, over the larger of them and the crank's, below which bodies
+only slide along each other; rate over the largest of the cycle below which something stands."""
+
+
+def pairs(machine: Any) -> dict[str, tuple[str, str]]:
+    """Pairs of bodies by name, such as ``coupler/frame``; not those that a guide keeps parallel."""
+    parallel = {frozenset((slider.link, slider.on)) for slider in machine.sliders}
+    both = combinations((*machine.links, FRAME), 2)
+    return {"/".join(pair): pair for pair in both if frozenset(pair) not in parallel}
+
+
+def pinned(machine: Any) -> list[str]:
+    """Links other than the drive that turn about a pin in the frame."""
+    met = [bodies for bodies in bodies_at(machine.bodies).values() if FRAME in bodies]
+    on_frame = {body for bodies in met for body in bodies} - {machine.drive.link}
+    return [link for link in machine.links if link in on_frame]
+
+
+def guided(machine: Any) -> list[str]:
+    """Names of sliders on the frame."""
+    return [slider.name for slider in machine.sliders if FRAME in (slider.link, slider.on)]
+
+
+def instant_center(motion: Any, pair: str) -> Array:
+    """Place in the frame, m, complex (N,), at which both bodies of a pair have one velocity.
+
+    That of two bodies that share a pin is there, even while they turn alike.
+    """
+    import numpy as np  # here, so that a file is read without it
+
+    item, other = pairs(motion.machine)[pair]
+    bodies = motion.machine.bodies
+    if shared := [point for point in bodies[item] if point in bodies[other]]:
+        place: Array = motion.points[shared[0]].place
+        return place
+    (v, w), (o, r) = _carried(motion, item), _carried(motion, other)
+    apart = w - r
+    least = PARALLEL * np.maximum(np.maximum(np.abs(w), np.abs(r)), 1.0)
+    turning = np.abs(apart) > least
+    center = -1j * (o - v) / np.where(turning, apart, 1.0)
+    return np.where(turning, center, complex(np.nan, np.nan))
+
+
+def _carried(motion: Any, body: str) -> tuple[Array, Array]:
+    """Velocity by crank angle of a body's point at the frame's origin, and how the body turns."""
+    import numpy as np
+
+    if body == FRAME:
+        return np.zeros(len(motion.crank_angle), complex), np.zeros(len(motion.crank_angle))
+    anchor = motion.points[motion.linkage.anchors[body]]
+    w = motion.links[body].angle_1
+    return anchor.place_1 - 1j * w * anchor.place, w
+
+
+def advantage(rate: Array) -> Array:
+    """Force or torque of an output over the torque of the crank (N,), by virtual power.
+
+    rate : derivative of its place by crank angle, m or 1.
+    """
+    import numpy as np
+
+    moves = np.abs(rate) > PARALLEL * np.max(np.abs(rate), initial=0.0)
+    return np.where(moves, 1 / np.where(moves, rate, 1.0), np.nan)
+
+
+def joint_names(machine: Any) -> list[str]:
+    """Names of pins, slots and sliders, as far as the names in the model tell.
+
+    At a pin of several bodies each moving link has one; which of them carries the others is found
+    only when the linkage is put together.
+    """
+    shared = bodies_at(machine.bodies).items()
+    pins = [point for point, bodies in shared if len(bodies) == 2]
+    several = [(point, bodies) for point, bodies in shared if len(bodies) > 2]
+    shared_pins = [
+        f"{point}/{body}" for point, bodies in several for body in bodies if body != FRAME
+    ]
+    return [*pins, *shared_pins, *machine.riders, *slider_names(machine)]
+
+
+def slider_names(machine: Any) -> list[str]:
+    """Names of sliding joints, such as ``ram on frame``."""
+    return [slider.name for slider in machine.sliders]
+
+
+def body_named(name: str) -> str:
+    """A link, or the frame, in words."""
+    return say("frame") if name == FRAME else name
+
+
+LETTER = re.compile(r"[A-Z]'?[0-9]*")
+
+
+def named(name: str) -> str:
+    """A name of a file as a sentence has it: in quotation marks, but for letters such as ``B2``."""
+    return name if LETTER.fullmatch(name) else say("“{name}”", name=name)
+
+
+def joint_named(name: str) -> str:
+    """A joint in words; a slider, such as ``ram on frame``, by its link and what it slides on, and
+    a pin in a slot, such as ``P in frame``, by its point and what has the slot.
+    """
+    link, _, on = name.partition(" on ")
+    pin, _, slot = name.partition(" in ")
+    if slot:
+        return say("{pin} in {on}", pin=pin, on=body_named(slot))
+    return say("{link} on {on}", link=link, on=body_named(on)) if on else name
+
+
+def pair_named(name: str) -> str:
+    """A pair of bodies, such as ``coupler/frame``, in words."""
+    item, _, other = name.rpartition("/")
+    return f"{item}/{body_named(other)}"
+
 
 __all__ = [
     "DECLARED",

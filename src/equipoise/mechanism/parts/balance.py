@@ -23,6 +23,7 @@ from equipoise.mechanism.parts.counterweights import (
     wrong_geared,
     wrong_shafts,
 )
+from equipoise.mechanism.parts.links import Mechanism
 from equipoise.mechanism.parts.objectives import (
     MEASURES,
     Limit,
@@ -30,7 +31,6 @@ from equipoise.mechanism.parts.objectives import (
     wrong_limit,
     wrong_objective,
 )
-from equipoise.mechanism.parts.sliders import Mechanism
 from equipoise.mechanism.parts.springs import wrong_ends
 from equipoise.mechanism.parts.weights import (
     CUT,

@@ -31,7 +31,7 @@ from equipoise.mechanism.parts.couplings import (
 )
 
 if TYPE_CHECKING:
-    from equipoise.mechanism.formulas.strands import Strands
+    from equipoise.mechanism.formulas.rolling import Strands
 
 TOUCHING = 1e-9
 """Over the distance of the pins: a strand that comes so near to a pin runs through it."""
@@ -125,7 +125,7 @@ class Belt(Turning):
 
     def strands(self, apart: Any) -> Strands:
         """Where they run; apart : from the driver's pin to the driven link's, complex, m."""
-        from equipoise.mechanism.formulas.strands import Strands  # which needs NumPy
+        from equipoise.mechanism.formulas.rolling import Strands  # which needs NumPy
 
         first, second = self.pitch_radii
         return Strands(apart, first, -second if self.crossed else second)
@@ -134,7 +134,7 @@ class Belt(Turning):
         """Force and couple of both strands on the driven pulley about its pin."""
         import numpy as np
 
-        from equipoise.mechanism.formulas.strands import LEFT, RIGHT
+        from equipoise.mechanism.formulas.rolling import LEFT, RIGHT
 
         strands = self.strands(-seat.centres)
         reach = self.pitch_radii[0] + self.pitch_radii[1]

@@ -18,8 +18,7 @@ from equipoise.mechanism.outputs.declared import (
     part_in_loops,
 )
 from equipoise.mechanism.parts.couplings import Coupling, Pushed, Relation, coupled
-from equipoise.mechanism.parts.law_checks import CAM, wrong_law
-from equipoise.mechanism.parts.laws import AngleLaw, Law, LengthLaw
+from equipoise.mechanism.parts.laws import CAM, AngleLaw, Law, LengthLaw, wrong_law
 
 RIDES = ("roller", "flat", "knife")
 CLOSURES = ("spring", "groove", "ribs")

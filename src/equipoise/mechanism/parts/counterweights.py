@@ -29,7 +29,7 @@ from equipoise.keys import (
 )
 from equipoise.mechanism.checks import numbered, unknown, wrong_range
 from equipoise.mechanism.parts.bodies import material_key, with_density, with_material
-from equipoise.mechanism.parts.sliders import Mechanism
+from equipoise.mechanism.parts.links import Mechanism
 from equipoise.mechanism.parts.weights import (
     WEIGHT,
     Pair,

@@ -31,7 +31,7 @@ from equipoise.mechanism.parts.joint_kinds import BEYOND, JointKind, Rider, Trac
 from equipoise.quantities import Dimension, told
 
 if TYPE_CHECKING:
-    from equipoise.mechanism.formulas.plane_curves import PlaneCurve
+    from equipoise.mechanism.formulas.curves import PlaneCurve
 
 MOST_POINTS = 400
 FEWEST, FEWEST_CLOSED = 2, 4
@@ -129,7 +129,7 @@ class CurvedSlot(JointKind):
     @property
     def curve(self) -> PlaneCurve:
         """The slot's middle line, in its axes."""
-        from equipoise.mechanism.formulas.plane_curves import curve_through
+        from equipoise.mechanism.formulas.curves import curve_through
 
         return curve_through(self.places, self.closed)
 

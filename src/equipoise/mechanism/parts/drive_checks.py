@@ -11,8 +11,7 @@ from equipoise.mechanism.checks import Bodies, bodies_at, unknown, unknown_link,
 from equipoise.mechanism.parts.couplings import as_fraction
 from equipoise.mechanism.parts.drives import Drive, FurtherDrive
 from equipoise.mechanism.parts.force_elements import wrong_motor
-from equipoise.mechanism.parts.law_checks import wrong_law
-from equipoise.mechanism.parts.laws import MOST_TURNS
+from equipoise.mechanism.parts.laws import MOST_TURNS, wrong_law
 
 
 def wrong_together(first: Drive, others: Sequence[FurtherDrive]) -> Iterator[ModelError]:

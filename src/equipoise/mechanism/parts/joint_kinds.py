@@ -18,10 +18,10 @@ from equipoise.keys import Frozen, TextKind, declared, key
 from equipoise.keys.declaring import once
 from equipoise.mechanism.checks import Bodies, Vector, unknown_body, unknown_link, unknown_point
 from equipoise.mechanism.parts.element_kinds import Element, element_kinds
-from equipoise.mechanism.parts.sliders import Slider
+from equipoise.mechanism.parts.links import Slider
 
 if TYPE_CHECKING:
-    from equipoise.mechanism.formulas.plane_curves import PlaneCurve
+    from equipoise.mechanism.formulas.curves import PlaneCurve
 
 
 @dataclass(frozen=True)

@@ -1,11 +1,12 @@
-"""A link: where its points are, and what it weighs, given as numbers or by lengths and bodies."""
+"""Links, sliding joints and bearings, and the planes in which links lie."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import combinations
 from math import hypot
 from types import MappingProxyType
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Protocol
 
 from equipoise.errors import ModelError
 from equipoise.i18n import KeyName, Note, all_of, key_names, to_say
@@ -26,10 +27,28 @@ from equipoise.keys import (
     not_both,
     wrong_values,
 )
-from equipoise.mechanism.checks import FRAME, Vector, unknown, unknown_point
-from equipoise.mechanism.parts.bodies import Body, combined, weighed
-from equipoise.mechanism.parts.body_checks import demands, wrong_bodies
+from equipoise.mechanism.checks import (
+    FRAME,
+    Bodies,
+    Vector,
+    bodies_at,
+    unknown,
+    unknown_body,
+    unknown_link,
+    unknown_point,
+)
+from equipoise.mechanism.parts.bodies import (
+    Body,
+    combined,
+    demands,
+    inertia_of,
+    weighed,
+    wrong_bodies,
+)
+from equipoise.mechanism.parts.couplings import Coupling
+from equipoise.mechanism.parts.drives import Drive, FurtherDrive
 from equipoise.mechanism.parts.sections import LinkSection, wrong_section
+from equipoise.mechanism.parts.support import Row, Support
 from equipoise.quantities import Measured
 
 MASS_FIELDS = {"mass", "center_of_mass", "inertia"}
@@ -355,4 +374,178 @@ def wrong_link(where: str, name: str, link: Link) -> Iterator[ModelError]:
         yield ModelError(
             f"{where}.inertia",
             Note("got {text} for a mass of 0; no body can have that, give 0", text=amount),
+        )
+
+
+@declared
+class Slider(Frozen):
+    """A sliding joint: `point` of `link` stays on a line of the body `on`, without turning."""
+
+    called = to_say("{what} of the guide of the {link}")
+    group: ClassVar[str] = to_say("slider on a straight line")
+
+    link: str = key(TextKind(of="link"), "the sliding link", example="piston")
+    point: str = key(TextKind(of="point", on="link"), "its point on the line", example="C")
+    on: str = key(
+        TextKind(of="body"), 'the guiding link, or `"frame"`', example="frame", word=to_say("guide")
+    )
+    through: str = key(
+        TextKind(of="point", on="on"),
+        "a point of the guide on the line",
+        example="A",
+        word=to_say("point of the guide"),
+    )
+    direction: float = key("angle", "of the line, in the axes of the guide", example="0 deg")
+    angle: float = key("angle", "of the sliding link's x axis, from the line", default=0.0)
+    label: str = key(
+        TextKind(),
+        "its name in outputs, `LINK on BODY` if left out; a second guide of the same link on the "
+        "same body needs one",
+        default="",
+    )
+
+    @property
+    def name(self) -> str:
+        return self.label or f"{self.link} on {self.on}"
+
+
+@declared
+class Bearing(Frozen):
+    """One of both bearings in which a link turns about its pin in the frame."""
+
+    called = to_say("{what} of bearing {name}")
+
+    link: str = key(
+        TextKind(of="link"), "that turns in it; it has one pin in the frame", example="crank"
+    )
+    plane: float = key("length", "z of its middle", example="-20 mm")
+
+
+class Mechanism(Protocol):
+    """What a machine is to those who only look at its parts."""
+
+    @property
+    def drive(self) -> Drive: ...
+    @property
+    def pushers(self) -> Sequence[Drive | FurtherDrive]: ...
+    @property
+    def frame(self) -> Mapping[str, Vector]: ...
+    @property
+    def links(self) -> Mapping[str, Link]: ...
+    @property
+    def bodies(self) -> Bodies: ...
+    @property
+    def sliders(self) -> Sequence[Slider]: ...
+    @property
+    def couplings(self) -> Sequence[Coupling]: ...
+    @property
+    def rows(self) -> Sequence[Row]: ...
+    @property
+    def bearings(self) -> Mapping[str, Bearing]: ...
+    @property
+    def support(self) -> Support | None: ...
+    @property
+    def has_planes(self) -> bool: ...
+
+
+# -- checks ----------------------------------------------------------------------------------------
+
+
+def wrong_slider(where: str, slider: Slider, bodies: Bodies) -> Iterator[ModelError]:
+    """Everything that is wrong with a sliding joint."""
+    if problem := [*unknown_link(f"{where}.link", slider.link, bodies)]:
+        yield from problem
+        return
+    yield from unknown_body(f"{where}.on", slider.on, bodies)
+    if slider.link == slider.on:
+        yield ModelError(f"{where}.on", Note("{link!r} cannot slide on itself", link=slider.link))
+    if slider.on in bodies:
+        yield from unknown_point(f"{where}.through", slider.through, slider.on, bodies)
+    yield from unknown_point(f"{where}.point", slider.point, slider.link, bodies)
+
+
+def masses_of(link: Link) -> Iterator[tuple[float, complex, float]]:
+    """Mass (kg), centre (complex, m, in the link's axes) and plane (m) of each part of a link."""
+    for body in link.bodies:
+        mass, center, _ = inertia_of(body, link.points)
+        yield mass, center, link.plane if body.plane is None else body.plane
+    if not link.bodies and link.mass is not None and link.center_of_mass is not None:
+        x, y = link.center_of_mass
+        yield link.mass, x + 1j * y, link.plane
+
+
+def moments_across(link: Link, point: str | None = None) -> tuple[Any, Any]:
+    """Sums of mass times plane (kg m), and of that times the arm from a point, or from the origin
+    of the link's axes (kg m2, complex).
+    """
+    x, y = (0.0, 0.0) if point is None else link.points[point]
+    parts = [(mass * z, center - (x + 1j * y)) for mass, center, z in masses_of(link)]
+    return sum(m for m, _ in parts), sum((m * arm for m, arm in parts), start=0j)
+
+
+def demands_across(machine: Mechanism) -> Iterator[Any]:
+    """What has to be true of planes of pins and bearings: flags, or columns of them."""
+    bearing_planes = [(bearing.link, bearing.plane) for bearing in machine.bearings.values()]
+    yield from (
+        here != there for (on, here), (to, there) in combinations(bearing_planes, 2) if on == to
+    )
+    for _, text in _told_of_pins(machine):
+        yield from (here == there for (_, here), (_, there) in combinations(text, 2))
+
+
+def _told_of_pins(machine: Mechanism) -> Iterator[tuple[str, list[tuple[str, float]]]]:
+    """Every pin with the links that tell its plane, and that plane."""
+    for point, bodies in bodies_at(machine.bodies).items():
+        links = [(name, machine.links[name].planes) for name in bodies if name != FRAME]
+        yield point, [(name, planes[point]) for name, planes in links if point in planes]
+
+
+# -- checks ----------------------------------------------------------------------------------------
+
+
+def wrong_planes(machine: Mechanism) -> Iterator[ModelError]:
+    """Everything that is wrong with planes of pins and with bearings."""
+    for point, text in _told_of_pins(machine):
+        for (item, here), (other, there) in combinations(text, 2):
+            if here != there:
+                yield ModelError(
+                    f"links.{other}.planes.{point}",
+                    Note(
+                        "got {there:g} mm, and {here:g} mm in the {one}; a pin lies in one plane, "
+                        "give it once",
+                        there=1e3 * there,
+                        here=1e3 * here,
+                        one=item,
+                    ),
+                )
+    for name, bearing in machine.bearings.items():
+        yield from _wrong_bearing(f"bearings.{name}", bearing, machine)
+
+
+def _wrong_bearing(where: str, bearing: Bearing, machine: Mechanism) -> Iterator[ModelError]:
+    if bearing.link not in machine.links:
+        yield ModelError(f"{where}.link", unknown(bearing.link, machine.links, "link"))
+        return
+    pins = [point for point in machine.links[bearing.link].points if point in machine.frame]
+    if len(pins) != 1:
+        yield ModelError(
+            f"{where}.link",
+            Note(
+                "{link!r} has {pins} pins in the frame; bearings hold a link that turns about one",
+                link=bearing.link,
+                pins=len(pins),
+            ),
+        )
+        return
+    planes = [item.plane for item in machine.bearings.values() if item.link == bearing.link]
+    if len(planes) != 2 or planes[0] == planes[1]:
+        yield ModelError(
+            where,
+            Note(
+                "bearings of {link!r}: {count}, different planes of them: {planes}; give it two "
+                "in two planes, whose forces are statically determinate",
+                link=bearing.link,
+                count=len(planes),
+                planes=len({*planes}),
+            ),
         )

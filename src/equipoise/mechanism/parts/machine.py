@@ -1,4 +1,4 @@
-"""The machine: frozen values in SI units and radians, the same whether read from a file or built.
+"""The machine: frozen values in SI units and radians, and its checks as a whole.
 
 Every value is checked when the object is made, so that a `Machine` that exists can be computed
 with; what it cannot do (turn fully, close) is found by `mechanism.assembly.linkage`.
@@ -32,6 +32,7 @@ from equipoise.keys import (
     inside,
     key,
     with_fields,
+    wrong_values,
 )
 from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.checks import (
@@ -40,7 +41,11 @@ from equipoise.mechanism.checks import (
     Bodies,
     Vector,
     check_kept,
+    numbered,
+    too_many,
     unknown,
+    unknown_link,
+    wrong_text,
 )
 from equipoise.mechanism.parts.belts import Belt
 from equipoise.mechanism.parts.bushings import Bushing
@@ -50,13 +55,13 @@ from equipoise.mechanism.parts.constraints import Constraint, changed_points
 from equipoise.mechanism.parts.couplings import Coupling, coupling_kinds
 from equipoise.mechanism.parts.curved_slots import CurvedSlot
 from equipoise.mechanism.parts.dampers import Damper
+from equipoise.mechanism.parts.drive_checks import wrong_drive, wrong_further, wrong_together
 from equipoise.mechanism.parts.drives import (
     TURNING,
     Drive,
     Driven,
     FurtherDrive,
 )
-from equipoise.mechanism.parts.duty_states import DutyState
 from equipoise.mechanism.parts.element_kinds import (
     Element,
     PartKind,
@@ -64,37 +69,115 @@ from equipoise.mechanism.parts.element_kinds import (
     element_kinds,
     part_kinds,
 )
-from equipoise.mechanism.parts.field import Planting
+from equipoise.mechanism.parts.field import Planting, wrong_planting
 from equipoise.mechanism.parts.force_elements import (
     Load,
     LoadTable,
+    wrong_axes,
+    wrong_load,
 )
 from equipoise.mechanism.parts.force_kinds import ForceElement, force_kinds
 from equipoise.mechanism.parts.gears import Gear
-from equipoise.mechanism.parts.joint_kinds import JointKind, Rider, joint_kinds, with_riders
-from equipoise.mechanism.parts.joint_properties import JointProperties
+from equipoise.mechanism.parts.joint_kinds import (
+    JointKind,
+    Rider,
+    joint_kinds,
+    with_riders,
+    wrong_names,
+)
+from equipoise.mechanism.parts.joint_properties import JointProperties, wrong_joint
 from equipoise.mechanism.parts.links import (
     MASS_FIELDS,
+    Bearing,
     Link,
+    Slider,
     size_of,
+    wrong_link,
+    wrong_planes,
+    wrong_points,
+    wrong_slider,
 )
-from equipoise.mechanism.parts.parameters import PARAMETERS
-from equipoise.mechanism.parts.places import Frame, Position
+from equipoise.mechanism.parts.places import Frame, Position, wrong_position
 from equipoise.mechanism.parts.racks import Rack
 from equipoise.mechanism.parts.resistances import Resistance
-from equipoise.mechanism.parts.run_plans import RunPlan
-from equipoise.mechanism.parts.shown_units import ShownUnits
-from equipoise.mechanism.parts.sliders import Bearing, Slider
+from equipoise.mechanism.parts.run_plans import DutyState, RunPlan
+from equipoise.mechanism.parts.shown_units import PARAMETERS, ShownUnits
 from equipoise.mechanism.parts.springs import Spring
 from equipoise.mechanism.parts.stops import Stop
-from equipoise.mechanism.parts.support import Row, Support
+from equipoise.mechanism.parts.support import Row, Support, wrong_support
 from equipoise.mechanism.parts.torsion_dampers import TorsionDamper
 from equipoise.mechanism.parts.torsion_springs import TorsionSpring
-from equipoise.mechanism.parts.whole import validate_machine
 from equipoise.quantities import display
 
 if TYPE_CHECKING:
     from equipoise.mechanism.parts.balance import Balance
+
+MOST = {"links": 100, "points": 2000, "sliders": 200, "loads": 500, "joints": 500,
+        "drives": 20, "constraints": 200}  # fmt: skip
+"""Far beyond any machine; they keep a file of nonsense from running for hours."""
+LISTS: Mapping[str, Callable[[str, Any, Bodies], Iterator[ModelError]]] = {
+    "sliders": wrong_slider,
+    "loads": wrong_load,
+}
+"""What is wrong with each of the lists; couplings and elements say it themselves."""
+
+
+def validate_machine(machine: Any) -> Iterator[ModelError]:
+    """Everything that is wrong with the values of a machine, the first things first."""
+    bodies = machine.bodies
+    yield from _too_much(machine)
+    yield from wrong_values("", machine)
+    yield from wrong_points("frame", machine.frame)
+    if not machine.links:
+        yield ModelError("links", Note("there is no link; give at least the drive's"))
+    for name, link in machine.links.items():
+        yield from wrong_link(f"links.{name}", name, link)
+    yield from unknown_link("drive.link", machine.drive.link, bodies)
+    yield from wrong_together(machine.drive, machine.drives)
+    for name, wrong in LISTS.items():
+        for where, item in numbered(name, getattr(machine, name)):
+            yield from wrong(where, item, bodies)
+    for where, item in numbered("loads", machine.loads):
+        yield from wrong_axes(where, item, machine.sliders)
+    placed: list[tuple[str, Any]] = [
+        pair
+        for table in part_kinds(type(machine))
+        for pair in numbered(table, getattr(machine, table))
+    ]
+    for where, item in placed:
+        yield from item.problems(where, bodies)
+    for where, item in numbered("constraints", machine.constraints):
+        yield from item.problems(where, bodies)
+    for where, item in numbered("joints", machine.joints):
+        yield from wrong_joint(where, item, ("joints", *coupling_kinds(type(machine))))
+    sliders = [slider.name for slider in machine.sliders]
+    joints = [(where, item) for where, item in placed if isinstance(item, JointKind)]
+    yield from wrong_names(joints, bodies, sliders)
+    for where, item in numbered("drives", machine.drives):
+        yield from wrong_further(where, item, bodies, sliders)
+    yield from wrong_position(machine.position, bodies)
+    yield from wrong_planting(machine.planting, bodies)
+    yield from wrong_drive(machine.drive, bodies, sliders)
+    yield from wrong_planes(machine)
+    yield from wrong_support(machine.support, machine.rows)
+    if machine.balance is not None:
+        yield from machine.balance.problems(machine)
+
+
+def _too_much(machine: Any) -> Iterator[ModelError]:
+    points = [(body, point) for body, points in machine.bodies.items() for point in points]
+    yield from too_many("links", machine.links, MOST["links"])
+    yield from too_many("points", points, MOST["points"])
+    for what in ("sliders", "loads", "joints", "drives", "constraints"):
+        yield from too_many(what, getattr(machine, what), MOST[what])
+    for table, kind in part_kinds(type(machine)).items():
+        yield from too_many(table, getattr(machine, table), kind.most)
+    yield from wrong_text("title", machine.title)
+    for body, names in machine.bodies.items():
+        yield from wrong_text("links", body)
+        for point in names:
+            yield from wrong_text(f"points of {body}", point)
+
 
 __all__ = [
     "FRAME",

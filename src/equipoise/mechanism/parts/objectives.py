@@ -32,7 +32,7 @@ from equipoise.keys.requirement_kinds import (
 from equipoise.mechanism.checks import numbered, positive, unknown
 from equipoise.mechanism.outputs.declared import DECLARED
 from equipoise.mechanism.outputs.declaring import Declared, Measure, matches
-from equipoise.mechanism.parts.sliders import Mechanism
+from equipoise.mechanism.parts.links import Mechanism
 from equipoise.quantities import NUMBER, Dimension, pattern
 
 MEASURES: tuple[Measure, ...] = ("rms", "ripple", "peak", "peak_to_peak", "area")

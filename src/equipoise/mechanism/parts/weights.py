@@ -31,7 +31,7 @@ from equipoise.mechanism.parts.bodies import (
     with_density,
     with_material,
 )
-from equipoise.mechanism.parts.sliders import Mechanism
+from equipoise.mechanism.parts.links import Mechanism
 from equipoise.quantities import Measured
 
 Pair = tuple[float, float]
