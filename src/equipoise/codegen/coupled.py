@@ -205,7 +205,7 @@ def curve_value(trace: Trace, curve: PeriodicCurve, angle: Any) -> tuple[Any, An
     powers = [pieces.value(values) for values in curve.powers.T]
     amplitude, rate, phase = (pieces.value(values) for values in _waves(curve).T)
     wave = rotation(0.0 if isinstance(amplitude, float) and not amplitude else rate * way + phase)
-    value, first, second = piece_value(way, *powers, amplitude, rate, wave.real, wave.imag)  # type: ignore[call-arg,no-untyped-call]
+    value, first, second = piece_value(way, *powers, amplitude, rate, wave.real, wave.imag)  # type: ignore[call-arg]
     return value + curve.rise * rounds, first, second
 
 
@@ -363,7 +363,7 @@ class _Law:
         state[f"phi({link})"] = state[f"phi({self.carrier})"] + y + offset
         state[f"ratio({link})"], state[f"bend({link})"] = ratio, bend
         rates = [state[name] for item in (self.driver, self.carrier) for name in u(item)[1:]]
-        self.trace.put(u(link)[1:], cam_kernels.followed(ratio, bend, *rates))  # type: ignore[no-untyped-call]
+        self.trace.put(u(link)[1:], cam_kernels.followed(ratio, bend, *rates))
 
     def slot(self, what: str, read: Callable[[Linkage], Any], vector: bool = False) -> Any:
         return self.trace.slot(f"{what} of {self.link}", read, vector)
@@ -392,8 +392,8 @@ class _Law:
     def _half_angle(self, law: HalfAngle) -> tuple[Any, Any, Any]:
         lobes, mean = law.lobes, float(law.mean)
         numbers = mean, float(law.share), self.own("depth"), lobes
-        whole, twice, ratio, bend = cam_kernels.half_angle(self.turned(lobes), *numbers)  # type: ignore[no-untyped-call]
-        (along,) = cam_kernels.unit(whole)  # type: ignore[no-untyped-call]
+        whole, twice, ratio, bend = cam_kernels.half_angle(self.turned(lobes), *numbers)
+        (along,) = cam_kernels.unit(whole)
         self._rotate(law, along, twice)
         return mean * self.angle + float(2 * law.share / lobes) * angle_of(along), ratio, bend
 
@@ -425,7 +425,7 @@ class _Law:
                 for place, key in enumerate(("cosine", "sine"))
             ]
             wave = wave * turn
-            levels = cam_kernels.series_term(*levels, wave, *pair, float(order))  # type: ignore[call-arg,no-untyped-call]
+            levels = cam_kernels.series_term(*levels, wave, *pair, float(order))  # type: ignore[call-arg]
         y, ratio, bend = (mean * level for level in levels)
         return y, ratio, bend
 
@@ -472,13 +472,13 @@ class TracedCurve:
             VectorTerm(pieces.value(item.real), pieces.value(item.imag))
             for item in self.curve.powers.T
         ]
-        return tuple(plane_piece(way, *powers))  # type: ignore[no-untyped-call]
+        return tuple(plane_piece(way, *powers))
 
     def distance(self, s: Any) -> Any:
         """Arc length from the beginning, m."""
         knots, powers = self.curve.arcs
         way, pieces = self._place(s, knots)
-        return plane_piece(way, *map(pieces.value, powers.T))[0]  # type: ignore[no-untyped-call]
+        return plane_piece(way, *map(pieces.value, powers.T))[0]
 
     def turned(self, rotation: Any) -> Any:
         """The parameter of a closed curve, of which exp(i s) is known: by halves of a turn, as the

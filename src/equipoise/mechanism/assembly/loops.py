@@ -370,7 +370,7 @@ class Riding:
         body = poses[self.to.body]
         turn, w, a = body.turn
         levels = (*body.point(self.to.arm), turn * self.turn, w, a, *self.curve.at(s), s1, s2)
-        x, x1, x2, u, u1, u2, speed = on_track(*levels)  # type: ignore[no-untyped-call]
+        x, x1, x2, u, u1, u2, speed = on_track(*levels)
         return Pose((x, x1, x2), (u, u1, u2), along=(s, speed))
 
     def values(self, poses: Poses) -> list[Any]:

@@ -71,7 +71,7 @@ class PeriodicCurve:
         turned = rate * way + phase
         powers = np.moveaxis(self.powers[piece], -1, 0)
         wave = amplitude, rate, np.cos(turned), np.sin(turned)
-        y, y1, y2 = piece_value(way, *powers, *wave)  # type: ignore[call-arg,no-untyped-call]
+        y, y1, y2 = piece_value(way, *powers, *wave)  # type: ignore[call-arg]
         return y + self.rise * rounds, y1, y2
 
     def place(self, x: Any) -> tuple[Array, Array, Array]:
@@ -400,7 +400,7 @@ class PlaneCurve:
         s, _ = self.place(s)
         knots, powers = self.arcs
         piece = np.searchsorted(knots[1:-1], s, side="right")
-        value: Array = plane_piece(s - knots[piece], *np.moveaxis(powers[piece], -1, 0))[0]  # type: ignore[no-untyped-call]
+        value: Array = plane_piece(s - knots[piece], *np.moveaxis(powers[piece], -1, 0))[0]
         return value
 
     def place(self, s: Any) -> tuple[Array, Array]:
@@ -417,7 +417,7 @@ class PlaneCurve:
         """Place and its first three derivatives by the parameter, complex, each as `s` (...)."""
         s, piece = self.place(s)
         powers = np.moveaxis(self.powers[piece], -1, 0)
-        levels: tuple[Array, Array, Array, Array] = plane_piece(s - self.knots[piece], *powers)  # type: ignore[no-untyped-call]
+        levels: tuple[Array, Array, Array, Array] = plane_piece(s - self.knots[piece], *powers)
         return levels
 
     @cached_property

@@ -76,7 +76,7 @@ class Waves:
         turn, wave = np.exp(1j * self.lobes * x), 1.0
         for cosine, sine, order in self.terms:
             wave = wave * turn
-            levels = series_term(*levels, wave, cosine, sine, order)  # type: ignore[call-arg,no-untyped-call]
+            levels = series_term(*levels, wave, cosine, sine, order)  # type: ignore[call-arg]
         y, value, first = levels
         return y, value, first
 
@@ -150,7 +150,7 @@ class HalfAngle:
     def __call__(self, x: Any) -> tuple[Any, Any, Any]:
         x = x - self.zero
         turned = np.exp(1j * self.lobes * x)
-        text = half_angle(turned, self.mean, self.share, self.depth, self.lobes)  # type: ignore[no-untyped-call]
+        text = half_angle(turned, self.mean, self.share, self.depth, self.lobes)
         y = self.mean * x + (2 / self.lobes) * self.share * direction(text[0])
         return y, text[2], text[3]
 

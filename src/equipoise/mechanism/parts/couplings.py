@@ -413,5 +413,5 @@ def coupled(
 ) -> tuple[Any, Any, Any]:
     """Angle of a driven body: seen from the carrier c it is a function of that of the driver r."""
     value, first, second = law(angle_r - angle_c)
-    rates = followed(first, second, w_r, a_r, w_c, a_c)  # type: ignore[no-untyped-call]
+    rates = followed(first, second, w_r, a_r, w_c, a_c)
     return (angle_c + value + offset, *rates)
