@@ -23,6 +23,7 @@ import stat
 import tempfile
 import zipfile
 from collections.abc import Iterable, Iterator, Mapping
+from importlib import resources
 from importlib.metadata import Distribution, distribution
 from io import BytesIO
 from pathlib import Path
@@ -369,11 +370,12 @@ def _packed(data: bytes) -> bytes:
 def _texts() -> tuple[dict[str, Any], dict[str, bytes]]:
     """Packages with the catalogues of languages, as the lock file has them, and their wheels."""
     entries, packed = {}, {}
+    catalogues = resources.files("equipoise.i18n")
     for code in KNOWN:
         if code == ORIGINAL:
             continue
         name, catalogue = package_of(code), CATALOGUES + code + ENDING
-        data = (Path(__file__).parents[2] / catalogue).read_bytes()
+        data = (catalogues / f"{code}{ENDING}").read_bytes()
         file, wheel = _wheel_of(name, __version__, [(catalogue, data)])
         path = f"wheels/{file}"
         packed[path] = _packed(wheel)
