@@ -133,7 +133,7 @@ def export_content(
     job = Job(without_friction, crank_angle or 0.0, changes, link, angles)
     if frictionless:
         job.leave_out("friction in joints: forces are those without it")
-    if file_format.joints == ():  # its joints bear no preload either
+    if not file_format.tightens:
         for coupling in machine.couplings:
             if coupling.preload:
                 lost = f"the tension of the {coupling.noun} {coupling.name}"

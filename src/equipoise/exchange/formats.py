@@ -30,6 +30,7 @@ class Format:
     joints : that it has beside pins, guides and what turns two links in a fixed ratio, as kinds of
     parts call them (`PartKind.special`); None where it has all.
     rubs : whether it holds friction in joints, or what follows from it.
+    tightens : whether its pins bear the tension of belts and chains.
     worded : whether it has sentences for readers, in their language.
     of_link : whether it holds the loads along one link, at one crank angle or at several.
     """
@@ -45,6 +46,7 @@ class Format:
     joints: tuple[str, ...] | None = None
     module: str = ""
     rubs: bool = True
+    tightens: bool = True
     of_link: bool = False
     worded: bool = False
 
@@ -67,6 +69,7 @@ FORMATS: Mapping[str, Format] = {
             turns=True,
             joints=("damper", "torsion damper", "resistance"),
             rubs=False,
+            tightens=False,
         ),
         Format(
             "exudyn",
@@ -78,6 +81,7 @@ FORMATS: Mapping[str, Format] = {
             turns=True,
             joints=("damper", "torsion damper", "stop", "resistance"),
             rubs=False,
+            tightens=False,
         ),
         Format(
             "urdf",
@@ -87,6 +91,7 @@ FORMATS: Mapping[str, Format] = {
             "cut",
             joints=(),
             rubs=False,
+            tightens=False,
         ),
         Format(
             "fmu",
@@ -117,6 +122,7 @@ FORMATS: Mapping[str, Format] = {
             turns=True,
             joints=("damper", "torsion damper", "stop", "resistance"),
             rubs=False,
+            tightens=False,
         ),
         Format(
             "dxf",

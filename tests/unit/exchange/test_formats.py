@@ -65,7 +65,7 @@ def test_a_library_that_is_not_installed(
 
 @pytest.mark.parametrize("name", [one.name for one in OWN])
 def test_each_has_its_module(name: str) -> None:
-    assert callable(import_module(FORMATS[name].maker).made)
+    assert callable(import_module(FORMATS[name].maker).export_bytes)
 
 
 @pytest.mark.parametrize("name", [one.name for one in OWN if lacking(one)])
