@@ -277,7 +277,7 @@ def _motor(option: str, text: str) -> Motor:
         if len(tables) > 1 or not all((sign, name, value)):
             wrong = Note("got {text!r}; give such as {example}", text=text, example=MOTOR)
             raise UsageError(at_place(option, wrong))
-        table = content
+        table: Any = content
         for above in tables:
             table = table.setdefault(above, {})
         if not isinstance(table, dict) or name in table:
