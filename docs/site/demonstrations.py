@@ -6,6 +6,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from contextlib import redirect_stderr, redirect_stdout
+from io import StringIO
 from pathlib import Path
 
 import numpy as np
@@ -68,5 +70,8 @@ DEMONSTRATIONS: Mapping[str, Callable[[Path], None]] = {
 
 
 def _run(*words: str) -> None:
-    if run(list(words)):
-        raise RuntimeError(f"equipoise {' '.join(words)}")
+    """A command, whose messages are of no use to who makes the documentation, unless it fails."""
+    with redirect_stdout(StringIO()), redirect_stderr(StringIO()) as messages:
+        status = run(list(words))
+    if status:
+        raise RuntimeError(f"equipoise {' '.join(words)}: {messages.getvalue()}")
