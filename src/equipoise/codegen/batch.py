@@ -37,8 +37,7 @@ from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
 from equipoise.i18n import Note
 from equipoise.keys.paths import KeyPath
-from equipoise.mechanism.assembly import cycle
-from equipoise.mechanism.assembly import reach as full_turn
+from equipoise.mechanism.assembly import cycle, reach
 from equipoise.mechanism.assembly.family import invalid_designs, linkage_of, with_columns
 from equipoise.mechanism.assembly.linkage import Linkage, assemble
 from equipoise.mechanism.assembly.loops import LoopGroup
@@ -379,17 +378,17 @@ class Batch:
                     self.march.reasons(reason, columns_read)
                 continue
             low, high = dyads.pop()
-            reason[low < full_turn.CHANGE_POINT] = CHANGE_POINT
-            reason[low < -full_turn.CHANGE_POINT] = NO_FULL_TURN
+            reason[low < reach.CHANGE_POINT] = CHANGE_POINT
+            reason[low < -reach.CHANGE_POINT] = NO_FULL_TURN
             reason[high <= 0] = NO_ASSEMBLY
         return reason
 
     def _look_closer(self, table: Array, weakest: Array, strongest: Array, count: int) -> None:
         """Find how low and high dyads' numbers come between the crank angles, near zero."""
         while True:
-            reach = (self.slope * pi / count) ** 2
-            doubtful = (weakest >= -full_turn.CHANGE_POINT) & (weakest < reach)
-            doubtful |= (strongest <= 0) & (strongest > -reach)
+            drop = (self.slope * pi / count) ** 2
+            doubtful = (weakest >= -reach.CHANGE_POINT) & (weakest < drop)
+            doubtful |= (strongest <= 0) & (strongest > -drop)
             some = np.flatnonzero(doubtful.any(axis=1))
             count *= DENSER
             if not some.size or count > MOST_LOOKED_AT:

@@ -24,7 +24,7 @@ from equipoise.mechanism.assembly.joints import structure
 from equipoise.mechanism.kinematics.motion import move
 from equipoise.mechanism.parts.machine import FRAME, Machine
 from equipoise.mechanism.parts.resistances import Resistance
-from equipoise.mechanism.parts.stops import Stop, loss_factor
+from equipoise.mechanism.parts.stops import Stop
 from equipoise.mechanism.parts.support import PLANAR, Support, unit_vector
 
 Data = dict[str, Any]
@@ -165,8 +165,8 @@ def _law(item: Stop | Resistance) -> Data:
         names = ("direction", "one_way", "force", "damping", "positions", "forces", "speed")
         return {name: getattr(item, name) for name in names}
     law: Data = {"direction": item.direction, "stiffness": item.stiffness}
-    if item.speed is not None and item.restitution is not None:
-        law["loss"] = loss_factor(item.restitution) / item.speed
+    if item.dissipation is not None:
+        law["loss"] = item.dissipation
     return law
 
 

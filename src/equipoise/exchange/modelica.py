@@ -19,7 +19,7 @@ from equipoise.mechanism.parts.damping import Damping
 from equipoise.mechanism.parts.machine import FRAME, Load, Machine
 from equipoise.mechanism.parts.ramps import Ramps, ramps_of
 from equipoise.mechanism.parts.resistances import Resistance
-from equipoise.mechanism.parts.stops import Stop, loss_factor
+from equipoise.mechanism.parts.stops import Stop
 
 
 @dataclass
@@ -309,9 +309,8 @@ def _stops(model: Flat) -> None:
         gap = model.define(f"GS_{number}", at.place(0))
         opening = model.define(f"VS_{number}", at.speed(0))
         force = f"{stop.stiffness!r} * {_positive(f'(-{gap})')}"
-        if stop.speed is not None and stop.restitution is not None:
-            lost = loss_factor(stop.restitution) / stop.speed
-            force = f"{force} * {_positive(f'(1.0 - {lost!r} * {opening})')}"
+        if stop.dissipation is not None:
+            force = f"{force} * {_positive(f'(1.0 - {stop.dissipation!r} * {opening})')}"
         at.push(model.define(f"FS_{number}", force), "0.0")
 
 

@@ -11,7 +11,7 @@ from equipoise.i18n import say, to_say
 from equipoise.mechanism.dynamics.reactions import JointForce, SliderForce, idle_told, undecided
 from equipoise.mechanism.outputs.declared import DECLARED, body_named, joint_named
 from equipoise.mechanism.parts.element_kinds import Element, element_kinds
-from equipoise.quantities import Display, display
+from equipoise.quantities import Dimension, Display, display
 from equipoise.results.bearing_blocks import bearing_blocks
 from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Value
 from equipoise.results.friction_blocks import friction_blocks
@@ -21,6 +21,10 @@ from equipoise.results.section_blocks import section_blocks
 if TYPE_CHECKING:
     from equipoise.mechanism.dynamics.forces import Forces
     from equipoise.results.analysis import Analysis
+
+
+MOST_OUTPUTS = 3
+"""Outputs of one kind of elements in one table; each has its smallest and its largest value."""
 
 
 def joint_blocks(analysis: Analysis) -> Iterator[Block]:
@@ -42,22 +46,40 @@ def elements_tables(analysis: Analysis) -> Iterator[Table]:
     """Outputs of elements, smallest and largest, a table for each kind."""
     for table, kind in element_kinds(type(analysis.machine)).items():
         if elements := getattr(analysis.machine, table):
-            yield _elements_table(analysis, table, kind, elements)
+            for names in _side_by_side(table, kind):
+                yield _elements_table(analysis, table, kind, elements, names)
+
+
+def _side_by_side(table: str, kind: type[Element]) -> list[list[str]]:
+    """Outputs of a kind that one table shows: all of few, else those of a dimension, since a page
+    is as wide as six numbers with their crank angles.
+    """
+    if len(kind.headings) <= MOST_OUTPUTS:
+        return [[*kind.headings]]
+    by_dimension: dict[Dimension | None, list[str]] = {}
+    for name in kind.headings:
+        by_dimension.setdefault(DECLARED[f"{table}.{{}}.{name}"].dimension, []).append(name)
+    return [*by_dimension.values()]
 
 
 def _elements_table(
-    analysis: Analysis, table: str, kind: type[Element], elements: Sequence[Element]
+    analysis: Analysis,
+    table: str,
+    kind: type[Element],
+    elements: Sequence[Element],
+    names: Sequence[str],
 ) -> Table:
+    """The smallest and the largest value of outputs of these names, a row for each element."""
     rows: list[tuple[Cell, ...]] = []
     for number, element in enumerate(elements):
         values = analysis.motion.element_values(table, number)
-        figures = (analysis.motion.figures(values[name]) for name in kind.headings)
+        figures = (analysis.motion.figures(values[name]) for name in names)
         cells = (cell(figure) for figure in figures for cell in (smallest, largest))
         rows.append((str(number + 1), " → ".join(element.route), *cells))
     columns: list[str | Column] = ["", say("from → to")]
-    for name, heads in kind.headings.items():
+    for name in names:
         dimension = DECLARED[f"{table}.{{}}.{name}"].dimension
-        columns += [Column(say(head), dimension) for head in heads]
+        columns += [Column(say(head), dimension) for head in kind.headings[name]]
     return Table.of(say(kind.title), columns, rows)
 
 

@@ -19,6 +19,7 @@ from equipoise.mechanism.dynamics.bearing_life import BearingLife
 from equipoise.mechanism.dynamics.cam_contacts import CamFigures
 from equipoise.mechanism.dynamics.link_stress import LinkStress
 from equipoise.mechanism.dynamics.reactions import refuse_unbounded
+from equipoise.mechanism.dynamics.shares import ELEMENTS
 from equipoise.mechanism.kinematics.strokes import DeadPosition, Stroke, declared_figures
 from equipoise.mechanism.outputs.declared import DECLARED, GROUPS, Declared, declared
 from equipoise.quantities import SI, Dimension, Display, display
@@ -273,11 +274,7 @@ CAUSES = {
     "rotation": to_say("inertia of rotation"),
     "weight": to_say("weight"),
     "load": to_say("loads"),
-    "spring": to_say("springs"),
-    "damper": to_say("dampers"),
-    "bushing": to_say("bushings"),
-    "stop": to_say("stops"),
-    "resistance": to_say("resistances"),
+    **ELEMENTS,
     "friction": to_say("friction"),
 }
 DIMENSIONS = {unit: dimension for dimension, unit in SI.items()}

@@ -11,7 +11,6 @@ import pytest
 
 from equipoise import load
 from equipoise.design import evaluator as pooling
-from equipoise.design import evaluator as processes
 from equipoise.design.evaluator import PooledEvaluator
 from equipoise.design.requirements import Requirement
 from equipoise.errors import UsageError
@@ -39,7 +38,7 @@ def slow(name: str, designs: int) -> Study:
 def at_once(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     """Processes begin with the second design; returns what is computed by them."""
     parts: list[Any] = []
-    computed = processes.computed
+    computed = pooling.computed
 
     def counted(pool: Any, chunks: Any) -> Any:
         for part, outcome in computed(pool, chunks):
@@ -48,7 +47,7 @@ def at_once(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
 
     monkeypatch.setattr(pooling, "PATIENCE", -1.0)
     monkeypatch.setattr(pooling, "HANDY", 0.0)
-    monkeypatch.setattr(processes, "computed", counted)
+    monkeypatch.setattr(pooling, "computed", counted)
     return parts
 
 

@@ -15,6 +15,7 @@ import equipoise as eq
 from equipoise.errors import ModelError, UsageError
 from equipoise.exchange.export import export
 from equipoise.mechanism import Bushing, Machine
+from equipoise.results.joint_blocks import elements_tables
 from support.own_kinds import designs_by_numbers, drawn, on_the_page, read_back, scripted
 
 ON_LINK = Bushing(
@@ -207,3 +208,35 @@ def test_a_torsional_stiffness_refuses_a_link_that_turns_on() -> None:
     turning = Bushing("crank", "B", "S", torsional_stiffness=1.0)
     with pytest.raises(ModelError, match=r"^bushings\[1\]: 'crank' turns against 'frame' beyond"):
         eq.analyze(held(turning), 90)
+
+
+def test_a_report_says_what_each_has() -> None:
+    ends = {"link": "rocker", "point": "C", "to": "A"}
+    elastic = Bushing(**ends, stiffness=(2e3, 4e3))
+    said = [
+        str(bushing.sentence())
+        for bushing in (
+            elastic,
+            replace(elastic, preload=(-20.0, 0.0)),
+            Bushing(**ends, damping=(20.0, 0.0)),
+            Bushing(**ends, torsional_stiffness=30.0),
+            Bushing(**ends, torsional_damping=0.2),
+        )
+    ]
+    laws = [text.removeprefix("Bushing: ").partition(" C of rocker")[0] for text in said]
+    assert [law.split(",")[0] for law in laws[:3]] == [
+        "2000 N/m along and 4000 N/m across",
+        "2000 N/m along and 4000 N/m across",
+        "20.00 N s/m along and 0 N s/m across",
+    ]
+    assert laws[1].endswith("preloads of -20.00 N and 0 N,")
+    assert laws[3:] == ["30.00 N m/rad about", "0.2000 N m s/rad about"]
+
+
+def test_tables_are_as_wide_as_a_page() -> None:
+    """Deflections and forces stand in tables of their own, together all that is shown of them."""
+    analysis = eq.analyze(held(Bushing("rocker", "C", "A", stiffness=(2e3, 4e3))))
+    tables = [table for table in elements_tables(analysis) if table.title == Bushing.title]
+    dimensions = [{column.dimension for column in table.columns[2:]} for table in tables]
+    assert [len(table.columns) for table in tables] == [6, 6]
+    assert dimensions == [{"length"}, {"force"}]

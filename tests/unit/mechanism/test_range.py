@@ -12,7 +12,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import ChangePointError, EquipoiseError, MotionError, RangeError, UsageError
-from equipoise.mechanism.assembly import reach as stuck
+from equipoise.mechanism.assembly import reach
 from equipoise.mechanism.kinematics.swinging import swing
 from equipoise.mechanism.parts.machine import FRAME
 from unit.mechanism.build import ORIGIN, crank_rocker, four_bar, heavy, machine, slider_crank
@@ -474,8 +474,8 @@ def test_where_a_crank_stops_is_computed_for_who_reads_the_sentence(monkeypatch)
         calls.append(given)
         return range_of(*given)
 
-    range_of = stuck.range_of
-    monkeypatch.setattr(stuck, "range_of", counted)
+    range_of = reach.range_of
+    monkeypatch.setattr(reach, "range_of", counted)
     with pytest.raises(RangeError) as caught:
         eq.move(four_bar(1.0, 0.8, 0.5, 0.6))
     error = caught.value

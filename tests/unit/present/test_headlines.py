@@ -20,7 +20,6 @@ from equipoise.figures.paint import font_folder
 from equipoise.figures.style import SMALL
 from equipoise.i18n.languages import KNOWN
 from equipoise.present import pages as composed
-from equipoise.present import pages as fonts
 from equipoise.present.checks import machine_blocks
 from equipoise.present.composition import SHORT, build
 from equipoise.present.findings import Findings, ToolFindings, find
@@ -191,7 +190,9 @@ FOOT = 0.935
 )
 def test_no_quarter_of_the_first_page_is_empty(name: str) -> None:
     source = composed._source(document(name))
-    first, *_ = typst.compile(source.encode(), font_paths=fonts.installed(), format="png", ppi=30)
+    first, *_ = typst.compile(
+        source.encode(), font_paths=composed.installed(), format="png", ppi=30
+    )
     page = np.asarray(Image.open(BytesIO(first)).convert("L"))
     rows = np.flatnonzero(np.any(page[: int(FOOT * len(page))] < 200, axis=1))
     assert rows[-1] > 0.75 * len(page) * FOOT
@@ -296,16 +297,15 @@ def test_pages_end_alike_whatever_fonts_a_computer_has(
     """As without fonts of its own, above all without Japanese and Korean ones."""
     whole = pdf(document(name))
     alone = typst.Fonts(include_system_fonts=False, font_paths=[font_folder()])
-    for module in (fonts, composed):
-        monkeypatch.setattr(module, "installed", lambda: alone)
+    monkeypatch.setattr(composed, "installed", lambda: alone)
     assert pages(pdf(document(name))) == pages(whole)
-    assert fonts.families("en") == ["DejaVu Sans"]
+    assert composed.families("en") == ["DejaVu Sans"]
 
 
 @pytest.mark.parametrize("language", [code for code in KNOWN if KNOWN[code].fonts])
 def test_eastern_letters_are_of_a_font_that_has_them(language: str) -> None:
     try:
-        wanted = fonts.families(language)[1]
+        wanted = composed.families(language)[1]
     except UsageError:
         pytest.skip("this computer has none")
     names = re.findall(rb"/FontName ?/[A-Z]+\+([\w-]+)", pdf(document("yamashita-1", language)))

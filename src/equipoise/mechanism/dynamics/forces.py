@@ -389,7 +389,7 @@ def split(whole: Forces) -> Split:
 
     inertial = np.isin(causes, INERTIA)[:, None, None]
     # A spring's pull on the frame and what it makes the joints bear there cancel.
-    on_frame = ~np.isin(causes, ELEMENTS)[:, None, None]
+    on_frame = ~np.isin(causes, [*ELEMENTS])[:, None, None]
     frame_force = np.broadcast_to(on_frame * solved.frame_force, shape).copy()
     frame_moment = np.broadcast_to(on_frame * solved.frame_moment(whole.about), shape).copy()
     for link, demand in whole.inner.items():

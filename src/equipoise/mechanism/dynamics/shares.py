@@ -19,16 +19,20 @@ from equipoise.mechanism.dynamics.reactions import (
     JointForce,
     SliderForce,
 )
+from equipoise.mechanism.parts.force_kinds import force_kinds
+from equipoise.mechanism.parts.machine import Machine
 
-CAUSES = ("translation", "rotation", "weight", "load", "spring", "damper", "bushing", "stop",
-          "resistance", "friction")  # fmt: skip
-"""Inertia of the centres of mass, inertia of rotation about them, weight, loads from outside,
-springs with preloads of couplings, other force elements by their `cause`, friction in joints."""
-EVERYWHERE = CAUSES[:5]
-"""Those that every machine has, be they 0."""
-INERTIA = CAUSES[:2]
-ELEMENTS = CAUSES[4:-1]
-"""Those of force elements: what acts between bodies, the frame too."""
+ELEMENTS: Mapping[str, str] = {
+    kind.cause: kind.cause_label for kind in force_kinds(Machine).values()
+}
+"""Causes of force elements, which act between bodies, the frame too, with their labels; the first
+are springs, with which preloads of couplings are listed."""
+INERTIA = ("translation", "rotation")
+"""Inertia of the centres of mass, inertia of rotation about them."""
+EVERYWHERE = (*INERTIA, "weight", "load", "spring")
+"""Causes that every machine has, be they 0; loads are those from outside."""
+CAUSES = tuple(dict.fromkeys((*EVERYWHERE, *ELEMENTS, "friction")))
+"""All of them, friction in joints as the last."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -36,6 +36,7 @@ class Bushing(BetweenPoints, RatedElement):
     freedoms = 3
 
     cause = "bushing"
+    cause_label = to_say("bushings")
     special = to_say("bushing")
     legend = ("bushing", to_say("bushing"))
     sign = "equipoise.symbols.bushings:bushing_sign"
@@ -190,17 +191,39 @@ class Bushing(BetweenPoints, RatedElement):
                 yield number >= 0
 
     def sentence(self) -> Note:
-        """Its stiffness and its ends, for a report."""
-        along, across = (told(number, "stiffness", "N/m") for number in self.stiffness)
-        return Note(
-            "Bushing: {along} along and {across} across, {point} of {link} at {to} of {on}",
-            along=along,
-            across=across,
-            point=self.point,
-            link=self.link,
-            to=self.to,
-            on=self.on,
+        """Its stiffness, or damping where it has none, preload and ends, for a report."""
+        ends = {"point": self.point, "link": self.link, "to": self.to, "on": self.on}
+        if not any((*self.stiffness, *self.damping)):
+            return Note(
+                "Bushing: {rate} about {point} of {link}, on {on}", rate=self._turning(), **ends
+            )
+        laws: tuple[tuple[Pair, Dimension, str], ...] = (
+            (self.stiffness, "stiffness", "N/m"),
+            (self.damping, "damping", "N s/m"),
         )
+        pair, dimension, unit = next(law for law in laws if any(law[0]))
+        ends |= {name: told(number, dimension, unit)
+                 for name, number in zip(("along", "across"), pair, strict=True)}  # fmt: skip
+        if not any(self.preload):
+            return Note(
+                "Bushing: {along} along and {across} across, {point} of {link} at {to} of {on}",
+                **ends,
+            )
+        first, second = (told(number, "force") for number in self.preload)
+        return Note(
+            "Bushing: {along} along and {across} across, with preloads of {first} and {second}, "
+            "{point} of {link} at {to} of {on}",
+            first=first,
+            second=second,
+            **ends,
+        )
+
+    def _turning(self) -> str:
+        """Its stiffness about the pin, or damping where it has none."""
+        if self.torsional_stiffness is not None:
+            return told(self.torsional_stiffness, "torsional stiffness", "N m/rad")
+        assert self.torsional_damping is not None
+        return told(self.torsional_damping, "torsional damping", "N m s/rad")
 
     def summary(self) -> str:
         """All its numbers, in a line of `check`."""

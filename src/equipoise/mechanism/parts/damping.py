@@ -8,7 +8,7 @@ from itertools import pairwise
 from typing import Any, ClassVar
 
 from equipoise.errors import ModelError
-from equipoise.i18n import Note
+from equipoise.i18n import Note, to_say
 from equipoise.keys import Conditions, lacks, needs
 from equipoise.mechanism.parts.force_kinds import RatedElement
 from equipoise.mechanism.parts.ramps import ramp_value, ramps_of, wrong_rows
@@ -35,6 +35,7 @@ class Damping(RatedElement):
     """
 
     cause = "damper"
+    cause_label = to_say("dampers")
     efforts_key: ClassVar[str]
 
     damping: Any

@@ -9,6 +9,7 @@ from abc import abstractmethod
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, ClassVar
 
+from equipoise.i18n import to_say
 from equipoise.keys import Frozen
 from equipoise.keys.declaring import once
 from equipoise.mechanism.checks import FRAME
@@ -23,10 +24,12 @@ class ForceElement(Element):
 
     rated : whether its forces depend on velocities.
     cause : under which its share of forces and drive torques is listed.
+    cause_label : that for readers.
     """
 
     rated: ClassVar[bool] = False
     cause: ClassVar[str] = "spring"
+    cause_label: ClassVar[str] = to_say("springs")
 
     @abstractmethod
     def actions(self, at: Placed) -> Iterator[Action]:

@@ -74,6 +74,7 @@ class Resistance(BetweenPoints, RatedElement):
     freedoms = 2
 
     cause = "resistance"
+    cause_label = to_say("resistances")
     special = to_say("resistance")
     legend = ("resistance", to_say("resistance"))
     sign = "equipoise.symbols.resistances:resistance_sign"

@@ -10,7 +10,7 @@ from equipoise.errors import ModelError
 from equipoise.i18n import Note, to_say
 from equipoise.keys import Number, TextKind, declared, key
 from equipoise.mechanism.checks import FRAME, Bodies
-from equipoise.mechanism.formulas.kernels import cross, dot, positive
+from equipoise.mechanism.formulas.kernels import cross, positive
 from equipoise.mechanism.parts.between import BetweenPoints
 from equipoise.mechanism.parts.element_kinds import Placed
 from equipoise.mechanism.parts.force_kinds import Action, RatedElement
@@ -48,6 +48,7 @@ class Stop(BetweenPoints, RatedElement):
     still = ("restitution",)
 
     cause = "stop"
+    cause_label = to_say("stops")
     special = to_say("stop")
     legend = ("stop", to_say("stop"))
     sign = "equipoise.symbols.stops:stop_sign"
@@ -108,18 +109,22 @@ class Stop(BetweenPoints, RatedElement):
         """Way from the line's point, m, unit vector in which it pushes, gap, m, and speed with
         which that grows, m/s.
         """
-        arm = at.point(self.link, self.point) - at.point(self.on, self.to)
-        moving = at.velocity(self.link, self.point) - at.velocity(self.on, self.to)
-        normal = at.turned(self.on, self.direction)
-        opening = dot(normal, moving) + cross(normal, arm) * at.rate(self.on)
-        return arm, normal, dot(normal, arm), opening
+        arm, normal, ((gap, opening), _) = self.relative_motion(at, self.direction)
+        return arm, normal, gap, opening
+
+    @property
+    def dissipation(self) -> Any:
+        """Coefficient of Hunt and Crossley, s/m, by which approach adds to the elastic force; None
+        where nothing is lost.
+        """
+        if self.speed is None or self.restitution is None:
+            return None
+        return loss_factor(self.restitution) / self.speed
 
     def force(self, gap: Any, opening: Any) -> Any:
         """Force, N, at a gap, m, that grows with a speed, m/s: it only ever pushes."""
-        elastic = self.stiffness * positive(-gap)
-        if self.speed is None or self.restitution is None:
-            return elastic
-        return elastic * positive(1.0 - loss_factor(self.restitution) * opening / self.speed)
+        elastic, dissipation = self.stiffness * positive(-gap), self.dissipation
+        return elastic if dissipation is None else elastic * positive(1.0 - dissipation * opening)
 
     def ways(self, at: Placed) -> tuple[tuple[Any, Any], ...]:
         """Its gap, m, and the speed with which that grows, m/s."""
