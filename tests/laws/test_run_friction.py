@@ -11,6 +11,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import UsageError
+from equipoise.mechanism.parts.belts import Belt
 from equipoise.mechanism.parts.bushings import Bushing
 from equipoise.mechanism.parts.dampers import Damper
 from equipoise.mechanism.parts.force_elements import Load, Motor
@@ -20,6 +21,7 @@ from equipoise.mechanism.parts.stops import Stop
 from equipoise.mechanism.parts.torsion_dampers import TorsionDamper
 from equipoise.running.blocks import verdict
 from equipoise.running.drivers import Driver
+from support.machines_redundant import planet_train
 
 MASS, VISCOUS, DRY, OFFSET = 95.11, 203.5, 20.39, -3.165
 """Of the electro-mechanical positioning system (EMPS): kg, N s/m, N, N."""
@@ -148,8 +150,61 @@ def test_a_motor_works_against_friction() -> None:
     assert cycle.energy_per_turn == pytest.approx(2 * pi * float(torque), rel=0.05)
 
 
-def test_soil_and_teeth_are_not_run_with_friction() -> None:
-    planter = eq.load("geared-counterweight")
-    joint = JointProperties("joints.A", drag_torque=0.1)
-    with pytest.raises(UsageError, match="together with soil, or with teeth"):
-        eq.run(replace(planter, joints=(joint,), balance=None))
+def with_losses(name: str, loss: float = 0.05) -> eq.Machine:
+    """A bundled machine whose meshes lose, and whose pins rub, by the names of its forces."""
+    machine = with_chain() if name == "chain" else eq.load(name)
+    names = eq.analyze(machine, [0.0]).forces
+    joints = [
+        JointProperties(f"joints.{pin}", friction=0.08, radius=0.004)
+        for pin, force in names.joints.items()
+        if not hasattr(force, "normal")
+    ]
+    joints += [
+        JointProperties(f"{mesh.table}.{mesh.name}", mesh_loss=loss)
+        for mesh in machine.couplings
+        if mesh.table in ("gears", "racks", "belts")
+    ]
+    return replace(machine, joints=tuple(joints), balance=None, run=None)
+
+
+def with_chain() -> eq.Machine:
+    """A crank that swings a wheel by a rod, whose sprocket drives another by a chain."""
+    machine = eq.load("geared-counterweight")
+    (gear,) = machine.gears
+    chain = Belt(gear.driver, gear.driven, radii=(0.02, 0.03), carrier=gear.carrier)
+    return replace(machine, gears=(), belts=(chain,), balance=None)
+
+
+@pytest.mark.parametrize(
+    "name", ["geared-counterweight", "planetary-planting-arm", "knife-drive", "transplanter",
+             "chain"],
+)  # fmt: skip
+def test_teeth_chains_and_soil_press_in_a_run_as_in_inverse_dynamics(name: str) -> None:
+    """Flanks and strands change within a turn, and the soil pushes; what they press in joints
+    and what meshes lose is that of inverse dynamics, which passes over each flank anew.
+    """
+    machine = with_losses(name)
+    speed = machine.drive.speed
+    found = eq.run(machine, speed=speed, turns=1)
+    assert found.energy_error < 1e-9
+    equation, compared = found.equation, 0
+    for k in np.linspace(1, len(found.time) - 2, 25).astype(int):
+        angle, now = float(found.crank_angle[k]), float(found.crank_speed[k])
+        if np.min(np.abs(equation.edges - angle % equation.period)) < 1e-6:
+            continue
+        sense = float(np.sign(now))
+        inertia, slope, torques = equation.at(angle, now, 0.0, sense)
+        rate = (float(np.sum(torques)) - slope * now**2 / 2) / inertia
+        forces = eq.analyze(machine, [angle], now, rate).forces
+        size = np.max(np.abs(torques)) + inertia * abs(rate)
+        assert abs(float(forces.drive_torque[0])) < 1e-8 * size
+        assert abs(float(torques[-1])) > 1e-6 * size
+        compared += 1
+    assert compared > 10
+
+
+def test_friction_is_refused_where_teeth_share_their_force_with_what_is_redundant() -> None:
+    machine = planet_train(np.random.default_rng(1)).machine
+    joint = JointProperties(f"gears.{machine.gears[0].name}", mesh_loss=0.02)
+    with pytest.raises(UsageError, match="share their force with redundant constraints"):
+        eq.run(replace(machine, joints=(joint,)), speed=1.0, turns=1)

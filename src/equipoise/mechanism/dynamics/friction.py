@@ -74,12 +74,15 @@ class FrictionLaw:
 
     rates : (J, N) rad/s or m/s.  grip : (J, N) with the sign of the motion, what friction is of
     what presses: coefficients times radii.  given : (J, N) drag and viscous part, N m or N.
+    sides : how many of the joints, the last ones, are meshes that press with their backward flank
+        alone, where their push is below 0.
     """
 
     joints: tuple[RubbingJoint, ...]
     rates: Array
     grip: Array
     given: Array
+    sides: int = 0
 
     @classmethod
     def of(cls, joints: Sequence[RubbingJoint], rates: Array, senses: Array) -> FrictionLaw:
@@ -97,6 +100,15 @@ class FrictionLaw:
                 drag, damping = item.drag_force, item.damping
             given[k] = senses[k] * drag + damping * rates[k]
         return cls(tuple(joints), rates, grip, given)
+
+    def with_sides(self, sides: Sequence[RubbingJoint]) -> FrictionLaw:
+        """With efforts of backward flanks of so many meshes, each as large as what presses."""
+        if not sides:
+            return self
+        zeros = np.zeros((len(sides), self.rates.shape[1]))
+        rates, given = (np.concatenate([item, zeros]) for item in (self.rates, self.given))
+        grip = np.concatenate([self.grip, zeros - 1.0])
+        return FrictionLaw((*self.joints, *sides), rates, grip, given, len(sides))
 
     @cached_property
     def levers(self) -> Array:
@@ -119,6 +131,8 @@ class FrictionLaw:
         size = _length(parts[:, 0], parts[:, 1])
         if len(sliders := self.sliders):
             size[sliders] = np.max(np.abs(parts[sliders]) * self.levers[sliders, :, None], axis=1)
+        if self.sides:
+            size[-self.sides :] = np.maximum(-parts[-self.sides :, 0], 0.0)
         return size
 
     def slopes(self, parts: Array) -> Array:
@@ -130,6 +144,8 @@ class FrictionLaw:
             own = scaled[sliders]
             first, second = np.abs(own[:, 0]), np.abs(own[:, 1])
             slopes[sliders] = np.sign(own) * np.stack([first >= second, second > first], axis=1)
+        if self.sides:
+            slopes[-self.sides :, 0] = np.where(parts[-self.sides :, 0] < 0, -1.0, 0.0)
         return np.asarray(slopes * self.levers[..., None])
 
     def followed(self, efforts: Array, press: Press) -> Array:
@@ -162,7 +178,7 @@ class FrictionLaw:
     def at(self, some: Array) -> FrictionLaw:
         """At some of the N crank angles."""
         return FrictionLaw(self.joints, self.rates[:, some], self.grip[:, some],
-                           self.given[:, some])  # fmt: skip
+                           self.given[:, some], self.sides)  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)

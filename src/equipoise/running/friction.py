@@ -1,0 +1,345 @@
+"""Friction of joints and losses of meshes on a crank that follows from torques.
+
+What presses in a joint follows from the crank's angle, from the square of its speed and from its
+acceleration, and that from all torques, friction's among them:
+
+    P = P_0 + q.^2 P_v + q.. P_a + B e + A f,    J q.. = T + r f - J' q.^2 / 2
+
+with f the friction of all joints, r their rates by crank angle, T all other torques, and e the
+efforts of dampers, stops and resistances, and forces of the soil, which follow from angle and
+speed.  So q.. is put into the first equation, and what remains is the law of friction with other
+numbers.
+
+Teeth push on the flank, and chains pull with the strand, that the sense of their force asks for.
+P is that of forward flanks; where the push T of a mesh is below 0, its other flank adds the effort
+-T along what sets both lines of action apart, whose rate is 0: a further row of the same law.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import field, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from equipoise.dataclass import dataclass
+from equipoise.errors import LockError, UsageError
+from equipoise.i18n import Note, to_say
+from equipoise.mechanism.assembly.linkage import Linkage, assemble
+from equipoise.mechanism.dynamics.acting import given_loads, spring_demands
+from equipoise.mechanism.dynamics.forces import forces
+from equipoise.mechanism.dynamics.friction import (
+    Demands,
+    FrictionLaw,
+    Press,
+    balanced,
+    pressing_rows,
+    unit_demands,
+)
+from equipoise.mechanism.dynamics.rated import effort_demands, rated_efforts, rated_ways
+from equipoise.mechanism.dynamics.reactions import Acting, JointReactions, demands_of
+from equipoise.mechanism.dynamics.reduced import reduced_inertia
+from equipoise.mechanism.kinematics.motion import Motion
+from equipoise.mechanism.kinematics.rubbing import RubbingJoint, rubbing_joints
+from equipoise.mechanism.kinematics.tip import surface_of, tip_link
+from equipoise.mechanism.parts.force_kinds import RatedElement, rated_elements
+from equipoise.mechanism.parts.joint_properties import JointProperties
+from equipoise.mechanism.parts.machine import Machine
+from equipoise.running.sources import Motions, OfSoil, Source
+from equipoise.signals import Array
+
+KNOWN = 3
+"""Parts of what presses without friction: what stands still, by speed squared, by acceleration."""
+
+NOISE = 1e-14
+"""Of an inertia, per rad, below which its derivative is rounding, which no polynomial follows."""
+
+
+def plus(*demands: Demands) -> dict[str, Any]:
+    """Demands of links, added up."""
+    total: dict[str, Any] = {}
+    for demand in demands:
+        for link, (force, moment) in demand.items():
+            own = total.get(link, (0.0, 0.0))
+            total[link] = own[0] + force, own[1] + moment
+    return total
+
+
+@dataclass(frozen=True, eq=False)
+class Friction(Source):
+    """The friction of all joints of all rows.
+
+    Raises
+    ------
+    UsageError : meshes whose flank depends on the sense of their force share it with joints in a
+        way that statics leaves open.
+    """
+
+    machine: Machine
+    key: str = field(default="friction", init=False)
+    label: str = field(default=to_say("friction"), init=False)
+
+    def __post_init__(self) -> None:
+        shared = assemble(self.machine).shared
+        if self.machine.switches and shared is not None and shared.count:
+            raise UsageError(
+                Note(
+                    "a run does not compute friction in joints where teeth or chains share their "
+                    "force with redundant constraints; leave one of them out"
+                )
+            )
+
+    # -- what it consists of -----------------------------------------------------------------------
+
+    @cached_property
+    def rows(self) -> int:
+        """How many rows turn on the shaft."""
+        return max(len(self.machine.rows), 1)
+
+    @cached_property
+    def joints(self) -> tuple[RubbingJoint, ...]:
+        """Those of all rows, one row after the other."""
+        return rubbing_joints(assemble(self.machine)) * self.rows
+
+    @cached_property
+    def sides(self) -> tuple[RubbingJoint, ...]:
+        """Meshes of all rows whose flank, or strand, depends on the sense of their force."""
+        return sided_meshes(assemble(self.machine)) * self.rows
+
+    @cached_property
+    def elements(self) -> tuple[tuple[str, int, RatedElement], ...]:
+        """Dampers, stops and resistances, whose forces press in joints."""
+        return rated_elements(self.machine)
+
+    @cached_property
+    def soil(self) -> OfSoil | None:
+        """The soil, whose force presses in joints."""
+        planting = self.machine.planting
+        if planting is None or planting.soil is None:
+            return None
+        return OfSoil(planting, surface_of(self.machine))
+
+    @cached_property
+    def given(self) -> tuple[int, int]:
+        """How many efforts follow from angle and speed, in all rows: of elements, and of soil."""
+        freedoms = sum(element.freedoms for *_, element in self.elements)
+        tips = 0 if self.soil is None else len(self.soil.planting.every_arm)
+        return freedoms * self.rows, 2 * tips * self.rows
+
+    @property
+    def unknowns(self) -> int:
+        """How many efforts follow from what presses: of friction, and of flanks."""
+        return len(self.joints) + len(self.sides)
+
+    # -- tabulated ---------------------------------------------------------------------------------
+
+    def columns(self, motions: Motions) -> list[Array]:
+        """J', then rates (J,), then parts (U, 2, 3 + U + W) of what presses, then the ways of
+        elements with their derivatives, as of `rated_ways`, and the columns of the soil; U and W
+        are the sums of `unknowns` and `given`.
+        """
+        inertia, slope = np.sum([reduced_inertia(motion) for motion in motions], axis=0)
+        if np.max(np.abs(slope)) <= NOISE * np.max(inertia):  # of a crank alone, which is constant
+            slope = np.zeros_like(slope)
+        width = KNOWN + self.unknowns + sum(self.given)
+        whole = np.zeros((self.unknowns, 2, width, len(motions[0].crank_angle)))
+        rates, ways = [], []
+        for row, motion in enumerate(motions):
+            own = rubbing_joints(motion.linkage)
+            rates += [joint.rate(motion) for joint in own]
+            ways += rated_ways(motion, self.elements)
+            pressed, causes = self._places(row)
+            whole[np.ix_(pressed, (0, 1), causes)] = _parts(motion, own, self.elements)
+        soil = [] if self.soil is None else self.soil.columns(motions)
+        return [np.asarray(slope), *rates, *whole.reshape(-1, whole.shape[-1]), *ways, *soil]
+
+    def _places(self, row: int) -> tuple[list[int], list[int]]:
+        """Of a row, which of the U are its own, and which of the 3 + U + W causes."""
+        pressed, begin = [], 0
+        for count in (len(self.joints), len(self.sides)):
+            pressed += _share(begin, count, row, self.rows)
+            begin += count
+        causes = [*range(KNOWN), *(KNOWN + place for place in pressed)]
+        begin += KNOWN
+        for count in self.given:
+            causes += _share(begin, count, row, self.rows)
+            begin += count
+        return pressed, causes
+
+    def groups(self, count: int) -> list[int]:
+        """J', all rates, and what presses anywhere by the same cause: most of that vanishes, such
+        as forces in a joint beside the one that friction acts in.  Then each element's ways, and
+        each column of the soil.
+        """
+        each = KNOWN + self.unknowns + sum(self.given)
+        causes = [2 + cause for _ in range(2 * self.unknowns) for cause in range(each)]
+        sizes = [2 * element.freedoms for *_, element in self.elements] * self.rows
+        ways = [2 + each + number for number, size in enumerate(sizes) for _ in range(size)]
+        known = [0, *[1] * len(self.joints), *causes, *ways]
+        first = max(known) + 1
+        return [*known, *range(first, first + count - len(known))]
+
+    # -- on the crank ------------------------------------------------------------------------------
+
+    def torque(self, columns: Array, speed: Array) -> Array:
+        """It depends on more: see `torque_beside`."""
+        raise NotImplementedError
+
+    def torque_beside(
+        self, inertia: Array, columns: Array, speed: Array, sense: float, acting: Array
+    ) -> Array:
+        """Torque (...) of friction on the crank, N m.
+
+        inertia : reduced, kg m2.  columns : (C, ...).  speed : rad/s.
+        sense : 1 or -1, in which the crank turns, or would.  acting : of all else, N m.
+        """
+        shape = np.shape(speed)
+        inertia, speed, acting = (np.ravel(item) for item in (inertia, speed, acting))
+        slope, rates, parts = self._split(columns, speed, sense)
+        free = (acting - slope * speed**2 / 2) / inertia
+        of_acceleration = parts[:, :, 2]
+        without = parts[:, :, 0] + speed**2 * parts[:, :, 1] + free * of_acceleration
+        response = parts[:, :, KNOWN:] + np.einsum("jcn,kn->jckn", of_acceleration, rates / inertia)
+        result = self._obeying(rates, speed, sense, Press.of(without, response))
+        return np.asarray(result.reshape(shape))
+
+    def breakaway(self, columns: Array, sense: float) -> float:
+        """Torque, N m, that has to be exceeded for the crank to leave its rest in a sense."""
+        _, rates, parts = self._split(columns, np.zeros(1), sense)
+        press = Press.of(parts[:, :, 0], parts[:, :, KNOWN:])
+        return -sense * float(self._obeying(rates, np.zeros(1), sense, press)[0])
+
+    def _split(self, columns: Array, speed: Array, sense: float) -> tuple[Array, Array, Array]:
+        """J' (N,), rates (U, N) and parts (U, 2, 3 + U, N), of which the first have what elements
+        and soil do at speeds (N,) in a sense.
+        """
+        whole, joints, unknowns = columns.reshape(len(columns), -1), len(self.joints), self.unknowns
+        each = KNOWN + unknowns + sum(self.given)
+        begin, end = 1 + joints, 1 + joints + 2 * unknowns * each
+        rates = np.concatenate([whole[1:begin], np.zeros((unknowns - joints, whole.shape[1]))])
+        parts = whole[begin:end].reshape(unknowns, 2, each, -1)
+        if any(self.given):
+            values = self._given_efforts(whole[end:], speed, sense)
+            pressed = np.einsum("jcwn,wn->jcn", parts[:, :, KNOWN + unknowns :], values)
+            parts = parts[:, :, : KNOWN + unknowns].copy()
+            parts[:, :, 0] += pressed
+        return whole[0], rates, parts
+
+    def _given_efforts(self, columns: Array, speed: Array, sense: float) -> Array:
+        """Efforts (W, N) of elements and soil by their columns at speeds (N,) in a sense."""
+        ways = 2 * self.given[0]
+        efforts = []
+        if self.elements:
+            elements = [element for *_, element in self.elements]
+            efforts, _ = rated_efforts(elements, columns[:ways], speed, sense)
+        if self.soil is not None:
+            for force in self.soil.forces(columns[ways:], speed):
+                efforts += [force.real, force.imag]
+        return np.array(np.broadcast_arrays(*efforts, columns[0])[:-1])
+
+    def _obeying(self, rates: Array, speed: Array, sense: float, press: Press) -> Array:
+        """Torque (N,) on the crank of the friction that obeys the law."""
+        law = FrictionLaw.of(self.joints, rates[: len(self.joints)] * speed,
+                             sense * np.sign(rates[: len(self.joints)]))  # fmt: skip
+        efforts, share = balanced(law.with_sides(self.sides), press)
+        if np.any(share < 1):
+            raise LockError(Note("friction in joints locks the machine on the way"))
+        return np.asarray(np.sum(rates * efforts, axis=0))
+
+
+def sided_meshes(linkage: Linkage) -> tuple[RubbingJoint, ...]:
+    """Meshes of a linkage whose flank, or strand, depends on the sense of their force."""
+    by_name = {(item.kind, item.name): item for item in linkage.reactions}
+    return tuple(
+        RubbingJoint(
+            mesh.name,
+            by_name[mesh.table, mesh.name],
+            JointProperties(f"{mesh.table}.{mesh.name}"),
+            None,
+            0.0,
+            mesh,
+        )
+        for mesh in linkage.machine.couplings
+        if mesh.switches
+    )
+
+
+def _share(begin: int, count: int, row: int, rows: int) -> list[int]:
+    """Of so many places from one on, those of a row."""
+    return [*range(begin + row * count // rows, begin + (row + 1) * count // rows)]
+
+
+def _parts(
+    motion: Motion,
+    joints: Sequence[RubbingJoint],
+    elements: tuple[tuple[str, int, RatedElement], ...],
+) -> Array:
+    """Parts (U, 2, 3 + U + W, N) of what presses in the joints and meshes of a row."""
+    still, turning, starting = (motion.at(*rates) for rates in ((0.0, 0.0), (1.0, 0.0), (0.0, 1.0)))
+    result = forces(still)
+    loads = demands_of(motion, given_loads(motion))
+    demands = plus(result.weights, loads, spring_demands(motion, rated=False))
+    known = [demands, forces(turning).inertia, forces(starting).inertia]
+    units = unit_demands(motion, joints)
+    given = [*effort_demands(motion, elements), *_soil_units(motion)]
+    sides = sided_meshes(motion.linkage)
+    if not sides:
+        return pressing_rows(motion, [*known, *units, *given], joints, None)
+    pressed, apart = _on_flanks(motion, [*known, *units, *given], (*joints, *sides), sides)
+    before = KNOWN + len(units)
+    return np.concatenate([pressed[:, :, :before], apart, pressed[:, :, before:]], axis=2)
+
+
+def _on_flanks(
+    motion: Motion,
+    rows: Sequence[Demands],
+    joints: Sequence[RubbingJoint],
+    sides: Sequence[RubbingJoint],
+) -> tuple[Array, Array]:
+    """What presses (J, 2, R, N) with each of R demands where forward flanks bear, and what a unit
+    of effort between both flanks of each of S meshes adds to it (J, 2, S, N).
+
+    The latter is what one pass differs from the other, over the push of the mesh, by the demand
+    with which that is largest.
+    """
+    forward = {f"flank({mesh.name})": 1.0 for mesh in motion.machine.couplings}
+    probes = [_pushing(motion, side) for side in sides]
+
+    def passed(flanks: dict[str, float]) -> Array:
+        like = JointReactions(motion, {**flanks})
+        return pressing_rows(motion, [*rows, *probes], joints, like)
+
+    pressed, apart = passed(forward), []
+    for number, side in enumerate(sides):
+        backward = passed({**forward, f"flank({side.name})": -1.0})
+        push = pressed[len(joints) - len(sides) + number, 0]
+        largest = np.argmax(np.abs(push), axis=0)[None]
+        push = np.take_along_axis(push, largest, axis=0)[0]
+        change = np.take_along_axis(pressed - backward, largest[None, None], axis=2)[:, :, 0]
+        apart.append(np.divide(change, push, out=np.zeros_like(change), where=push != 0))
+    return pressed[:, :, : len(rows)], np.stack(apart, axis=2)
+
+
+def _pushing(motion: Motion, side: RubbingJoint) -> Demands:
+    """A demand that a mesh meets by its push: a torque on its driven link, or a force on a driven
+    rack along its guide.
+    """
+    assert side.mesh is not None
+    if side.mesh.slides != side.on:
+        return demands_of(motion, [(side.on, None, 0j, 1.0)])  # type: ignore[list-item]
+    machine = motion.machine
+    guide = next(item for item in machine.sliders if (item.link, item.on) == (side.on, side.by))
+    sliding = replace(side, slider=guide)
+    return demands_of(motion, [(side.on, sliding.place(motion), sliding.direction(motion), 0.0)])
+
+
+def _soil_units(motion: Motion) -> list[Demands]:
+    """What holds a unit of the soil's force along x, and along y, on each tip."""
+    planting = motion.machine.planting
+    if planting is None or planting.soil is None:
+        return []
+    tips = [(tip_link(motion.machine, arm.tip), arm.tip) for arm in planting.every_arm]
+    units: list[Acting] = [(*tip, unit, 0.0) for tip in tips for unit in (1 + 0j, 1j)]  # type: ignore[misc]
+    return [demands_of(motion, [unit]) for unit in units]

@@ -1,0 +1,171 @@
+"""What acts on a crank beside its drive: sources of generalized force.
+
+Each says which functions of the crank angle it needs, which are tabulated, and what it makes of
+their values and of the crank's speed.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterator, Sequence
+
+import numpy as np
+
+from equipoise.dataclass import dataclass
+from equipoise.i18n import to_say
+from equipoise.mechanism.dynamics.acting import against_soil, given_loads, spring_demands
+from equipoise.mechanism.dynamics.rated import rated_torque, rated_ways
+from equipoise.mechanism.dynamics.reactions import demands_of
+from equipoise.mechanism.dynamics.reduced import generalized_force, weight_torque
+from equipoise.mechanism.dynamics.shares import ELEMENTS
+from equipoise.mechanism.formulas.kernels import dot
+from equipoise.mechanism.kinematics.motion import Motion
+from equipoise.mechanism.kinematics.tip import surface_of
+from equipoise.mechanism.parts.field import Planting
+from equipoise.mechanism.parts.force_kinds import RatedElement, rated_elements
+from equipoise.mechanism.parts.machine import Machine
+from equipoise.results.outputs import CAUSES
+from equipoise.signals import Array
+
+Motions = Sequence[Motion]
+"""Of each row of a machine, at the same N instants."""
+
+
+class Source(ABC):
+    """What exerts a generalized force on the crank, by its angle and speed.
+
+    key : its name in JSON.  label : for readers.
+    conserves : whether it gives back over a cycle what it takes.
+    """
+
+    key: str
+    label: str
+    conserves: bool = False
+
+    @abstractmethod
+    def columns(self, motions: Motions) -> list[Array]:
+        """Smooth functions (N,) of the crank angle that it needs."""
+
+    def groups(self, count: int) -> list[int]:
+        """Of each of so many columns, the group that it belongs to: one whose largest value tells
+        what is rounding in all of it; each is a group of its own where not said otherwise.
+        """
+        return [*range(count)]
+
+    @abstractmethod
+    def torque(self, columns: Array, speed: Array) -> Array:
+        """Generalized force (...), N m, by these (C, ...) and the crank's speed (...), rad/s."""
+
+    def sliding_torque(self, columns: Array, speed: Array, sense: float) -> Array:
+        """Torque (...) as of `torque`, with dry friction of full size against a sense, 1 or -1, in
+        which the crank turns, or would.
+        """
+        return self.torque(columns, speed)
+
+    def holding(self, columns: Array, sense: float) -> float:
+        """Torque, N m, by which it holds a crank at rest against one that turns it in a sense."""
+        still = np.zeros(())
+        added = self.sliding_torque(columns, still, sense) - self.torque(columns, still)
+        return -sense * float(added)
+
+
+@dataclass(frozen=True)
+class ByAngle(Source):
+    """A source that depends on the crank angle alone."""
+
+    key: str
+    label: str
+    of: Callable[[Motion], Array]
+    conserves: bool = False
+
+    def columns(self, motions: Motions) -> list[Array]:
+        return [np.asarray(sum(self.of(motion) for motion in motions))]
+
+    def torque(self, columns: Array, speed: Array) -> Array:
+        torque: Array = columns[0]
+        return torque
+
+
+@dataclass(frozen=True)
+class OfSoil(Source):
+    """The soil, whose force follows the velocity of each tip over ground."""
+
+    planting: Planting
+    surface: float
+    key: str = "soil"
+    label: str = to_say("soil")
+
+    def columns(self, motions: Motions) -> list[Array]:
+        tips = [motion.point(arm.tip) for motion in motions for arm in self.planting.every_arm]
+        places = [self.surface - tip.y for tip in tips]
+        return [*places, *(tip.place_1.real for tip in tips), *(tip.place_1.imag for tip in tips)]
+
+    def torque(self, columns: Array, speed: Array) -> Array:
+        depth, x, y = columns.reshape(3, -1, *columns.shape[1:])
+        if not np.any(depth > 0):  # most of a turn
+            return np.zeros_like(speed)
+        return np.asarray(np.sum(dot(self.forces(columns, speed), x + 1j * y), axis=0))
+
+    def forces(self, columns: Array, speed: Array) -> Array:
+        """Force (A, ...) on each tip of each row, N, complex."""
+        assert self.planting.soil is not None
+        depth, x, y = columns.reshape(3, -1, *columns.shape[1:])
+        over_ground = (x + 1j * y) * speed + self.planting.forward(speed)
+        return against_soil(self.planting.soil, depth, over_ground)
+
+
+def _of_loads(motion: Motion) -> Array:
+    return generalized_force(motion, demands_of(motion, given_loads(motion)))
+
+
+def _of_springs(motion: Motion) -> Array:
+    return generalized_force(motion, spring_demands(motion, rated=False))
+
+
+@dataclass(frozen=True)
+class OfRatedElements(Source):
+    """Force elements of one cause whose forces depend on velocities."""
+
+    elements: tuple[tuple[str, int, RatedElement], ...]
+    key: str
+    label: str
+
+    def columns(self, motions: Motions) -> list[Array]:
+        """Of each row its ways and their derivatives, as of `rated_ways`."""
+        return [column for motion in motions for column in rated_ways(motion, self.elements)]
+
+    def groups(self, count: int) -> list[int]:
+        """Ways of an element and their derivatives are measured together: some may vanish, such as
+        the way across its direction.
+        """
+        sizes = [2 * element.freedoms for element in self._each]
+        sizes *= count // sum(sizes)
+        return [number for number, size in enumerate(sizes) for _ in range(size)]
+
+    def torque(self, columns: Array, speed: Array) -> Array:
+        return rated_torque(self._each, columns, speed)
+
+    def sliding_torque(self, columns: Array, speed: Array, sense: float) -> Array:
+        return rated_torque(self._each, columns, speed, sense)
+
+    @property
+    def _each(self) -> list[RatedElement]:
+        return [element for *_, element in self.elements]
+
+
+def sources_of(machine: Machine) -> Iterator[Source]:
+    """Everything but the drive that turns the crank or brakes it."""
+    if any(machine.gravity):
+        yield ByAngle("weight", to_say("weight"), weight_torque, conserves=True)
+    stiff = [element for *_, element in machine.force_elements if not element.rated]
+    if stiff or any(coupling.preload for coupling in machine.couplings):
+        yield ByAngle("springs", to_say("springs"), _of_springs, conserves=True)
+    rated = rated_elements(machine)
+    for cause in ELEMENTS:
+        if own := tuple(item for item in rated if item[2].cause == cause):
+            yield OfRatedElements(own, f"{cause}s", CAUSES[cause])
+    if machine.loads:
+        yield ByAngle("loads", to_say("loads"), _of_loads)
+    planting = machine.planting
+    if planting is not None and planting.soil is not None:
+        yield OfSoil(planting, surface_of(machine))
