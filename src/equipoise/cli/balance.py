@@ -134,8 +134,7 @@ def _save_drawing(path: str, job: Job, data: str | bytes) -> Iterator[str]:
     from equipoise.schema.files import write
 
     write(path, data)
-    for part in job.left_out:
-        yield f"note: the drawing leaves out {part}"
+    yield from job.notes("drawing")
     yield wrote(path)
 
 

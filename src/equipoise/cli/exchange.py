@@ -71,8 +71,7 @@ def export(
     language
         Of drawings and pages.
     """
-    from equipoise.exchange.export import check_kind, check_link_loads, format_of
-    from equipoise.exchange.export import export as write
+    from equipoise.exchange.export import check_kind, check_link_loads, format_of, write_file
     from equipoise.schema.models import load_linkage
     from equipoise.schema.opening import bundled
 
@@ -100,8 +99,9 @@ def export(
     machine = load_linkage(file)
     check_result_file("--out", out, sources_of(machine, file))
     what = _balanced(machine) if balanced else machine
-    parts = write(what, out, item.name, crank_angle=at, link=link, angles=angles, language=language)
-    notes = [f"note: the file leaves out {part}" for part in parts]
+    job = write_file(what, out, item.name, crank_angle=at, kept=False, link=link, angles=angles,
+                     language=language)  # fmt: skip
+    notes = () if job is None else job.notes("file")
     return CommandResult(save=lambda: [*notes, wrote(out)])
 
 

@@ -17,7 +17,7 @@ import numpy as np
 
 from equipoise.errors import UsageError, needed
 from equipoise.exchange.formats import Job
-from equipoise.exchange.parts import Part, parts
+from equipoise.exchange.parts import COUNTERWEIGHT, Part, parts
 from equipoise.i18n import decimal_sign, spoken
 from equipoise.i18n.decimals import POINT
 from equipoise.i18n.languages import KNOWN
@@ -47,7 +47,7 @@ def export_bytes(job: Job) -> str:
     _pitch_curves(space, scene, motion)
     _paths(space, scene)
     try:
-        _parts(space, parts(job), scene)
+        _parts(space, parts(job), scene, job.sizes)
     except UsageError:  # nothing to cut is nothing wrong here
         job.left_out.append("parts to be cut: the model tells no outline of any")
     for name in sorted({entity.dxf.layer for entity in space} - {"0"}):
@@ -121,8 +121,11 @@ def _paths(space: Any, scene: Scene) -> None:
             space.add_lwpolyline(corners, close=True, dxfattribs=_layer("path", name))
 
 
-def _parts(space: Any, parts: list[Part], scene: Scene) -> None:
-    """Parts one below the other, right of the linkage."""
+def _parts(space: Any, parts: list[Part], scene: Scene, sizes: str) -> None:
+    """Parts one below the other, right of the linkage.
+
+    sizes : on what rounding of counterweights changes.
+    """
     low, high = (MM * corner for corner in scene.linkage_box)
     gap = abs(high - low) / 10
     corner = high + gap
@@ -136,7 +139,8 @@ def _parts(space: Any, parts: list[Part], scene: Scene) -> None:
             space.add_lwpolyline(rows, format="xyb", close=True, dxfattribs=layer)
         _measures(space, part, shift, gap)
         corner -= 1j * ((highest - lowest).imag + gap)
-        for line in part.lines:
+        rounded = [sizes] if part.kind == COUNTERWEIGHT and sizes else []
+        for line in (*part.lines, *rounded):
             looks = {**_layer("dimensions", part.name), "style": _style(space.doc)}
             text = space.add_text(line, height=gap / 6, dxfattribs=looks)
             text.set_placement((corner.real, corner.imag))

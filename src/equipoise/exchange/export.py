@@ -7,6 +7,7 @@ from importlib import import_module
 from math import isfinite
 
 from equipoise.balancing.balanced import Balanced
+from equipoise.balancing.whole_sizes import in_whole_sizes
 from equipoise.errors import ChangePointError, RangeError, UsageError, at_place, needed, unknown
 from equipoise.exchange.formats import FORMATS, Angles, Format, Job
 from equipoise.i18n import LANGUAGES, Note, speaking, to_say
@@ -56,6 +57,23 @@ def export(
         file cannot be written.
     MassError, MotionError, ModelError : the machine cannot be computed as far as the format needs.
     """
+    job = write_file(what, path, format, crank_angle=crank_angle, kept=kept, link=link,
+                     angles=angles, language=language)  # fmt: skip
+    return tuple(job.left_out) if job is not None else ()
+
+
+def write_file(
+    what: Machine | Balanced | Store,
+    path: str | os.PathLike[str],
+    format: str | None,
+    *,
+    crank_angle: float | None,
+    kept: bool,
+    link: str | None,
+    angles: Angles,
+    language: str,
+) -> Job | None:
+    """Write as `export` does; what was written of a machine, None of a store."""
     item = format_of(path, format, of_store=isinstance(what, Store))
     check_kind(item, of_store=isinstance(what, Store))
     if crank_angle is not None and not isfinite(crank_angle):
@@ -71,14 +89,14 @@ def export(
         raise UsageError(at_place("language", wrong))
     if isinstance(what, Store):
         write_designs(what, path, kept=kept)
-        return ()
+        return None
     check_link_loads(item, link=link, angles=angles)
     if angles is not None and crank_angle is not None:
         raise UsageError(Note("crank_angle and angles were given; give one of them"))
     with speaking(language):
         job, data = export_content(what, item, crank_angle, link, angles)
     write(path, data)
-    return tuple(job.left_out)
+    return job
 
 
 def check_kind(file_format: Format, *, of_store: bool) -> None:
@@ -122,6 +140,9 @@ def export_content(
     """A file's content, and what was left out of it."""
     if file_format.needs:
         needed(file_format.needs, Note("a file of {title}", title=file_format.title))
+    sizes = ""
+    if isinstance(what, Balanced) and file_format.cuts:
+        what, sizes = in_whole_sizes(what)
     machine, changes = (what.machine, what.changes) if isinstance(what, Balanced) else (what, None)
     if file_format.turns:
         check_turning(machine, file_format.title)
@@ -130,7 +151,7 @@ def export_content(
     if angles is None and crank_angle is not None:
         angles = [crank_angle]
     without_friction = machine.without_friction() if frictionless else machine
-    job = Job(without_friction, crank_angle or 0.0, changes, link, angles)
+    job = Job(without_friction, crank_angle or 0.0, changes, link, angles, sizes)
     if frictionless:
         job.leave_out("friction in joints: forces are those without it")
     if not file_format.tightens:

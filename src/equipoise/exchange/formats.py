@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import field
 from typing import TYPE_CHECKING
 
@@ -33,6 +33,7 @@ class Format:
     tightens : whether its pins bear the tension of belts and chains.
     worded : whether it has sentences for readers, in their language.
     of_link : whether it holds the loads along one link, at one crank angle or at several.
+    cuts : whether a workshop cuts by it, so that counterweights have whole sizes.
     """
 
     name: str
@@ -49,6 +50,7 @@ class Format:
     tightens: bool = True
     of_link: bool = False
     worded: bool = False
+    cuts: bool = False
 
     @property
     def maker(self) -> str:
@@ -134,6 +136,7 @@ FORMATS: Mapping[str, Format] = {
             "measures, thickness, material and mass; in mm",
             needs="ezdxf",
             worded=True,
+            cuts=True,
         ),
         Format(
             "pdf",
@@ -144,6 +147,7 @@ FORMATS: Mapping[str, Format] = {
             posed=False,
             module="figures.workshop_sheet",
             worded=True,
+            cuts=True,
         ),
         Format(
             "svg",
@@ -152,6 +156,7 @@ FORMATS: Mapping[str, Format] = {
             "the same parts to be cut, at 1:1",
             posed=False,
             worded=True,
+            cuts=True,
         ),
         Format(
             "xlsx",
@@ -215,6 +220,7 @@ class Job:
     link : whose loads are written; the only one with a section if None.
     angles : at which they are, a number of them in a turn or the angles, rad; as suits the format
         if None.
+    sizes : how the sizes of counterweights differ from those of balancing; empty if they do not.
     left_out : what the format does not hold, as it goes on.
     """
 
@@ -223,7 +229,14 @@ class Job:
     changes: tuple[Change, ...] | None = None
     link: str | None = None
     angles: Angles = None
+    sizes: str = ""
     left_out: list[str] = field(default_factory=list)
+
+    def notes(self, what: str) -> Iterator[str]:
+        """Lines about a file, called what: what it leaves out, and how sizes were rounded."""
+        yield from (f"note: the {what} leaves out {part}" for part in self.left_out)
+        if self.sizes:
+            yield f"note: {self.sizes}"
 
     def leave_out(self, what: str) -> None:
         """Tell, once, what the file does not hold."""

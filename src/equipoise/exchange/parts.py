@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from cmath import phase, rect
 from collections.abc import Iterable, Iterator
-from math import atan, degrees, pi, sin, tan
+from math import atan, ceil, degrees, log10, pi, sin, tan
 from typing import Any
 
 import numpy as np
@@ -18,7 +18,7 @@ from equipoise.errors import UsageError
 from equipoise.exchange.formats import Job
 from equipoise.i18n import Note, coordinates, decimals, say, to_say
 from equipoise.mechanism.parts.bodies import Body, Points, outlines, place_of
-from equipoise.quantities import told
+from equipoise.quantities import display, fixed, told
 from equipoise.results.machine_blocks import SHAPES, stuff_named
 
 Edge = tuple[complex, float]
@@ -118,7 +118,7 @@ class Part:
         if self.density is not None:
             said.append(say("material: {stuff}", stuff=stuff_named(self.density)))
         if self.mass is not None:
-            said.append(say("mass {mass}", mass=told(self.mass, "mass")))
+            said.append(say("mass {mass}", mass=weighed(self.mass)))
         said.extend(self._round_lines())
         holes = [curve.text for edges in self.edges[1:] for curve in _curves(edges) if curve.whole]
         if holes:
@@ -207,6 +207,18 @@ def _refusal(job: Job) -> Note:
 def in_mm(length: float) -> str:
     """A length in mm with two decimals at most, and none where it is whole, as drawings have it."""
     return decimals(f"{length:.2f}".rstrip("0").rstrip("."))
+
+
+GRAM, LIGHT = 1e-3, 1e-2
+"""kg; below the second a workshop weighs to a tenth of the first."""
+
+
+def weighed(mass: float) -> str:
+    """A mass as a workshop weighs it, with its unit: to a gram, a small one to a tenth of it."""
+    unit = display("mass", [mass])
+    step = GRAM if mass >= LIGHT else GRAM / 10
+    digits = max(0, ceil(-log10(step * unit.factor) - 1e-9))
+    return unit.with_unit(decimals(fixed(unit, mass, digits)))
 
 
 def area_of(edges: tuple[Edge, ...]) -> float:

@@ -14,8 +14,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from equipoise.balancing.told import capital
 from equipoise.exchange.formats import Job
-from equipoise.exchange.parts import Part, along, in_mm, parts
+from equipoise.exchange.parts import COUNTERWEIGHT, Part, along, in_mm, parts
 from equipoise.figures.paint import fonts_for, settings
 from equipoise.figures.style import INK, MAIN
 from equipoise.i18n import LANGUAGES, said, say, speaking, spoken
@@ -72,7 +73,8 @@ def _texts(job: Job, part: Part) -> tuple[str, ...]:
     by = scale_of(part)
     ratio = f"1:{by:g}" if by >= 1 else f"{1 / by:g}:1"
     scale = say("scale {ratio}, dimensions in mm", ratio=ratio)
-    return said(job.machine.title), *part.lines, scale
+    rounded = [capital(job.sizes)] if part.kind == COUNTERWEIGHT and job.sizes else []
+    return said(job.machine.title), *part.lines, *rounded, scale
 
 
 def scale_of(part: Part) -> float:
