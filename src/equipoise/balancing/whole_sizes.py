@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from equipoise.balancing.balanced import Balanced, Price
 
 MILLIMETRE, DEGREE = 1e-3, pi / 180
+"""In SI units: what sizes are whole numbers of."""
 WHOLE = 1e-6
 """Of a millimetre or degree, by which a size may be off a whole one."""
 MATTERS = 1e-3
