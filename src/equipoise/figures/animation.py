@@ -162,7 +162,7 @@ def _of_paths(stage: Stage, traced: tuple[str, ...]) -> Iterator[list[Label]]:
 HEAD = 13.0
 """Length of the head of an arrow, units."""
 BEHIND = ("field", "support", "rows", "wheels", "guides", "stands")
-"""Layers of pieces on which the texts and paths stand."""
+"""Layers of pieces on which paths and links stand."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -185,7 +185,7 @@ class MovingGroup:
 
 @dataclass(frozen=True, eq=False)
 class Moving:
-    """Everything that is drawn: what lies behind the links, on that the texts, then the links.
+    """Everything that is drawn: what lies behind the links, the links, and over them the texts.
 
     behind, before : each from the back to the front.
     """
@@ -355,7 +355,7 @@ def _picture(
         "\n".join(_group(part, numbers) for part in parts)
         for parts in (moving.behind, moving.before)
     )
-    shapes = "\n".join([behind, *map(_text, moving.labels), before])
+    shapes = "\n".join([behind, before, *map(_text, moving.labels)])
     moves = [list(_steps(item, moving.stage.times)) for item in every]
     mark = f"e{sha256(repr((shapes, moves, seconds)).encode()).hexdigest()[:8]}"
     lasting = seconds * moving.stage.turns

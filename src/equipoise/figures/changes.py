@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from cmath import rect
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import cached_property
 from math import isfinite
@@ -37,6 +37,8 @@ FINEST = 3
 """Digits of mm that a free length has: what is less is the solver's rounding."""
 NO_LENGTH = 1e-6
 """mm."""
+NEIGHBOR = 0.3
+"""Over the size of a piece: another that is nearer to its label may be taken for what it names."""
 FULL = 1e-6
 """rad: a sector that lacks less than this is a ring."""
 FAR, COINCIDENT = 3.0, 0.02
@@ -111,7 +113,8 @@ def changes(balanced: Balanced) -> Chart:
     machine, original = balanced.machine, balanced.original
     clearest = machine if len(machine.springs) > len(original.springs) else original
     posed = Posed(machine, clear_angle(Scene.of(move(clearest, ANGLES))))
-    new = [addition.in_meters() for addition in additions(posed, balanced.changes, balanced.plan)]
+    every = _with_labels_apart([*additions(posed, balanced.changes, balanced.plan)])
+    new = [addition.in_meters() for addition in every]
     scene = _without_new(Scene.of(posed.motion), Scene.of(move(original, [0.0])), balanced.changes)
     changed = any(item.kind != "room" for item in new)
     what = say("What to change, to scale") if changed else say("Nothing to change, to scale")
@@ -178,6 +181,25 @@ def _pieces(posed: Posed, change: Change) -> Iterator[Addition]:
         text = say("{mass} on {link}", mass=grams(piece["mass"]), link=link)
         outline, holes, edge = _shape(posed.angle(change.link), piece, center, place)
         yield Addition("mass", outline, edge, text, _way(place - center), holes)
+
+
+def _with_labels_apart(items: Sequence[Addition]) -> Iterator[Addition]:
+    """Labels of large pieces where no other piece is near, to which they would seem to belong."""
+    pieces = [item for item in items if item.text]
+    for item in items:
+        others = [other.outline for other in pieces if other is not item]
+        movable = item in pieces and len(item.outline) > 2 and others
+        yield _with_label_far_from(np.concatenate(others), item) if movable else item
+
+
+def _with_label_far_from(others: Array, item: Addition) -> Addition:
+    """A piece with its label where it is farthest from others, should one be near."""
+    apart = np.min(np.abs(item.outline[:, None] - others), axis=1)
+    here = float(np.min(np.abs(item.at - others)))
+    if here >= NEIGHBOR * _size(item.outline) or np.max(apart) <= 2 * here:
+        return item
+    farthest = complex(item.outline[np.argmax(apart)])
+    return replace(item, at=farthest, away=_way(farthest - complex(np.mean(item.outline))))
 
 
 def _cut(posed: Posed, change: Change) -> Addition:

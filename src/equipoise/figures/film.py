@@ -269,8 +269,8 @@ def draw_frames(moving: Moving, colors: Colors = LIGHT) -> Iterator[Array]:
     for instant in range(len(stage.times) - stage.closed):
         image[:] = ground
         draw(behind, instant)
-        image[cover] = np.round(texts + (1 - texts[:, 3:] / 255) * image[cover])
         draw(before, instant)
+        image[cover] = np.round(texts + (1 - texts[:, 3:] / 255) * image[cover])
         yield image[..., :3].copy()
 
 

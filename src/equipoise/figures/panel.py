@@ -36,7 +36,7 @@ from equipoise.figures.style import (
 )
 from equipoise.figures.view import View, corners_of
 from equipoise.i18n import decimals
-from equipoise.results.charts import Mark, Panel, Surface
+from equipoise.results.charts import Mark, Outline, Panel, Surface
 
 LEVELS = 12
 """Lines at most."""
@@ -199,16 +199,7 @@ def draw(view: View) -> None:
         for part in parts:
             draw_one(view, part)
     for outline in panel.outlines:
-        look = look_of(outline.role)
-        lines = tuple(
-            view.places(hole.real, hole.imag) for hole in (outline.places, *outline.holes)
-        )
-        view.sheet.add(
-            CanvasStroke(
-                lines, look.color, look.width, (), look.fill, look.opacity, True, view.box
-            ),
-            look.order,
-        )
+        _outline(view, outline)
     draw_machine(view.sheet, view.labels, panel, view.places, view.box)
     for line in panel.lines:
         _level(view, line.at, look_of(line.role), line.axis)
@@ -220,6 +211,19 @@ def draw(view: View) -> None:
     for arrow in panel.arrows:
         draw_arrow(view, arrow.tail, arrow.head, look_of(arrow.role))
     write_words(view)
+
+
+def _outline(view: View, outline: Outline) -> None:
+    """An area with its holes, on which no text stands that has room elsewhere."""
+    look = look_of(outline.role)
+    lines = tuple(view.places(edge.real, edge.imag) for edge in (outline.places, *outline.holes))
+    view.sheet.add(
+        CanvasStroke(lines, look.color, look.width, (), look.fill, look.opacity, True, view.box),
+        look.order,
+    )
+    for line in lines:
+        view.labels.avoid(np.vstack([line, line[:1]]))
+    view.labels.avoid_inside(lines)
 
 
 # -- behind ----------------------------------------------------------------------------------------

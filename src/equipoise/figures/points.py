@@ -34,9 +34,7 @@ STILL = 1e-9
 ALIKE = 1e-3
 """Over the size of a path: paths that are nearer to each other look like one."""
 MOST_POINTS, MOST_VECTORS = 4, 3
-"""Points that are followed in one picture: their paths, and their hodographs."""
-MOST_PATHS = 3
-"""In an animation."""
+"""Points that are followed in a picture or an animation: their paths; and their hodographs."""
 FEW = (0, 90)
 """Crank angles, deg, that are told on the hodographs of several points."""
 
@@ -75,7 +73,7 @@ def followed(motion: Motion) -> list[str]:
     """Points whose paths are drawn where something moves: planting tips alone, else the first of
     those with a path worth following.
     """
-    return _tips(motion)[:MOST_PATHS] or traced(motion)[:MOST_PATHS]
+    return _tips(motion)[:MOST_POINTS] or traced(motion)[:MOST_POINTS]
 
 
 def _coincident(motion: Motion, names: Sequence[str]) -> list[list[str]]:

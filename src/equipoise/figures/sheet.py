@@ -198,6 +198,8 @@ TEXT_ON_TEXT, ON_POINT, FARTHER, TURNED, COVERED = 400.0, 1000.0, 8.0, 2.0, 3.0
 wish, of covering a piece of a line."""
 PIECE, CLEAR, EDGE = 2.5, 1.5, 3.0
 """Points: length of the pieces of lines, room around texts, and their distance from the frame."""
+INSIDE = 0.5
+"""Weight of a place in an area, of which there is one in each square of two pieces."""
 LINE = 1.25
 """Height of a line of several, over the size of type."""
 ROUNDS = 5000
@@ -244,6 +246,24 @@ class Labels:
         at = np.linspace(0.0, along[-1], count)
         self._pieces.append(np.column_stack([np.interp(at, along, part) for part in places.T]))
         self._weights.append(np.full(count, weight))
+
+    def avoid_inside(self, lines: Sequence[Array]) -> None:
+        """Keep texts off an area between closed lines (N, 2), where there is room beside it."""
+        corners = np.concatenate([*lines])
+        low, high = np.min(corners, axis=0), np.max(corners, axis=0)
+        x, y = (np.arange(a + PIECE, b, 2 * PIECE) for a, b in zip(low, high, strict=True))
+        places = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
+        crossed = np.zeros(len(places), int)
+        for line in lines:
+            first, last = line, np.roll(line, -1, axis=0)
+            for (x0, y0), (x1, y1) in zip(first.tolist(), last.tolist(), strict=True):
+                if y0 != y1:
+                    along = (places[:, 1] - y0) / (y1 - y0)
+                    right = x0 + along * (x1 - x0) > places[:, 0]
+                    crossed += (along >= 0) & (along < 1) & right
+        inside = places[crossed % 2 == 1]
+        self._pieces.append(inside)
+        self._weights.append(np.full(len(inside), INSIDE))
 
     def reserve(self, x: float, y: float, half: float = 3.0) -> None:
         """Keep texts away from a marker, so many points around its middle."""

@@ -13,6 +13,7 @@ import pytest
 import equipoise as eq
 from equipoise.errors import UsageError
 from equipoise.figures.animation import _sizes_where_narrow, animated_svg, laid_out
+from equipoise.figures.points import followed
 from equipoise.figures.stage import ForceArrow, width_of
 from equipoise.figures.swing import swinging
 from equipoise.i18n import speaking
@@ -267,3 +268,27 @@ def test_links_that_cover_each_other_move_in_turn() -> None:
     assert [sorted(each & {"T1", "T2"}) for each in texts] == [["T1"], ["T2"], [], []]
     styles = [part.findtext(f"{NAME}style") for part in parts]
     assert len({re.findall(r"@keyframes (e\w+)-1", str(style))[0] for style in styles}) == 4
+
+
+def test_names_lie_over_the_links_that_pass_them() -> None:
+    """The crank of `lee-kim-c` and its counterweight sweep over the name of their pivot."""
+    scene = Scene.of(eq.move(eq.load("lee-kim-c"), 90))
+    moving = laid_out(scene)
+    (pivot,) = (label for label in moving.labels if label.text == "O2")
+    left, top, right, bottom = pivot.box(moving.stage.size_of_type)
+    x, y = moving.stage.links.real, moving.stage.links.imag
+    assert np.any((left < x) & (x < right) & (top < y) & (y < bottom))
+    picture = ElementTree.fromstring(animated_svg(scene, title="c"))
+    kinds = [part.tag.removeprefix(NAME) for part in picture]
+    assert kinds.index("text") > max(k for k, kind in enumerate(kinds) if kind == "g")
+    assert "paint-order:stroke;stroke:var(--paper)" in str(picture.findtext(f"{NAME}style"))
+
+
+def test_each_walker_has_the_path_of_its_end() -> None:
+    analysis = eq.analyze(eq.load("straw-walker"), 90)
+    names = followed(analysis.motion)
+    text = animated_svg(Scene.of(analysis.motion), title="walkers", traced=names)
+    parts = ElementTree.fromstring(text).findall(f"{NAME}svg")
+    shown = [{word.text for word in part.iter(f"{NAME}text")} for part in parts]
+    assert [f"T{number}" in each for number, each in enumerate(shown, 1)] == [True] * 4
+    assert all(part.find(f".//{NAME}path[@class='trace']") is not None for part in parts)

@@ -13,12 +13,14 @@ import equipoise as eq
 from equipoise.balancing.workshop import Change
 from equipoise.figures.changes import changes, grams, sector
 from equipoise.figures.linkage import linkage
+from equipoise.figures.sheet import box_of
 from equipoise.results.charts import Chart, Outline
 from unit.figures.balance_samples import (
     MM,
     STEEL,
     found,
 )
+from unit.figures.checks import Laid
 from unit.figures.samples import words
 
 
@@ -194,3 +196,26 @@ def test_masses_in_words() -> None:
 def test_a_sector_without_a_hole_ends_in_a_point() -> None:
     assert 0j in sector(0j, 0.0, 1.0, 0.3, 1.0)
     assert np.min(np.abs(sector(0j, 0.5, 1.0, 0.3, 1.0))) == pytest.approx(0.5)
+
+
+def test_labels_of_weights_are_nearest_to_their_own() -> None:
+    """And on none of them: beside the crank's half disc is the sector of a shaft."""
+    chart = changes(eq.balance(eq.load("balance-shafts")))
+    laid = Laid.of(chart)
+    ((view, _),) = laid.panels
+    edges = [view.places(one.places.real, one.places.imag) for one in view.panel.outlines]
+    starts = [mark for mark in view.panel.marks if " g on " in mark.text]
+    assert len(edges) == len(starts) == 3
+    for number, mark in enumerate(starts):
+        at = view.places(np.array([mark.x]), np.array([mark.y]))[0]
+        apart = [float(np.min(np.hypot(*(edge - at).T))) for edge in edges]
+        assert int(np.argmin(apart)) == number
+        others = [size for k, size in enumerate(apart) if k != number]
+        assert min(others) > 30
+    for text in laid.sheet.words:
+        if " g on " in text.text or text.text.endswith("-axis"):
+            left, top, right, bottom = box_of(text)
+            for edge in edges:
+                inside = (left < edge[:, 0]) & (edge[:, 0] < right)
+                inside &= (top < edge[:, 1]) & (edge[:, 1] < bottom)
+                assert not np.any(inside), text.text
