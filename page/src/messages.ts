@@ -112,8 +112,8 @@ export interface Sign {
   /** The link that it draws, if any. */
   link: string;
   hold: Hold | null;
-  /** The slider or coupling that it draws, if any: its kind and name. */
-  part: ["slider" | "gears" | "belts" | "racks" | "cams", string] | null;
+  /** The slider or coupling that it draws, if any: `slider`, or its list, and its name. */
+  part: [string, string] | null;
   /** Whether it is fixed to the ground, and not to the support. */
   still: boolean;
   shapes: Shape[];

@@ -125,6 +125,8 @@ def test_a_rack_loses_a_share_of_its_force_times_its_way(drives: str) -> None:
     speed = np.abs(found.motion.slider(machine.sliders[0]).velocity)
     np.testing.assert_allclose(friction.loss, LOSS * push * speed, rtol=1e-9, atol=1e-12 * size)
     assert np.max(friction.loss) > 1e-3 * size
+    reported = found.outputs[f"racks.{rack.name}.friction_loss"]
+    np.testing.assert_array_equal(reported.values, friction.loss)
     if drives == "rack":
         given = -TORQUE * found.motion.links["wheel"].angular_velocity  # power that the load takes
         wanted = np.where(given > 0, given / (1 - LOSS), given / (1 + LOSS))

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import tomllib
+import zipfile
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any, TypeVar
+from xml.etree import ElementTree as ET
 
 import numpy as np
 import pytest
@@ -27,6 +29,7 @@ from equipoise.symbols.scene import Scene
 from equipoise.web.design import Design
 from equipoise.web.fields import fields_of
 from equipoise.web.gallery import search_words
+from equipoise.web.interactive import Interactive
 from equipoise.web.tables import tables_of
 from secondroute.test_javascript import run
 
@@ -113,6 +116,15 @@ def on_the_page(machine: Machine, table: str, keys: Sequence[str], numbers: Sequ
     for number in numbers:
         value = getattr(getattr(machine, table)[0], number)
         assert found[f"{table}[1].{number}"].value == value
+
+
+def exported(machine: Machine, name: str, folder: Path) -> None:
+    """Formats that run the traced program have it: an interactive page and an FMU this output."""
+    assert name in {output.name for output in Interactive(machine).outputs}
+    eq.export(machine, folder / "mine.fmu")
+    with zipfile.ZipFile(folder / "mine.fmu") as archive:
+        description = archive.read("modelDescription.xml").decode()
+    assert name in {item.get("name") for item in ET.fromstring(description).iter("ScalarVariable")}
 
 
 def found_in_the_gallery(machine: Machine, words: str) -> None:

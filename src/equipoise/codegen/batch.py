@@ -88,7 +88,7 @@ def jumps_alike(linkage: Linkage, paths: Collection[str]) -> bool:
     """Whether forces of all designs in which these numbers vary jump at the same crank angles."""
     trace = Trace(linkage, paths)
     known = known_by_crank(trace).keys() - trace.shifted
-    jerking = (coupling for coupling in linkage.machine.couplings if coupling.jerks)
+    jerking = (coupling for coupling in linkage.machine.couplings if len(coupling.jumps))
     return all({item.driver, item.carrier} <= known for item in jerking)
 
 

@@ -167,11 +167,9 @@ def export_content(
 
 def _check_joints(machine: Machine, file_format: Format) -> None:
     """Refuse a machine with parts that a format lacks."""
-    if file_format.joints is None:
-        return
     for table in part_kinds(type(machine)):
         for where, part in numbered(table, getattr(machine, table)):
-            if part.special and part.special not in file_format.joints:
+            if not file_format.has(part.special):
                 raise UsageError(
                     at_place(
                         where,

@@ -28,7 +28,7 @@ class Format:
     posed : whether it shows the machine at a crank angle, or begins there.
     turns : whether it turns the driven link all the way round at constant speed.
     joints : that it has beside pins, guides and what turns two links in a fixed ratio, as kinds of
-    parts call them (`PartKind.special`); None where it has all.
+    parts call them (`PartKind.special`); None where it has all but those that it `lacks`.
     rubs : whether it holds friction in joints, or what follows from it.
     tightens : whether its pins bear the tension of belts and chains.
     worded : whether it has sentences for readers, in their language.
@@ -45,12 +45,19 @@ class Format:
     posed: bool = True
     turns: bool = False
     joints: tuple[str, ...] | None = None
+    lacks: tuple[str, ...] = ()
     module: str = ""
     rubs: bool = True
     tightens: bool = True
     of_link: bool = False
     worded: bool = False
     cuts: bool = False
+
+    def has(self, special: str) -> bool:
+        """Whether it has what a kind of parts calls so, empty of what all formats have."""
+        if not special or self.joints is None:
+            return special not in self.lacks
+        return special in self.joints
 
     @property
     def maker(self) -> str:
@@ -103,15 +110,7 @@ FORMATS: Mapping[str, Format] = {
             "belts, racks, springs, torsion springs, dampers, bushings, stops, resistances, "
             "constant loads; C sources, and a library where a C compiler is found",
             turns=True,
-            joints=(
-                "rack",
-                "pin in a slot",
-                "damper",
-                "torsion damper",
-                "bushing",
-                "stop",
-                "resistance",
-            ),
+            lacks=("cam", "gears of varying ratio"),
             rubs=False,
         ),
         Format(

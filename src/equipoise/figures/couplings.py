@@ -1,4 +1,6 @@
-"""Charts of couplings over crank angle: speed ratios that vary, and strands of belts."""
+"""Charts of couplings over crank angle: speed ratios that vary, and outputs of kinds that have a
+picture, such as the strands of belts.
+"""
 
 from __future__ import annotations
 
@@ -16,42 +18,46 @@ from equipoise.mechanism.checks import FRAME
 from equipoise.results.charts import Chart
 
 if TYPE_CHECKING:
-    from equipoise.mechanism.parts.machine import Gear
+    from equipoise.mechanism.parts.couplings import Coupling
     from equipoise.results.analysis import Analysis
 
 
 def ratios(analysis: Analysis) -> Iterator[Chart]:
-    """Of each pair of gears whose ratio varies: ``gears-DRIVEN``; none where planting has its own,
-    and none where the driver stands still on its carrier at some crank angle.
+    """Of each coupling whose ratio varies, such as ``gears-DRIVEN``; none where planting has its
+    own, and none where the driver stands still on its carrier at some crank angle.
     """
     if analysis.machine.planting is not None:
         return
-    for gear in analysis.machine.gears:
-        low, high = gear.ratios
-        driver, driven = (_rate(analysis, gear, link) for link in (gear.driver, gear.driven))
-        if low != high and np.all(driver != 0):
-            names = {"link": short(gear.driven, 16), "drive": short(gear.driver, 16)}
+    for item in analysis.machine.couplings:
+        if not item.varies:
+            continue
+        driver, driven = (_rate(analysis, item, link) for link in (item.driver, item.driven))
+        if np.all(driver != 0):
+            names = {"link": short(item.driven, 16), "drive": short(item.driver, 16)}
             label = say("angular velocity ratio, {link} / {drive}", **names)
             signal = {ALL: over(analysis, driven / driver)}
             panel = compared(angle_axis(analysis), label, None, signal)
-            what = say("Speed ratio of gears on their carrier")
-            name = f"gears-{gear.driven.translate(FORBIDDEN)}"
+            what = say("Speed ratio on the carrier")
+            name = f"{item.table}-{item.driven.translate(FORBIDDEN)}"
             yield Chart(name, analysis.machine.title, title(analysis, what), (panel,))
 
 
-def _rate(analysis: Analysis, gear: Gear, link: str) -> np.ndarray:
-    """How a link turns on the gear's carrier, by crank angle (N,)."""
+def _rate(analysis: Analysis, coupling: Coupling, link: str) -> np.ndarray:
+    """How a link turns on the coupling's carrier, by crank angle (N,)."""
     links = analysis.motion.links
     link_rate, carrier = (
-        0.0 if item == FRAME else links[item].angle_1 for item in (link, gear.carrier)
+        0.0 if item == FRAME else links[item].angle_1 for item in (link, coupling.carrier)
     )
     return np.asarray(link_rate - carrier + 0.0 * analysis.crank_angle)
 
 
-def strands(analysis: Analysis) -> Iterator[Chart]:
-    """Tension of both strands of each belt: ``belt-DRIVEN``."""
-    for belt in analysis.machine.belts:
-        names = [f"belts.{belt.name}.{side}" for side in ("left", "right")]
-        what = say("Tension of the strands of belts")
-        name = f"belt-{belt.driven.translate(FORBIDDEN)}"
-        yield outputs_chart(analysis, names, name, what)
+def curves(analysis: Analysis) -> Iterator[tuple[Chart, str]]:
+    """Outputs of couplings that have a picture, with its caption, such as both strands of a belt:
+    ``belt-DRIVEN``.
+    """
+    for item in analysis.machine.couplings:
+        if item.curves is not None:
+            outputs, what, caption = item.curves
+            names = [f"{item.table}.{item.name}.{output}" for output in outputs]
+            name = f"{item.noun.replace(' ', '-')}-{item.driven.translate(FORBIDDEN)}"
+            yield outputs_chart(analysis, names, name, say(what)), caption

@@ -68,7 +68,7 @@ def analysis_pictures(analysis: Analysis, at: Sequence[float] | None = None) -> 
     pictures |= {chart.name: chart for chart in couplings.ratios(analysis)}
     if analysis.solved is None:
         return pictures
-    pictures |= {chart.name: chart for chart in couplings.strands(analysis)}
+    pictures |= {chart.name: chart for chart, _ in couplings.curves(analysis)}
     for chart in (forces.polar, forces.force, forces.moment):
         pictures[chart.__name__] = chart(analysis)
     pictures |= {chart.name: chart for chart in forces.torques(analysis)}

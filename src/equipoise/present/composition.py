@@ -26,7 +26,6 @@ from equipoise.present.tool_summary import outstanding, tool_answers, tool_tiles
 from equipoise.quantities import PER_RPM, chosen_units, number
 from equipoise.results.analysis import Analysis
 from equipoise.results.analysis_blocks import force_blocks, motion_blocks, question_blocks
-from equipoise.results.belt_blocks import belt_blocks
 from equipoise.results.blocks import (
     Block,
     Facts,
@@ -38,9 +37,8 @@ from equipoise.results.blocks import (
     Text,
     interleave_changes,
 )
-from equipoise.results.cam_blocks import cam_blocks
 from equipoise.results.headline import verdict_blocks
-from equipoise.results.joint_blocks import elements_tables, joint_blocks
+from equipoise.results.joint_blocks import elements_tables, joint_blocks, kind_tables
 from equipoise.results.machine_blocks import angles_told, driven, model_blocks
 from equipoise.results.result import in_own_words
 from equipoise.vibration.blocks import model_told, resonances_table, response_blocks
@@ -144,7 +142,7 @@ def _of_linkage(findings: Findings, language: str, command: str, parallel: bool)
     pictures = drawings(findings, parallel)
     blocks: Parts = {"model": [*pictures.get("model", []), *model_blocks(machine)]}
     blocks["motion"] = [*pictures.get("motion", []), *_details(motion_blocks(analysis))]
-    blocks["motion"] += [*cam_blocks(analysis), *elements_tables(analysis)]
+    blocks["motion"] += [*kind_tables(analysis, "motion"), *elements_tables(analysis)]
     if findings.planting is not None:
         blocks["planting"] = [*pictures.get("planting", []), *planting_blocks(findings.planting)]
     later = findings.after
@@ -200,7 +198,7 @@ def _verdict(findings: Findings) -> Iterator[Text]:
 
 def _joints(analysis: Analysis) -> Iterator[Block]:
     yield from joint_blocks(analysis)
-    yield from belt_blocks(analysis.resolved.forces)
+    yield from kind_tables(analysis, "joints")
 
 
 def _with_after(

@@ -208,7 +208,7 @@ def _motion(findings: Findings) -> Iterator[PictureEntry]:
     for number, chart in enumerate(charts):
         value = partial(headlines.kinematic, analysis, chart.name)
         yield PictureEntry(chart.name, caption, partial(unchanged, chart), value, number > 0)
-    caption = to_say("Speed ratio of gears over crank angle.")
+    caption = to_say("Speed ratio over crank angle.")
     for chart in ratios(analysis) if len(analysis.crank_angle) > 1 else ():
         yield PictureEntry(chart.name, caption, partial(unchanged, chart), detail=True)
 
@@ -299,10 +299,9 @@ def _joints(findings: Findings) -> Iterator[PictureEntry]:
     if findings.analysis.solved is None or not findings.analysis.forces.joints:
         return
     from equipoise.figures.analysis import joint_polars, joints
-    from equipoise.figures.couplings import strands
+    from equipoise.figures.couplings import curves
 
-    caption = to_say("Tension of the strands of belts over crank angle.")
-    for chart in strands(findings.analysis):
+    for chart, caption in curves(findings.analysis):
         yield PictureEntry(chart.name, caption, partial(unchanged, chart), detail=True)
     caption = to_say("Forces in the joints over crank angle.")
     yield from pages(

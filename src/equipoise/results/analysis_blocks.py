@@ -17,10 +17,8 @@ from equipoise.mechanism.outputs.declared import joint_named
 from equipoise.mechanism.parts.support import idle_parts
 from equipoise.quantities import Dimension, Display, angle, display, percent
 from equipoise.quantities.numbers import ROUNDING
-from equipoise.results.belt_blocks import belt_blocks
 from equipoise.results.blocks import Block, Cell, Column, Facts, Many, Notes, Table, Text, Value
-from equipoise.results.cam_blocks import cam_blocks
-from equipoise.results.joint_blocks import elements_tables, joint_blocks
+from equipoise.results.joint_blocks import elements_tables, joint_blocks, kind_tables
 from equipoise.results.machine_blocks import (
     angles_told,
     driven,
@@ -53,7 +51,7 @@ def analysis_blocks(analysis: Analysis) -> Iterator[Block]:
     machine, motion = analysis.machine, analysis.motion
     yield Text(f"{driven(machine, motion.speed)}; {angles_told(analysis)}")
     yield from motion_blocks(analysis)
-    yield from cam_blocks(analysis)
+    yield from kind_tables(analysis, "motion")
     yield from elements_tables(analysis)
     if analysis.solved is None:
         missing = massless(machine)
@@ -62,7 +60,7 @@ def analysis_blocks(analysis: Analysis) -> Iterator[Block]:
         return
     yield from force_blocks(analysis)
     yield from joint_blocks(analysis)
-    yield from belt_blocks(analysis.resolved.forces)
+    yield from kind_tables(analysis, "joints")
     yield from question_blocks(analysis)
 
 

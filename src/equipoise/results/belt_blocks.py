@@ -3,23 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from equipoise.i18n import Note, say
-from equipoise.mechanism.dynamics.forces import Forces
 from equipoise.mechanism.outputs.declared import body_named
 from equipoise.quantities import angle, told
 from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Value
 from equipoise.results.machine_blocks import largest, smallest
 from equipoise.signals import highest_at
 
+if TYPE_CHECKING:
+    from equipoise.mechanism.dynamics.forces import Forces
+    from equipoise.results.analysis import Analysis
 
-def belt_blocks(forces: Forces) -> Iterator[Block]:
+
+def belt_blocks(analysis: Analysis) -> Iterator[Block]:
     """Strands of all belts."""
+    forces = analysis.resolved.forces
     rows: list[tuple[Cell, ...]] = []
-    if not forces.belts:
-        return
     for belt in forces.belts.values():
         ends = f"{body_named(belt.by)} → {body_named(belt.on)}"
         for strand, tension in ((say("left"), belt.left), (say("right"), belt.right)):

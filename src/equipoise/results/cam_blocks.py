@@ -21,8 +21,6 @@ if TYPE_CHECKING:
 
 def cam_blocks(analysis: Analysis) -> Iterator[Block]:
     """Shape, pressure angle and contact force of each cam; where followers lift off."""
-    if not analysis.machine.cams:
-        return
     rows: list[tuple[Cell, ...]] = []
     motion, solved = analysis.resolved.motion, analysis.resolved.solved
     limited = any(cam.lift_off_speed is not None for cam in analysis.cams.values())

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from importlib import import_module
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,7 +11,7 @@ import numpy as np
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.dynamics.reactions import JointForce, SliderForce, idle_told, undecided
 from equipoise.mechanism.outputs.declared import DECLARED, body_named, joint_named
-from equipoise.mechanism.parts.element_kinds import Element, element_kinds
+from equipoise.mechanism.parts.element_kinds import Element, element_kinds, part_kinds
 from equipoise.quantities import Dimension, Display, display
 from equipoise.results.bearing_blocks import bearing_blocks
 from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Value
@@ -40,6 +41,14 @@ def joint_blocks(analysis: Analysis) -> Iterator[Block]:
     yield from friction_blocks(analysis)
     yield from bearing_blocks(analysis)
     yield from section_blocks(analysis)
+
+
+def kind_tables(analysis: Analysis, chapter: str) -> Iterator[Block]:
+    """What kinds of parts have tables of in a chapter, of each kind that the machine has."""
+    for table, kind in part_kinds(type(analysis.machine)).items():
+        if chapter in kind.tables and getattr(analysis.machine, table):
+            module, _, name = kind.tables[chapter].partition(":")
+            yield from getattr(import_module(module), name)(analysis)
 
 
 def elements_tables(analysis: Analysis) -> Iterator[Table]:

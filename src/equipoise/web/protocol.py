@@ -93,8 +93,8 @@ class SignValues(TypedDict):
     link: Annotated[str, "The link that it draws, if any."]
     hold: HoldValues | None
     part: Annotated[
-        tuple[Literal["slider", "gears", "belts", "racks", "cams"], str] | None,
-        "The slider or coupling that it draws, if any: its kind and name.",
+        tuple[str, str] | None,
+        "The slider or coupling that it draws, if any: `slider`, or its list, and its name.",
     ]
     still: Annotated[bool, "Whether it is fixed to the ground, and not to the support."]
     shapes: list[Shape]

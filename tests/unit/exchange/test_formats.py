@@ -22,8 +22,7 @@ CAM, RACK, VARYING, SLOT = "cam", "rack", "gears of varying ratio", "pin in a sl
 
 def lacking(one: Format) -> list[str]:
     """Special joints that a format has none for."""
-    return [] if one.joints is None else [joint for joint in (CAM, RACK, VARYING, SLOT)
-                                          if joint not in one.joints]  # fmt: skip
+    return [joint for joint in (CAM, RACK, VARYING, SLOT) if not one.has(joint)]
 
 
 def table() -> str:

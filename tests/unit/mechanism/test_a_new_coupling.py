@@ -34,6 +34,7 @@ from equipoise.web.gallery import sections
 from support.own_kinds import (
     designs_by_numbers,
     drawn,
+    exported,
     found_in_the_gallery,
     on_the_page,
     own_outputs,
@@ -181,6 +182,10 @@ def test_compiled_loops_have_designs_by_its_numbers() -> None:
 @pytest.mark.skipif(shutil.which("node") is None, reason="needs Node to run JavaScript")
 def test_scripts_have_it(tmp_path: Path) -> None:
     scripted(MACHINE, ["drive_torque", f"rollers.{NAME}.friction"], tmp_path)
+
+
+def test_interactive_pages_and_fmus_have_it(tmp_path: Path) -> None:
+    exported(MACHINE, f"rollers.{NAME}.friction", tmp_path)
 
 
 def test_drawings_have_its_circles() -> None:

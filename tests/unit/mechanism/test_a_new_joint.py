@@ -29,6 +29,7 @@ from equipoise.symbols.shapes import BodyMark, circle
 from support.own_kinds import (
     designs_by_numbers,
     drawn,
+    exported,
     found_in_the_gallery,
     on_the_page,
     own_outputs,
@@ -164,6 +165,10 @@ def test_compiled_loops_have_designs_by_its_numbers() -> None:
 @pytest.mark.skipif(shutil.which("node") is None, reason="needs Node to run JavaScript")
 def test_scripts_have_it(tmp_path: Path) -> None:
     scripted(MACHINE, ["drive_torque", "straight_slots.1.travel"], tmp_path)
+
+
+def test_interactive_pages_and_fmus_have_it(tmp_path: Path) -> None:
+    exported(MACHINE, "straight_slots.1.travel", tmp_path)
 
 
 def test_drawings_have_the_sign_that_it_names() -> None:

@@ -13,7 +13,8 @@ from equipoise.dataclass import dataclass
 from equipoise.errors import ModelError, at_place, unknown
 from equipoise.exchange.reading.found import Read, SlotLine, free, outline_of
 from equipoise.i18n import Note
-from equipoise.mechanism.parts.machine import FRAME
+from equipoise.mechanism.parts.element_kinds import part_kinds
+from equipoise.mechanism.parts.machine import FRAME, Machine
 
 MOST = 1000
 """Corners of lines, and circles, beyond which a drawing is none of a skeleton."""
@@ -26,18 +27,7 @@ NEARLY = 0.01
 FRAMES = ("frame", "ground", "fixed", "base")
 GUIDES = ("guide", "slider", "rail")
 """Names of what stands still, and of lines on which ends slide, where none are told."""
-IGNORED = (
-    "path",
-    "part",
-    "dimensions",
-    "springs",
-    "gears",
-    "belts",
-    "racks",
-    "cams",
-    "pitch",
-    "names",
-)
+IGNORED = ("path", "part", "dimensions", "pitch", "names", *part_kinds(Machine))
 """First words of layers of what `export` draws beside the links."""
 WORDS = "names"
 """Layer of names of points, among them."""

@@ -401,8 +401,7 @@ def given_properties(
     ModelError : there is no such joint, it is named twice, or it has no such property.
     """
     named, tables = named_joints(joints, reactions), dict[str, str]()
-    varying = {(coupling.table, coupling.name) for coupling in machine.gears
-               if coupling.special}  # fmt: skip
+    losing = {(coupling.table, coupling.name) for coupling in machine.couplings if coupling.loses}
     for where, item in numbered("joints", machine.joints):
         if item.joint not in named:
             raise ModelError(f"{where}.joint", unknown(item.joint, named, "joint"))
@@ -415,7 +414,7 @@ def given_properties(
                 )
                 raise ModelError(f"{where}.joint", note)
             in_slot = joint.name in joints.riders
-            varies = (joint.kind, joint.name) in varying
-            for problem in wrong_of_kind(where, item, joint.kind, in_slot, varies):
+            loses = (joint.kind, joint.name) in losing
+            for problem in wrong_of_kind(where, item, joint.kind, in_slot, loses):
                 raise problem
             yield where, joint, item

@@ -19,7 +19,7 @@ from equipoise.mechanism.assembly.steps import Array, size_of_links
 from equipoise.mechanism.kinematics.motion import Motion, PlacedBodies, move, move_again
 from equipoise.mechanism.kinematics.rubbing import STILL, rubbing_joints
 from equipoise.mechanism.kinematics.tip import crossings, roots, surface_of
-from equipoise.mechanism.parts.cams import Cam
+from equipoise.mechanism.parts.couplings import Coupling
 from equipoise.mechanism.parts.machine import FRAME, Machine
 from equipoise.signals import JumpSampling
 
@@ -80,12 +80,12 @@ def bends_of_rows(machine: Machine, turns: int) -> Array:
 
 def may_jump(machine: Machine) -> bool:
     """Whether there is anything that jumps, as far as is known without motion."""
-    laws = [*machine.laws.values(), *(cam.law for cam in machine.cams)]
     soil = machine.planting is not None and machine.planting.soil is not None
     return (
         soil
         or any(load.jumps for load in machine.loads)
-        or any(len(law.jumps(ACCELERATION)) for law in laws)
+        or any(len(law.jumps(ACCELERATION)) for law in machine.laws.values())
+        or any(len(coupling.jumps) for coupling in machine.couplings)
     )
 
 
@@ -124,10 +124,10 @@ def resolved(motion: Motion) -> Motion:
 
 
 def _jumps_on_the_way(linkage: Linkage) -> Iterator[Array]:
-    """Crank angles at which cams come to knots of their laws, and tips pass the soil's surface."""
+    """Crank angles at which couplings come to knots of their laws, and tips pass the soil's surface."""
     machine = linkage.machine
-    for cam in machine.cams:
-        yield from _knots(linkage, cam)
+    for coupling in machine.couplings:
+        yield from _knots(linkage, coupling)
     joints = [joint for joint in rubbing_joints(linkage) if joint.jumps]
     if joints:
         yield _signs_changed(
@@ -144,17 +144,17 @@ def _height(tip: str, surface: float, motion: Motion) -> Array:
     return np.asarray(motion.points[tip].y - surface)
 
 
-def _knots(linkage: Linkage, cam: Cam) -> Iterator[Array]:
-    """Crank angles at which a cam has turned to a knot of its law."""
-    for knot in cam.law.jumps(ACCELERATION):
-        values = _crossed(linkage, partial(_beyond, cam, knot, np.sin))
+def _knots(linkage: Linkage, coupling: Coupling) -> Iterator[Array]:
+    """Crank angles at which a coupling's driver has turned to a knot of its law."""
+    for knot in coupling.jumps:
+        values = _crossed(linkage, partial(_beyond, coupling, knot, np.sin))
         if len(values):  # half a turn away the sine is 0, too
-            yield values[_beyond(cam, knot, np.cos, move(linkage.machine, values)) > 0]
+            yield values[_beyond(coupling, knot, np.cos, move(linkage.machine, values)) > 0]
 
 
-def _beyond(cam: Cam, knot: float, read: Callable[[Any], Any], motion: Motion) -> Array:
-    """Sine or cosine (N,) of the angle by which a cam has turned beyond a knot."""
-    ends = (cam.driver, cam.carrier)
+def _beyond(coupling: Coupling, knot: float, read: Callable[[Any], Any], motion: Motion) -> Array:
+    """Sine or cosine (N,) of the angle by which a coupling's driver has turned beyond a knot."""
+    ends = (coupling.driver, coupling.carrier)
     driver, carrier = (0.0 if end == FRAME else motion.links[end].angle for end in ends)
     return np.asarray(read(driver - carrier - knot))
 

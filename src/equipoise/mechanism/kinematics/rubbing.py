@@ -14,7 +14,6 @@ from equipoise.mechanism.parts.couplings import Coupling
 from equipoise.mechanism.parts.joint_kinds import JointKind
 from equipoise.mechanism.parts.joint_properties import JOINTS, JointProperties
 from equipoise.mechanism.parts.machine import Slider
-from equipoise.mechanism.parts.racks import Rack
 
 STILL = 1e-10
 """rad or lengths of the largest link, by rad of the crank: a joint that moves less is at rest, as
@@ -97,10 +96,11 @@ class RubbingJoint:
 
     def place(self, motion: Motion) -> Array:
         """Where what slides rubs (N,), m, complex: of a rack where it meets its pinion."""
-        if isinstance(self.mesh, Rack):
-            pins = motion.linkage.joints.pins_between(self.mesh.pinion, self.mesh.carrier)
-            foot = -1j * self.mesh.left * self.mesh.radius * self.direction(motion)
-            return motion.point(pins[0]).place + foot
+        if self.mesh is not None:
+            ends = self.mesh.driver, self.mesh.driven
+            turning = next(body for body in ends if body != self.mesh.slides)
+            pins = motion.linkage.joints.pins_between(turning, self.mesh.carrier)
+            return motion.point(pins[0]).place + self.mesh.foot * self.direction(motion)
         guide = self.slider or self.slot
         assert guide is not None
         return motion.point(guide.point).place
@@ -152,7 +152,7 @@ def _rubbing(linkage: Linkage) -> list[RubbingJoint]:
             mesh = couplings[reaction.kind, reaction.name]
             ends = mesh.driven, mesh.carrier
             guide = next((item for item in machine.sliders if (item.link, item.on) == ends), None)
-            if isinstance(mesh, Rack) and guide is not None:
+            if mesh.slides and guide is not None:
                 still = STILL * size
                 result.append(RubbingJoint(mesh.name, reaction, entry, guide, still, mesh, 1.0))
                 continue

@@ -53,6 +53,12 @@ class Belt(Turning):
     noun = to_say("belt")
     group = to_say("belts")
     heading = Note("Belt")
+    tables: ClassVar[Mapping[str, str]] = {"joints": "equipoise.results.belt_blocks:belt_blocks"}
+    curves = (
+        ("left", "right"),
+        to_say("Tension of the strands of belts"),
+        to_say("Tension of the strands of belts over crank angle."),
+    )
     pushes = False
     columns: ClassVar[Mapping[str, Set[str]]] = {"": {"start", "tension"}}
     counted = to_say("{count} belts")
@@ -100,6 +106,11 @@ class Belt(Turning):
     @property
     def preload(self) -> Any:
         return 0.0 if self.tension is None else self.tension
+
+    @property
+    def loses(self) -> bool:
+        """In any case."""
+        return True
 
     @property
     def switches(self) -> bool:

@@ -45,6 +45,7 @@ class Cam(Coupling):
     contact = "surface"
     touch = to_say("cam")
     legend = ("cam", to_say("cams"))
+    tables: ClassVar[Mapping[str, str]] = {"motion": "equipoise.results.cam_blocks:cam_blocks"}
     counted = to_say("{count} cams")
     most = 100
     start: ClassVar[float] = 0.0
@@ -130,8 +131,8 @@ class Cam(Coupling):
         return self.bodies
 
     @property
-    def jerks(self) -> bool:
-        return len(self.law.jumps(2)) > 0
+    def jumps(self) -> Any:
+        return self.law.jumps(2)
 
     @property
     def law(self) -> Law:

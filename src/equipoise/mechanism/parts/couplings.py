@@ -124,6 +124,7 @@ class Coupling(PartKind):
     touch : what touches where it pushes.
     contact : how it pushes: along the line that `line` tells, or square to a surface.
     grows : whether its pitch circles are as large as the distance of its pins sets them.
+    curves : outputs that have a picture of their own, what this shows and its caption; None of none.
     columns : numbers that columns of designs may have, and of what is inside of it by its key.
     driver, driven, carrier : names of bodies.
     start : angle of the driven body in the frame at crank angle 0, rad.
@@ -139,6 +140,7 @@ class Coupling(PartKind):
     touch: ClassVar[str] = to_say("teeth")
     contact: ClassVar[Literal["line", "surface"]] = "line"
     grows: ClassVar[bool] = False
+    curves: ClassVar[tuple[tuple[str, ...], str, str] | None] = None
     columns: ClassVar[Mapping[str, Set[str]]] = {}
 
     if TYPE_CHECKING:  # fields of some kinds, and properties of others
@@ -213,9 +215,27 @@ class Coupling(PartKind):
         return 1.0
 
     @property
-    def jerks(self) -> bool:
-        """Whether it makes accelerations jump at angles of its driver."""
+    def loses(self) -> bool:
+        """Whether it may lose a share of what it passes on."""
         return False
+
+    @property
+    def jumps(self) -> Any:
+        """Angles of its driver on the carrier within a turn, rad, at which the acceleration of the
+        driven body jumps.
+        """
+        return ()
+
+    @property
+    def ratios(self) -> tuple[float, float]:
+        """The smallest and the largest size of the speed ratio, with its sign."""
+        return self.speed_ratio, self.speed_ratio
+
+    @property
+    def varies(self) -> bool:
+        """Whether its speed ratio varies."""
+        low, high = self.ratios
+        return low != high
 
     @property
     def has_formula(self) -> bool:
@@ -228,6 +248,13 @@ class Coupling(PartKind):
         none does.
         """
         return ""
+
+    @property
+    def foot(self) -> complex:
+        """Of one of which a body slides: from the other's pin to where both touch, m, as it is where
+        the guide points along the x axis.
+        """
+        raise NotImplementedError
 
     def line(self, seat: Seat) -> LineOfAction | StrandLine | RollingLine:
         """Along which line it pushes; of those whose `contact` asks for it.
@@ -362,11 +389,6 @@ class Turning(Coupling):
             high=number(high),
             **named,
         )
-
-    @property
-    def ratios(self) -> tuple[float, float]:
-        """The smallest and the largest size of the ratio, with its sign."""
-        return self.speed_ratio, self.speed_ratio
 
 
 def name_of(driver: str, driven: str) -> str:

@@ -68,6 +68,8 @@ class PartKind(Frozen):
     legend : role among its signs, and what a picture's legend calls that; empty where none does.
     sign : ``module:function`` of the room of symbols that draws it, from the part and its
         surroundings to marks; empty where it has no sign of its own.
+    tables : ``module:function`` of the results that shows what an analysis says of all of the kind, by
+        the chapter in which that stands, ``motion`` or ``joints``.
     special : what it is called by formats of other programs, some of which lack it; empty of what
         all have.
     """
@@ -76,6 +78,7 @@ class PartKind(Frozen):
     group: ClassVar[str]
     special: ClassVar[Any] = ""
     sign: ClassVar[str] = ""
+    tables: ClassVar[Mapping[str, str]] = {}
     legend: ClassVar[tuple[str, str] | None] = None
 
     @property

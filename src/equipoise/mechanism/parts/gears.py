@@ -148,6 +148,11 @@ class Gear(Turning):
         return ratios_of(self.shape, self.speed_ratio)
 
     @property
+    def loses(self) -> bool:
+        """At one ratio."""
+        return self.shape is None
+
+    @property
     def unevenness(self) -> float:
         return max(map(abs, self.ratios)) / abs(self.speed_ratio)
 

@@ -52,8 +52,6 @@ JOINTS = ("pin", "slider")
 """Kinds of joints that hold bodies together, which no coupling is."""
 OF_PIN = ("radius", "torsional_damping", "drag_torque", "width", "bearing")
 OF_SLIDER = ("guide_length", "damping", "drag_force")
-MESHES = ("gears", "racks", "belts")
-"""Lists of couplings of which one may lose a share of what it passes on."""
 RUBBING = ("friction", "mesh_loss", "damping", "torsional_damping", "drag_force", "drag_torque")
 """Keys of which each alone makes a joint resist its motion."""
 APART = ("radius", "width", "bearing", "stiffness")
@@ -221,14 +219,14 @@ def _wrong_friction(where: str, properties: JointProperties) -> Iterator[ModelEr
 
 
 def wrong_of_kind(
-    where: str, properties: JointProperties, kind: str, in_slot: bool, varies: bool = False
+    where: str, properties: JointProperties, kind: str, in_slot: bool, loses: bool = False
 ) -> Iterator[ModelError]:
     """Report properties that a joint of this kind does not have, or lacks.
 
-    in_slot : whether it is a pin in a slot.  varies : whether it is a pair of gears of varying
-        ratio.
+    in_slot : whether it is a pin in a slot.  loses : whether it may lose a share of what it passes
+        on.
     """
-    if properties.mesh_loss is not None and (varies or kind not in MESHES):
+    if properties.mesh_loss is not None and not loses:
         note = Note("{joint!r} is no belt, rack or pair of gears of one ratio; leave it out",
                     joint=properties.joint)  # fmt: skip
         yield ModelError(f"{where}.mesh_loss", note)

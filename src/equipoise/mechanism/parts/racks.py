@@ -12,6 +12,7 @@ from equipoise.i18n import Note, to_say
 from equipoise.keys import TextKind, declared, key
 from equipoise.mechanism.checks import FRAME, Bodies
 from equipoise.mechanism.formulas import kernels
+from equipoise.mechanism.outputs.declared import of_mesh
 from equipoise.mechanism.parts.couplings import (
     Coupling,
     LineOfAction,
@@ -86,6 +87,16 @@ class Rack(Coupling):
         return self.rack if self.drives == "pinion" else self.pinion
 
     @property
+    def loses(self) -> bool:
+        """In any case."""
+        return True
+
+    @property
+    def foot(self) -> complex:
+        """From the pinion's pin to where both mesh, m, across the direction of the guide."""
+        return -1j * self.left * self.radius
+
+    @property
     def switches(self) -> bool:
         """The flank in contact follows from the sense of the force."""
         return True
@@ -151,7 +162,7 @@ class Rack(Coupling):
         import numpy as np
 
         slope = np.tan(self.pressure_angle)
-        lever = -1j * self.left * self.radius * seat.way
+        lever = self.foot * seat.way
         return LineOfAction(lever, slope if self.drives == "rack" else -self.left * slope)
 
     def parts(self, at: Pushed) -> Mapping[str, Any]:
@@ -163,6 +174,7 @@ class Rack(Coupling):
     @classmethod
     def declare_outputs(cls, table: str) -> None:
         declare_teeth(table)
+        of_mesh(table)
 
     def demands(self, distance: Callable[[], Any]) -> Iterator[Any]:
         """A pressure angle that there is."""
