@@ -84,6 +84,15 @@ export interface MachineRow {
   lateral: number;
 }
 
+export interface Soil {
+  /** Of the height of its surface among the numbers of a design. */
+  place: number;
+  /** Signals of the heights of all tips. */
+  heights: string[];
+  /** Of the lowest of them below the surface, m. */
+  depth: number;
+}
+
 export interface MachineData {
   language: string;
   words: Record<string, string>;
@@ -111,6 +120,8 @@ export interface MachineData {
   flywheel: number;
   acceleration: number;
   design: number[];
+  /** By what the height of the soil's surface is found; null where the file gives it, or there is no soil. */
+  soil: Soil | null;
   names: string[];
   outputs: Output[];
   fields: Field[];

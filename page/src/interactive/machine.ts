@@ -3,7 +3,7 @@
 import { signed } from "../format";
 import type { Pair } from "../protocol";
 import { say } from "../words";
-import type { MachineData, MachineRow, States } from "./data";
+import type { MachineData, MachineRow, Soil, States } from "./data";
 
 /** Cosine of the angle between a link and the base's, beyond which turns cannot be counted. */
 const FAR = -0.5;
@@ -57,7 +57,25 @@ export class Machine {
       this.states(design, grid, this.data.angles, out);
       return out;
     };
-    return new Solution(this, design, run(this.grid), this.rowGrids.map(run));
+    let out = run(this.grid);
+    const surface = this.surface(out);
+    if (surface !== null && surface !== design[(this.data.soil as Soil).place]) {
+      design = design.slice();
+      design[(this.data.soil as Soil).place] = surface;
+      out = run(this.grid);
+    }
+    return new Solution(this, design, out, this.rowGrids.map(run));
+  }
+
+  /** Height of the soil's surface, which lies by the depth above the lowest point of all tips. */
+  private surface(out: Float64Array): number | null {
+    const soil = this.data.soil;
+    if (!soil) return null;
+    const lowest = soil.heights.map((name) => {
+      const values = this.signal(out, name);
+      return values ? trough(this.frames.map((k) => values[k] as number)) : NaN;
+    });
+    return Math.min(...lowest) + soil.depth;
   }
 
   /** A signal among all of them. */
@@ -85,6 +103,27 @@ export class Machine {
     return { mean, rms: Math.sqrt(square), peak, peak_at: this.theta[at] as number, max, min };
   }
 }
+
+/** The lowest value of a curve over a cycle: of the polynomial through the five values about the lowest. */
+function trough(values: number[]): number {
+  const count = values.length;
+  const least = values.indexOf(Math.min(...values));
+  const [a, b, c, d, e] = [-2, -1, 0, 1, 2].map((k) => values[(least + k + count) % count] as number) as Five;
+  // its derivatives in the middle
+  const first = (a - 8 * b + 8 * d - e) / 12;
+  const second = (-a + 16 * b - 30 * c + 16 * d - e) / 12;
+  const third = (-a + 2 * b - 2 * d + e) / 2;
+  const fourth = a - 4 * b + 6 * c - 4 * d + e;
+  let x = 0;
+  for (let round = 0; round < 8; round++) {
+    const slope = first + x * (second + x * (third / 2 + (x * fourth) / 6));
+    const bend = second + x * (third + (x * fourth) / 2);
+    if (bend > 0) x = Math.max(-1, Math.min(1, x - slope / bend));
+  }
+  return c + x * (first + x * (second / 2 + x * (third / 6 + (x * fourth) / 24)));
+}
+
+type Five = [number, number, number, number, number];
 
 export class Solution {
   /** Signals of all rows together. */

@@ -15,7 +15,7 @@ import numpy as np
 
 from equipoise.codegen.backends import processors, run_loop
 from equipoise.codegen.coupled import known_by_crank
-from equipoise.codegen.emit import emit, moves_shared
+from equipoise.codegen.emit import emit, moves_shared, moves_soil
 from equipoise.codegen.figures import (
     CHANGE_POINT,
     COMPUTED,
@@ -156,7 +156,8 @@ def designs_of(
     linkage = linkage_of(machine, base)
     table = np.empty((len(values), source.width))
     for slot in source.slots:
-        value, own = slot.read(linkage), slot.read(base)
+        own = slot.read(base)
+        value = own if slot.cyclic else slot.read(linkage)  # no design changes that motion
         for column, part in enumerate(("real", "imag")[: 1 + slot.vector], slot.column):
             table[:, column] = np.ravel(np.real(getattr(value, part)))
             table[refused, column] = getattr(own, part)
@@ -198,6 +199,13 @@ class Batch:
                 Note(
                     "got lengths of an overconstrained linkage; each design has to be checked by "
                     "itself for compatible lengths"
+                )
+            )
+        if moves_soil(self.base, paths):
+            raise UsageError(
+                Note(
+                    "got numbers that move a finger in soil; each design has to be computed by "
+                    "itself, as its own motion tells where the finger goes in"
                 )
             )
         self.paths, self.wanted = tuple(paths), tuple(wanted)
@@ -244,7 +252,7 @@ class Batch:
                 )
             return np.empty(0), STEP / self.tolerance
         machine = self.base.machine
-        if any(coupling.contact == "surface" for coupling in machine.couplings):
+        if moves_soil(self.base, ["links"]) or any(len(item.jumps) for item in machine.couplings):
             return jumps_of_rows(self.base), FIRST
         every = np.concatenate([np.empty(0), *declared_jumps(machine, self.turns)])
         return of_rows(machine, every, self.turns), FIRST

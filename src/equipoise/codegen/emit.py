@@ -255,18 +255,15 @@ def _arm_of_center(link: str, linkage: Linkage) -> Any:
 
 
 def can_emit(linkage: Linkage) -> bool:
-    """Whether the steps of a linkage can be traced: no soil, no couplings beside loops, and no
-    drive that pushes.
+    """Whether the steps of a linkage can be traced: no couplings beside loops, and no drive that
+    pushes.
     """
     if linkage.machine.pushers:
-        return False
-    machine = linkage.machine
-    if machine.planting is not None and machine.planting.soil is not None:
         return False
     loops = [step for step in linkage.motion if isinstance(step, LoopGroup)]
     if not can_trace_followers(linkage):
         return False
-    return all(map(can_trace, loops)) and not (loops and machine.couplings)
+    return all(map(can_trace, loops)) and not (loops and linkage.machine.couplings)
 
 
 def signals_in_loops(linkage: Linkage, names: Iterable[str]) -> list[str]:
@@ -297,8 +294,8 @@ def _traced(linkage: Linkage, paths: Collection[str] | None = None, alone: bool 
     if not can_emit(linkage):
         raise UsageError(
             Note(
-                "large groups of loops, fingers in soil, drives that push, and couplings beside "
-                "loops cannot be computed in a loop"
+                "large groups of loops, drives that push, and couplings beside loops cannot be "
+                "computed in a loop"
             )
         )
     return Signals(Trace(linkage, paths, alone))
@@ -336,6 +333,16 @@ def moves_shared(linkage: Linkage, paths: Sequence[str]) -> bool:
     )
 
 
+def moves_soil(linkage: Linkage, paths: Sequence[str]) -> bool:
+    """Whether these numbers change where a finger goes into the soil, which each design's motion
+    over a cycle tells.
+    """
+    tables = force_kinds(type(linkage.machine))
+    planting = linkage.machine.planting
+    in_soil = planting is not None and planting.soil is not None
+    return in_soil and not all(_of_forces(KeyPath.parse(path), tables) for path in paths)
+
+
 def _of_forces(path: KeyPath, tables: Collection[str]) -> bool:
     """Whether forces depend on a number and the motion by crank angle does not."""
     if path[0] == "links" and len(path) > 2:
@@ -348,7 +355,7 @@ def can_compute(machine: Machine, paths: Sequence[str], figure: Figure) -> bool:
     linkage = assemble(machine)
     if not can_emit(linkage) or not all(can_vary(machine, path) for path in paths):
         return False
-    if moves_shared(linkage, paths):
+    if moves_shared(linkage, paths) or moves_soil(linkage, paths):
         return False
     try:
         emit(linkage, Gathered.of([figure]), paths)

@@ -51,12 +51,15 @@ class Script:
     names : of the signals, in the order of the rows of `out`.
     paths : of the numbers of the model file that stand in `design`, SI units; where there are none
         it has those that `numbers` finds.
+    cyclic : places in `design`, by their names, of what takes the motion over a cycle to find, such
+        as the height of the soil's surface; behind the numbers.
     source : terms of the signals.
     """
 
     text: str
     names: tuple[str, ...]
     paths: tuple[str, ...]
+    cyclic: Mapping[str, int]
     source: TermSource
 
     def numbers(self, linkage: Linkage) -> Array:
@@ -91,16 +94,25 @@ def javascript(
     wanted = Gathered(tuple((name, "squares") for name in names))
     source = emit(linkage, wanted, numbers or None, alone=True)
     outputs = [source.values[name] for name in names]
+    slots = [slot for slot in source.slots if slot.cyclic]
+    cyclic = {slot.name: slot.column for slot in slots}
     if numbers:
-        outputs = _of_numbers(source, linkage, outputs, numbers)
+        cyclic = {slot.name: place for place, slot in enumerate(slots, len(numbers))}
+        outputs = _of_numbers(source, linkage, outputs, numbers, cyclic)
     text = "\n".join(_Writer(source, outputs).lines()) + "\n"
-    return Script(text, tuple(names), tuple(numbers), source)
+    return Script(text, tuple(names), tuple(numbers), cyclic, source)
 
 
 def _of_numbers(
-    source: TermSource, linkage: Linkage, outputs: list[Any], numbers: Mapping[str, float]
+    source: TermSource,
+    linkage: Linkage,
+    outputs: list[Any],
+    numbers: Mapping[str, float],
+    cyclic: Mapping[str, int],
 ) -> list[Any]:
-    """Outputs with what follows from these numbers in the place of slots."""
+    """Outputs with what follows from these numbers in the place of slots, but for those that take a
+    cycle to find; cyclic : places of these.
+    """
     graph = next((item.graph for item in reached(outputs)), Graph())
     columns: dict[str, Any]
     columns = {path: graph.argument(f"n{k}", DESIGN) for k, path in enumerate(numbers)}
@@ -109,6 +121,10 @@ def _of_numbers(
         result = linkage_of(with_columns(linkage.machine, columns), linkage)
         values: dict[Term, Any] = {}
         for slot in source.slots:
+            if slot.cyclic:
+                place = f"n{cyclic[slot.name]}"
+                values[graph.argument(f"d{slot.column}", DESIGN)] = graph.argument(place, DESIGN)
+                continue
             value = slot.read(result)
             for k, part in enumerate((value.real, value.imag)[: 1 + slot.vector], slot.column):
                 values[graph.argument(f"d{k}", DESIGN)] = as_value(part)

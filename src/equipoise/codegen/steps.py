@@ -54,18 +54,23 @@ from equipoise.mechanism.assembly.steps import (
     u,
 )
 from equipoise.mechanism.dynamics.across import contacts, statics
+from equipoise.mechanism.dynamics.acting import against_soil
 from equipoise.mechanism.dynamics.forces import inertia_moved, massless
 from equipoise.mechanism.dynamics.loads import load_at
 from equipoise.mechanism.formulas import cam_kernels, kernels
 from equipoise.mechanism.formulas.curves import PlaneCurve
 from equipoise.mechanism.kinematics.motion import ROUNDING
+from equipoise.mechanism.kinematics.tip import surface_of, tip_link
 from equipoise.mechanism.parts.couplings import coupled
 from equipoise.mechanism.parts.element_kinds import Element
+from equipoise.mechanism.parts.field import PARTS
 from equipoise.mechanism.parts.force_kinds import ForceElement
 from equipoise.mechanism.parts.joint_kinds import joint_kinds
 from equipoise.mechanism.parts.links import moments_across
 from equipoise.mechanism.parts.machine import FRAME, Drive, FurtherDrive, Load
 
+SURFACE = "surface"
+"""Name of the slot of the soil's height in the frame."""
 ANGLE_MARGIN = 0.4
 """Added to the cosine of an angle, which is watched as that of a running angle is: beyond 154 deg
 from its middle a design is computed by itself."""
@@ -96,6 +101,35 @@ def trace_load(trace: Trace, number: int, load: Load) -> HoldingWrench:
 def _part_of_load(load: Load, key: str, theta: Array) -> Array:
     force, torque = load_at(load, theta)
     return np.asarray({"x": force.real, "y": force.imag, "torque": torque}[key] + 0.0 * theta)
+
+
+def trace_soil(trace: Trace) -> Iterator[tuple[str, str, HoldingWrench]]:
+    """Link and tip of each planting arm, with what holds the soil's force there."""
+    planting = trace.machine.planting
+    if planting is None or planting.soil is None:
+        return
+    surface = trace.slot(SURFACE, lambda linkage: surface_of(linkage.machine), cyclic=True)
+    forward = trace.slot("forward", _forward)
+    given = {part: trace.slot(f"soil {part}", partial(_of_soil, part)) for part in PARTS}
+    soil = with_fields(planting.soil, **given)
+    for arm in planting.every_arm:
+        link = tip_link(trace.machine, arm.tip)
+        place, first, _ = trace.point(link, arm.tip)
+        over_ground = first * trace.rate("speed") + forward
+        force = against_soil(soil, surface - place.imag, over_ground)
+        yield link, arm.tip, _holding_wrench(trace, link, arm.tip, force, 0.0)
+
+
+def _forward(linkage: Linkage) -> Any:
+    machine = linkage.machine
+    assert machine.planting is not None
+    return machine.planting.forward(machine.drive.speed)
+
+
+def _of_soil(part: str, linkage: Linkage) -> Any:
+    planting = linkage.machine.planting
+    assert planting is not None
+    return getattr(planting.soil, part)
 
 
 @dataclass(frozen=True)
@@ -239,12 +273,17 @@ def _holding_wrench(
     return link, *kernels.load_demand(anchor, at, force, torque)
 
 
-def trace_across(trace: Trace, loads: Sequence[Any], springs: Sequence[Any]) -> None:
+def trace_across(
+    trace: Trace,
+    loads: Sequence[Any],
+    soil: Sequence[tuple[str, str, HoldingWrench]],
+    springs: Sequence[Any],
+) -> None:
     """Add ``Q(link)``, the sum of planes times forces that each link needs, and ``rocking
     moment`` and ``frame rocking moment`` of all of them.
 
     loads, springs : the force that holds each, of force elements and then of preloads of couplings,
-        at each end on a link.
+        at each end on a link.  soil : as of `trace_soil`.
     """
     machine, state = trace.machine, trace.state
     moving, needed = [], {}
@@ -261,12 +300,16 @@ def trace_across(trace: Trace, loads: Sequence[Any], springs: Sequence[Any]) -> 
         moving.append(inertia)
         needed[link] = [inertia, weight]
     state["rocking moment"] = _about(moving)
+    of_links = [*chain(*needed.values())]
     acting = [
         (load, _plane(trace, load.link, load.point) * force)
         for force, load in zip(loads, machine.loads, strict=True)
     ]
-    outer = (force for load, force in acting if load.reaction is None)
-    state["frame rocking moment"] = _about((*chain(*needed.values()), *outer))
+    outer = [force for load, force in acting if load.reaction is None]
+    for link, tip, (_, force, _) in soil:
+        outer.append(_plane(trace, link, tip) * force)
+        needed[link].append(outer[-1])
+    state["frame rocking moment"] = _about((*of_links, *outer))
     for load, force in acting:
         needed[load.link].append(force)
     ends: list[tuple[str, str, str | None]]
@@ -561,14 +604,17 @@ def trace_demands(trace: Trace) -> None:
         for wrench in trace_element(trace, table, number)
     ]
     springs += [held for k in range(len(machine.couplings)) for held in trace_preload(trace, k)]
+    in_soil = [*trace_soil(trace)]
     if machine.has_planes:
-        trace_across(trace, [force for _, force, _ in loads], [force for _, force, _ in springs])
+        held = ([force for _, force, _ in wrenches] for wrenches in (loads, springs))
+        trace_across(trace, next(held), in_soil, next(held))
     _on_frame(trace, "shaking", moving)
     each = zip(machine.loads, loads, strict=True)
-    outer = [held for load, held in each if load.reaction is None]
+    soil = [wrench for *_, wrench in in_soil]
+    outer = [held for load, held in each if load.reaction is None] + soil
     _on_frame(trace, "frame", [*moving, *weights, *outer])
     for link in trace.linkage.joints.bodies[1:]:
-        parts = [held for held in (*moving, *weights, *loads, *springs) if held[0] == link]
+        parts = [held for held in (*moving, *weights, *loads, *soil, *springs) if held[0] == link]
         force, moment = demand_names(link)
         state[force] = sum(force for _, force, _ in parts)
         state[moment] = sum(moment for _, _, moment in parts)

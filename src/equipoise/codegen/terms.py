@@ -407,6 +407,7 @@ UFUNCS: dict[Any, Callable[..., Any]] = {
     np.minimum: least,
     np.maximum: greatest,
     np.floor: floor,
+    np.heaviside: lambda a, at_zero: select(a, 0.0, select(0.0, a, at_zero, 1.0), 0.0),
     np.rint: nearest,
     np.conjugate: lambda a: a.conjugate(),
 }

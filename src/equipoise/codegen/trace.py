@@ -34,12 +34,14 @@ class Slot:
 
     read : finds it in the design's linkage.
     column : of the table; a vector takes this and the next.
+    cyclic : whether it takes the motion over a cycle to find it, so that a script is handed it.
     """
 
     name: str
     vector: bool
     read: Read
     column: int
+    cyclic: bool = False
 
 
 @dataclass(frozen=True)
@@ -113,10 +115,10 @@ class Trace:
 
     # -- what is given -----------------------------------------------------------------------------
 
-    def slot(self, name: str, read: Read, vector: bool = False) -> Any:
-        """A number or vector that each design has of its own."""
+    def slot(self, name: str, read: Read, vector: bool = False, cyclic: bool = False) -> Any:
+        """A number or vector that each design has of its own; cyclic : as of `Slot`."""
         if name not in self.slots:
-            self.slots[name] = Slot(name, vector, read, self.width)
+            self.slots[name] = Slot(name, vector, read, self.width, cyclic)
             self.width += 1 + vector
         column = self.slots[name].column
         parts = [self.graph.argument(f"d{k}", DESIGN) for k in range(column, column + 1 + vector)]

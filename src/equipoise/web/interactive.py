@@ -18,6 +18,7 @@ import numpy as np
 
 from equipoise.codegen.emit import moves_shared, pose_signals, signals_in_loops
 from equipoise.codegen.javascript import Script, javascript
+from equipoise.codegen.steps import SURFACE
 from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
 from equipoise.exchange.formats import Job
@@ -26,6 +27,7 @@ from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.assembly.family import can_vary
 from equipoise.mechanism.assembly.reach import CHANGE_POINT
 from equipoise.mechanism.kinematics.motion import Motion
+from equipoise.mechanism.kinematics.tip import surface_of
 from equipoise.mechanism.outputs.declared import GROUPS
 from equipoise.mechanism.parts.machine import FRAME, Machine
 from equipoise.mechanism.parts.objectives import ROWS
@@ -224,6 +226,7 @@ class Interactive:
             "flywheel": self.machine.drive.flywheel,
             "acceleration": motion.acceleration,
             "design": self._design(),
+            "soil": self._soil(),
             "names": script.names,
             "outputs": [*self._outputs()],
             "fields": [*self._fields()],
@@ -253,9 +256,21 @@ class Interactive:
 
     def _design(self) -> list[float]:
         """What the script takes: the numbers of the model, or what it finds in the linkage."""
-        if not self.script.paths:
-            return [*map(float, self.script.numbers(self.motion.linkage))]
-        return [float(self._candidates[path].value) for path in self.script.paths]
+        script = self.script
+        if not script.paths:
+            return [*map(float, script.numbers(self.motion.linkage))]
+        numbers = [float(self._candidates[path].value) for path in script.paths]
+        return [*numbers, surface_of(self.machine)] if SURFACE in script.cyclic else numbers
+
+    def _soil(self) -> Values | None:
+        """Tips and depth by which the page finds the height of the soil's surface; None where there
+        is no soil, or the file gives that height.
+        """
+        planting, place = self.machine.planting, self.script.cyclic.get(SURFACE)
+        if place is None or planting is None or planting.surface is not None:
+            return None
+        heights = [f"points.{arm.tip}.y" for arm in planting.every_arm]
+        return {"place": place, "heights": heights, "depth": planting.depth}
 
     @cached_property
     def scene(self) -> Scene:

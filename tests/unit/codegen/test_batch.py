@@ -607,3 +607,22 @@ def test_equal_extremes_of_two_sets_of_angles() -> None:
     one[:, highest], one[:, at] = (1.0, 1.0 - 1e-15, 1.0), 2.0
     other[:, highest], other[:, at] = (1.0 - 1e-15, 1.0, 1.1), (3.0, 1.0, 3.0)
     assert list(gathered.joined(one, other)[:, at]) == [2.0, 1.0, 3.0]
+
+
+def test_fingers_in_soil_whose_motion_no_design_changes() -> None:
+    """Against each machine by itself; numbers that move the finger are not for loops."""
+    base = eq.load("transplanter")
+    paths = ["links.coupler.mass", "drive.speed"]
+    names = ("drive_torque", "shaking_moment", "frame_force", "joints.C")
+    batch = Batch(base, paths, [Figure(name, "rms") for name in names], angles=360)
+    values = np.array([[0.9, 25.0], [0.72, 40.0]])
+    figures, reason = batch(values)
+    assert not np.any(reason)
+    for row, (mass, speed) in zip(figures, values, strict=True):
+        machine = base.with_link("coupler", mass=float(mass)).with_drive(speed=float(speed))
+        summary = eq.analyze(machine, 360).summary
+        np.testing.assert_allclose(row, [summary[name].rms for name in names], rtol=1e-10)
+    moving = ["links.coupler.points.P.x"]
+    assert not can_compute(base, moving, Figure("drive_torque", "rms"))
+    with pytest.raises(UsageError, match="move a finger in soil"):
+        Batch(base, moving, [Figure("drive_torque", "rms")])

@@ -186,12 +186,6 @@ def test_forces_need_masses() -> None:
         source_of(bare, "shaking_force.x")
 
 
-def test_soil_is_refused() -> None:
-    """What cannot be written out must not be left out in silence."""
-    with pytest.raises(UsageError):
-        source_of(eq.load("transplanter"), "drive_torque")
-
-
 def test_forces_that_joints_share_are_refused_where_no_formula_holds() -> None:
     """Teeth that bear by the sense of their force, stiffness, and joints that let go."""
     train, walker = make("planet_train", 1).machine, eq.load("straw-walker")
@@ -218,7 +212,6 @@ def test_forces_that_joints_share_are_refused_where_no_formula_holds() -> None:
 
 
 def test_all_else_can_be_written() -> None:
-    """All but soil, and a drive that pushes."""
+    """All but a drive that pushes."""
     refused = {name for name in eq.examples("linkage") if not can_emit(assemble(eq.load(name)))}
-    soil = {"transplanter", "rotary-transplanter"}
-    assert refused == {*soil, "hydraulic-loader"}
+    assert refused == {"hydraulic-loader"}

@@ -19,6 +19,8 @@ from equipoise.mechanism.kinematics.motion import Motion, PlacedBodies
 from equipoise.mechanism.kinematics.tip import surface_of, tip_link
 from equipoise.mechanism.parts.field import Soil
 from equipoise.mechanism.parts.machine import FRAME
+from equipoise.mechanism.parts.ramps import table_value
+from equipoise.mechanism.parts.resistances import TINY
 from equipoise.mechanism.parts.springs import MEETING as SPRING_MEETING
 
 MEETING = 1e-12
@@ -137,22 +139,21 @@ def soil_force(motion: Motion, tip: str | None = None) -> Array:
     return against_soil(planting.soil, depth, point.velocity + planting.forward(motion.speed))
 
 
-def against_soil(soil: Soil, depth: Array, over_ground: Array) -> Array:
-    """Force (N,), N, complex, on a tip at depths (N,), m, with velocities over ground (N,), m/s,
-    complex; 0 above the surface.
+def against_soil(soil: Soil, depth: Any, over_ground: Any) -> Any:
+    """Force, N, complex, on a tip at a depth, m, with a velocity over ground, m/s, complex; 0 above
+    the surface.  Of arrays (N,), or of terms.
     """
     speed = np.abs(over_ground)
-    size = np.where(depth > 0, resistance(soil, depth, speed), 0.0)
-    against = np.divide(-over_ground, speed, out=np.zeros_like(over_ground), where=speed > 0)
-    return np.asarray(size * against)
+    against = -over_ground * (1.0 / np.maximum(speed, TINY))
+    return np.heaviside(depth, 0.0) * resistance(soil, depth, speed) * against
 
 
-def resistance(soil: Soil, depth: Array, speed: Array) -> Array:
-    """Size of the force (N,), N, at depths (N,), m, and speeds over ground (N,), m/s."""
+def resistance(soil: Soil, depth: Any, speed: Any) -> Any:
+    """Size of the force, N, at a depth, m, and a speed over ground, m/s."""
     size = soil.resistance + soil.per_depth * depth + soil.per_speed * speed
     size = size + soil.per_depth_and_speed * depth * speed
     if soil.table is not None:
-        size = size + np.interp(depth, soil.table.depth, soil.table.resistance)
+        size = size + table_value(soil.table.depth, soil.table.resistance, depth)
     return size
 
 

@@ -124,7 +124,7 @@ def resolved(motion: Motion) -> Motion:
 
 
 def _jumps_on_the_way(linkage: Linkage) -> Iterator[Array]:
-    """Crank angles at which couplings come to knots of their laws, and tips pass the soil's surface."""
+    """Crank angles at which couplings come to knots of their laws, and tips to the soil."""
     machine = linkage.machine
     for coupling in machine.couplings:
         yield from _knots(linkage, coupling)

@@ -124,7 +124,8 @@ class Coupling(PartKind):
     touch : what touches where it pushes.
     contact : how it pushes: along the line that `line` tells, or square to a surface.
     grows : whether its pitch circles are as large as the distance of its pins sets them.
-    curves : outputs that have a picture of their own, what this shows and its caption; None of none.
+    curves : outputs that have a picture of their own, what this shows, and its caption; None where
+        there is none.
     columns : numbers that columns of designs may have, and of what is inside of it by its key.
     driver, driven, carrier : names of bodies.
     start : angle of the driven body in the frame at crank angle 0, rad.
@@ -251,7 +252,7 @@ class Coupling(PartKind):
 
     @property
     def foot(self) -> complex:
-        """Of one of which a body slides: from the other's pin to where both touch, m, as it is where
+        """Of one of which a body slides: from the other's pin to where both touch, m, complex, if
         the guide points along the x axis.
         """
         raise NotImplementedError

@@ -32,6 +32,17 @@ def ramp_value(ramps: Ramps, place: Any) -> Any:
     return value + slope * (place - start) + sum(turned)
 
 
+def table_value(places: Sequence[Any], values: Sequence[Any], place: Any) -> Any:
+    """Value of a table at a place: linear between its rows, and as in the first and last beyond
+    them.
+    """
+    if len(places) == 1:
+        return values[0]
+    first, last = places[0], places[-1]
+    within = first + positive(place - first) - positive(place - last)
+    return ramp_value(ramps_of(places, values), within)
+
+
 def ramp_integral(ramps: Ramps, place: Any) -> Any:
     """Integral of the line from the first of its places to another."""
     start, value, slope, changes = ramps

@@ -27,7 +27,7 @@ from equipoise.mechanism.formulas.kernels import cross, positive
 from equipoise.mechanism.parts.between import BetweenPoints
 from equipoise.mechanism.parts.element_kinds import Placed
 from equipoise.mechanism.parts.force_kinds import Action, RatedElement
-from equipoise.mechanism.parts.ramps import ramp_value, ramps_of, wrong_rows
+from equipoise.mechanism.parts.ramps import table_value, wrong_rows
 from equipoise.quantities import Dimension, told
 
 TINY = 1e-300
@@ -175,11 +175,7 @@ class Resistance(BetweenPoints, RatedElement):
         """Size of the dry part at a position along its direction, N."""
         size = 0.0 if self.force is None else self.force
         positions, forces = self.rows
-        if positions:
-            first, last = positions[0], positions[-1]
-            within = first + positive(position - first) - positive(position - last)
-            size = size + ramp_value(ramps_of(positions, forces), within)
-        return size
+        return size + table_value(positions, forces, position) if positions else size
 
     def efforts(self, ways: Sequence[tuple[Any, Any]]) -> tuple[Any, ...]:
         """Force along and across its direction, N, against the speeds there."""
