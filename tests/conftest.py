@@ -19,10 +19,11 @@ from _pytest.assertion import rewrite
 
 from support import gallery
 from support.chosen import DISTINCT
+from support.later import LATER
 
 SEEDED = {Path(__file__).parent / room for room in ("laws", "secondroute", "crosscheck")}
 PARAM = type(pytest.param())
-MANY = 16
+MANY = 8
 """Machines of one test, of which every change tries some."""
 FRESH = 20_000
 """Objects after which garbage is looked for; 700, as usual, take a twentieth of a long run."""
@@ -72,10 +73,14 @@ def pytest_itemcollected(item: pytest.Item) -> None:
         item.add_marker("browser")
     elif item.path.suffix in {".md", ".ipynb"} or "site" in getattr(item, "fixturenames", ()):
         item.add_marker("documentation")
+    if item.name in _later(item.path):
+        item.add_marker("exhaustive")
 
 
+@pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Leave out tests that are exhaustive, unless they were asked for."""
+    _name_tests(items, config)
     if config.getoption("--exhaustive") or _by_name(config):
         return
     left = [item for item in items if item.get_closest_marker("exhaustive")]
@@ -95,6 +100,16 @@ def pytest_collection_finish() -> None:
     gc.freeze()
     gc.set_threshold(FRESH, 10, 10)
     gc.enable()
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_runtest_teardown(item: pytest.Item, nextitem: pytest.Item | None) -> None:
+    """Set aside what the tests of a file leave, which caches keep: each look for garbage that the
+    package asks for would go through all of it again.
+    """
+    if nextitem is not None and nextitem.path != item.path:
+        gc.collect()
+        gc.freeze()
 
 
 def pytest_sessionfinish(session: pytest.Session) -> None:
@@ -150,6 +165,25 @@ def _rewrite_share(config: pytest.Config) -> None:
             rewrite._write_pyc(config.stash[rewrite.assertstate_key], code, written, cached)
 
 
+@cache
+def _later(file: Path) -> frozenset[str]:
+    """Tests of a file that only a release has to pass."""
+    tests = Path(__file__).parent
+    return frozenset(LATER.get(str(file.relative_to(tests)), ()) if tests in file.parents else ())
+
+
+def _name_tests(items: list[pytest.Item], config: pytest.Config) -> None:
+    """Every name of `LATER` is that of a test, in a file of which all tests were collected."""
+    if _by_name(config):
+        return
+    names: defaultdict[Path, set[str]] = defaultdict(set)
+    for item in items:
+        names[item.path].add(item.name)
+    for file, there in names.items():
+        if gone := _later(file) - there:
+            raise pytest.UsageError(f"{file}: has no {sorted(gone)}; mend tests/support/later.py")
+
+
 def _by_name(config: pytest.Config) -> bool:
     """Whether tests were asked for by their names, which are tried whatever they are."""
     return any("::" in argument for argument in config.args)
@@ -199,7 +233,7 @@ def _thinned(mark: pytest.Mark, seeds: int | None, every: bool, some: str | None
                 continue
         kept.append(k)
     if some is not None and len(kept) >= MANY:
-        kept = [k for k in kept if _is_tried(some, values[k])]
+        kept = [k for k in kept if _is_tried(some, values[k])] or kept[:1]
     how = dict(mark.kwargs)
     ids = how.get("ids")
     if ids is not None and not callable(ids):

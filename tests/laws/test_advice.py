@@ -30,6 +30,7 @@ from equipoise.results.outputs import output_named
 from equipoise.results.yardsticks import FigureAssessment
 from laws.test_vibration_laws import supported
 from support.chosen import DISTINCT, EXHAUSTIVE, few
+from support.found import advice_for
 from support.machines import make
 
 KINDS = ("crank_rocker", "slider_crank", "stephenson", "quick_return", "scotch_yoke", "watt")
@@ -340,7 +341,7 @@ def answer_of(found: Balanced) -> str:
 @pytest.mark.parametrize("name", ANSWERS)
 def test_machines_of_other_trades(name: str) -> None:
     """A digger, engines, a press, pumps, sieves and conveyors, which nobody here had modelled."""
-    found = advise(eq.load(ADVISED / f"{name}.toml"))
+    found = advice_for(name)
     check(found)
     assert re.search(ANSWERS[name], answer_of(found)), answer_of(found)
 
@@ -349,15 +350,9 @@ ALIKE = {"scotch-yoke", "riding-transplanter", "balance-spring", "geared-counter
 """Advised for seconds, as others of ``OF_BUNDLED`` and ``ANSWERS`` are."""
 
 
-@cache
-def of_bundled(name: str) -> Balanced:
-    """Advice for a bundled machine as if it had no plan."""
-    return advise(eq.load(name).with_balance(None))
-
-
 @pytest.mark.parametrize("name", OF_BUNDLED)
 def test_what_a_designer_would_say_of_bundled_machines(name: str) -> None:
-    found = of_bundled(name)
+    found = advice_for(name)
     assert re.search(OF_BUNDLED[name], answer_of(found)), answer_of(found)
 
 
@@ -366,6 +361,6 @@ def test_bundled_machines(name: str) -> None:
     """As if they had no plan."""
     if any(link.mass is None for link in eq.load(name).links.values()):
         pytest.skip("without masses")
-    found = of_bundled(name)
+    found = advice_for(name)
     check(found)
     grown_is_told(found)

@@ -211,7 +211,7 @@ def test_processes() -> None:
             '[[outputs]]\nof = "plant"\nvalue = "curve.height"\nmake = "largest"\n',
         ),
     )
-    result = process("sweep", study, "-o", "new.zarr", "--workers", "2")
+    result = equipoise("sweep", study, "-o", "new.zarr", "--workers", "2")
     shown = succeeded(result)
     assert "Pareto-optimal designs" in shown or "note: " in shown
     assert result.err.splitlines()[-1].startswith("6 designs computed in ")
@@ -455,7 +455,7 @@ def test_a_bar_in_a_terminal() -> None:
     """With rate, time left, best so far and failures; gone in the end."""
     import pty
 
-    study = written(LENGTHS, ("designs = 200", "designs = 60_000"))
+    study = written(LENGTHS, ("designs = 200", "designs = 20_000"))
     ours, theirs = pty.openpty()
     words = command("sweep", study, "-o", "new.zarr")
     environment = {**os.environ, "TERM": "xterm", "COLUMNS": "120"}
@@ -470,8 +470,8 @@ def test_a_bar_in_a_terminal() -> None:
     out, _ = done.communicate()
     text = seen.decode()
     assert done.returncode == 0
-    assert b"60000 designs of 2 numbers" in out
-    assert re.search(r"\d+ %, \d+ of 60000 designs", text)
+    assert b"20000 designs of 2 numbers" in out
+    assert re.search(r"\d+ %, \d+ of 20000 designs", text)
     assert re.search(r"designs/s, \d.* left", text)
     assert "best so far: vertical" in text
     assert "failed: does not turn fully" in text

@@ -42,7 +42,7 @@ def test_the_bytes_of_a_film_do_not_depend_on_what_was_in_memory() -> None:
     found = {
         subprocess.run(command, env={**os.environ, "MALLOC_PERTURB_": filled}, check=True,
                        capture_output=True, text=True, timeout=120).stdout
-        for filled in ("0", "1", "85")
+        for filled in ("0", "85")
     }  # fmt: skip
     assert len(found) == 1 and len(found.pop().strip()) == 64
 

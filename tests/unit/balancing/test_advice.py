@@ -34,6 +34,7 @@ from equipoise.results.blocks import Text as TextBlock
 from equipoise.results.yardsticks import assess
 from equipoise.signals import Array
 from equipoise.vibration.linear import Linear
+from support.found import advice_for
 
 RIG, RIDING = eq.load("yamashita-rig"), eq.load("riding-transplanter")
 RPM = pi / 30
@@ -103,15 +104,14 @@ def test_a_couple_is_aimed_at_where_that_is_what_is_large() -> None:
 @pytest.mark.parametrize("name", ["hydraulic-loader", "quick-return", "straw-walker"])
 def test_where_nothing_large_shakes_the_masses_are_left_as_they_are(name: str) -> None:
     """However large a counterweight would be: a half disc of 360 kg against 2 % of the load."""
-    machine = bare(name)
-    found = advise(machine)
+    found = advice_for(name)
     assert not found.helps and not any(one.helps for one in found.tried)
     told = " ".join(helps_told(found))
     assert re.search("Leave the (masses|machine) as (they are|it is)|No counterweight", told)
 
 
 def test_all_that_is_large_is_named_first() -> None:
-    first, *_ = helps_told(advise(bare("hydraulic-loader")))
+    first, *_ = helps_told(advice_for("hydraulic-loader"))
     assert first == (
         "Large here: Force of the cylinder A to B, peak: 25.6 kN at 17.0° of the cycle, 6.4 times "
         "the largest load."
@@ -233,12 +233,12 @@ def test_the_room_of_a_short_crank_is_larger_than_its_throw() -> None:
     """As of a disc with a pin; nobody has said how far it may reach."""
     room = room_about(bare("scotch-yoke"), "crank")
     assert room.largest == room.assumed == pytest.approx(2.5 * 0.03)
-    assert room.is_limited_by_assumption and advise(bare("scotch-yoke")).helps
+    assert room.is_limited_by_assumption and advice_for("scotch-yoke").helps
 
 
 def test_what_more_room_would_allow_is_said() -> None:
     """Where it is worth it: a carrier's weight twice as far out is lighter and does more."""
-    found = advise(bare("planetary-planting-arm"))
+    found = advice_for("planetary-planting-arm")
     more = found.with_room
     assert more is not None and more.wanted == pytest.approx(2 * more.assumed)
     (piece,) = more.remedy.changes[0].values["pieces"]
@@ -247,7 +247,7 @@ def test_what_more_room_would_allow_is_said() -> None:
     assert found.to_dict()["with_room"]["gain"] == more.remedy.gain
     told = " ".join(helps_told(found))
     assert f"The space about {more.at} is assumed, from the lengths of the links" in told
-    assert advise(bare("balance-shafts")).with_room is None
+    assert advice_for("balance-shafts").with_room is None
 
 
 @pytest.mark.parametrize(("name", "mass", "gain"), [("kim-chung-b", 0.298, 0.209)])
@@ -255,7 +255,7 @@ def test_a_longer_arm_is_taken_rather_than_more_mass(name: str, mass: float, gai
     """298 g within 40 mm took 20.9 % off; as much mass does twice that as far out as 50 mm over the
     soil allow.
     """
-    found = advise(bare(name))
+    found = advice_for(name)
     assert found.helps and found.added_mass / found.gain < 0.55 * mass / gain
 
 
@@ -293,8 +293,7 @@ def test_plates_that_are_to_be_had(most: float, thickness: float) -> None:
 
 def test_the_machine_that_is_told_has_the_shape_that_is_told() -> None:
     """Not the best one between two degrees: figures are those of the rounded shape."""
-    machine = bare("balance-shafts")
-    found = advise(machine)
+    machine, found = bare("balance-shafts"), advice_for("balance-shafts")
     (change,) = found.changes
     (piece,) = change.values["pieces"]
     (degrees,) = {round(np.degrees(piece["angle"]))}
@@ -316,7 +315,7 @@ def test_the_machine_that_is_told_has_the_shape_that_is_told() -> None:
 
 def test_the_proof_is_of_every_sector_of_that_plate() -> None:
     """It holds for the shape that is told, and names the room."""
-    found = advise(bare("balance-shafts"))
+    found = advice_for("balance-shafts")
     assert found.bound <= found.cost and found.gap < 0.1
     (told,) = proof_told(found)
     assert told.startswith("Proof, by cone program: with a sector of ")
@@ -328,7 +327,7 @@ def test_the_proof_is_of_every_sector_of_that_plate() -> None:
 
 def test_what_gains_too_little_for_its_mass_is_not_offered() -> None:
     """On a crank that turns among pins of the frame, about which nothing fits."""
-    found = advise(bare("drag-link"))
+    found = advice_for("drag-link")
     assert not found.helps
     assert all(one.gain < LEAST_GAIN for one in found.tried)
     assert "that is too little" in " ".join(helps_told(found))
@@ -336,7 +335,7 @@ def test_what_gains_too_little_for_its_mass_is_not_offered() -> None:
 
 def test_what_leaves_a_headline_figure_worse_is_not_offered() -> None:
     """A lever would take a quarter off the shaking force, and makes the torque swing more."""
-    found = advise(bare("class-three"))
+    found = advice_for("class-three")
     assert not found.helps and found.gain > 0.25
     assert found.advice is not None
     ((was, new), *_) = found.advice.worse
@@ -355,7 +354,7 @@ def test_what_leaves_a_headline_figure_worse_is_not_offered() -> None:
 )
 def test_what_leaves_a_single_joint_or_direction_worse_is_not_offered(name: str, what: str) -> None:
     """The pin of a crank would carry an eighth more; the force along y would double."""
-    found = advise(bare(name))
+    found = advice_for(name)
     assert not found.helps
     rejected = [one for one in found.tried if one.gain > LEAST_GAIN]
     grown = {str(was.label) for one in rejected if one.advice for was, _ in one.advice.worse}
@@ -364,7 +363,7 @@ def test_what_leaves_a_single_joint_or_direction_worse_is_not_offered(name: str,
 
 def test_a_trifle_may_grow() -> None:
     """What stays below a tenth of its yardstick is no headline figure."""
-    found = advise(bare("balance-shafts"))
+    found = advice_for("balance-shafts")
     assert found.advice is not None
     (one, *_) = found.advice.before
     tiny = replace(one, value=1e-3 * one.value, ratio=1e-3 * one.ratio)
@@ -375,7 +374,7 @@ def test_a_trifle_may_grow() -> None:
 
 def test_what_is_small_and_stays_small_may_grow_by_half_of_what_is_saved() -> None:
     """Each over what is large of its kind: 0.8 of 1.6 here."""
-    found = advise(bare("balance-shafts"))
+    found = advice_for("balance-shafts")
     assert found.advice is not None
     (one, *_) = found.advice.before
     saving = Saving(gain=0.5, excess=1.6)
@@ -389,7 +388,7 @@ def test_what_is_large_may_grow_by_a_tenth_of_what_is_saved() -> None:
     """Of a figure five times its yardstick at most a tenth of the share that the aim loses, and at
     most a tenth of what is saved.
     """
-    found = advise(bare("balance-shafts"))
+    found = advice_for("balance-shafts")
     assert found.advice is not None
     one = replace(found.advice.before[0], value=5.0, ratio=5.0)
     for excess, most in ((6.0, 5.2), (1.0, 5.05)):
@@ -400,7 +399,7 @@ def test_what_is_large_may_grow_by_a_tenth_of_what_is_saved() -> None:
 
 def test_what_was_nothing_may_not_become_large() -> None:
     """Other phases of rows may bring a couple where there was none."""
-    found = advise(bare("balance-shafts"))
+    found = advice_for("balance-shafts")
     assert found.advice is not None
     (one, *_) = found.advice.before
     saving = Saving(gain=1.0, excess=3.0)
@@ -414,7 +413,7 @@ def test_a_couple_larger_than_what_is_saved_is_not_made() -> None:
     """Phases of 0, 180, 270 and 90 deg save 4.2 N m of shaking moment, RMS, and twist the machine
     by 9.6 N m; those that do not twist it are offered.
     """
-    found = advise(bare("four-row-transplanter"))
+    found = advice_for("four-row-transplanter")
     first, second = found.tried
     assert np.degrees(first.changes[0].values["phases"]) == pytest.approx([0, 180, 270, 90])
     assert first.advice is not None and not first.helps
@@ -432,7 +431,7 @@ def test_a_couple_larger_than_what_is_saved_is_not_made() -> None:
 
 def test_a_weight_that_takes_off_less_than_a_quarter_is_not_offered() -> None:
     """A seventh of the links' mass, for 22 % of an RMS and 15 % of the peak that is large."""
-    found = advise(bare("watt-six-bar"))
+    found = advice_for("watt-six-bar")
     assert not found.helps
     aims = (Objective("shaking_force"),)
     about_crank = [one for one in found.tried if one.plan.objectives == aims
@@ -450,7 +449,7 @@ def test_what_evens_a_torque_may_not_shake_the_machine_more() -> None:
     """A weight of 29 % of the links of a flap folder would even its torque, and raise its shaking
     force from 5.0 to 6.3 N: small beside its weight, but a spring or a flywheel costs none of it.
     """
-    found = advise(bare("flap-folder"))
+    found = advice_for("flap-folder")
     assert not found.helps
     rejected = [one for one in found.tried if one.gain > LEAST_GAIN and one.advice is not None]
     assert rejected
@@ -460,7 +459,7 @@ def test_what_evens_a_torque_may_not_shake_the_machine_more() -> None:
 
 
 def test_beside_a_torque_nothing_that_shakes_may_grow() -> None:
-    found = advise(bare("balance-shafts"))
+    found = advice_for("balance-shafts")
     assert found.advice is not None
     one = replace(found.advice.before[0], value=0.4, ratio=0.4)
     grown, saving = (replace(one, value=0.5),), Saving(gain=0.5, excess=1.6)
@@ -476,14 +475,14 @@ def test_the_figure_that_is_large_falls_in_its_own_measure() -> None:
     assert is_worth(0.2, 0.0, 0.16) and not is_worth(0.2, 0.0, 0.14)
     assert is_worth(0.26, 0.1, 0.26) and not is_worth(0.26, 0.1, 0.24)
     assert not is_worth(0.27, 0.24)  # about as much as it costs
-    found = advise(bare("cam-pusher"))
+    found = advice_for("cam-pusher")
     assert not found.helps
     assert is_worth(np.array([0.41, 0.27]), np.array([0.30, 0.24])).tolist() == [True, False]
 
 
 def test_the_peak_of_what_is_offered_falls_with_its_rms() -> None:
     for name in ("yamashita-1", "scotch-yoke", "kim-chung-a"):
-        found = advise(bare(name))
+        found = advice_for(name)
         assert found.helps and found.advice is not None
         old, new = (eq.analyze(one).summary for one in (found.original, found.machine))
         share = found.added_mass / found.original.mass
@@ -494,7 +493,7 @@ def test_the_peak_of_what_is_offered_falls_with_its_rms() -> None:
 
 def test_little_is_added_against_what_is_not_large() -> None:
     """The reel of a baler shakes with 64 % of the weight of its links: 1.4 kg are too much."""
-    found = advise(bare("baler-pickup"))
+    found = advice_for("baler-pickup")
     little = [one for one in found.tried if one.plan.objectives == (Objective("shaking_force"),)]
     assert little and all(0 < one.added_mass <= 0.05 * one.original.mass for one in little)
 
@@ -503,7 +502,7 @@ def test_what_stays_large_is_said_first_and_by_the_yardstick_before() -> None:
     """Added mass makes the yardstick longer, and no moment smaller; 2.22 N m over the weight of
     1.145 kg between pivots that are 89 mm apart.
     """
-    found = advise(bare("yamashita-1"))
+    found = advice_for("yamashita-1")
     text = " ".join(one.text for one in found.headline(alone=True) if isinstance(one, TextBlock))
     assert "Large after that: Shaking moment, peak: 2.22 N m" in text
     assert "2.2 times the weight of the moving links at the span" in text
@@ -511,7 +510,7 @@ def test_what_stays_large_is_said_first_and_by_the_yardstick_before() -> None:
 
 def test_what_falls_besides_is_said() -> None:
     """A weight against the torque of a six-bar takes a third off its shaking force."""
-    found = advise(bare("stephenson-six-bar"))
+    found = advice_for("stephenson-six-bar")
     old, new = (eq.analyze(one).summary for one in (found.original, found.machine))
     before, after = (one["shaking_force"].peak for one in (old, new))
     assert after < 0.9 * before
@@ -571,7 +570,7 @@ def figures_of_advice(found: Balanced) -> dict[str, object]:
 
 
 def test_advice_is_machine_readable() -> None:
-    values = figures_of_advice(advise(bare("class-three")))
+    values = figures_of_advice(advice_for("class-three"))
     assert values["offered"] is False
     large = values["large"]
     assert isinstance(large, list) and large[0]["figure"] == "shaking_force.peak"
@@ -580,7 +579,7 @@ def test_advice_is_machine_readable() -> None:
 
 
 def test_where_nothing_is_offered_no_change_is_listed() -> None:
-    told = " ".join(str(block) for block in outcome_blocks(advise(bare("drag-link"))))
+    told = " ".join(str(block) for block in outcome_blocks(advice_for("drag-link")))
     assert "Leave the masses as they are" in told and "add a counterweight" not in told
 
 
@@ -606,7 +605,7 @@ def advised(name: str) -> eq.Machine:
 
 
 def test_a_torque_that_weights_can_steady_is_an_aim() -> None:
-    found = advise(advised("walking-beam"))
+    found = advice_for("walking-beam")
     assert found.helps and found.plan.objectives == (Objective("drive_torque", "ripple"),)
     swings = [
         float(np.std(eq.analyze(one).forces.drive_torque))
@@ -650,8 +649,7 @@ def summed(values: Array, count: int) -> Array:
 @pytest.mark.parametrize(("name", "count"), [("planetary-planting-arm", 2), ("baler-pickup", 4)])
 def test_evenly_spaced_arms_leave_what_their_sum_leaves(name: str, count: int) -> None:
     """The fewest that take nine tenths; the swing of the torque over its mean, likewise."""
-    machine = bare(name)
-    found = advise(machine)
+    machine, found = bare(name), advice_for(name)
     assert found.advice is not None
     arms = spaced_arms_for(eq.analyze(machine, acceleration=0.0), found.advice.before, 0.5)
     assert arms is not None and arms.count == count
@@ -679,7 +677,7 @@ def test_arms_that_would_strike_each_other_are_not_named() -> None:
 
 
 def test_no_weight_against_what_is_not_large_where_more_arms_do_more() -> None:
-    found = advise(bare("baler-pickup"))
+    found = advice_for("baler-pickup")
     assert not found.helps and found.advice is not None
     force = next(one for one in found.advice.before if one.output == "shaking_force")
     assert not force.is_large

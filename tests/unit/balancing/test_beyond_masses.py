@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import fields, replace
-from functools import cache
 from math import pi
 from pathlib import Path
 
@@ -13,7 +12,6 @@ import pytest
 import equipoise as eq
 import support.found
 from equipoise.balancing.advice import advise, gauge_aims
-from equipoise.balancing.balanced import Balanced
 from equipoise.balancing.beyond_masses import Beyond
 from equipoise.balancing.cylinder_sizes import MODULUS
 from equipoise.balancing.first_order import balance_shafts_for
@@ -33,26 +31,20 @@ from equipoise.results.blocks import Text
 from equipoise.results.yardsticks import assess
 from equipoise.running.flywheel import size_flywheel
 from equipoise.vibration.linear import Linear, around, resonances
+from support.found import advice_for
 
 RPM = pi / 30
 ADVISED = Path(support.found.__file__).parent / "advised"
 
 
-@cache
-def found_for(name: str) -> Balanced:
-    """Advice on a machine of other trades, or on a bundled one as if it had no plan."""
-    file = ADVISED / f"{name}.toml"
-    return advise(eq.load(file if file.exists() else name).with_balance(None))
-
-
 def beyond(name: str) -> Beyond:
-    found = found_for(name)
+    found = advice_for(name)
     assert found.advice is not None
     return found.advice.beyond
 
 
 def said(name: str) -> str:
-    return " ".join(helps_told(found_for(name)))
+    return " ".join(helps_told(advice_for(name)))
 
 
 # -- flywheels -------------------------------------------------------------------------------------
@@ -75,7 +67,7 @@ def test_a_flywheel_stores_the_work_that_the_torque_swings_by(
     J(q) q.^2 / 2 is what the torque at constant speed leaves beside its mean, and J(q) w^2 / 2;
     J(q) is the torque that one rad/s^2 more takes.
     """
-    machine = found_for(name).original
+    machine = advice_for(name).original
     flywheels = beyond(name).flywheels
     assert flywheels is not None
     assert tuple(one.fluctuation for one in flywheels.choices) == shares
@@ -96,7 +88,7 @@ def test_a_flywheel_stores_the_work_that_the_torque_swings_by(
 
 def test_a_flywheel_is_that_of_run() -> None:
     """Beside a linkage whose own inertia counts: 0.0285 kg m2, not the 0.032 of a torque alone."""
-    machine = found_for("four-stroke-engine").original
+    machine = advice_for("four-stroke-engine").original
     flywheels = beyond("four-stroke-engine").flywheels
     assert flywheels is not None
     (one,) = flywheels.choices
@@ -119,7 +111,7 @@ def test_a_flywheel_is_a_disc_that_can_be_turned_and_run() -> None:
             per_millimetre = inertia / one.thickness * 1e-3  # which rounding up may add
             assert one.inertia * (1 - 1e-6) <= inertia < one.inertia + per_millimetre
             assert 1 / 30 * (1 - 1e-6) <= one.thickness / one.diameter <= 1 / 3
-            speed = abs(found_for(name).original.drive.speed) * one.ratio
+            speed = abs(advice_for(name).original.drive.speed) * one.ratio
             assert speed * one.diameter / 2 <= 40 * (1 + 1e-9)
 
 
@@ -132,7 +124,7 @@ def test_engines_are_told_their_flywheel_though_the_force_is_larger() -> None:
 
 def test_a_press_is_told_what_its_motor_gives() -> None:
     """The work of its load in a turn, by the force and the way of the ram."""
-    found, machine = beyond("press").flywheels, found_for("press").original
+    found, machine = beyond("press").flywheels, advice_for("press").original
     assert found is not None
     turned = np.radians(np.linspace(248, 268, 20001))
     motion = eq.move(machine, turned)
@@ -161,7 +153,7 @@ def test_a_flywheel_on_a_faster_shaft_names_what_is_assumed() -> None:
 
 
 def test_a_flywheel_that_is_there_is_enough() -> None:
-    machine = found_for("brush-cutter-engine").original
+    machine = advice_for("brush-cutter-engine").original
     flywheels = beyond("brush-cutter-engine").flywheels
     assert flywheels is not None
     (one,) = flywheels.choices
@@ -189,7 +181,7 @@ def test_a_rod_does_not_buckle() -> None:
     """By the lowest eigenvalue of a strut with pins at both ends, in finite differences."""
     one = beyond("hydraulic-loader").cylinder
     assert one is not None and one.is_slender
-    machine = found_for("hydraulic-loader").original
+    machine = advice_for("hydraulic-loader").original
     analysis = eq.analyze(machine)
     force = analysis.outputs["drive_force"].values
     motion = analysis.motion
@@ -217,7 +209,7 @@ def test_a_lever_is_longer_only_where_its_cylinder_can_be_built() -> None:
 
 def test_a_longer_lever_takes_the_force_of_virtual_work() -> None:
     """F dL = F' dL', with both lengths by the places of the pins, and differences for dL."""
-    one, machine = beyond("excavator").cylinder, found_for("excavator").original
+    one, machine = beyond("excavator").cylinder, advice_for("excavator").original
     assert one is not None and one.lever is not None and one.pivot == "Q"
     analysis = eq.analyze(machine, 7200)
     places = {name: analysis.motion.points[name].place for name in "EFQ"}
@@ -239,7 +231,7 @@ def test_a_longer_lever_takes_the_force_of_virtual_work() -> None:
 
 def test_a_resonance_beside_the_speed_is_moved_first() -> None:
     """The sieve at 280 to 360 rpm beside 255 rpm: not a sector of plate."""
-    found, mounts = found_for("sieve"), beyond("sieve").mounts
+    found, mounts = advice_for("sieve"), beyond("sieve").mounts
     assert not found.helps and mounts is not None
     assert mounts.speed / RPM == pytest.approx(255, abs=1)
     assert np.array(mounts.avoid) / RPM == pytest.approx([221, 277.5], abs=0.5)
@@ -252,7 +244,7 @@ def test_a_resonance_beside_the_speed_is_moved_first() -> None:
 
 def test_other_mounts_bring_what_is_told() -> None:
     """By whole responses of the machine that stands on them; and no resonance is beside it."""
-    machine, mounts = found_for("sieve").original, beyond("sieve").mounts
+    machine, mounts = advice_for("sieve").original, beyond("sieve").mounts
     assert mounts is not None and mounts.factor == 0.5 and machine.support is not None
     soft = dict(machine.support.mounts)
     for name in mounts.mounts:
@@ -282,14 +274,14 @@ def test_a_machine_far_from_its_resonances_keeps_its_mounts() -> None:
 
 def test_where_phases_of_rows_bring_more_no_mounts_are_named() -> None:
     """A walking transplanter beside its resonance: two rows in turn leave 2 % of what it reads."""
-    found = found_for("walking-transplanter")
+    found = advice_for("walking-transplanter")
     assert found.helps and found.gain > 0.95
     assert beyond("walking-transplanter").mounts is None
 
 
 def test_a_resonance_that_matters_less_than_masses_is_not_moved_first() -> None:
     """193 rpm beside 119 rpm: a softer spring takes 23 % off, a counterweight 43 %."""
-    found, mounts = found_for("yamashita-rig"), beyond("yamashita-rig").mounts
+    found, mounts = advice_for("yamashita-rig"), beyond("yamashita-rig").mounts
     assert found.helps and mounts is not None and mounts.gain < found.gain
     text = said("yamashita-rig")
     assert "The resonance at 119 rpm amplifies the motion at 193 rpm too: move it, or run" in text
@@ -301,7 +293,7 @@ def test_a_damped_resonance_that_amplifies_by_half_is_named_beside_a_counterweig
     """411 rpm with a damping of 0.2152, run at 300 rpm: 1.8 times what stiff mounts would leave;
     along and across alike.  Its edges by the equation of a mass on a spring and a damper.
     """
-    found, mounts = found_for("exudyn-slider-crank"), beyond("exudyn-slider-crank").mounts
+    found, mounts = advice_for("exudyn-slider-crank"), beyond("exudyn-slider-crank").mounts
     assert found.helps and mounts is not None
     assert mounts.mounts == ("along", "across") and mounts.factor == 2.0
     assert "First move the resonance at 411 rpm" in said("exudyn-slider-crank")
@@ -324,7 +316,7 @@ def force_of(machine: eq.Machine) -> np.ndarray:
 
 def test_half_of_what_reciprocates_is_a_choice_with_both_forces() -> None:
     """With the counterweight on the crank, by whole analyses."""
-    machine, piston = found_for("four-stroke-engine").original, beyond("four-stroke-engine").piston
+    machine, piston = advice_for("four-stroke-engine").original, beyond("four-stroke-engine").piston
     assert piston is not None and not piston.is_half
     reciprocates, turns = 260 + 230 * 28 / 95, 230 * 67 / 95
     balanced = (3200 * 4 - turns * 27) / (reciprocates * 27)
@@ -352,7 +344,7 @@ def test_a_piston_is_that_of_a_crank() -> None:
 def test_engines_are_told_their_shaking_force_beside_the_torque(name: str) -> None:
     piston = beyond(name).piston
     assert piston is not None and piston.is_half
-    force = force_of(found_for(name).original)
+    force = force_of(advice_for(name).original)
     assert np.max(np.abs(force.imag)) == pytest.approx(piston.along, rel=1e-3)
     assert "Half of what reciprocates is balanced on crank already" in said(name)
     assert "Flywheel on crank" in said(name)
@@ -374,7 +366,7 @@ def left_with(force: np.ndarray, square: float, forward: float, backward: float)
 @pytest.mark.parametrize("name", ["balance-shafts", "four-stroke-engine"])
 def test_balance_shafts_are_for_the_machine_that_is_advised(name: str) -> None:
     """With the counterweight where one is offered: for the machine as it is they over-balance."""
-    found, shafts = found_for(name), beyond(name).shafts
+    found, shafts = advice_for(name), beyond(name).shafts
     assert shafts is not None
     machine = found.machine if found.helps else found.original
     square = machine.drive.speed**2
@@ -391,7 +383,7 @@ def test_balance_shafts_are_for_the_machine_that_is_advised(name: str) -> None:
 
 def test_no_shafts_are_named_where_the_counterweight_leaves_too_little_for_them() -> None:
     """A yoke shakes with 9.6 times its weight as it is, with 5.7 times beside the counterweight."""
-    found, machine = found_for("scotch-yoke"), found_for("scotch-yoke").original
+    found, machine = advice_for("scotch-yoke"), advice_for("scotch-yoke").original
     analyses = [eq.analyze(one, acceleration=0.0) for one in (machine, found.machine)]
     before, after = (one.summary["shaking_force"].peak / (machine.mass * 9.80665)
                      for one in analyses)  # fmt: skip
@@ -405,7 +397,7 @@ def test_no_shafts_are_named_where_the_counterweight_leaves_too_little_for_them(
 
 def test_a_weight_on_a_slow_crank_takes_the_torque_of_order_1() -> None:
     """With it on the crank the swing is what is told, by a whole analysis."""
-    machine, weight = found_for("pump-jack").original, beyond("pump-jack").counterbalance
+    machine, weight = advice_for("pump-jack").original, beyond("pump-jack").counterbalance
     assert weight is not None
     place = weight.moment / 1500 * np.exp(1j * weight.direction)
     link = machine.links["crank"].with_added(1500.0, (place.real, place.imag), 0.0)
@@ -423,7 +415,7 @@ def test_a_weight_on_a_slow_crank_takes_the_torque_of_order_1() -> None:
 
 def test_a_poor_transmission_angle_names_joint_force_and_length() -> None:
     """Of the walking beam, though a counterweight helps it otherwise."""
-    found, poor = found_for("walking-beam"), beyond("walking-beam").transmission
+    found, poor = advice_for("walking-beam"), beyond("walking-beam").transmission
     assert found.helps and poor is not None and poor.between is not None
     analysis = eq.analyze(found.machine)
     assert poor.joint == "F"
@@ -452,7 +444,7 @@ def test_a_good_transmission_angle_is_not_mentioned() -> None:
 
 def test_values_of_aims_are_those_of_a_response() -> None:
     """What gauges read at the speeds of the sieve, in the gain of other mounts."""
-    machine = found_for("sieve").original
+    machine = advice_for("sieve").original
     (first, *_) = gauge_aims(machine)
     read = eq.respond(machine, first.speeds[0]).gauges[first.output.removeprefix("gauges.")]
     value = float(read.displacement.vibration_rms)
@@ -466,7 +458,7 @@ def test_arms_that_hang_on_one_side_are_named_where_they_load_a_joint() -> None:
     """Both arms of a rotary transplanter, at a hundredth of its speed and at its own: their weight
     and their inertia on one side of the pins are a third of the force in B; not the idlers.
     """
-    machine, arms = found_for("rotary-transplanter").original, beyond("rotary-transplanter").arms
+    machine, arms = advice_for("rotary-transplanter").original, beyond("rotary-transplanter").arms
     assert arms is not None and arms.links == ("arm 1", "arm 2") and arms.pins == ("C", "E")
     assert arms.distance == pytest.approx(np.hypot(0.038, 0.004))
     before = eq.analyze(machine, 720, acceleration=0.0).summary["joints.B"].peak
@@ -500,9 +492,9 @@ def test_a_machine_without_such_arms_is_not_told_of_any() -> None:
 )
 def test_every_answer_is_in_the_machine_readable_output(name: str, key: str) -> None:
     """As it is declared, with nothing else and nothing missing; null elsewhere."""
-    answers = found_for(name).to_dict()
+    answers = advice_for(name).to_dict()
     assert set(answers[key]) == set(Beyond.declared[key].of or {})
     assert answers[key].get("gain", 1.0) > 0.0
-    others = found_for("straw-walker").to_dict()
+    others = advice_for("straw-walker").to_dict()
     assert key in others and others[key] is None
     assert {*Beyond.declared} == {field.name for field in fields(Beyond)}

@@ -20,12 +20,13 @@ from equipoise.balancing.workshop import covers, in_short, sentences
 from equipoise.mechanism.kinematics.tip import surface_of
 from equipoise.mechanism.parts.balance import AddedMass, Balance, Objective, Weight
 from equipoise.results.blocks import Facts, Text
-from unit.balancing.test_beyond_masses import beyond, found_for, said
+from support.found import advice_for
+from unit.balancing.test_beyond_masses import beyond, said
 
 
 def first_lines(name: str) -> list[str]:
     """Of the short answer."""
-    return [one.text for one in found_for(name).headline(alone=True) if isinstance(one, Text)]
+    return [one.text for one in advice_for(name).headline(alone=True) if isinstance(one, Text)]
 
 
 # -- weights before plates -------------------------------------------------------------------------
@@ -35,7 +36,7 @@ def test_half_a_piston_stands_before_the_plate_that_brings_less() -> None:
     """A gang frame saw that shakes its ground with 20 times its weight is not to be left as it is;
     the mass of the weight is what a whole analysis of the changed machine needs.
     """
-    found, piston = found_for("frame-saw"), beyond("frame-saw").piston
+    found, piston = advice_for("frame-saw"), beyond("frame-saw").piston
     first, *_ = first_lines("frame-saw")
     assert first.startswith("Nothing of what reciprocates is balanced on crank: ")
     assert "by 74 kg m (245 kg at 300 mm) added on crank at 180° in its axes" in first
@@ -50,7 +51,7 @@ def test_half_a_piston_stands_before_the_plate_that_brings_less() -> None:
 
 def test_a_reason_names_the_measure_in_which_a_figure_hardly_falls() -> None:
     """27 % of the RMS for 12 % of mass is within the rule; the peak falls by 23 %."""
-    found = found_for("frame-saw")
+    found = advice_for("frame-saw")
     peaks = [eq.analyze(one, acceleration=0.0).summary["shaking_force"].peak
              for one in (found.original, found.machine)]  # fmt: skip
     gone = 1 - peaks[1] / peaks[0]
@@ -61,7 +62,7 @@ def test_a_reason_names_the_measure_in_which_a_figure_hardly_falls() -> None:
 
 def test_a_weight_against_order_1_may_hold_what_the_crank_lifts() -> None:
     """Of a beam pump, most of which is the load of its rods: three tonnes and more on the crank."""
-    found, weight = found_for("beam-pump"), beyond("beam-pump").counterbalance
+    found, weight = advice_for("beam-pump"), beyond("beam-pump").counterbalance
     assert isinstance(weight, Counterbalance)
     first, *_ = first_lines("beam-pump")
     assert first.startswith("A weight of 2963 kg m (3292 kg at 900 mm) on crank, at -1° in its")
@@ -80,7 +81,7 @@ def test_a_weight_against_order_1_may_hold_what_the_crank_lifts() -> None:
 
 def test_the_radius_of_a_crank_is_from_its_pivot() -> None:
     """Wherever the origin of its axes is."""
-    machine = found_for("pump-jack").original
+    machine = advice_for("pump-jack").original
     crank = machine.links["crank"]
     points = {name: (x + 0.4, y) for name, (x, y) in crank.points.items()}
     assert crank.center_of_mass is not None
@@ -107,7 +108,7 @@ def test_lengths_stand_before_masses_where_a_dyad_is_nearly_dead() -> None:
 @pytest.mark.parametrize("name", ["reciprocating-saw", "frame-saw", "beam-pump", "wiper"])
 def test_who_is_told_what_to_do_is_not_told_to_leave_it(name: str) -> None:
     told = " ".join(first_lines(name))
-    assert not found_for(name).helps
+    assert not advice_for(name).helps
     assert "Leave" not in told and "No other change that was tried is worth building" in told
 
 
@@ -116,7 +117,7 @@ def test_who_is_told_what_to_do_is_not_told_to_leave_it(name: str) -> None:
 
 @pytest.mark.parametrize("name", ["kim-chung-b", "transplanter"])
 def test_a_counterweight_keeps_over_what_is_planted(name: str) -> None:
-    found = found_for(name)
+    found = advice_for(name)
     machine = found.original
     assert found.helps and machine.planting is not None
     for change in found.changes:
@@ -128,7 +129,7 @@ def test_a_counterweight_keeps_over_what_is_planted(name: str) -> None:
 
 def test_a_weight_that_passes_a_slot_has_a_plane_of_its_own() -> None:
     """The block of a scotch yoke goes 30 mm up and down in it, across which the sector turns."""
-    found = found_for("scotch-yoke")
+    found = advice_for("scotch-yoke")
     (change,) = found.changes
     motion = eq.move(found.original, 360)
     block, yoke = (motion.points[name].place for name in "BY")
@@ -237,7 +238,7 @@ def test_a_mass_of_another_density_names_that() -> None:
 
 def test_mass_that_is_taken_off_is_told_as_a_hole() -> None:
     """67 g of steel are 8.5 cm3."""
-    found = found_for("yamashita-rig-counterweight")
+    found = advice_for("yamashita-rig-counterweight")
     (change,) = found.changes
     assert change.kind == "removed mass"
     (text,) = in_short(change)
@@ -248,7 +249,7 @@ def test_mass_that_is_taken_off_is_told_as_a_hole() -> None:
 def test_what_is_laid_behind_a_pin_has_kilograms() -> None:
     arms = beyond("rotary-transplanter").arms
     assert arms is not None
-    machine = found_for("rotary-transplanter").original
+    machine = advice_for("rotary-transplanter").original
     moments = [(machine.links[name].mass or 0.0) * arms.distance for name in arms.links]
     assert arms.moment == pytest.approx(max(moments))
     assert "up to 25 kg mm (650 g at 38.2 mm) on each" in said("rotary-transplanter")

@@ -14,13 +14,12 @@ from equipoise.exchange.export import export
 from equipoise.i18n import LANGUAGES, Note, decimals, number_list, say, speaking
 from equipoise.i18n.languages import KNOWN
 from equipoise.present import html_of
-from equipoise.present.composition import build
-from equipoise.present.findings import find
 from equipoise.present.pages import page
 from equipoise.quantities import typeset
 from equipoise.results.charts import shown
 from equipoise.schema.documents import dumps
 from support.found import found as found_of
+from support.found import report_of
 from support.interactive import block
 
 POINTED = r"(?<![\w.])\d+\.\d+(?![\w.])"
@@ -71,7 +70,7 @@ def visible(html: str) -> str:
 
 
 def test_a_report_has_it_in_tables_tiles_and_pictures(language: str) -> None:
-    text = visible(page(build(find("yamashita-rig"), language)).partition("</header>")[2])
+    text = visible(page(report_of("yamashita-rig", language)).partition("</header>")[2])
     assert len(re.findall(r"\d,\d", text)) > 300
     assert re.findall(rf".{{30}}{POINTED}.{{9}}", text) == []
 

@@ -109,7 +109,7 @@ def test_the_result_is_a_machine_that_turns(calmer: tuple[Fit, list[Requirement]
 def test_the_same_seed_gives_the_same_result() -> None:
     machine = eq.load("kim-chung-c")
     goals = [Requirement("curve.width", target=0.1), Requirement("soil.depth", at_least=0.01)]
-    few = {"generations": 4, "population": 12}
+    few = {"generations": 2, "population": 8}
     one, two, other = (fit_planting(machine, goals, seed=seed, **few) for seed in (3, 3, 4))
     assert one.machine == two.machine
     assert one.judged == two.judged
@@ -141,6 +141,7 @@ def test_a_design_that_meets_every_target_is_proved() -> None:
         assert figures[name] == pytest.approx(value, rel=1e-8)
     assert fit.to_dict()["proved"] is True
     assert "the optimum is not proved" not in told_of(fit)
+    few = {"generations": 2, "population": 6}
     far = fit_planting(machine, [Requirement("curve.width", target=9.0)], **few)
     assert far.to_dict()["proved"] is False
 

@@ -33,12 +33,13 @@ from equipoise.results.blocks import SvgPicture, Table, Text, Value
 from equipoise.results.machine_blocks import angles_told
 from support.chosen import EXHAUSTIVE, few
 from support.found import found as found_of
+from support.found import report_of
 from support.languages import COMPLETE
 
 
 @cache
 def document(name: str, language: str = "en", speed: float | None = None) -> ReportDocument:
-    return build(found_of(name) if speed is None else find(name, speed=speed), language)
+    return report_of(name, language) if speed is None else build(find(name, speed=speed), language)
 
 
 def drawn_of(told: ReportDocument) -> dict[str, SvgPicture]:

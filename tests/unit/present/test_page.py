@@ -18,6 +18,7 @@ from equipoise.present.findings import ToolFindings, find
 from equipoise.present.pages import PRINTED_STRESS, boxed_in_pdf, colored, colors, page, pdf
 from equipoise.present.pictures import pictures
 from support.found import found as found_of
+from support.found import report_of
 from surface.running import equipoise
 from unit.figures.checks import lightness
 
@@ -172,4 +173,4 @@ def test_other_names_and_languages_are_refused(tmp_path):
 def test_words_that_have_to_be_seen_are_dark_in_grey_print():
     ink, gray = lightness("#1a1a1a"), lightness("#4d5359")
     assert ink < lightness(PRINTED_STRESS) < gray
-    assert f".strong{{color:{PRINTED_STRESS}}}" in page(build(find("brush-cutter")))
+    assert f".strong{{color:{PRINTED_STRESS}}}" in page(report_of("brush-cutter"))

@@ -20,7 +20,6 @@ from equipoise.figures import analysis as charts
 from equipoise.figures import forces as forces_charts
 from equipoise.mechanism.parts.balance import Balance, Limit, Objective, Phases
 from equipoise.present.cells import grid
-from equipoise.present.composition import build
 from equipoise.present.findings import Findings, find
 from equipoise.present.summary import answers
 from equipoise.quantities.numbers import in_unit
@@ -35,6 +34,7 @@ from equipoise.web.figures import figures_of
 from equipoise.web.gallery import opened_example
 from support.chosen import DISTINCT, few
 from support.found import found as found_of
+from support.found import report_of
 
 MACHINES = (
     *("cam-pusher", "four-stroke-engine", "hydraulic-loader", "riding-transplanter"),
@@ -142,7 +142,7 @@ DERIVED = (" goes farthest: ", " from the x axis")
 
 @cache
 def document(name: str) -> Any:
-    return build(found_of(name))
+    return report_of(name)
 
 
 @pytest.mark.parametrize("name", few(MACHINES, {*MACHINES} - {"riding-transplanter"}))

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from equipoise.present.composition import build
 from equipoise.present.pages import page
 from equipoise.results.blocks import Column, Table, Text, Value, interleave_changes
-from support.found import found
+from support.found import report_of
 
 
 def table(label: str, *rows: tuple[str, float]) -> Table:
@@ -34,4 +33,4 @@ def test_a_table_of_other_columns_follows_whole() -> None:
 @pytest.mark.parametrize("name", ["exudyn-slider-crank", "riding-transplanter", "sieve"])
 def test_reports_of_machines_on_mounts_can_be_laid_out(name: str) -> None:
     """After what helps, more orders may be told than before."""
-    assert ", after" in page(build(found(name)))
+    assert ", after" in page(report_of(name))

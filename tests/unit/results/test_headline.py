@@ -14,13 +14,12 @@ from equipoise.cli import run
 from equipoise.handheld.exposed import expose_tool
 from equipoise.i18n import speaking
 from equipoise.present import html_of
-from equipoise.present.composition import build
-from equipoise.present.findings import find
 from equipoise.present.pages import page
 from equipoise.results.blocks import Facts, Text
 from equipoise.results.yardsticks import assess, verdict
 from support.chosen import EXHAUSTIVE
 from support.found import found as found_of
+from support.found import report_of
 from support.languages import COMPLETE
 
 EXAMPLES = Path(eq.__file__).parent / "examples"
@@ -53,7 +52,7 @@ def test_the_verdict_of_this_machine_stands_first_everywhere(
     analysis = eq.analyze(eq.load(name))
     html = html_of(analysis).replace(NARROW, " ")
     assert html.index(first) < html.index("<table")
-    report = page(build(found_of(name))).replace(NARROW, " ")
+    report = page(report_of(name)).replace(NARROW, " ")
     assert report.index(first) < report.index('class="tiles"')
 
 
@@ -144,8 +143,7 @@ def test_the_verdict_of_a_tool_is_what_a_day_amounts_to(capsys: pytest.CaptureFi
     brief = printed(capsys, "tool", "brush-cutter")
     assert brief[1].startswith("! A day of work: A(8) = 6.85 m/s^2, above the limit value")
     assert printed(capsys, "tool", "brush-cutter", "--full")[1] == brief[1]
-    found = find("brush-cutter")
-    document = build(found)
+    found, document = found_of("brush-cutter"), report_of("brush-cutter")
     assert document.verdict is not None and document.verdict.emphasis == "broken"
     a8 = expose_tool(found.tool, found.speeds).a8  # type: ignore[union-attr]
     assert f"A(8) = {a8:.2f} m/s²" in document.verdict.text
@@ -164,7 +162,7 @@ def test_a_machine_without_a_crank_has_no_crank_angle(
 
 
 def test_the_report_of_a_machine_without_a_crank_has_none(tmp_path: Path) -> None:
-    document = page(build(found_of("hydraulic-loader")))
+    document = page(report_of("hydraulic-loader"))
     text = re.sub(r"(?s)<style.*?</style>|<[^>]+>", " ", document).replace(NARROW, " ")
     own = text.partition("Settings")[0].partition("speed = ")[0]
     assert not re.search(r"crank angle|\brpm\b|drive pivot", own)
@@ -227,7 +225,7 @@ def test_a_follower_that_stays_on_is_no_trouble(capsys: pytest.CaptureFixture[st
     lines = " ".join(printed(capsys, "analyze", "cam-pusher")[:5])
     assert "The follower of “crank to pusher” stays on its cam up to 583 rpm, 2.4 times" in lines
     assert "ift-off" not in lines
-    report = page(build(found_of("cam-pusher"))).replace(NARROW, " ")
+    report = page(report_of("cam-pusher")).replace(NARROW, " ")
     assert report.index("stays on its cam up to 583 rpm") < report.index('class="tiles"')
     fast = eq.analyze(eq.load("cam-pusher"), speed=62.0)
     first = next(iter(fast.headline()))

@@ -17,6 +17,7 @@ from equipoise.mechanism.parts.machine import LoadTable, Machine
 from equipoise.schema import examples, load
 from equipoise.schema.documents import dumps, save
 from equipoise.schema.models import files_of, load_tool, loads_tool
+from support.chosen import drawn
 from unit.schema.samples import changed
 from unit.schema.tool_samples import EVERY_TOOL, TOOL
 
@@ -64,7 +65,7 @@ def test_examples_survive(name: str) -> None:
 
 
 @given(st.data())
-@settings(max_examples=40)
+@settings(max_examples=drawn(40))
 def test_random_edits_survive(data: st.DataObject) -> None:
     factors: dict[str, float] = {}
 
