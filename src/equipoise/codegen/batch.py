@@ -5,7 +5,7 @@ Designs are a table, one row a design, that a loop runs over at crank angles of 
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from itertools import pairwise
 from math import pi, prod
@@ -221,6 +221,7 @@ class Batch:
         self.march = March.of(self.source, self.base)
         windings = self.base.cycle.windings if rounds else {}
         fastest = max((abs(turns) for turns in windings.values()), default=1) / self.turns
+        fastest = max([fastest, *self._rates_of_pushed()])
         fastest *= prod(coupling.unevenness for coupling in machine.couplings)
         shaped = any("shape" in KeyPath.parse(path) for path in self.paths)
         self.slope = SLOPE * max(1.0, fastest) * (SWUNG if shaped else 1.0)
@@ -234,6 +235,12 @@ class Batch:
         reason[designs.refused] = NO_MACHINE
         figures[reason != COMPUTED] = np.nan
         return figures, reason
+
+    def _rates_of_pushed(self) -> Iterator[float]:
+        """How fast each link turns that is pushed, over the crank, at most."""
+        machine = self.base.machine
+        moved = machine.moved(all_angles(FIRST, self.turns)) if machine.pushers else {}
+        return (float(np.max(np.abs(moved[item.link][1]))) for item in machine.pushers)
 
     def _known_jumps(self) -> tuple[Array, float]:
         """Crank angles (J,), rad, at which forces of all designs jump, and how many crank angles

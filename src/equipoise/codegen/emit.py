@@ -22,6 +22,7 @@ from equipoise.codegen.steps import (
     trace_motion,
     traced_element,
 )
+from equipoise.codegen.strokes import SPEED, can_trace_strokes
 from equipoise.codegen.terms import angle_of
 from equipoise.codegen.trace import Trace
 from equipoise.dataclass import dataclass
@@ -33,9 +34,10 @@ from equipoise.mechanism.assembly.linkage import Linkage, assemble
 from equipoise.mechanism.assembly.loops import LoopGroup
 from equipoise.mechanism.assembly.steps import Reaction, planar
 from equipoise.mechanism.checks import unknown
-from equipoise.mechanism.dynamics.reactions import Push
+from equipoise.mechanism.dynamics.reactions import PUSH, Push
 from equipoise.mechanism.formulas.kernels import cross, length
 from equipoise.mechanism.outputs.declared import DECLARED, Declared, declared
+from equipoise.mechanism.parts.drives import Drive, FurtherDrive
 from equipoise.mechanism.parts.force_kinds import force_kinds
 from equipoise.mechanism.parts.joint_properties import JOINTS, family_of
 from equipoise.mechanism.parts.machine import Machine
@@ -137,6 +139,8 @@ class Signals:
         """A value of the machine as a whole."""
         if name == "speed":
             return self.trace.rate(name)
+        if name == "drive force":
+            return self.drive_force(self.machine.drive.link)
         return self.demands[name] if name in self.demands else self.forces[name]
 
     def of_member(self, item: str, name: str, *names: str) -> Any:
@@ -167,9 +171,24 @@ class Signals:
         return first * speed if order else value
 
     def drive_torque(self, item: str) -> Any:
-        if item not in [drive.link for drive in self.machine.driven]:
+        return self.forces[f"M({self._drive(item).link})"]
+
+    def drive_force(self, item: str) -> Any:
+        """Force of a drive that pushes."""
+        return self.forces[PUSH.format(self._drive(item).link)]
+
+    def drive_power(self, item: str) -> Any:
+        """Power of a drive."""
+        if self._drive(item).pushes:
+            return self.drive_force(item) * self.forces[SPEED.format(item)]
+        return self.drive_torque(item) * self.turning(item, 1)
+
+    def _drive(self, item: str) -> Drive | FurtherDrive:
+        """The drive of a link."""
+        drive = next((drive for drive in self.machine.driven if drive.link == item), None)
+        if drive is None:
             raise _Missing
-        return self.forces[f"M({item})"]
+        return drive
 
     def joint_force(self, item: str) -> Any:
         """A joint's force on the later of its bodies, a coupling's on the driven one."""
@@ -237,6 +256,8 @@ OF_MEMBERS: dict[str, Callable[..., Any]] = {
     "angular velocity": lambda signals, item: signals.turning(item, 1),
     "angular acceleration": lambda signals, item: signals.turning(item, 2),
     "drive torque": Signals.drive_torque,
+    "drive force": Signals.drive_force,
+    "drive power": Signals.drive_power,
     "joint force": Signals.joint_force,
     "joint moment": Signals.joint_moment,
     "bearing force": Signals.bearing_force,
@@ -256,9 +277,9 @@ def _arm_of_center(link: str, linkage: Linkage) -> Any:
 
 def can_emit(linkage: Linkage) -> bool:
     """Whether the steps of a linkage can be traced: no couplings beside loops, and no drive that
-    pushes.
+    pushes beside anything but dyads.
     """
-    if linkage.machine.pushers:
+    if not can_trace_strokes(linkage):
         return False
     loops = [step for step in linkage.motion if isinstance(step, LoopGroup)]
     if not can_trace_followers(linkage):
@@ -294,8 +315,8 @@ def _traced(linkage: Linkage, paths: Collection[str] | None = None, alone: bool 
     if not can_emit(linkage):
         raise UsageError(
             Note(
-                "large groups of loops, drives that push, and couplings beside loops cannot be "
-                "computed in a loop"
+                "large groups of loops, drives that push beside loops or couplings, and couplings "
+                "beside loops cannot be computed in a loop"
             )
         )
     return Signals(Trace(linkage, paths, alone))

@@ -9,7 +9,7 @@ What each design has of its own is a slot, with a function that finds it in the 
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from itertools import chain
 from math import tau
@@ -28,6 +28,7 @@ from equipoise.codegen.coupled import (
 from equipoise.codegen.loop_forces import trace_loop_forces
 from equipoise.codegen.loops import trace_loops
 from equipoise.codegen.prescribed import trace_prescribed
+from equipoise.codegen.strokes import TracedStrokes, trace_pushes
 from equipoise.codegen.terms import VectorTerm, angle_of, rotation
 from equipoise.codegen.trace import FAR, Array, Read, Trace, links_of, running_angle
 from equipoise.dataclass import dataclass
@@ -504,7 +505,15 @@ def trace_motion(trace: Trace) -> None:
 
 
 def _trace_steps(trace: Trace) -> None:
-    driven = {drive.link: _driven(trace, drive) for drive in trace.machine.driven}
+    machine = trace.machine
+    driven = {item.link: _driven(trace, item) for item in machine.driven if not item.pushes}
+    if machine.pushers:
+        driven |= TracedStrokes(trace, partial(_run_motion, trace), driven).turned()
+    _run_motion(trace, driven)
+
+
+def _run_motion(trace: Trace, driven: Mapping[str, tuple[Any, Any, Any, Any]]) -> None:
+    """From the angles of driven links, with their rotations and rates, to every link."""
     for link, (angle, *values) in ({FRAME: (0.0, 1 + 0j, 0.0, 0.0)} | driven).items():
         trace.put(u(link), values)
         if trace.counted:
@@ -664,11 +673,18 @@ def _drive_torques(trace: Trace) -> Iterable[Any]:
 
 def trace_joints(trace: Trace) -> None:
     """The pass from demands to the force in every joint."""
-    trace.put(demand_names(FRAME), (0j, 0.0))
-    for number, step in enumerate(trace.linkage.forces):
-        trace_step(trace, step, "forces", number)
+    if trace.machine.pushers:
+        trace_pushes(trace, partial(_run_forces, trace))
+    else:
+        _run_forces(trace)
     for drive in trace.machine.driven:
         pivot = trace.linkage.anchors[drive.link]
         trace.state[f"R({pivot}/{drive.link})"] = trace.state[f"F({drive.link})"]
     if not trace.machine.has_crank:
         trace.state["drive torque"] = trace.state[f"M({trace.machine.drive.link})"]
+
+
+def _run_forces(trace: Trace) -> None:
+    trace.put(demand_names(FRAME), (0j, 0.0))
+    for number, step in enumerate(trace.linkage.forces):
+        trace_step(trace, step, "forces", number)

@@ -159,7 +159,7 @@ def export_content(
             if coupling.preload:
                 lost = f"the tension of the {coupling.noun} {coupling.name}"
                 job.leave_out(f"{lost}, which its pins bear")
-    if machine.pushers:
+    if machine.pushers and not file_format.pushes:
         job.leave_out("what pushes the machine, and its stroke")
     data: str | bytes = import_module(file_format.maker).export_bytes(job)
     return job, data

@@ -32,6 +32,7 @@ class Format:
     rubs : whether it holds friction in joints, or what follows from it.
     tightens : whether its pins bear the tension of belts and chains.
     worded : whether it has sentences for readers, in their language.
+    pushes : whether it holds drives that push, and their strokes.
     of_link : whether it holds the loads along one link, at one crank angle or at several.
     cuts : whether a workshop cuts by it, so that counterweights have whole sizes.
     """
@@ -50,6 +51,7 @@ class Format:
     rubs: bool = True
     tightens: bool = True
     of_link: bool = False
+    pushes: bool = False
     worded: bool = False
     cuts: bool = False
 
@@ -182,6 +184,7 @@ FORMATS: Mapping[str, Format] = {
             module="web.interactive",
             worded=True,
             rubs=False,
+            pushes=True,
         ),
         Format(
             "inp",

@@ -10,12 +10,14 @@ from xml.etree import ElementTree
 import pytest
 
 from equipoise.i18n import catalogue
+from equipoise.schema.models import text_of
 from equipoise.web import documents as played_module
 from equipoise.web import interactive as interactive_module
 from equipoise.web.figures import CHARTS
 from equipoise.web.gallery import titles
 from equipoise.web.replies import Reply
 from equipoise.web.session import Session
+from support.machines_strokes import named
 from unit.web.pages import ask, opened, refusal
 
 
@@ -91,7 +93,8 @@ def test_a_page_that_computes_is_that_of_export(monkeypatch: pytest.MonkeyPatch)
     fields = {field["path"]: field for field in held["fields"]}
     assert fields["links.crank.mass"]["value"] == 0.5
     assert held["language"] == "ko" and held["words"]["RMS"] == catalogue("ko")["RMS"]
-    session, _ = opened("hydraulic-loader")
+    text = text_of(named("pushed geared_coupler:0").machine, {})
+    ask(session, "open", name="machine.toml", text=text)
     said = refusal(ask(session, "download", seq=1, kind="interactive")[-1:])
     assert "an interactive page computes in the browser" in said
     said = refusal(ask(session, "download", seq=2, kind="interactive", language="xx")[-1:])

@@ -281,7 +281,7 @@ PUSHED: dict[str, Any] = {"members": lambda machine: ("",) if machine.drive.push
 EFFORT: dict[str, Any] = {"ordered": True, "compared": TORQUE, "yardstick": "effort",
                           "by_friction": True}  # fmt: skip
 linear("drive_torque", "torque", to_say("drive torque"), **TURNED, **EFFORT)
-linear("drive_force", "force", to_say("drive force"), loop=None, **PUSHED, **EFFORT)
+linear("drive_force", "force", to_say("drive force"), **PUSHED, **EFFORT)
 linear("frame_force", "force", to_say("force on the frame"), XY, summed=(True, False))
 linear("frame_moment", "torque", to_say("moment on the frame"), about=True)
 of_space = alike(
@@ -347,6 +347,7 @@ of_drive(
     "force",
     "force",
     to_say("drive force of {name}"),
+    loop=looked_up("drive force"),
     members=lambda machine: _links_of_drives(machine, "force"),
     yardstick="effort",
 )
@@ -354,7 +355,7 @@ of_drive(
     "power",
     "power",
     to_say("drive power of {name}"),
-    loop=lambda value: value("drive torque") * value("angular velocity"),
+    loop=looked_up("drive power"),
     members=lambda machine: machine.told_drives,
 )
 

@@ -1,0 +1,85 @@
+"""Drives that push, in scripts and compiled loops, against analyses of each machine by itself."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.codegen.batch import Batch
+from equipoise.codegen.emit import can_emit
+from equipoise.codegen.figures import Figure
+from equipoise.codegen.javascript import javascript
+from equipoise.mechanism import Machine
+from equipoise.mechanism.assembly.linkage import assemble
+from secondroute.test_javascript import ANGLES, node, run, size
+from support.batches import signals_of
+from support.designs import design, drawn, numbers_of
+from support.machines_strokes import named
+
+CASES = [
+    "pushed stephenson:0", "pushed quick_return:0", "driven slider_crank:0",
+    "driven crossed_guides:0", "pushed arm:0", "pushed arm:1", "pushed five-bar:0",
+]  # fmt: skip
+LOADER = "hydraulic-loader"
+
+
+def machine_of(name: str) -> Machine:
+    return eq.load(name) if name == LOADER else named(name).machine
+
+
+def signals(machine: Machine) -> list[str]:
+    return [one for one in signals_of(machine) if not one.startswith("transmission")]
+
+
+@node
+@pytest.mark.parametrize("name", [LOADER, *CASES])
+def test_scripts(name: str, tmp_path: Path) -> None:
+    machine = machine_of(name)
+    linkage = assemble(machine)
+    assert can_emit(linkage)
+    names = signals(machine)
+    assert any("drive" in one for one in names)
+    script = javascript(linkage, names)
+    analysis = eq.analyze(machine, ANGLES)
+    got = run(script, script.numbers(linkage), analysis.crank_angle, tmp_path)
+    known = arrays(analysis, names)
+    assert np.all(np.abs(got - known) <= 1e-9 * size(known))
+
+
+def arrays(analysis: eq.Analysis, names: list[str]) -> Any:
+    by_name = {one.name: one.values for one in analysis.outputs}
+    return np.array([by_name[one] for one in names])
+
+
+@node
+@pytest.mark.parametrize("name", [LOADER, "driven slider_crank:0", "pushed arm:0"])
+def test_scripts_with_other_numbers(name: str, tmp_path: Path) -> None:
+    """The links that are pushed stand elsewhere, so that lengths are as commanded."""
+    base = machine_of(name)
+    numbers = numbers_of(base, 1e-3)
+    names = [one for one in signals(base) if "drive" in one or one.startswith(("shaking", "links"))]
+    script = javascript(assemble(base), names, {one.path: one.value for one in numbers})
+    row = drawn(numbers, 1, 3)[0]
+    analysis = eq.analyze(design(base, numbers, row), ANGLES)
+    got = run(script, row, analysis.crank_angle, tmp_path)
+    known = arrays(analysis, names)
+    assert np.all(np.abs(got - known) <= 1e-9 * size(known))
+    assert not np.allclose(known, arrays(eq.analyze(base, ANGLES), names))
+
+
+@pytest.mark.parametrize("name", [LOADER, "driven slider_crank:0", "pushed five-bar:0"])
+def test_compiled_loops(name: str) -> None:
+    base = machine_of(name)
+    numbers = numbers_of(base, 1e-3)
+    names = [one for one in eq.analyze(base, 8).summary if "drive" in one or one == "frame_force"]
+    batch = Batch(base, [one.path for one in numbers], [Figure(one, "rms") for one in names], 90)
+    rows = drawn(numbers, 2, 5)
+    figures, reason = batch(rows)
+    assert not np.any(reason)
+    for row, own in zip(figures, rows, strict=True):
+        summary = eq.analyze(design(base, numbers, own), 90).summary
+        np.testing.assert_allclose(row, [summary[one].rms for one in names], rtol=1e-8)
