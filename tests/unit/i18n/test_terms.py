@@ -14,9 +14,10 @@ from unit.web.pages import ask, opened
 ROOT = Path(__file__).parents[3]
 OTHERWISE = {
     "ja": ("釣り合", "つり合", "釣合せ", "質量中心", "おもりで釣", "釣合おもり", "釣合いおもり",
-           "カウンターウェイト", "機械的倍率", "駆動側", "駆動歯車", "駆動プーリ"),
-    "ko": ("카운터웨이트", "평형추", "무게중심", "기계적 확대", "구동 쪽", "구동 기어",
-           "구동 풀리"),
+           "カウンターウェイト", "機械的倍率", "力の拡大率", "駆動側", "駆動する側",
+           "駆動歯車", "駆動プーリ"),
+    "ko": ("카운터웨이트", "평형추", "무게중심", "기계적 확대", "구동 쪽", "구동하는 쪽",
+           "구동 기어", "구동 풀리"),
 }  # fmt: skip
 """Of balancing, centre of mass, counterweight, mechanical advantage; the drive of a machine is
 another thing than what drives in a pair of gears."""
