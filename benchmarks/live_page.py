@@ -50,6 +50,7 @@ from tempfile import TemporaryDirectory
 from time import monotonic
 
 from equipoise import load
+from equipoise.web.bytecode import find_node
 from equipoise.web.edits import movable
 from equipoise.web.site import write_site
 from peers import required
@@ -152,7 +153,7 @@ def timed_in_worker(browser: Browser, names: Sequence[str]) -> bool:
     """Measure linkages on the page of a site; tell whether it is within the limits."""
     within = []
     with TemporaryDirectory() as folder:
-        site = write_site(Path(folder) / "site", RUNTIME, WHEELS)
+        site = write_site(Path(folder) / "site", RUNTIME, WHEELS, node=find_node())
         with hosting(site.folder) as address:
             for name in names:
                 page = browser.new_page(
@@ -170,7 +171,7 @@ def timed_in_worker(browser: Browser, names: Sequence[str]) -> bool:
 def timed_cold(browser: Browser) -> bool:
     """Measure a first visit to a site; tell whether a joint was dragged within the limit."""
     with TemporaryDirectory() as folder:
-        site = write_site(Path(folder) / "site", RUNTIME, WHEELS)
+        site = write_site(Path(folder) / "site", RUNTIME, WHEELS, node=find_node())
         with hosting(site.folder, SlowLine) as address:
             page = browser.new_page(viewport={"width": 1280, "height": 900})
             page.set_default_timeout(10_000 * COLD)

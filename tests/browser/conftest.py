@@ -15,13 +15,11 @@ from collections.abc import Callable, Iterator
 import pytest
 from playwright.sync_api import Browser, BrowserContext, ConsoleMessage, Page, expect
 
-from browser.live import LONGEST, ROOT, SCREENSHOTS, Live
+from browser.live import LONGEST, PUBLISHED, ROOT, SCREENSHOTS, Live
+from equipoise.web.bytecode import find_node
 from equipoise.web.site import Site, write_site
 from support.chromium import chromium, path_of_chromium, served
 from support.host import RUNTIME, WHEELS, hosting, lacks_runtime
-
-PUBLISHED = "https://cdn.jsdelivr.net/pyodide/"
-"""Where a worker looks for packages that its site lacks: Clarabel, without which it can do."""
 
 
 def unavailable(reason: str) -> None:
@@ -45,7 +43,7 @@ def hosted(tmp_path_factory: pytest.TempPathFactory) -> Site:
     """The page as a folder for any web host."""
     if lacks_runtime():
         pytest.skip("the runtime and its wheels could not be fetched: make test fetches them")
-    return write_site(tmp_path_factory.mktemp("host") / "site", RUNTIME, WHEELS)
+    return write_site(tmp_path_factory.mktemp("host") / "site", RUNTIME, WHEELS, node=find_node())
 
 
 @pytest.fixture(scope="session")

@@ -23,6 +23,8 @@ LONGEST = 60
 """s that an answer may take on a processor that others keep busy."""
 OVER_A_SOCKET = pytest.mark.parametrize("address", ["socket"], indirect=True)
 """Of a test of the line between page and server, or of what a worker loads from elsewhere."""
+PUBLISHED = "https://cdn.jsdelivr.net/pyodide/"
+"""Where a worker looks for packages that its site lacks: Clarabel, without which it can do."""
 NUMBER = re.compile(r"[-−]?\d+(?:\.\d+)?")
 
 

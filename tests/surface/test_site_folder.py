@@ -14,7 +14,8 @@ from typing import Any
 import pytest
 
 from equipoise.web import site as site_module
-from equipoise.web.site import FIRST, LATER, LOCK, RUNTIME, RUNTIME_FILES
+from equipoise.web.bytecode import find_node
+from equipoise.web.site import FIRST, LATER, LOADER, LOCK, RUNTIME, RUNTIME_FILES
 from surface.running import Result, equipoise, refused, succeeded
 
 SECRET = b"what nobody else may see"
@@ -93,6 +94,29 @@ def test_a_site_is_written_from_them() -> None:
         == hashlib.sha256(Path("out", f"{entry['file_name']}.gzip").read_bytes()).hexdigest()
     )
     succeeded(equipoise(*WORDS))  # in the place of the first
+
+
+HAS_NODE = pytest.mark.skipif(find_node() is None, reason="Node is not installed")
+
+
+@HAS_NODE
+def test_node_executes_nothing_but_the_runtime_that_was_published(folder: Path) -> None:
+    """A browser shuts in what it executes; Node would not."""
+    script = "import { writeFileSync } from 'node:fs'; writeFileSync('executed', '')"
+    Path("runtime", LOADER).write_text(script)
+    assert "compiled modules" not in succeeded(equipoise(*WORDS))
+    assert not Path("executed").exists()
+
+
+@HAS_NODE
+def test_what_node_cannot_compile_can_be_left_to_the_browser(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(site_module, "is_published", lambda _: True)
+    sentence = wrote_nothing(equipoise(*WORDS))
+    assert "Node could not compile the modules of the site (" in sentence
+    assert "Error" in sentence and "--no-compile" in sentence
+    succeeded(equipoise(*WORDS, "--no-compile"))
 
 
 @pytest.mark.parametrize(

@@ -22,6 +22,7 @@ def site(
     runtime: InFolder = None,
     wheels: InFolder = None,
     docs: InFolder = None,
+    no_compile: bool = False,
 ) -> CommandResult:
     """Write the live page as a folder for any web host; it computes in the browser.
 
@@ -38,19 +39,26 @@ def site(
         in it are loaded by the page from where the runtime's packages are published.
     docs
         Folder of the documentation as HTML, to become docs in the site.
+    no_compile
+        Leave compiling Python modules to the browser, which then shows the first machine later.
+        Otherwise Node compiles them, if it is installed and --wheels has NumPy.
     """
     from equipoise.schema.files import reason
+    from equipoise.web.bytecode import find_node
     from equipoise.web.site import write_site
 
     folder = out or "site"
     refuse_file_name("--out", folder, "into which all files of the site go")
     try:
-        written = write_site(folder, runtime or "node_modules/pyodide", wheels, docs)
+        node = None if no_compile else find_node()
+        written = write_site(folder, runtime or "node_modules/pyodide", wheels, docs, node)
     except OSError as error:
         raise UsageError(
             at_place(folder, Note("the site cannot be written ({reason})", reason=reason(error)))
         ) from error
     lines = [f"first load: {written.first / 1e6:.1f} MB"]
+    if written.compiled:
+        lines += [f"compiled modules: {written.compiled}"]
     if written.missing:
         lines += [f"loaded from elsewhere when needed: {', '.join(written.missing)}"]
     return CommandResult(lines=lambda: lines, save=lambda: [wrote(f"{folder}/index.html")])

@@ -8,7 +8,8 @@ docs/                                    the documentation, where it is given
 
 Many hosts compress nothing, so most of what is loaded first lies there as `NAME.gzip`, and the
 worker unpacks it.  Texts of other languages than English have a wheel each, which is loaded when
-the language is first spoken.
+the language is first spoken.  Modules that are imported before a machine moves lie there as
+bytecode, where Node and NumPy's wheel are there to make it.
 """
 
 from __future__ import annotations
@@ -22,7 +23,8 @@ import shutil
 import stat
 import tempfile
 import zipfile
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from functools import partial
 from importlib import resources
 from importlib.metadata import Distribution, distribution
 from io import BytesIO
@@ -35,6 +37,7 @@ from equipoise.errors import UsageError
 from equipoise.folders import Folder, LinkError
 from equipoise.i18n import Note
 from equipoise.i18n.languages import ENDING, KNOWN, ORIGINAL, head_of, package_of
+from equipoise.web.bytecode import bytecode, in_place, is_published
 from equipoise.web.documents import MAKE, document
 
 RUNTIME = "314.0.3"
@@ -84,11 +87,13 @@ class Site:
     folder : where it stands.  first : bytes of the first load from a host that compresses nothing.
     missing : packages that come from where the runtime's packages are published when they are
         needed, since no wheel of them was given.
+    compiled : how many modules lie there as bytecode.
     """
 
     folder: Path
     first: int
     missing: tuple[str, ...]
+    compiled: int
 
 
 def write_site(
@@ -96,6 +101,7 @@ def write_site(
     runtime: str | os.PathLike[str],
     wheels: str | os.PathLike[str] | None = None,
     docs: str | os.PathLike[str] | None = None,
+    node: str | None = None,
 ) -> Site:
     """Write the page as a folder that a web host can serve.
 
@@ -106,21 +112,27 @@ def write_site(
     wheels : folder with wheels of the runtime's packages; each is checked against the hash in the
         runtime's lock file.
     docs : the documentation as HTML, which becomes the site's `docs`.
+    node : the command of Node, by which what the first machine needs is compiled if NumPy's wheel
+        is given and the runtime is as published; the browser compiles it otherwise.
 
     Raises
     ------
     UsageError : the runtime is of another version, a wheel is damaged, the folder holds something
-        else, a link stands where a file is to be copied, or the page has not been built.
+        else, a link stands where a file is to be copied, Node failed, or the page has not been
+        built.
     """
     target, source = Path(os.path.abspath(folder)), Path(runtime)
     lock, about_runtime = _lock_of(source)
-    content = _SiteContent.of(lock, about_runtime, None if wheels is None else Path(wheels))
     static = Path(__file__).parent / "static"
     if not all((static / name).is_file() for name in PAGE):
         raise UsageError(MAKE)
     if docs is not None and not (Path(docs) / "index.html").is_file():
         raise UsageError(Note("{docs} has no index.html; build the documentation first", docs=docs))
     _check_free(target, folder)
+    files = {**about_runtime, LOCK: _read(source, LOCK)}
+    compiler = partial(bytecode, node, files) if node and is_published(files) else None
+    given = None if wheels is None else Path(wheels)
+    content = _SiteContent.of(lock, about_runtime, given, compiler)
     target.parent.mkdir(parents=True, exist_ok=True)
     # A new folder of a name that nobody knows: no link can have been put in its place.
     fresh = Path(tempfile.mkdtemp(prefix=f".{target.name}.", dir=target.parent))
@@ -144,7 +156,7 @@ def write_site(
         fresh.rename(target)
     finally:
         shutil.rmtree(fresh, ignore_errors=True)
-    return Site(target, first, content.missing)
+    return Site(target, first, content.missing, content.compiled)
 
 
 @dataclass(frozen=True)
@@ -153,30 +165,43 @@ class _SiteContent:
 
     plain, packed : files as they are, and compressed ones without their ending, by path.
     texts : those of the compressed ones that are loaded when their language is spoken.
-    about : what the worker reads of them.
+    about : what the worker reads of them.  compiled : how many modules are bytecode.
     """
 
     plain: dict[str, bytes]
     packed: dict[str, bytes]
     texts: dict[str, bytes]
     about: dict[str, Any]
+    compiled: int
 
     @classmethod
     def of(
-        cls, lock: dict[str, Any], runtime: dict[str, bytes], wheels: Path | None
+        cls,
+        lock: dict[str, Any],
+        runtime: dict[str, bytes],
+        wheels: Path | None,
+        compiler: Callable[[list[bytes]], dict[str, bytes]] | None,
     ) -> _SiteContent:
-        """With the runtime's files by name, and a folder of wheels."""
+        """With the runtime's files by name, a folder of wheels, and what makes bytecode of them."""
         packages, plain = _packages(lock, wheels)
-        packed = _lean(packages, plain)
+        needed = _lean(packages, plain)
         own = dict(_wheel(distribution(name)) for name in ("equipoise", *PURE))
-        packed |= {f"wheels/{name}": _packed(data) for name, data in own.items()}
+        complete = len(needed) == len(FIRST)
+        compiled = compiler([*needed.values(), *own.values()]) if compiler and complete else {}
+        packed = {}
+        for path, data in needed.items():
+            packed[path] = _packed(_compiled(data, compiled))
+            hashed = hashlib.sha256(packed[path]).hexdigest()
+            next(one for one in packages.values() if one["file_name"] == path)["sha256"] = hashed
+        for name, data in own.items():
+            packed[f"wheels/{name}"] = _packed(_compiled(data, compiled))
         spoken, texts = _texts()
         packages |= spoken
         for name, data in runtime.items():
             if name == LOADER:
                 plain[f"runtime/{name}"] = data
             else:
-                packed[f"runtime/{name}"] = _packed(_solid(name, data))
+                packed[f"runtime/{name}"] = _packed(_solid(name, data, compiled))
         about = {
             "runtime": "runtime/",
             "own": [f"wheels/{name}" for name in own],
@@ -184,7 +209,7 @@ class _SiteContent:
             "first": FIRST,
             "lock": {**lock, "packages": packages},
         }
-        return cls(plain, packed, texts, about)
+        return cls(plain, packed, texts, about, len(compiled))
 
     def write(self, folder: Path) -> None:
         """Write the files, whose folders are there."""
@@ -325,22 +350,19 @@ def _packages(
 
 
 def _lean(packages: Mapping[str, dict[str, Any]], given: dict[str, bytes]) -> dict[str, bytes]:
-    """Compress the wheels of those that are needed first, without what only developers use.
+    """Wheels of those that are needed first, without what only developers use, by path.
 
-    They are taken out of the wheels that are given, and their hashes become those of what lies in
+    They are taken out of the wheels that are given; their hashes become those of what will lie in
     the site, by which the browser checks what it loads.
     """
-    packed = {}
+    lean = {}
     for name in FIRST:
-        entry = packages[name]
-        data = given.pop(entry["file_name"], None)
+        path = packages[name]["file_name"]
+        data = given.pop(path, None)
         if data is not None:
-            wheel = _stored(
-                (file, read) for file, read in _in_archive(data) if not UNUSED.search(file)
-            )
-            packed[entry["file_name"]] = wheel = _packed(wheel)
-            entry["sha256"] = hashlib.sha256(wheel).hexdigest()
-    return packed
+            files = _in_archive(data)
+            lean[path] = _stored((file, read) for file, read in files if not UNUSED.search(file))
+    return lean
 
 
 def _in_archive(data: bytes) -> Iterator[tuple[str, bytes]]:
@@ -358,9 +380,14 @@ def _stored(files: Iterable[tuple[str, bytes]]) -> bytes:
     return out.getvalue()
 
 
-def _solid(name: str, data: bytes) -> bytes:
-    """A file of the runtime; of an archive, its files as they are."""
-    return _stored(_in_archive(data)) if name.endswith(".zip") else data
+def _solid(name: str, data: bytes, compiled: Mapping[str, bytes]) -> bytes:
+    """A file of the runtime; of an archive, its files as they are, or as bytecode."""
+    return _compiled(_stored(_in_archive(data)), compiled) if name.endswith(".zip") else data
+
+
+def _compiled(archive: bytes, compiled: Mapping[str, bytes]) -> bytes:
+    """An archive of files as they are, with bytecode in place of sources of which there is some."""
+    return _stored(in_place(_in_archive(archive), compiled)) if compiled else archive
 
 
 def _packed(data: bytes) -> bytes:
