@@ -36,12 +36,17 @@ function atJoint(point: string, state: State, page: Doing): Action[] {
   const { bodies, frame } = state.scene;
   const holders = bodies.filter(({ points }) => points.includes(point)).map(({ name }) => name);
   const [link] = holders;
+  const blocks = bodies.filter(({ points: [first, ...more] }) => first === point && !more.length); // they lie on it
   const fixed = frame.includes(point);
   const meets = holders.length + (fixed ? 1 : 0) > 1;
   const actions: (Action | false)[] = [
     { name: say("Spring …"), act: () => page.add("springs", link ? { link, point } : { to: point }) },
     !!link && { name: say("Load …"), act: () => page.add("loads", { link, point }) },
     !!link && { name: say("Cylinder …"), act: () => page.change("drive", { link, between: [point] }, "between") },
+    ...blocks.map(({ name }) => ({
+      name: say("Mass of {link} …", { link: name }),
+      act: () => page.change(`links.${name}`, {}, "mass"),
+    })),
     !!link && fixed && weight(link, state, page),
     fixed
       ? { name: say("Free from the frame"), act: () => page.make({ do: "free", point }) }

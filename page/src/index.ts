@@ -3,6 +3,7 @@
 import { App } from "./app";
 import { Played } from "./played";
 import type { Wire } from "./protocol";
+import { OfflineFiles } from "./site/offline";
 import { WorkerWire } from "./site/wire";
 import { Socket } from "./socket";
 import { shelf } from "./story";
@@ -46,7 +47,10 @@ async function compute(el: HTMLElement, { worker, service }: DOMStringMap): Prom
   const status = document.getElementById("equipoise-status") ?? document.createElement("p");
   el.classList.add("equipoise-page");
   let started = false;
-  const wire = new WorkerWire(worker ?? "", ({ type, what }) => {
+  const offline = new OfflineFiles();
+  const wire = new WorkerWire(worker ?? "", (sign) => {
+    if (sign.type === "loaded") return offline.keep(sign.files);
+    const { type, what } = sign;
     status.hidden = started && what === null;
     if (type === "failed") {
       status.hidden = false;
@@ -56,7 +60,7 @@ async function compute(el: HTMLElement, { worker, service }: DOMStringMap): Prom
   await begin(el, wire);
   started = true;
   status.hidden = true;
-  if (service) await navigator.serviceWorker?.register(service);
+  if (service) await offline.begin(service, worker ?? "");
 }
 
 /** A file that plays without a server. */

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import gzip
 import re
+from io import BytesIO
 from pathlib import Path
+from zipfile import ZipFile
 
 import pytest
-from playwright.sync_api import BrowserContext, Page, Response, expect
+from playwright.sync_api import Browser, BrowserContext, Page, Response, expect
 
 from browser.live import LONGEST, Live
 from equipoise.errors import UsageError
 from equipoise.i18n import LANGUAGES, catalogue
+from equipoise.web.bytecode import find_node
 from equipoise.web.site import Site, write_site
 from support.host import RUNTIME, WHEELS
 
@@ -43,6 +47,27 @@ def test_the_first_load_is_small(context: BrowserContext, hosted: Site, host: st
     loaded = sum(size for url, size in sent.items() if not unsent.search(url))
     assert 0.99 * hosted.first < loaded < 1.01 * hosted.first
     assert hosted.first <= MOST
+
+
+def test_what_the_first_machine_needs_is_compiled_already(hosted: Site) -> None:
+    """Its sources are left out, as both would be a longer load; other modules are as they were."""
+    if find_node() is None:
+        pytest.skip("Node is not installed")
+    assert hosted.compiled > 400
+
+    def names(path: str) -> set[str]:
+        (packed,) = hosted.folder.glob(f"{path}.gzip")
+        with ZipFile(BytesIO(gzip.decompress(packed.read_bytes()))) as archive:
+            return set(archive.namelist())
+
+    for path, needed, other in (
+        ("runtime/python_stdlib.zip", "typing", "doctest"),
+        ("wheels/numpy-*.whl", "numpy/__init__", "numpy/f2py/__init__"),
+        ("wheels/equipoise-*.whl", "equipoise/results/analysis", "equipoise/cli/site"),
+    ):
+        found = names(path)
+        assert {f"{needed}.pyc", f"{other}.py"} <= found
+        assert not {f"{needed}.py", f"{other}.pyc"} & found
 
 
 def test_texts_are_loaded_of_the_language_that_is_spoken(
@@ -95,23 +120,23 @@ def test_a_machine_is_changed_and_balanced_without_a_server(
     page.close()
 
 
-def test_what_was_loaded_is_used_offline(context: BrowserContext, host: str) -> None:
+def test_what_was_loaded_is_used_offline(browser: Browser, host: str) -> None:
+    """From the first visit on, of one who has never been there."""
+    context = browser.new_context(viewport={"width": 1280, "height": 900}, reduced_motion="reduce")
+    context.set_default_timeout(LONGEST * 1000)
     page = context.new_page()
     opened(page, host, "yamashita-1")
-    page.wait_for_function("() => navigator.serviceWorker.controller !== null")
+    page.wait_for_function("caches.match(location.origin + '/').then(kept => !!kept)")
     page.close()
     again = context.new_page()
-    opened(again, host, "yamashita-1")  # everything goes by the worker that keeps it
     context.set_offline(True)
     try:
-        again.goto("about:blank")
         live = opened(again, host, "watt-six-bar")
         joint = again.locator("[data-kind=point]").first
         expect(joint).to_have_attribute("aria-valuetext", re.compile("mm"))
         live.settled()
     finally:
-        context.set_offline(False)
-    again.close()
+        context.close()
 
 
 def test_a_damaged_wheel_is_refused(tmp_path: Path) -> None:

@@ -10,7 +10,7 @@ from xml.etree import ElementTree
 from PIL import Image
 from playwright.sync_api import Page, expect
 
-from browser.live import FITS, Live
+from browser.live import FITS, OVER_A_SOCKET, Live
 
 
 def taken(live: Live, press: Callable[[], None]) -> tuple[str, bytes]:
@@ -25,6 +25,7 @@ def menu(live: Live, name: str) -> tuple[str, bytes]:
     return taken(live, live.button(name).click)
 
 
+@OVER_A_SOCKET
 def test_pictures_and_a_film_are_kept(live: Live) -> None:
     name, data = menu(live, "Drawing as SVG")
     assert name == "yamashita-1-drawing.svg"

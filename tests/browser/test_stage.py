@@ -7,6 +7,7 @@ from collections.abc import Callable
 import pytest
 from playwright.sync_api import Locator, Page, expect
 
+import equipoise as eq
 from browser.live import FITS, ROOT, SCREENSHOTS, Live
 
 
@@ -100,6 +101,9 @@ def test_charts_go_below_the_drawing(live: Live) -> None:
 # -- menus -----------------------------------------------------------------------------------------
 
 
+JOINTS = "[data-kind=point][data-name]"
+
+
 def menu(live: Live, of: str) -> Locator:
     return live.page.get_by_role("menu", name=of, exact=True)
 
@@ -139,6 +143,50 @@ def test_a_link_has_a_menu_that_leads_to_its_counterweight_and_mass(live: Live) 
     form = live.page.get_by_role("form", name="crank")
     expect(form.get_by_label("mass", exact=True)).to_be_focused()
     expect(form.get_by_label("mass", exact=True)).to_have_value("199 g")
+
+
+def test_every_joint_and_link_has_a_menu(live: Live) -> None:
+    """With all that can be done there; a counterweight where a link turns about the frame."""
+    page = live.page
+    menus = page.get_by_role("menu")
+    everywhere = {
+        "Spring …",
+        "Load …",
+        "Delete",
+        "Mount of the support …",
+        "Gauge of the support …",
+    }
+    for name in ("stephenson-six-bar", "slider-crank-engine"):
+        machine = eq.load(name)
+        page.get_by_role("combobox", name="Example").select_option(name)
+        expect(page.get_by_role("heading", name=machine.title)).to_be_visible()
+        live.settled()
+        joints = {one.get_attribute("data-name") or "": one for one in page.locator(JOINTS).all()}
+        held = {point for link in machine.links.values() for point in link.points}
+        assert held <= {*joints}
+        for point in sorted(held):
+            joints[point].focus()
+            page.keyboard.press("ContextMenu")
+            expect(menus).to_have_attribute("aria-label", point)
+            assert everywhere | {"Cylinder …"} <= {*items(menus)}, point
+            page.keyboard.press("Escape")
+        for link, body in machine.links.items():
+            ends = [live.spot(joints[point]) for point in body.points]
+            if len(body.points) == 1:  # a block, which lies on its joint
+                page.mouse.click(*ends[0], button="right")
+                assert f"Mass of {link} …" in items(menus)
+                page.keyboard.press("Escape")
+                continue
+            wanted = everywhere | {"Mass …", "Point of the link"}
+            if len({*body.points} & {*machine.frame}) == 1:
+                wanted |= {"Counterweight"}
+            offered = []
+            for share in (0.3, 0.5, 0.7):  # other links may lie over it
+                x, y = (a + share * (b - a) for a, b in zip(ends[0], ends[-1], strict=True))
+                page.mouse.click(x, y, button="right")
+                offered += [items(menus)] if menus.get_attribute("aria-label") == link else []
+                page.keyboard.press("Escape")
+            assert offered and wanted <= {*offered[0]}, link
 
 
 def test_a_constraint_of_a_links_menu_holds_while_one_drags(live: Live) -> None:
@@ -310,6 +358,7 @@ def test_the_gallery_is_by_kind_and_is_searched_by_words(live: Live) -> None:
         "straight line": ("slider-crank-engine", "drag-link"),
         "mount": ("yamashita-rig", "drag-link"),
         "cylinder": ("hydraulic-loader", "drag-link"),
+        "Jansen": ("jansen-leg", "drag-link"),
     }
     for text, (shown, hidden) in expected.items():
         gallery.get_by_role("searchbox").fill(text)

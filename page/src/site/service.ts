@@ -7,9 +7,13 @@ interface Fetched extends Extended {
   request: Request;
   respondWith(reply: Promise<Response>): void;
 }
+interface Told extends Extended {
+  data: string[];
+}
 interface Scope {
   addEventListener(type: "install" | "activate", heard: (event: Extended) => void): void;
   addEventListener(type: "fetch", heard: (event: Fetched) => void): void;
+  addEventListener(type: "message", heard: (event: Told) => void): void;
   skipWaiting(): Promise<void>;
   clients: { claim(): Promise<void> };
 }
@@ -47,3 +51,15 @@ async function kept(request: Request): Promise<Response> {
 scope.addEventListener("fetch", (event) => {
   if (event.request.method === "GET") event.respondWith(kept(event.request));
 });
+
+/** Keep what was loaded before this worker began; the browser's own cache has most of it still. */
+async function keep(addresses: string[]): Promise<void> {
+  const store = await caches.open(STORE);
+  for (const address of addresses) {
+    if (await store.match(address)) continue;
+    const reply = await fetch(address, { cache: "force-cache" }).catch(() => null);
+    if (reply?.ok) await store.put(address, reply);
+  }
+}
+
+scope.addEventListener("message", (event) => event.waitUntil(keep(event.data)));

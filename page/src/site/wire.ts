@@ -4,10 +4,7 @@ import { Bytes } from "../bytes";
 import type { Told, Wire } from "../protocol";
 
 /** What a worker says of itself. */
-interface Sign {
-  type: "loading" | "failed";
-  what: string | null;
-}
+type Sign = { type: "loading" | "failed"; what: string | null } | { type: "loaded"; files: string[] };
 
 /** Of an object, what has changed since the one before (`equipoise/web/state_changes.py`). */
 interface Changes {
@@ -35,7 +32,7 @@ export class WorkerWire extends Bytes implements Wire {
   private readonly worker: Worker;
   private state: Record<string, unknown> = {};
 
-  /** `sign` hears that a package is loaded, and why nothing can be computed. */
+  /** `sign` hears that a package is loaded, which files have been, and why nothing can be computed. */
   constructor(address: string, sign: (sign: Sign) => void) {
     super();
     this.worker = new Worker(address, { type: "module", name: "foreground" });

@@ -78,6 +78,12 @@ const base = new URL(".", self.location.href);
 const post = (content: unknown, bytes?: Uint8Array): void =>
   (self as unknown as Worker).postMessage(content, bytes ? [bytes.buffer] : []);
 
+/** Tell which files have been loaded since this was told last. */
+function tellLoaded(): void {
+  post({ type: "loaded", files: performance.getEntriesByType("resource").map(({ name }) => name) });
+  performance.clearResourceTimings();
+}
+
 /** A copy of Python's bytes; what held them is given back. */
 function own(bytes: Bytes): Uint8Array {
   const copy = bytes.toJs().slice();
@@ -178,6 +184,7 @@ async function load(python: Pyodide, module: string): Promise<boolean> {
     return false;
   } finally {
     post({ type: "loading", what: null });
+    tellLoaded();
   }
 }
 
@@ -185,6 +192,7 @@ async function foreground(): Promise<void> {
   const early: string[] = [];
   self.onmessage = ({ data }: MessageEvent<string>) => early.push(data);
   const [python, page] = (await start("worker.Foreground")) as [Pyodide, Foreground];
+  tellLoaded();
   /** It starts once the first machine is shown, so that this one has the processor to itself until then. */
   let other: Worker | null = null;
   const hand = (task: Uint8Array): void => (other ??= begin()).postMessage({ task });
