@@ -781,7 +781,8 @@ def files(seed: int, wanted: str = "") -> tuple[Document, Files]:
 
 
 def beside_the_machine(chance: random.Random, document: Document) -> Document:
-    """Now and then constraints, which mostly do not hold, a run, and states of its duty.
+    """Now and then constraints, which mostly do not hold, a run, loads over its time, and states
+    of its duty.
 
     Drawn by themselves, so that the machine is what it would be without.
     """
@@ -800,6 +801,18 @@ def beside_the_machine(chance: random.Random, document: Document) -> Document:
             found["run"] |= {"angle": "40 deg", "off_turns": turns / 2}
     if any("bearing" in one for one in document.get("joints", ())) and chance.random() < 0.5:
         found["duty"] = [{"share": 2}, {"share": 0.3, "speed": "31 rpm", "load_factor": 0.6}]
+    if chance.random() < 0.15:
+        name, link = chance.choice([*document["links"].items()])
+        load: Document = {"link": name, "times": ["0 s", "0.3 s"], "factors": [0, 1.5]}
+        if chance.random() < 0.5:
+            force = {"point": chance.choice([*link["points"]]), "force": ["4 N", "-3 N"]}
+            load |= force | chance.choice(({}, {"axes": "link"}))
+        else:
+            load["torque"] = "0.2 N m"
+        others = [other for other in document["links"] if other != name]
+        if others and chance.random() < 0.5:
+            load["on"] = chance.choice(others)
+        found["timed_loads"] = [load]
     return found
 
 

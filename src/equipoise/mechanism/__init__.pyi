@@ -50,6 +50,7 @@ from .parts.support import Gauge as Gauge
 from .parts.support import Mount as Mount
 from .parts.support import Row as Row
 from .parts.support import Support as Support
+from .parts.timed_loads import TimedLoad as TimedLoad
 from .parts.torsion_dampers import TorsionDamper as TorsionDamper
 from .parts.torsion_dampers import TorsionDamperTable as TorsionDamperTable
 from .parts.torsion_springs import TorsionSpring as TorsionSpring

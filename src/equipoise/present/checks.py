@@ -337,6 +337,8 @@ def _drive_train(machine: Machine) -> Iterator[str]:
         rotor = f", rotor {told(motor.inertia, 'inertia', 'kg m^2')}" if motor.inertia else ""
         speed = "is the drive's" if motor.mean_speed == "held" else "follows from it"
         yield f"motor: {_curve(motor)}, ratio {number(motor.ratio)}{rotor}; mean speed {speed}"
+    if machine.timed_loads:
+        yield f"loads over time, in runs alone: {len(machine.timed_loads)}"
     if machine.duty:
         yield f"duty states for the lives of bearings: {len(machine.duty)}"
     if machine.rows:

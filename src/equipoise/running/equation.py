@@ -25,7 +25,7 @@ from equipoise.mechanism.kinematics.motion import Motion, move
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.support import Row
 from equipoise.running.friction import Friction
-from equipoise.running.sources import Source, sources_of
+from equipoise.running.sources import Factors, Source, sources_of
 from equipoise.running.tabulated import Tabulated
 from equipoise.signals import Array
 
@@ -33,6 +33,8 @@ PIECES = 24
 """Pieces of a turn, to begin with."""
 DIFFERENCE = 1e-6
 """rad/s, or of a speed: steps of a difference that only tells whether the motion is stiff."""
+LATER = 1e-12
+"""s, or share of a time, by which an instant may be before a row of a load that it stands for."""
 CLOSE = 1e-9
 """rad, within which edges of pieces are one: rounding of crank angles at which a load sets in."""
 
@@ -99,6 +101,18 @@ class CrankEquation:
         return np.asarray(self.inertia(theta)[0] * speed**2 / 2)
 
     @cached_property
+    def times(self) -> tuple[float, ...]:
+        """Times, rising, s, at which the course of a load over time changes."""
+        return tuple(sorted({time for load in self.machine.timed_loads for time in load.times}))
+
+    def factors_at(self, time: Array | float, since: float) -> list[Array]:
+        """Factors (...) of loads over time at times (...), s, each on the line that it follows
+        just after an instant `since`, also beyond the end of that.
+        """
+        after = since + LATER * (1 + since)
+        return [load.line_after(after)(np.asarray(time)) for load in self.machine.timed_loads]
+
+    @cached_property
     def edges(self) -> Array:
         """Crank angles of a cycle between which everything is smooth, from 0 on, rad."""
         linkage = assemble(self.machine)
@@ -138,38 +152,52 @@ class CrankEquation:
         return tuple(slice(int(a), int(b)) for a, b in pairwise(ends))
 
     def torques(
-        self, columns: Array, speed: Array, driving: Array | float = 0.0, sense: float = 1.0
+        self,
+        columns: Array,
+        speed: Array,
+        driving: Array | float = 0.0,
+        sense: float = 1.0,
+        factors: Factors = (),
     ) -> Array:
         """Torque (K, ...) of each source, N m, by columns (C, ...) of the table, at speeds.
 
         driving : torque (...) of the drive, which matters to friction in joints only.
         sense : in which the crank turns, 1 or -1, which matters to all dry friction.
+        factors : of loads over time, as of `factors_at`.
         """
         each = zip(self.sources, self.slices, strict=True)
-        values = [source.sliding_torque(columns[part], speed, sense) for source, part in each
-                 if source is not self.friction]  # fmt: skip
+        values = [source.sliding_torque(columns[part], speed, sense, factors)
+                  for source, part in each if source is not self.friction]  # fmt: skip
         if self.friction is not None:
-            acting, part = np.asarray(sum(values, start=driving)), self.slices[-1]
+            beside = columns[0], np.asarray(sum(values, start=driving))
             values.append(
-                self.friction.torque_beside(columns[0], columns[part], speed, sense, acting)
+                self.friction.torque_beside(columns[self.slices[-1]], speed, sense, factors, beside)
             )
         return np.array(values) if values else np.zeros((0, *np.shape(speed)))
 
     def at(
-        self, theta: float, speed: float, driving: float = 0.0, sense: float = 1.0
+        self,
+        theta: float,
+        speed: float,
+        driving: float = 0.0,
+        sense: float = 1.0,
+        factors: Factors = (),
     ) -> tuple[float, float, Array]:
         """J, J' and the torque of each source at a crank angle and speed, as of `torques`."""
         values, slopes = self.table.at(theta)
-        torques = self.torques(values, np.asarray(speed), np.asarray(driving), sense)
+        torques = self.torques(values, np.asarray(speed), np.asarray(driving), sense, factors)
         return float(values[0]), float(slopes[0]), torques
 
     @cached_property
     def largest_at_rest(self) -> float:
-        """Largest torque of any source but friction on a crank at rest, N m, at any angle."""
+        """Largest torque of any source but friction on a crank at rest, N m, at any angle, with
+        loads over time as they are given.
+        """
         columns = self.table.values
         still = np.zeros(columns.shape[1:])
         each = zip(self.sources, self.slices, strict=True)
-        torques = (source.torque(columns[part], still)
+        factors = [1.0] * len(self.machine.timed_loads)
+        torques = (source.torque(columns[part], still, factors)
                    for source, part in each if source is not self.friction)  # fmt: skip
         return max((float(np.max(np.abs(torque))) for torque in torques), default=0.0)
 
@@ -184,7 +212,7 @@ class CrankEquation:
             rates.append(float(np.sum(slow - fast)) / (step * inertia))
         return max(rates)
 
-    def at_rest(self, theta: float) -> tuple[float, dict[float, float]]:
+    def at_rest(self, theta: float, factors: Factors = ()) -> tuple[float, dict[float, float]]:
         """Torque of all sources but friction on a crank that stands still, N m, and the torque
         beyond which it leaves its rest, by the sense.
         """
@@ -192,7 +220,8 @@ class CrankEquation:
         others = [(source, values[part])
                   for source, part in zip(self.sources, self.slices, strict=True)
                   if source is not self.friction]  # fmt: skip
-        acting = sum(float(source.torque(columns, np.zeros(()))) for source, columns in others)
+        still = np.zeros(())
+        acting = sum(float(source.torque(columns, still, factors)) for source, columns in others)
         holding = {
             sense: sum(source.holding(columns, sense) for source, columns in others)
             for sense in (1.0, -1.0)
@@ -200,5 +229,5 @@ class CrankEquation:
         if self.friction is not None:
             columns = values[self.slices[-1]]
             for sense in holding:
-                holding[sense] += self.friction.breakaway(columns, sense)
+                holding[sense] += self.friction.breakaway(columns, sense, factors)
         return acting, holding

@@ -331,6 +331,7 @@ def size_flywheel(
         not between 0 and 1.
     """
     wanted = share_of_mean(wanted)
+    machine = replace(machine, timed_loads=())  # which are over in a steady state
     equation = CrankEquation(machine)
     work, own = work_at_constant_speed(equation), equation.shaft_inertia
     needed = work / (wanted * machine.drive.speed**2)

@@ -6,9 +6,9 @@ acceleration, and that from all torques, friction's among them:
     P = P_0 + q.^2 P_v + q.. P_a + B e + A f,    J q.. = T + r f - J' q.^2 / 2
 
 with f the friction of all joints, r their rates by crank angle, T all other torques, and e the
-efforts of dampers, stops and resistances, and forces of the soil, which follow from angle and
-speed.  So q.. is put into the first equation, and what remains is the law of friction with other
-numbers.
+efforts of dampers, stops and resistances, forces of the soil, and factors of loads over time, which
+follow from angle, speed and time.  So q.. is put into the first equation, and what remains is the
+law of friction with other numbers.
 
 Teeth push on the flank, and chains pull with the strand, that the sense of their force asks for.
 P is that of forward flanks; where the push T of a mesh is below 0, its other flank adds the effort
@@ -47,7 +47,7 @@ from equipoise.mechanism.kinematics.tip import surface_of, tip_link
 from equipoise.mechanism.parts.force_kinds import RatedElement, rated_elements
 from equipoise.mechanism.parts.joint_properties import JointProperties
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.running.sources import Motions, OfSoil, Source
+from equipoise.running.sources import Factors, Motions, OfSoil, Source, timed_units
 from equipoise.signals import Array
 
 KNOWN = 3
@@ -122,11 +122,14 @@ class Friction(Source):
         return OfSoil(planting, surface_of(self.machine))
 
     @cached_property
-    def given(self) -> tuple[int, int]:
-        """How many efforts follow from angle and speed, in all rows: of elements, and of soil."""
+    def given(self) -> tuple[int, int, int]:
+        """How many efforts follow from angle, speed and time, in all rows: of elements, of soil,
+        and of loads over time.
+        """
         freedoms = sum(element.freedoms for *_, element in self.elements)
         tips = 0 if self.soil is None else len(self.soil.planting.every_arm)
-        return freedoms * self.rows, 2 * tips * self.rows
+        loads = len(self.machine.timed_loads)
+        return freedoms * self.rows, 2 * tips * self.rows, loads * self.rows
 
     @property
     def unknowns(self) -> int:
@@ -183,21 +186,26 @@ class Friction(Source):
 
     # -- on the crank ------------------------------------------------------------------------------
 
-    def torque(self, columns: Array, speed: Array) -> Array:
+    def torque(self, columns: Array, speed: Array, factors: Factors) -> Array:
         """It depends on more: see `torque_beside`."""
         raise NotImplementedError
 
     def torque_beside(
-        self, inertia: Array, columns: Array, speed: Array, sense: float, acting: Array
+        self,
+        columns: Array,
+        speed: Array,
+        sense: float,
+        factors: Factors,
+        beside: tuple[Array, Array],
     ) -> Array:
         """Torque (...) of friction on the crank, N m.
 
-        inertia : reduced, kg m2.  columns : (C, ...).  speed : rad/s.
-        sense : 1 or -1, in which the crank turns, or would.  acting : of all else, N m.
+        columns : (C, ...).  speed : rad/s.  sense : 1 or -1, in which the crank turns, or would.
+        factors : of loads over time.  beside : reduced inertia, kg m2, and torque of all else, N m.
         """
         shape = np.shape(speed)
-        inertia, speed, acting = (np.ravel(item) for item in (inertia, speed, acting))
-        slope, rates, parts = self._split(columns, speed, sense)
+        inertia, acting, speed = (np.ravel(item) for item in (*beside, speed))
+        slope, rates, parts = self._split(columns, speed, sense, factors)
         free = (acting - slope * speed**2 / 2) / inertia
         of_acceleration = parts[:, :, 2]
         without = parts[:, :, 0] + speed**2 * parts[:, :, 1] + free * of_acceleration
@@ -205,15 +213,17 @@ class Friction(Source):
         result = self._obeying(rates, speed, sense, Press.of(without, response))
         return np.asarray(result.reshape(shape))
 
-    def breakaway(self, columns: Array, sense: float) -> float:
+    def breakaway(self, columns: Array, sense: float, factors: Factors) -> float:
         """Torque, N m, that has to be exceeded for the crank to leave its rest in a sense."""
-        _, rates, parts = self._split(columns, np.zeros(1), sense)
+        _, rates, parts = self._split(columns, np.zeros(1), sense, factors)
         press = Press.of(parts[:, :, 0], parts[:, :, KNOWN:])
         return -sense * float(self._obeying(rates, np.zeros(1), sense, press)[0])
 
-    def _split(self, columns: Array, speed: Array, sense: float) -> tuple[Array, Array, Array]:
-        """J' (N,), rates (U, N) and parts (U, 2, 3 + U, N), of which the first have what elements
-        and soil do at speeds (N,) in a sense.
+    def _split(
+        self, columns: Array, speed: Array, sense: float, factors: Factors
+    ) -> tuple[Array, Array, Array]:
+        """J' (N,), rates (U, N) and parts (U, 2, 3 + U, N), of which the first have what elements,
+        soil and loads over time do at speeds (N,) in a sense.
         """
         whole, joints, unknowns = columns.reshape(len(columns), -1), len(self.joints), self.unknowns
         each = KNOWN + unknowns + sum(self.given)
@@ -221,14 +231,16 @@ class Friction(Source):
         rates = np.concatenate([whole[1:begin], np.zeros((unknowns - joints, whole.shape[1]))])
         parts = whole[begin:end].reshape(unknowns, 2, each, -1)
         if any(self.given):
-            values = self._given_efforts(whole[end:], speed, sense)
+            values = self._given_efforts(whole[end:], speed, sense, factors)
             pressed = np.einsum("jcwn,wn->jcn", parts[:, :, KNOWN + unknowns :], values)
             parts = parts[:, :, : KNOWN + unknowns].copy()
             parts[:, :, 0] += pressed
         return whole[0], rates, parts
 
-    def _given_efforts(self, columns: Array, speed: Array, sense: float) -> Array:
-        """Efforts (W, N) of elements and soil by their columns at speeds (N,) in a sense."""
+    def _given_efforts(self, columns: Array, speed: Array, sense: float, factors: Factors) -> Array:
+        """Efforts (W, N) of elements and soil by their columns (C, N) at speeds (N,) in a sense,
+        and factors of loads over time.
+        """
         ways = 2 * self.given[0]
         efforts = []
         if self.elements:
@@ -237,7 +249,9 @@ class Friction(Source):
         if self.soil is not None:
             for force in self.soil.forces(columns[ways:], speed):
                 efforts += [force.real, force.imag]
-        return np.array(np.broadcast_arrays(*efforts, columns[0])[:-1])
+        loads = [*factors] or [0.0] * len(self.machine.timed_loads)
+        efforts += [np.ravel(factor) for factor in loads] * self.rows
+        return np.array(np.broadcast_arrays(*efforts, speed)[:-1])
 
     def _obeying(self, rates: Array, speed: Array, sense: float, press: Press) -> Array:
         """Torque (N,) on the crank of the friction that obeys the law."""
@@ -283,7 +297,7 @@ def _parts(
     demands = plus(result.weights, loads, spring_demands(motion, rated=False))
     known = [demands, forces(turning).inertia, forces(starting).inertia]
     units = unit_demands(motion, joints)
-    given = [*effort_demands(motion, elements), *_soil_units(motion)]
+    given = [*effort_demands(motion, elements), *_soil_units(motion), *timed_units(motion)]
     sides = sided_meshes(motion.linkage)
     if not sides:
         return pressing_rows(motion, [*known, *units, *given], joints, None)

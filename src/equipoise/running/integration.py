@@ -26,7 +26,7 @@ from equipoise.dataclass import dataclass
 from equipoise.errors import ResponseError
 from equipoise.i18n import Note
 from equipoise.running.drivers import LIMIT_REACHED, Driver
-from equipoise.running.equation import CrankEquation
+from equipoise.running.equation import LATER, CrankEquation
 from equipoise.running.tabulated import NODES, POINTS, integral_to, polynomials, roughness
 from equipoise.signals import Array
 
@@ -58,6 +58,8 @@ differ while the motion goes on evenly; share of the most pieces, from which it 
 """
 AT_REST = 1e-9
 """Share of the largest torque below which nothing sets the crank in motion."""
+RESTING = 1e-14
+"""Share of a time within which it is known when a load over time sets a crank in motion."""
 AT_EASE = 1e-6
 """Share of the widest swing below which a crank that swings to and fro has come to rest: a
 million-millionth of the energy is left, less than what the integration misses of it."""
@@ -207,17 +209,19 @@ class Integration:
             lasting = self.driver.current(np.asarray(speed))
             now.electric[0] = current if self.driver.lags else lasting
         self.driver.begins(angle, speed, lag)
-        self.corner = self.driver.ramp_end or inf
+        self.since = 0.0
+        self.corners = sorted({self.driver.ramp_end, *equation.times} - {0.0})
         self._record(now)
         self.direction = copysign(1.0, speed)
         if speed == 0.0:
             self.halts.append(angle)
-            if not self._sets_off(now):
+            now = self._sets_off(now)
+            if now is None:
                 return
         now = self._switched_on(now)
         marks = [now]
         for k in range(1, MOST_PIECES + 1):
-            before = now
+            before, self.since = now, now.time
             with np.errstate(over="ignore", invalid="ignore", divide="ignore"):  # of what is tried
                 now = self._piece(now)
             if now is None:
@@ -278,7 +282,7 @@ class Integration:
         delayed = driver.lags or driver.remembers
         if not delayed or now.speed or self.direction != driver.sense:
             return now
-        acting, holding = self.equation.at_rest(now.angle)
+        acting, holding = self._at_rest(now)
         needed = holding[driver.sense] - driver.sense * acting
         if needed <= 0:
             return now
@@ -291,23 +295,58 @@ class Integration:
 
     # -- at rest -----------------------------------------------------------------------------------
 
-    def _sets_off(self, now: Instant) -> bool:
-        """Choose the direction in which a crank at rest starts; note why where it does not."""
-        acting, holding = self.equation.at_rest(now.angle)
+    def _at_rest(self, now: Instant) -> tuple[float, dict[float, float]]:
+        """Torques on a crank at rest as of `CrankEquation.at_rest`, at an instant."""
+        factors = self.equation.factors_at(now.time, max(self.since, 0.0))
+        return self.equation.at_rest(now.angle, factors)
+
+    def _sets_off(self, now: Instant) -> Instant | None:
+        """Choose the direction in which a crank at rest starts, and when: at once, or when a load
+        over time sets it in motion; note why where it does not.
+        """
+        self.since = now.time
+        kind, sense = self._held_by(now)
+        coming = [time for time in self.corners if now.time < time <= self.limits.time]
+        for corner in coming if kind else []:
+            moving = replace(now, time=corner)
+            if not self._held_by(moving)[0]:
+                moving = self._let_go(replace(now, time=self.since), moving)
+            else:
+                self.since = corner  # where the load may change suddenly
+            if not self._held_by(moving)[0]:
+                now, (kind, sense) = moving, self._held_by(moving)
+                self._record(now)
+                break
+        if kind:
+            self._note(kind, now)
+            return None
+        self.direction = sense
+        return now
+
+    def _held_by(self, now: Instant) -> tuple[str, float]:
+        """Why a crank at rest stays there, as the kind of an event, empty where it does not; and
+        the sense in which it starts.
+        """
+        acting, holding = self._at_rest(now)
         driving = float(self.driver.torque(np.zeros(())))
         net = acting + driving
-        resistance = holding[copysign(1.0, net)] + self.driver.holding()
+        sense = copysign(1.0, net)
+        resistance = holding[sense] + self.driver.holding()
         resistance += AT_REST * max(self.equation.largest_at_rest, abs(driving))
         if abs(net) <= resistance:
-            rubs = holding[copysign(1.0, net)] > 0
-            pushes = rubs and self.driver.on and net * self.driver.sense > 0
-            self._note("stall" if pushes else "standstill", now)
-            return False
-        if self.driver.on and net * self.driver.sense < 0:
-            self._note("stall", now)
-            return False
-        self.direction = copysign(1.0, net)
-        return True
+            pushes = holding[sense] > 0 and self.driver.on and net * self.driver.sense > 0
+            return "stall" if pushes else "standstill", sense
+        return "stall" if self.driver.on and net * self.driver.sense < 0 else "", sense
+
+    def _let_go(self, held: Instant, free: Instant) -> Instant:
+        """The instant between two from which a crank at rest is held no longer."""
+        while free.time - held.time > RESTING * free.time:
+            middle = replace(held, time=(held.time + free.time) / 2)
+            if self._held_by(middle)[0]:
+                held = middle
+            else:
+                free = middle
+        return free
 
     # -- a piece -----------------------------------------------------------------------------------
 
@@ -400,7 +439,9 @@ class Integration:
             speed = self.direction * np.sqrt(2 * energy / part.values[0])
             current = self._current(speed, paths, begin)
             driving = self._driving(speed, current, paths, begin)
-            torques = self._torques(part.values, speed, driving)
+            torques = self._torques(
+                part.values, speed, driving, self._times_at(speed, paths, begin)
+            )
             missed = began + paths @ np.sum(torques, axis=0) - energy
             most = float(np.max(np.abs(missed)))
             if most <= CLOSE * np.max(energy):
@@ -475,19 +516,28 @@ class Integration:
         def nudged(faster: Array) -> Array:
             current = self._current(faster, *piece)
             driving = self._driving(faster, current, *piece)
-            changed = self._torques(values, faster, driving) - torques
+            changed = self._torques(values, faster, driving, self._times_at(faster, *piece))
+            changed = changed - torques
             return np.asarray(np.sum(changed, axis=0) / (2 * NUDGE))
 
-        if not (self.driver.lags or self.driver.remembers):
+        if not (self.driver.lags or self.driver.remembers or self.equation.times):
             return np.diag(nudged(speed * (1 + NUDGE)))
         return np.stack([nudged(speed * (1 + NUDGE * own)) for own in np.eye(len(speed))], axis=1)
 
-    def _torques(self, columns: Array, speed: Array, driving: Array) -> Array:
+    def _times_at(self, speed: Array, paths: Array, begin: Instant) -> Array | float:
+        """Times (N,), s, at the nodes of a piece that is passed at these speeds (N,); the begin's
+        where nothing asks for them.
+        """
+        return begin.time + paths @ (1 / speed) if self.equation.times else begin.time
+
+    def _torques(self, columns: Array, speed: Array, driving: Array, time: Array | float) -> Array:
         """Of each source, of the brake where there is one, and of the drive, (K + 1, ...) or
-        (K + 2, ...); driving : of the drive (...), N m.
+        (K + 2, ...); driving : of the drive (...), N m.  time : (...), s.
         """
         braking = self._braking()
-        sources = self.equation.torques(columns, speed, driving + sum(braking), self.direction)
+        factors = self.equation.factors_at(time, self.since)
+        acting = driving + sum(braking)
+        sources = self.equation.torques(columns, speed, acting, self.direction, factors)
         if braking:
             sources = np.concatenate([sources, np.full((1, *np.shape(speed)), braking[0])])
         return np.concatenate([sources, driving[None]])
@@ -553,7 +603,7 @@ class Integration:
 
     def _times(self) -> Iterator[tuple[str, float]]:
         yield "time", self.limits.time
-        yield "corner", self.corner if self.driver.on else inf
+        yield "corner", next((time for time in self.corners if time > self.since), inf)
         yield "off", self._off(self.limits.off_time)
 
     def _off(self, limit: float) -> float:
@@ -634,7 +684,8 @@ class Integration:
             driving = float(driver.torque_of(current) if lags else driver.torque(state[1]))
         braking = self._braking()
         acting = driving + sum(braking)
-        inertia, slope, torques = self.equation.at(angle, speed, acting, self.direction)
+        factors = self.equation.factors_at(time, self.since)
+        inertia, slope, torques = self.equation.at(angle, speed, acting, self.direction, factors)
         change = (float(np.sum(torques)) + acting - 0.5 * slope * speed * speed) / inertia
         powers = [torque * speed for torque in (*torques.tolist(), *braking, driving)]
         return [speed, change, *electric, *powers]
@@ -651,7 +702,7 @@ class Integration:
             self.driver.observe(now.speed, now.angle, now.time, reached=True)
             kind = "smooth"
         if kind == "corner":
-            self.corner = inf
+            self.corners = [time for time in self.corners if time > now.time * (1 + LATER) + LATER]
             kind = "smooth"
         if kind == "smooth":  # the torque's law changes, and nothing happens that is reported
             return now
@@ -664,6 +715,7 @@ class Integration:
             return None
         left = float(self.driver.stored(now.electric[0]))
         self.driver.on = False
+        self.corners = [time for time in self.corners if time in self.equation.times]
         current, supply, heat = now.electric
         return replace(now, electric=np.array([0.0 * current, supply, heat + left]))
 
@@ -674,7 +726,8 @@ class Integration:
             return now
         before = self.begins[-1] if self.begins else None
         self.begins.append(now)
-        if not self.limits.steady or before is None or self._to_be_switched_off:
+        to_come = bool(self.corners) and self.corners[-1] in self.equation.times
+        if not self.limits.steady or before is None or self._to_be_switched_off or to_come:
             return now
         if abs(now.speed - before.speed) > STEADY * abs(now.speed):
             return now
@@ -693,8 +746,10 @@ class Integration:
         if self.driver.on and self.direction == self.driver.sense:
             self._note("stall", now)
             return None
-        if not self._sets_off(now):
+        moving = self._sets_off(now)
+        if moving is None:
             return None
+        now = moving
         self.halts.append(now.angle)
         if self._is_at_ease():
             self._note("standstill", now)
@@ -712,9 +767,11 @@ class Integration:
         yet to hold the crank, stay until it is strong enough, or for good.
         """
         before = self.direction
-        if not self._sets_off(now):
+        moving = self._sets_off(now)
+        if moving is None:
             return None
-        acting, holding = self.equation.at_rest(now.angle)
+        now = moving
+        acting, holding = self._at_rest(now)
         driving = self.driver.torque_at(np.zeros(()), np.asarray(now.angle), np.asarray(now.time))
         net = acting + float(driving)
         if abs(net) > holding[copysign(1.0, net)]:

@@ -197,7 +197,9 @@ class Run(Result):
         if self.end.kind != "stall":
             return None
         driver = Driver(self.machine)
-        acting, holding = self.equation.at_rest(self.end.crank_angle)
+        acting, holding = self.equation.at_rest(
+            self.end.crank_angle, self.equation.factors_at(self.end.time, self.end.time)
+        )
         given = float(driver.torque(np.zeros(())))
         return holding[driver.sense] - driver.sense * acting, driver.sense * given
 

@@ -8,14 +8,17 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Sequence
+from typing import Any
 
 import numpy as np
 
 from equipoise.dataclass import dataclass
 from equipoise.i18n import to_say
+from equipoise.mechanism.assembly.steps import u
+from equipoise.mechanism.checks import FRAME
 from equipoise.mechanism.dynamics.acting import against_soil, given_loads, spring_demands
 from equipoise.mechanism.dynamics.rated import rated_torque, rated_ways
-from equipoise.mechanism.dynamics.reactions import demands_of
+from equipoise.mechanism.dynamics.reactions import Acting, Demand, demands_of
 from equipoise.mechanism.dynamics.reduced import generalized_force, weight_torque
 from equipoise.mechanism.dynamics.shares import ELEMENTS
 from equipoise.mechanism.formulas.kernels import dot
@@ -24,11 +27,16 @@ from equipoise.mechanism.kinematics.tip import surface_of
 from equipoise.mechanism.parts.field import Planting
 from equipoise.mechanism.parts.force_kinds import RatedElement, rated_elements
 from equipoise.mechanism.parts.machine import Machine
+from equipoise.mechanism.parts.timed_loads import TimedLoad
 from equipoise.results.outputs import CAUSES
 from equipoise.signals import Array
 
 Motions = Sequence[Motion]
 """Of each row of a machine, at the same N instants."""
+
+
+Factors = Sequence[Any]
+"""Of each load over time (...), in the order of the file; none at all counts as 0."""
 
 
 class Source(ABC):
@@ -53,19 +61,21 @@ class Source(ABC):
         return [*range(count)]
 
     @abstractmethod
-    def torque(self, columns: Array, speed: Array) -> Array:
-        """Generalized force (...), N m, by these (C, ...) and the crank's speed (...), rad/s."""
+    def torque(self, columns: Array, speed: Array, factors: Factors) -> Array:
+        """Generalized force (...), N m, by these (C, ...), the crank's speed (...), rad/s, and
+        factors of loads over time.
+        """
 
-    def sliding_torque(self, columns: Array, speed: Array, sense: float) -> Array:
+    def sliding_torque(self, columns: Array, speed: Array, sense: float, factors: Factors) -> Array:
         """Torque (...) as of `torque`, with dry friction of full size against a sense, 1 or -1, in
         which the crank turns, or would.
         """
-        return self.torque(columns, speed)
+        return self.torque(columns, speed, factors)
 
     def holding(self, columns: Array, sense: float) -> float:
         """Torque, N m, by which it holds a crank at rest against one that turns it in a sense."""
         still = np.zeros(())
-        added = self.sliding_torque(columns, still, sense) - self.torque(columns, still)
+        added = self.sliding_torque(columns, still, sense, ()) - self.torque(columns, still, ())
         return -sense * float(added)
 
 
@@ -81,7 +91,7 @@ class ByAngle(Source):
     def columns(self, motions: Motions) -> list[Array]:
         return [np.asarray(sum(self.of(motion) for motion in motions))]
 
-    def torque(self, columns: Array, speed: Array) -> Array:
+    def torque(self, columns: Array, speed: Array, factors: Factors) -> Array:
         torque: Array = columns[0]
         return torque
 
@@ -100,7 +110,7 @@ class OfSoil(Source):
         places = [self.surface - tip.y for tip in tips]
         return [*places, *(tip.place_1.real for tip in tips), *(tip.place_1.imag for tip in tips)]
 
-    def torque(self, columns: Array, speed: Array) -> Array:
+    def torque(self, columns: Array, speed: Array, factors: Factors) -> Array:
         depth, x, y = columns.reshape(3, -1, *columns.shape[1:])
         if not np.any(depth > 0):  # most of a turn
             return np.zeros_like(speed)
@@ -142,15 +152,55 @@ class OfRatedElements(Source):
         sizes *= count // sum(sizes)
         return [number for number, size in enumerate(sizes) for _ in range(size)]
 
-    def torque(self, columns: Array, speed: Array) -> Array:
+    def torque(self, columns: Array, speed: Array, factors: Factors) -> Array:
         return rated_torque(self._each, columns, speed)
 
-    def sliding_torque(self, columns: Array, speed: Array, sense: float) -> Array:
+    def sliding_torque(self, columns: Array, speed: Array, sense: float, factors: Factors) -> Array:
         return rated_torque(self._each, columns, speed, sense)
 
     @property
     def _each(self) -> list[RatedElement]:
         return [element for *_, element in self.elements]
+
+
+@dataclass(frozen=True)
+class OfTimedLoads(Source):
+    """Loads that change with the time since the start of the run."""
+
+    loads: tuple[TimedLoad, ...]
+    key: str = "timed_loads"
+    label: str = to_say("loads over time")
+
+    def columns(self, motions: Motions) -> list[Array]:
+        """Of each row what each load would do with a factor of 1."""
+        return [
+            generalized_force(motion, demands)
+            for motion in motions
+            for demands in timed_units(motion)
+        ]
+
+    def torque(self, columns: Array, speed: Array, factors: Factors) -> Array:
+        each = [*factors] * (len(columns) // len(self.loads))
+        shares = (factor * column for factor, column in zip(each, columns, strict=False))
+        return np.asarray(sum(shares, np.zeros(np.shape(speed))))
+
+
+def timed_units(motion: Motion) -> list[dict[str, Demand]]:
+    """What holds each load over time, with a factor of 1."""
+    return [demands_of(motion, _ends(motion, load)) for load in motion.machine.timed_loads]
+
+
+def _ends(motion: Motion, load: TimedLoad) -> Iterator[Acting]:
+    """What a load over time exerts on its link, and on the body that bears its opposite."""
+    none = np.zeros(len(motion.crank_angle))
+    place, force = None, none + 0j
+    if load.force is not None:
+        turn = motion.state[u(load.link)[0]] if load.axes else 1.0
+        force, place = (none + complex(*load.force)) * turn, motion.point(load.point).place
+    torque = load.torque or 0.0
+    yield load.link, place, force, torque
+    if load.on != FRAME:
+        yield load.on, place, -force, -torque
 
 
 def sources_of(machine: Machine) -> Iterator[Source]:
@@ -166,6 +216,8 @@ def sources_of(machine: Machine) -> Iterator[Source]:
             yield OfRatedElements(own, f"{cause}s", CAUSES[cause])
     if machine.loads:
         yield ByAngle("loads", to_say("loads"), _of_loads)
+    if machine.timed_loads:
+        yield OfTimedLoads(machine.timed_loads)
     planting = machine.planting
     if planting is not None and planting.soil is not None:
         yield OfSoil(planting, surface_of(machine))

@@ -263,7 +263,7 @@ def _axes_of(key: str, entry: Any) -> Iterator[str]:
     """Bodies in whose axes an entry tells something."""
     if key == "sliders":
         yield from (entry.link, entry.on)
-    if key == "loads":
+    if key in ("loads", "timed_loads"):
         yield entry.link
     if isinstance(entry, PartKind):
         yield from entry.axed

@@ -23,7 +23,7 @@ REST = tuple(
     )
 )
 """Fields of a machine that a sketch hands on as they are; sides and places follow from it."""
-LISTS = (*part_kinds(Machine), "loads", "joints", "constraints")
+LISTS = (*part_kinds(Machine), "loads", "timed_loads", "joints", "constraints")
 """Those of them that have names of links and points in them."""
 
 

@@ -49,6 +49,7 @@ from equipoise.mechanism.parts.sections import LinkSection
 from equipoise.mechanism.parts.servo_motors import ServoMotor
 from equipoise.mechanism.parts.springs import Spring
 from equipoise.mechanism.parts.stops import Stop
+from equipoise.mechanism.parts.timed_loads import TimedLoad
 from equipoise.mechanism.parts.torsion_dampers import TorsionDamper
 from equipoise.mechanism.parts.torsion_springs import TorsionSpring
 from equipoise.schema import finding, models, schemas
@@ -76,7 +77,7 @@ DOCUMENTED: dict[str, type[Frozen]] = {
         gear_shapes.GearShape, Belt, Rack, cams.Cam,
         CircularSlot, CurvedSlot,
         force_elements.Load, Spring, TorsionSpring, Damper, TorsionDamper, Bushing, Stop,
-        Resistance,
+        Resistance, TimedLoad,
         Position, field.Planting,
         field.PlantingArm,
         field.Soil, support.Support,

@@ -105,6 +105,7 @@ from equipoise.mechanism.parts.shown_units import PARAMETERS, ShownUnits
 from equipoise.mechanism.parts.springs import Spring
 from equipoise.mechanism.parts.stops import Stop
 from equipoise.mechanism.parts.support import Row, Support, wrong_support
+from equipoise.mechanism.parts.timed_loads import TimedLoad, wrong_timed_load
 from equipoise.mechanism.parts.torsion_dampers import TorsionDamper
 from equipoise.mechanism.parts.torsion_springs import TorsionSpring
 from equipoise.quantities import display
@@ -113,11 +114,12 @@ if TYPE_CHECKING:
     from equipoise.mechanism.parts.balance import Balance
 
 MOST = {"links": 100, "points": 2000, "sliders": 200, "loads": 500, "joints": 500,
-        "drives": 20, "constraints": 200}  # fmt: skip
+        "drives": 20, "constraints": 200, "timed_loads": 200}  # fmt: skip
 """Far beyond any machine; they keep a file of nonsense from running for hours."""
 LISTS: Mapping[str, Callable[[str, Any, Bodies], Iterator[ModelError]]] = {
     "sliders": wrong_slider,
     "loads": wrong_load,
+    "timed_loads": wrong_timed_load,
 }
 """What is wrong with each of the lists; couplings and elements say it themselves."""
 
@@ -168,7 +170,7 @@ def _too_much(machine: Any) -> Iterator[ModelError]:
     points = [(body, point) for body, points in machine.bodies.items() for point in points]
     yield from too_many("links", machine.links, MOST["links"])
     yield from too_many("points", points, MOST["points"])
-    for what in ("sliders", "loads", "joints", "drives", "constraints"):
+    for what in ("sliders", "loads", "timed_loads", "joints", "drives", "constraints"):
         yield from too_many(what, getattr(machine, what), MOST[what])
     for table, kind in part_kinds(type(machine)).items():
         yield from too_many(table, getattr(machine, table), kind.most)
@@ -202,7 +204,7 @@ MOVING = ("link", "motion", "between", "slider", "stroke", "start")
 """What of the drive sets how the links move."""
 STATIC_KEYS = ("bodies", "plane", "planes")
 """Keys of a link that change nothing about the motion, beside its mass."""
-STILL = {"planting", "support", "rows", "bearings", "run", "duty"}
+STILL = {"planting", "support", "rows", "bearings", "run", "duty", "timed_loads"}
 """Keys, beside those of force elements, under which no number changes the motion."""
 LINKAGE = "linkage"
 """In the memory of a machine: itself in the order in which it is computed."""
@@ -218,10 +220,9 @@ class Machine(Driven, Displayed, Frozen):
     file_order = ("schema", "title", "description", "units", "parameters", "gravity", "drive",
                   "drives", "frame", "links", "constraints", "bearings", "assembly", "sliders",
                   "circular_slots", "curved_slots", "gears", "belts", "racks", "cams", "loads",
-                  "springs", "torsion_springs", "dampers", "torsion_dampers", "bushings", "stops",
-                  "resistances",
-                  "joints", "position", "planting", "support", "rows",
-                  "duty", "run", "balance")  # fmt: skip
+                  "timed_loads", "springs", "torsion_springs", "dampers", "torsion_dampers",
+                  "bushings", "stops", "resistances", "joints", "position", "planting", "support",
+                  "rows", "duty", "run", "balance")  # fmt: skip
 
     title: str = key(Wording(), "shown in reports", example="Slider-crank")
     drive: Drive = key(KeyTable(Drive), "the link that is driven")
@@ -324,6 +325,9 @@ class Machine(Driven, Displayed, Frozen):
         KeyTable(RunPlan), "start and end of `equipoise run`, where its options say nothing",
         default=None,
     )  # fmt: skip
+    timed_loads: tuple[TimedLoad, ...] = key(
+        Tables(KeyTable(TimedLoad)), "loads over the time of `equipoise run`", default=()
+    )
     duty: tuple[DutyState, ...] = key(
         Tables(KeyTable(DutyState)),
         "states in which it works over its life, for the lives of bearings; that of the file alone "

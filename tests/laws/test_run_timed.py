@@ -1,0 +1,157 @@
+"""Runs under loads over time: closed forms, inverse dynamics, and what sets a machine in motion."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.errors import ModelError
+from equipoise.mechanism import JointProperties, Load, Motor, Row, TimedLoad
+from unit.schema.samples import survives
+
+INERTIA, TORQUE = 2.0, 3.0
+"""Of a wheel, kg m2, and of the load on it, N m."""
+TIMES, FACTORS = (1.0, 2.0, 4.0), (0.0, 1.0, 1.0)
+ENGINE = replace(eq.load("slider-crank-engine"), balance=None, loads=(), support=None)
+
+
+def wheel(times: Any = TIMES, factors: Any = FACTORS, drag: float = 0.0) -> eq.Machine:
+    """A wheel that a torque over time turns."""
+    link = eq.Link({"A": (0.0, 0.0)}, 1.0, (0.0, 0.0), INERTIA)
+    joints = (JointProperties("joints.A", drag_torque=drag),) if drag else ()
+    load = TimedLoad("wheel", times, factors, torque=TORQUE)
+    return eq.Machine("wheel", eq.Drive("wheel", 1.0), {"A": (0.0, 0.0)}, {"wheel": link},
+                      timed_loads=(load,), joints=joints)  # fmt: skip
+
+
+def test_a_wheel_follows_the_integral_of_its_load() -> None:
+    """A ramp of a second, two seconds of full torque, then none: it waits at rest for the first."""
+    found = eq.run(wheel(), "5 s", speed=0.0)
+    rate = TORQUE / INERTIA
+
+    def speed(time: float) -> float:
+        ramp, full = np.clip(time - 1, 0, 1), np.clip(time - 2, 0, 2)
+        return float(rate * (ramp**2 / 2 + full))
+
+    wanted = [speed(time) for time in found.time]
+    np.testing.assert_allclose(found.crank_speed, wanted, atol=1e-12 * max(wanted))
+    assert found.crank_angle[-1] == pytest.approx(
+        rate * (1 / 6 + 0.5 * 3 + (2**2 / 2 + 2 * 1)), rel=1e-12
+    )
+    assert found.energy_error < 1e-12
+    assert found.work["timed_loads"][-1] == pytest.approx(INERTIA * wanted[-1] ** 2 / 2)
+
+
+def test_friction_holds_it_until_the_load_is_large_enough() -> None:
+    found = eq.run(wheel(drag=0.6), "5 s", speed=0.0)
+    first = found.time[np.argmax(found.crank_angle > 0) - 1]
+    assert first == pytest.approx(1 + 0.6 / TORQUE, abs=1e-8)  # rounding of the torque at rest
+    end = (TORQUE * 0.8**2 / 2 + 2 * (TORQUE - 0.6) - 0.6) / INERTIA
+    assert found.crank_speed[-1] == pytest.approx(end, rel=1e-9)
+
+
+def test_what_begins_suddenly_begins_at_its_time() -> None:
+    found = eq.run(wheel((0.5, 1.5), (1.0, 1.0)), "2 s", speed=0.0)
+    assert found.crank_speed[-1] == pytest.approx(TORQUE / INERTIA, rel=1e-12)
+    assert found.crank_angle[-1] == pytest.approx(TORQUE / INERTIA * (0.5 + 0.5), rel=1e-12)
+
+
+def test_a_load_too_small_to_move_it_leaves_it_at_rest() -> None:
+    assert eq.run(wheel(drag=4.0), speed=0.0).end.kind == "standstill"
+
+
+def test_a_run_goes_on_as_long_as_a_load_is_to_come() -> None:
+    """A motor is steady long before a load comes, which the run ends after."""
+    machine = wheel((3.0, 3.5, 4.0), (0.0, -1.0, 0.0))
+    machine = machine.with_drive(motor=Motor(10.0, 40.0, mean_speed="free"))
+    found = eq.run(machine)
+    assert found.end.kind == "steady" and found.time[-1] > 4.0
+    slowest = np.min(found.crank_speed[found.time > 3.0])
+    assert slowest < 0.99 * found.crank_speed[-1]
+
+
+BETWEEN = (
+    TimedLoad("rod", (0.0, 0.02, 0.05), (0.0, 1.0, 0.4), point="C", on="crank", axes="link",
+              force=(80.0, -150.0)),
+    TimedLoad("rod", (0.01, 0.03), (0.5, 1.0), on="crank", torque=4.0),
+)  # fmt: skip
+RUBBING = (JointProperties("joints.B", radius=0.02, friction=0.08),
+           JointProperties("joints.piston on frame", friction=0.1))  # fmt: skip
+
+
+@pytest.mark.parametrize("joints", [(), RUBBING], ids=["free", "rubbing"])
+@pytest.mark.parametrize("rows", [(), (Row(), Row(phase=2.0))], ids=["one row", "two rows"])
+def test_between_links_it_is_a_load_on_each(rows: Any, joints: Any) -> None:
+    """At any instant the acceleration is that at which inverse dynamics, with both ends as loads
+    of then on their links, needs no torque.
+    """
+    machine = replace(ENGINE, timed_loads=BETWEEN, rows=rows, joints=joints)
+    found = eq.run(machine, speed=100.0, turns=1)
+    assert found.energy_error < 1e-9
+    assert abs(found.work["timed_loads"][-1]) > 0.1
+    equation, compared = found.equation, 0
+    alone = replace(machine, rows=(), timed_loads=())
+    for k in np.linspace(1, len(found.time) - 2, 15).astype(int):
+        angle, speed, time = (float(values[k]) for values in
+                              (found.crank_angle, found.crank_speed, found.time))  # fmt: skip
+        if np.min(np.abs(equation.edges - angle)) < 1e-6:
+            continue
+        factors = [np.interp(time, load.times, load.factors, left=0, right=0) for load in BETWEEN]
+        inertia, slope, torques = equation.at(angle, speed, 0.0, 1.0, factors)
+        rate = (float(np.sum(torques)) - slope * speed**2 / 2) / inertia
+        asked, size = 0.0, inertia * abs(rate) + float(np.max(np.abs(torques)))
+        for phase in [row.phase for row in rows] or [0.0]:
+            motion = eq.move(machine, [angle + phase])
+            turn = np.exp(1j * float(motion.links["rod"].angle[0]))
+            force = complex(*BETWEEN[0].force or ()) * turn * factors[0]
+            place = complex(motion.points["C"].place[0])
+            crank = motion.links["crank"]
+            own = complex(motion.points["B"].place[0])
+            arm = np.exp(1j * float(crank.angle[0]))
+            local = (place - own) / arm + complex(*machine.links["crank"].points["B"])
+            points = {**alone.links["crank"].points, "end": (local.real, local.imag)}
+            links = {**alone.links, "crank": alone.links["crank"].altered(points=points)}
+            loads = (
+                Load("rod", point="C", force=(force.real, force.imag)),
+                Load("crank", point="end", force=(-force.real, -force.imag)),
+                Load("rod", torque=4.0 * factors[1]),
+                Load("crank", torque=-4.0 * factors[1]),
+            )
+            loaded = replace(alone, links=links, loads=loads)
+            forces = eq.analyze(loaded, [angle + phase], speed, rate).forces
+            asked += float(forces.drive_torque[0])
+        assert abs(asked) < 1e-9 * size
+        compared += 1
+    assert compared > 8
+
+
+def test_analyses_leave_it_out_and_files_keep_it() -> None:
+    machine = replace(ENGINE, timed_loads=BETWEEN)
+    survives(machine)
+    bare, loaded = (eq.analyze(one, 12).forces.drive_torque for one in (ENGINE, machine))
+    np.testing.assert_array_equal(bare, loaded)
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({}, "timed_loads[1]: give exactly one of force and torque"),
+        ({"torque": 1.0, "force": (1.0, 0.0)}, "timed_loads[1]: give exactly one of force and"),
+        ({"force": (1.0, 0.0)}, "timed_loads[1].point: missing; a force acts at a point"),
+        ({"torque": 1.0, "on": "rod"}, "timed_loads[1].on: 'rod' cannot push itself"),
+        ({"torque": 1.0, "point": "C"}, "timed_loads[1].point: a torque acts on a link"),
+        ({"torque": 1.0, "axes": "link"}, "timed_loads[1].axes: goes with a force"),
+        ({"torque": 1.0, "times": (1.0,)}, "timed_loads[1].times: got 1 times and 2 factors"),
+        ({"torque": 1.0, "times": (1.0, 1.0)}, "timed_loads[1].times: the times must rise"),
+        ({"torque": 1.0, "times": (-1.0, 1.0)}, "timed_loads[1].times: a run begins at 0 s"),
+    ],
+)
+def test_what_is_wrong_is_said(given: dict[str, Any], said: str) -> None:
+    load = TimedLoad("rod", **{"times": (0.0, 1.0), "factors": (0.0, 1.0)} | given)
+    with pytest.raises(ModelError) as caught:
+        replace(ENGINE, timed_loads=(load,))
+    assert str(caught.value).startswith(said)
