@@ -87,6 +87,9 @@ LATER: dict[str, dict[str, str]] = {
             "surface/test_balance.py: the flywheel of plunger-pump stands on the first page"
         ),
     },
+    "unit/balancing/test_gear_search.py": {
+        "test_two_shafts_with_ranges": "test_two_shafts_with_choices_each, and test_geared.py",
+    },
     "unit/design/test_a_new_solver.py": {
         "test_balance_chooses_gears_by_it": "test_the_page_balances_by_it, of the same machine",
     },

@@ -94,8 +94,8 @@ def test_two_shafts_with_ranges(monkeypatch: pytest.MonkeyPatch) -> None:
     first = replace(ROCKER, ratio=(0.8, 1.6))
     second = replace(CRANK, ratio=(2.0, 2.0), direction=(radians(30), radians(150)))
     found = cost(first, second)
-    ratios = [0.8 + 0.2 * k for k in range(5)]
-    ways = [radians(30 + 30 * k) for k in range(5)]
+    ratios = [0.8 + 0.1 * k for k in range(9)]
+    ways = [radians(30 + 20 * k) for k in range(7)]
     grid = [
         cost(one, replace(second, direction=(way, way)))
         for one, way in product(each(first, ratios), ways)
