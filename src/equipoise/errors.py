@@ -24,7 +24,7 @@ from typing import Any, ClassVar, Self
 from unicodedata import normalize
 
 from equipoise.dataclass import dataclass
-from equipoise.i18n import Note, in_english, said, speaking, spoken
+from equipoise.i18n import Note, in_english, said, say, speaking, spoken
 
 
 @dataclass(frozen=True)
@@ -114,7 +114,8 @@ class EquipoiseError(Exception):
         shell = import_module("IPython").get_ipython()
         shown = shell.InteractiveTB.structured_traceback(type(self), self, self.__traceback__)
         explained_by = self.explained_by
-        return [*shown, *([f"more: {explained_by}"] if explained_by else [])]
+        more = say("more: {command}", command=explained_by)
+        return [*shown, *([more] if explained_by else [])]
 
     def with_paste(self, paste: Paste | None) -> Self:
         """Attach lines that can be pasted into the file; returns the error itself."""

@@ -223,7 +223,7 @@ def test_an_interrupted_sweep_goes_on() -> None:
     result = interrupted(words, lambda: len([*Path("long.zarr").glob("reason/c/*")]) > 0)
     assert (result.status, result.out) == (130, "")
     assert result.err.splitlines()[-1] == (
-        "equipoise: interrupted; what is stored stays; go on by: equipoise resume long.zarr"
+        "equipoise: interrupted; what is stored stays; continue with: equipoise resume long.zarr"
     )
     assert "Traceback" not in result.err
     store = eq.studies.open_store("long.zarr")
@@ -238,7 +238,7 @@ def test_an_interrupt_while_designs_are_drawn_tells_how_to_go_on(monkeypatch) ->
     done = equipoise("sweep", written(LENGTHS), "-o", "drawn.zarr", "--plot", "pictures")
     assert done.status == 130
     assert done.err.splitlines()[-1] == (
-        "equipoise: interrupted; what is stored stays; go on by: equipoise resume drawn.zarr"
+        "equipoise: interrupted; what is stored stays; continue with: equipoise resume drawn.zarr"
     )
 
 

@@ -52,7 +52,7 @@ def test_check_tells_what_it_has_read() -> None:
         "from 1300 mm to 1500 mm: bending stiffness 1822 N m^2, 0.7867 kg/m",
         "engine at 0 mm: 3.600 kg, 0.02000 (vertical) and 0.02400 (lateral) kg m^2",
         "2 hands (0.1500 kg, 9000 (vertical) and 7000 (lateral) N/m",
-        "shaken by blade: unbalance 150.0 g mm, at saw, -0.7500 times the engine's speed",
+        "excitation blade: unbalance 150.0 g mm, at saw, -0.7500 times the engine's speed",
         "day: mowing 2.500 h, walking 0.5000 h",
         "may change: position of belt, damping of the absorber at handle",
         "force at belt: at most 60.00 N",

@@ -26,6 +26,7 @@ from equipoise.balancing.linear_conditions import (
 from equipoise.balancing.program import Affine, NoSolutionError, Program
 from equipoise.dataclass import dataclass
 from equipoise.decompositions import pinv
+from equipoise.i18n import Note, series, to_say
 from equipoise.mechanism.dynamics.parameters import QUANTITIES
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.quantities import SI, display
@@ -216,9 +217,9 @@ class ConsistentMasses:
 
 
 ASKED: dict[str, tuple[str, ...]] = {
-    "shaking force": ("shaking_force",),
-    "shaking moment": ("shaking_moment",),
-    "shaking force and moment": ("shaking_force", "shaking_moment"),
+    to_say("shaking force"): ("shaking_force",),
+    to_say("shaking moment"): ("shaking_moment",),
+    to_say("shaking force and moment"): ("shaking_force", "shaking_moment"),
 }
 
 
@@ -266,7 +267,7 @@ class Answer:
     proof: Proof | None
 
     @property
-    def reason(self) -> str:
+    def reason(self) -> Note:
         if self.added_mass is not None:
             return _possible(self.what, self.added_mass)
         return _impossible(self.what, self.proof, self.by_points)
@@ -335,29 +336,40 @@ def _answer(machine: Machine, effects: ParameterEffects, what: str) -> Answer:
     return Answer(what, False, None, points, proof)
 
 
-def _possible(what: str, added: Mapping[str, float]) -> str:
+def _possible(what: str, added: Mapping[str, float]) -> Note:
     if not added:
-        return f"The {what} can be made zero, with every mass as it is."
+        return Note("The {what} can be made zero, with every mass as it is.", what=Note(what))
     unit = display("mass", [*added.values()])
-    where = ", ".join(
-        f"{f'{unit.factor * mass:.4g} {unit.unit}' if mass else 'some mass, however little,'} "
-        f"on {link}"
+    weights = [
+        Note("{mass} on {link}", mass=f"{unit.factor * mass:.4g} {unit.unit}", link=link)
+        if mass
+        else Note("some mass, however little, on {link}", link=link)
         for link, mass in added.items()
+    ]
+    return Note(
+        "The {what} can be made zero, but not with every mass as it is: it takes {weights}.",
+        what=Note(what),
+        weights=series(weights),
     )
-    return f"The {what} can be made zero, but not with every mass as it is: it takes {where}."
 
 
-def _impossible(what: str, proof: Proof | None, points: bool) -> str:
+def _impossible(what: str, proof: Proof | None, points: bool) -> Note:
     if proof is None:
-        return f"The {what} can at best be approached, by ever larger masses or moments of inertia."
+        return Note(
+            "The {what} can at best be approached, by ever larger masses or moments of inertia.",
+            what=Note(what),
+        )
     words = proof.reading.words
     dimension, _ = SHOWN[proof.unit]
     unit = display(dimension, [proof.least], SI[dimension])
-    because = (
-        f"The {what} cannot be made zero: {words} would have to be 0, but is at least "
-        f"{unit.factor * proof.least:.4g} {unit.unit} with masses and moments of inertia no "
-        "smaller than now"
+    because = Note(
+        "The {what} cannot be made zero: {words} would have to be 0, but is at least {least} with "
+        "masses and moments of inertia no smaller than now",
+        what=Note(what),
+        words=words,
+        least=f"{unit.factor * proof.least:.4g} {unit.unit}",
     )
     if points:
-        return f"{because}; only mass points, without moments of inertia, could do it."
-    return f"{because}."
+        template = to_say("{because}; only mass points, without moments of inertia, could do it.")
+        return Note(template, because=because)
+    return Note("{because}.", because=because)

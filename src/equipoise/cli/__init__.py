@@ -25,7 +25,7 @@ from cyclopts import App, CycloptsError, Parameter
 from equipoise import __version__
 from equipoise.cli.help import Laid
 from equipoise.errors import EquipoiseError, UsageError, at_place
-from equipoise.i18n import Note
+from equipoise.i18n import Note, say
 from equipoise.interrupts import answered, check, recorded
 from equipoise.partial import together
 from equipoise_command import INTERRUPTED
@@ -108,7 +108,7 @@ def _run(arguments: Sequence[str] | None) -> int:
         return _refuse(out_of_memory(error))
     except KeyboardInterrupt as interrupt:  # whoever has more to say raises it again with words
         answered()
-        words = _one_line("; ".join(["interrupted", *map(str, interrupt.args)]))
+        words = _one_line("; ".join([say("interrupted"), *map(str, interrupt.args)]))
         print(f"equipoise: {words}", file=sys.stderr)
         return INTERRUPTED
     except BrokenPipeError:  # the reader, such as `head`, has seen enough
@@ -212,7 +212,7 @@ def _refuse(error: Exception) -> int:
 def _hints(error: EquipoiseError) -> tuple[str, ...]:
     """The command that explains an error; nothing where there is no more to say."""
     command = error.explained_by
-    return (f"more: {command}",) if command else ()
+    return (say("more: {command}", command=command),) if command else ()
 
 
 SIGN, RAREST = 5.0, 50.0
@@ -237,7 +237,7 @@ def _signs_of_life(given: Sequence[str]) -> Iterator[None]:
                 value = progress.last_line()
                 continue
             share = "" if progress is None else progress.so_far()
-            words = f"still computing, {monotonic() - begun:.0f} s"
+            words = say("still computing, {time} s", time=f"{monotonic() - begun:.0f}")
             print("; ".join(filter(None, [words, share])), file=sys.stderr)
             wait, value = min(2 * wait, RAREST), monotonic()
 

@@ -22,7 +22,7 @@ from equipoise.cli.options import (
 from equipoise.cli.outputs import check_result_file, sources_of, wrote
 from equipoise.cli.runner import CommandResult, command
 from equipoise.errors import UsageError, at_place
-from equipoise.i18n import Note
+from equipoise.i18n import Note, say
 
 if TYPE_CHECKING:
     from equipoise.balancing.balanced import Balanced
@@ -111,7 +111,8 @@ def _designs(store: str, out: str, kept: bool) -> list[str]:
 
     opened = open_store(store)
     check_result_file("--out", out, [])
-    return [wrote(f"{write_designs(opened, out, kept=kept)} designs to {out}")]
+    count = write_designs(opened, out, kept=kept)
+    return [wrote(say("{count} designs to {file}", count=count, file=out))]
 
 
 def _balanced(machine: Machine) -> Balanced:

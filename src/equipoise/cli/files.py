@@ -14,7 +14,7 @@ from equipoise.cli.options import count, error_in_file
 from equipoise.cli.outputs import Shown, check_model_name, wrote
 from equipoise.cli.runner import CommandResult, command
 from equipoise.errors import UsageError
-from equipoise.i18n import Note
+from equipoise.i18n import Note, say
 
 STARTS = {
     # kind of file: text to start from, usual name, what comes next
@@ -124,7 +124,9 @@ def new(
     path = usual if file is None else file
     check_model_name(path, "FILE")
     write(path, start, replace=False)
-    return CommandResult(save=lambda: [wrote(f"{path}; next: {first.format(path)}")])
+    return CommandResult(
+        save=lambda: [wrote(path + say("; next: {command}", command=first.format(path)))]
+    )
 
 
 def _kind(tool: bool, study: bool) -> Literal["linkage", "tool", "study"]:

@@ -36,7 +36,7 @@ from equipoise.cli.progress import counted
 from equipoise.cli.runner import CommandResult, command
 from equipoise.dataclass import dataclass
 from equipoise.errors import ModelError, UsageError, at_place
-from equipoise.i18n import Note
+from equipoise.i18n import Note, say
 
 if TYPE_CHECKING:
     import numpy as np
@@ -378,7 +378,7 @@ def design(
         tool_design = design_tool(tool, progress)
 
     def save() -> list[str]:
-        following = f"; next: equipoise tool {out}"
+        following = say("; next: {command}", command=f"equipoise tool {out}")
         return [] if out is None else write_model(tool_design.better, out, what_next=following)
 
     return replace(_result(tool, [tool_design], tool_design.charts, "design"), save=save)

@@ -15,6 +15,7 @@ from time import monotonic
 from typing import TYPE_CHECKING, Any, Self
 
 from equipoise.dataclass import dataclass
+from equipoise.i18n import say, to_say
 from equipoise.interrupts import check
 from equipoise.quantities.numbers import rate_told, time_told
 
@@ -171,7 +172,10 @@ def counted(what: str) -> Iterator[Callable[[int, int], None]]:
     """Yield what long work calls with how many of its parts are done, and how many there are."""
     with _shown() as show:
         yield lambda done, total: show(
-            lambda: ProgressStep(done, total, f"{what} {done} of {total}"), False
+            lambda: ProgressStep(
+                done, total, say("{what} {done} of {total}", what=what, done=done, total=total)
+            ),
+            False,
         )
 
 
@@ -182,8 +186,10 @@ def generations() -> Iterator[Callable[[int, int, float], None]]:
 
     def step(done: int, most: int, cost: float) -> ProgressStep:
         left = (most - done) * (monotonic() - start) / done
-        share, at = f"generation {done} of at most {most}", f"cost {cost:.4g}"
-        return ProgressStep(done, max(done, most), share, f"{at}, at most {time_told(left)} left")
+        share = say("generation {done} of at most {most}", done=done, most=most)
+        template = to_say("cost {cost}, at most {time} left")
+        at = say(template, cost=f"{cost:.4g}", time=time_told(left))
+        return ProgressStep(done, max(done, most), share, at)
 
     with _shown(0.0) as show:
         yield lambda done, most, cost: show(lambda: step(done, most, cost), False)
@@ -253,17 +259,23 @@ def _on_the_way(progress: Progress, units: Mapping[str, Unit], ago: float) -> Pr
     return ProgressStep(
         progress.done,
         progress.total,
-        f"{share:.0f} %, {progress.done} of {progress.total} designs",
+        say(
+            "{share} %, {done} of {count} designs",
+            share=f"{share:.0f}",
+            done=progress.done,
+            count=progress.total,
+        ),
         ", ".join(filter(None, [rate_told(progress.rate), left_told(progress, ago)])),
-        _best_and_failures("best so far", progress, units),
+        _best_and_failures(say("best so far"), progress, units),
     )
 
 
 def _in_the_end(last: Progress, units: Mapping[str, Unit]) -> ProgressStep:
-    computed = f"{last.computed} designs computed in {time_told(last.seconds)}"
+    template = to_say("{count} designs computed in {time}")
+    computed = say(template, count=last.computed, time=time_told(last.seconds))
     rate = rate_told(last.computed / max(last.seconds, 1e-9))
     return ProgressStep(
-        last.done, last.total, computed, rate, _best_and_failures("best", last, units)
+        last.done, last.total, computed, rate, _best_and_failures(say("best"), last, units)
     )
 
 
@@ -276,7 +288,7 @@ def _best_and_failures(name: str, progress: Progress, units: Mapping[str, Unit])
         f"{unit.called} {number(unit.of_si(value))} {unit.name}".strip() for unit, value in text
     )
     failures = (f"{what} {count}" for what, count in progress.failures.items())
-    return {name: ", ".join(best), "failed": ", ".join(failures)}
+    return {name: ", ".join(best), say("failed"): ", ".join(failures)}
 
 
 def left_told(progress: Progress, ago: float = 0.0) -> str:
@@ -284,4 +296,4 @@ def left_told(progress: Progress, ago: float = 0.0) -> str:
     early = progress.done < SURE * progress.total and progress.seconds < LATEST
     if progress.left is None or early:
         return ""
-    return f"{time_told(max(0.0, progress.left - ago))} left"
+    return say("{time} left", time=time_told(max(0.0, progress.left - ago)))

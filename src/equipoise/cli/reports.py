@@ -32,7 +32,7 @@ from equipoise.cli.outputs import (
 from equipoise.cli.progress import counted
 from equipoise.cli.runner import CommandResult, command
 from equipoise.errors import UsageError, at_place
-from equipoise.i18n import Note
+from equipoise.i18n import Note, say
 
 if TYPE_CHECKING:
     from equipoise.mechanism.parts.machine import Machine
@@ -210,8 +210,9 @@ def _swinging(analysis: Analysis, factor: float | None) -> tuple[Scene, list[str
     scene, problem = moving(analysis, factor)
     if problem is not None and factor is not None:
         raise problem
-    still = [] if problem is None else [f"the support is drawn standing still: {problem}"]
-    return scene, still
+    if problem is None:
+        return scene, []
+    return scene, [say("the support is drawn standing still: {problem}", problem=problem.told())]
 
 
 def _in_mode(machine: Machine, number: int, count: int) -> Scene:

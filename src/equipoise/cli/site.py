@@ -10,7 +10,7 @@ from equipoise.cli.options import NewFolder, wants
 from equipoise.cli.outputs import refuse_file_name, wrote
 from equipoise.cli.runner import CommandResult, command
 from equipoise.errors import UsageError, at_place
-from equipoise.i18n import Note
+from equipoise.i18n import Note, say
 
 InFolder = Annotated[str | None, wants("FOLDER")]
 
@@ -56,9 +56,10 @@ def site(
         raise UsageError(
             at_place(folder, Note("the site cannot be written ({reason})", reason=reason(error)))
         ) from error
-    lines = [f"first load: {written.first / 1e6:.1f} MB"]
+    lines = [say("first load: {size} MB", size=f"{written.first / 1e6:.1f}")]
     if written.compiled:
-        lines += [f"compiled modules: {written.compiled}"]
+        lines += [say("compiled modules: {count}", count=written.compiled)]
     if written.missing:
-        lines += [f"loaded from elsewhere when needed: {', '.join(written.missing)}"]
+        packages = ", ".join(written.missing)
+        lines += [say("loaded from elsewhere when needed: {packages}", packages=packages)]
     return CommandResult(lines=lambda: lines, save=lambda: [wrote(f"{folder}/index.html")])

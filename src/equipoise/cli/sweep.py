@@ -22,7 +22,7 @@ from equipoise.cli.outputs import PlottedOutput
 from equipoise.cli.progress import Watched, swept
 from equipoise.cli.runner import CommandResult, command
 from equipoise.errors import UsageError, at_place
-from equipoise.i18n import Note
+from equipoise.i18n import Note, say
 from equipoise.quantities.numbers import rate_told, time_told
 
 if TYPE_CHECKING:
@@ -88,7 +88,7 @@ def _computed(work: Callable[..., Store], path: str, units: dict[str, Unit]) -> 
         (end,) = last
         summary = _summary(store, end)
     rate = rate_told(end.computed / max(end.seconds, 1e-9))
-    run = f", {time_told(end.seconds)}, {rate}" if end.computed else ", nothing was missing"
+    run = f", {time_told(end.seconds)}, {rate}" if end.computed else say(", nothing was missing")
     return CommandResult(
         lambda: summary_blocks(summary, units, run),
         lambda: _values(summary, end),
@@ -119,7 +119,8 @@ def _going_on(store: str) -> Iterator[None]:
     except KeyboardInterrupt:
         if not os.path.lexists(store):
             raise
-        words = f"what is stored stays; go on by: equipoise resume {quote(store)}"
+        following = f"equipoise resume {quote(store)}"
+        words = say("what is stored stays; continue with: {command}", command=following)
         raise KeyboardInterrupt(words) from None
 
 

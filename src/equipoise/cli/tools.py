@@ -21,7 +21,7 @@ from equipoise.cli.runner import declared_of
 from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError, at_place, unknown
 from equipoise.fence import Fence, fenced
-from equipoise.i18n import Note
+from equipoise.i18n import Note, say
 from equipoise.mechanism.outputs.declared import declared
 from equipoise.partial import together
 from equipoise.quantities import SI
@@ -247,9 +247,10 @@ def _short(values: dict[str, Any]) -> dict[str, Any]:
         return [cut(item) for item in value] if isinstance(value, list) else value
 
     shortened: dict[str, Any] = cut(values)
-    return shortened | (
-        {"left_out": f"{left} lists of more than {MOST}; ask with json"} if left else {}
-    )
+    if not left:
+        return shortened
+    lost = say("{count} lists of more than {most}; ask with json", count=left, most=MOST)
+    return shortened | {"left_out": lost}
 
 
 def _size(value: Any) -> int:

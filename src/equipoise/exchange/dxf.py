@@ -18,7 +18,7 @@ import numpy as np
 from equipoise.errors import UsageError, needed
 from equipoise.exchange.formats import Job
 from equipoise.exchange.parts import COUNTERWEIGHT, Part, parts
-from equipoise.i18n import decimal_sign, spoken
+from equipoise.i18n import Note, decimal_sign, spoken
 from equipoise.i18n.decimals import POINT
 from equipoise.i18n.languages import KNOWN
 from equipoise.mechanism.assembly.cam_fits import fits_of
@@ -42,14 +42,14 @@ def export_bytes(job: Job) -> str:
     motion = move(job.machine, [job.crank_angle, *angles])
     scene = Scene.of(motion)
     if job.machine.rows:
-        job.leave_out("rows: one linkage is drawn")
+        job.leave_out(Note("rows: one linkage is drawn"))
     _linkage(space, scene)
     _pitch_curves(space, scene, motion)
     _paths(space, scene)
     try:
         _parts(space, parts(job), scene, job.sizes)
     except UsageError:  # nothing to cut is nothing wrong here
-        job.left_out.append("parts to be cut: the model tells no outline of any")
+        job.left_out.append(Note("parts to be cut: the model has no outlines"))
     for name in sorted({entity.dxf.layer for entity in space} - {"0"}):
         drawing.layers.add(name)
     text = io.StringIO()

@@ -153,14 +153,15 @@ def export_content(
     without_friction = machine.without_friction() if frictionless else machine
     job = Job(without_friction, crank_angle or 0.0, changes, link, angles, sizes)
     if frictionless:
-        job.leave_out("friction in joints: forces are those without it")
+        job.leave_out(Note("friction in joints: forces are those without it"))
     if not file_format.tightens:
         for coupling in machine.couplings:
             if coupling.preload:
-                lost = f"the tension of the {coupling.noun} {coupling.name}"
-                job.leave_out(f"{lost}, which its pins bear")
+                job.leave_out(
+                    Note("the tension of {name}, which its pins bear", name=coupling.name)
+                )
     if machine.pushers and not file_format.pushes:
-        job.leave_out("what pushes the machine, and its stroke")
+        job.leave_out(Note("what pushes the machine, and its stroke"))
     data: str | bytes = import_module(file_format.maker).export_bytes(job)
     return job, data
 

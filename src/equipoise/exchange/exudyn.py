@@ -115,14 +115,14 @@ def _row(model: Data, tree: Tree, job: Job, flywheel: float) -> None:
     for spring in machine.springs:
         ends = [_end(tree, spring.on, spring.to), _end(tree, spring.link, spring.point)]
         if spring.stiffness is None:
-            job.leave_out("springs with a table")
+            job.leave_out(Note("springs with a table"))
             continue
         rates = {"stiffness": spring.stiffness, "length": spring.free_length}
         if spring.preload is not None:
             rates["preload"] = spring.preload
         model["springs"].append({"ends": ends, **rates})
     if machine.torsion_springs:
-        job.leave_out("the torsion springs")
+        job.leave_out(Note("the torsion springs"))
     _rated(model, tree, job)
     for _, load in constant_loads(job):
         end = _end(tree, load.link, load.point or next(iter(machine.links[load.link].points)))
@@ -145,15 +145,17 @@ def _rated(model: Data, tree: Tree, job: Job) -> None:
     base = "" if machine.support is None else BASE
     for torsion in machine.torsion_dampers:
         if not torsion.linear:
-            job.leave_out("torsion dampers with a table")
+            job.leave_out(Note("torsion dampers with a table"))
             continue
         on, by = (base if body == FRAME else f"{body}{tree.suffix}"
                   for body in (torsion.link, torsion.on))  # fmt: skip
         model["torsion_dampers"].append({"on": on, "by": by, "damping": torsion.damping})
+    moving = {"stops": Note("stops over a body that moves"),
+              "resistances": Note("resistances over a body that moves")}  # fmt: skip
     for noun, items in (("stops", machine.stops), ("resistances", machine.resistances)):
         for item in items:
             if item.on != FRAME or base:
-                job.leave_out(f"{noun} over a body that moves")
+                job.leave_out(moving[noun])
                 continue
             ends = [_end(tree, FRAME, item.to), _end(tree, item.link, item.point)]
             model[noun].append({"ends": ends, **_law(item)})

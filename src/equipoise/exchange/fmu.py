@@ -27,6 +27,7 @@ from equipoise.codegen.figures import Gathered
 from equipoise.codegen.in_c import in_c
 from equipoise.exchange.formats import Job
 from equipoise.exchange.tree import constant_loads
+from equipoise.i18n import Note
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.results.analysis import Analysis, analyze
@@ -42,9 +43,10 @@ def export_bytes(job: Job) -> bytes:
     """The file's content."""
     machine = replace(job.machine, loads=tuple(load for _, load in constant_loads(job)),
                       planting=None, balance=None)  # fmt: skip
-    for what, given in (("the support", machine.support), ("all rows but one", machine.rows[1:])):
-        if given:
-            job.leave_out(what)
+    if machine.support:
+        job.leave_out(Note("the support"))
+    if machine.rows[1:]:
+        job.leave_out(Note("all rows but one"))
     job.leave_out_forces()
     job.leave_out_motor()
     job.leave_out_planes()
@@ -60,7 +62,7 @@ def export_bytes(job: Job) -> bytes:
     binary = _compiled(code) if folder else None
     if binary is None:
         job.leave_out(
-            "what this computer could run at once: `fmpy compile` makes it of the sources"
+            Note("what this computer could run at once: `fmpy compile` makes it of the sources")
         )
     else:
         content[f"binaries/{folder}/{MODEL}{ending}"] = binary

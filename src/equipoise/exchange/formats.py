@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
-from equipoise.i18n import Note
+from equipoise.i18n import Note, said, say, to_say
 from equipoise.mechanism.assembly.joints import Structure
 from equipoise.mechanism.dynamics.forces import massless
 
@@ -213,6 +213,13 @@ Angles = int | Sequence[float] | None
 """Crank angles, as an analysis takes them; None for those that suit a format."""
 
 
+LEFT_OUT = {
+    "file": to_say("note: the file leaves out {part}"),
+    "drawing": to_say("note: the drawing leaves out {part}"),
+}
+"""What is said of each thing that is left out, by what is written."""
+
+
 @dataclass(frozen=True)
 class Job:
     """What is to be written.
@@ -232,23 +239,23 @@ class Job:
     link: str | None = None
     angles: Angles = None
     sizes: str = ""
-    left_out: list[str] = field(default_factory=list)
+    left_out: list[Note] = field(default_factory=list)
 
-    def notes(self, what: str) -> Iterator[str]:
-        """Lines about a file, called what: what it leaves out, and how sizes were rounded."""
-        yield from (f"note: the {what} leaves out {part}" for part in self.left_out)
+    def notes(self, of: Literal["file", "drawing"]) -> Iterator[str]:
+        """Lines about what was written: what it leaves out, and how sizes were rounded."""
+        yield from (say(LEFT_OUT[of], part=said(part)) for part in self.left_out)
         if self.sizes:
-            yield f"note: {self.sizes}"
+            yield say("note: {note}", note=said(self.sizes))
 
-    def leave_out(self, what: str) -> None:
-        """Tell, once, what the file does not hold."""
+    def leave_out(self, what: Note) -> None:
+        """Report, once, what the file does not hold."""
         if what not in self.left_out:
             self.left_out.append(what)
 
     def leave_out_forces(self) -> None:
         """Tell that there are no forces where links lack masses."""
         if missing := massless(self.machine):
-            self.leave_out(f"all forces: {missing}")
+            self.leave_out(Note("all forces: {missing}", missing=missing))
 
     def need_every_joint(self, joints: Structure) -> None:
         """Refuse a machine whose joints state the same more than once.
@@ -269,16 +276,17 @@ class Job:
         """Tell that the soil pushes nothing."""
         planting = self.machine.planting
         if planting is not None and planting.soil is not None:
-            self.leave_out("the soil's force")
+            self.leave_out(Note("the soil's force"))
 
     def leave_out_planes(self) -> None:
         """Tell that everything lies in one plane."""
         if self.machine.has_planes:
-            self.leave_out("the planes of links beside each other, and their bearings")
+            self.leave_out(Note("the planes of links beside each other, and their bearings"))
 
     def leave_out_motor(self) -> None:
         """Tell that the drive has its speed, whatever turns it."""
         drive = self.machine.drive
-        for name, given in (("motor", drive.motor), ("drive's acceleration", drive.acceleration)):
-            if given:
-                self.leave_out(f"the {name}: the drive turns at constant speed")
+        if drive.motor:
+            self.leave_out(Note("the motor: the drive turns at constant speed"))
+        if drive.acceleration:
+            self.leave_out(Note("the drive's acceleration: the drive turns at constant speed"))

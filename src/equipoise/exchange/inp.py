@@ -43,7 +43,8 @@ def export_bytes(job: Job) -> str:
         where = f"links.{link}.section.elastic_modulus"
         raise ModelError(where, Note("missing; finite elements need it"))
     if section.stress_concentration != 1:
-        job.leave_out(f"the stress concentration of {section.stress_concentration:g} by notches")
+        factor = f"{section.stress_concentration:g}"
+        job.leave_out(Note("the stress concentration of {factor} by notches", factor=factor))
     analysis = analysis_of(job)
     loads = analysis.forces.sections[link]
     chosen = _angles(job, analysis, loads)

@@ -25,6 +25,7 @@ from equipoise.exchange.tree import (
     trees,
     weighed,
 )
+from equipoise.i18n import Note
 from equipoise.mechanism.assembly.steps import Array
 from equipoise.mechanism.dynamics.forces import forces
 from equipoise.mechanism.kinematics.motion import move
@@ -125,8 +126,11 @@ def _links(base: ET.Element, tree: Tree, job: Job, flywheel: float) -> None:
         mass, center, tensor = tensor_of(machine.links[link.name])
         if mass < least[0] or tensor[2, 2] < least[1]:
             job.leave_out(
-                f"that {link.name!r} has no mass or no inertia: MuJoCo wants some, and gets as "
-                "little as it takes"
+                Note(
+                    "that {link!r} has no mass or no inertia: MuJoCo requires some, and gets the "
+                    "least that it accepts",
+                    link=link.name,
+                )
             )
         if link.name == machine.drive.link:
             tensor = tensor + flywheel * np.eye(3)
@@ -252,20 +256,20 @@ def _constant_sum(root: ET.Element, name: str, factors: Mapping[str, float]) -> 
 def _springs(root: ET.Element, tree: Tree, job: Job) -> None:
     for spring in tree.machine.springs:
         if spring.stiffness is None:
-            job.leave_out("springs with a table")
+            job.leave_out(Note("springs with a table"))
             continue
         rest = spring.free_length
         if spring.preload is not None:
             rest -= spring.preload / spring.stiffness
         if rest < 0:
-            job.leave_out("springs that pull at every length")
+            job.leave_out(Note("springs that pull at every length"))
             continue
         rates = {"stiffness": repr(spring.stiffness), "springlength": repr(rest)}
         _between(root, tree, spring, rates)
     motion = move(tree.machine, [tree.crank_angle + tree.row.phase], acceleration=0.0)
     for number, torsion in enumerate(tree.machine.torsion_springs):
         if torsion.stiffness is None:
-            job.leave_out("torsion springs with a table")
+            job.leave_out(Note("torsion springs with a table"))
             continue
         start_angle = float(motion.element_values("torsion_springs", number)["angle"][0])
         rest = torsion.angle + torsion.preload / torsion.stiffness - start_angle
@@ -295,23 +299,23 @@ def _dampers(root: ET.Element, tree: Tree, job: Job) -> None:
         if damper.linear:
             _between(root, tree, damper, {"damping": repr(damper.damping)})
         else:
-            job.leave_out("dampers with a table")
+            job.leave_out(Note("dampers with a table"))
     for torsion in tree.machine.torsion_dampers:
         if torsion.linear:
             rates = {"damping": repr(torsion.damping)}
             _turning(root, tree, (torsion.link, torsion.on), rates)
         else:
-            job.leave_out("torsion dampers with a table")
+            job.leave_out(Note("torsion dampers with a table"))
 
 
 def _resistances(root: ET.Element, tree: Tree, job: Job) -> None:
     """Viscous ones, as forces on sites against their speeds along lines of the frame."""
     for number, item in enumerate(tree.machine.resistances, 1):
         if item.on != FRAME or tree.machine.support is not None:
-            job.leave_out("resistances over a body that moves")
+            job.leave_out(Note("resistances over a body that moves"))
             continue
         if not item.linear:
-            job.leave_out("dry and one-way parts of resistances")
+            job.leave_out(Note("dry and one-way parts of resistances"))
         if not item.damping or item.one_way:
             continue
         site, other = (

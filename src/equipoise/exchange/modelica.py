@@ -13,6 +13,7 @@ from dataclasses import field
 from equipoise.dataclass import dataclass
 from equipoise.exchange.formats import Job
 from equipoise.exchange.tree import constant_loads, mass_of, weighed
+from equipoise.i18n import Note
 from equipoise.mechanism.assembly.joints import structure
 from equipoise.mechanism.kinematics.motion import Motion, move
 from equipoise.mechanism.parts.damping import Damping
@@ -109,9 +110,10 @@ class Flat:
 def export_bytes(job: Job) -> str:
     """The file's text."""
     machine = weighed(job.machine)
-    for what, given in (("the support", machine.support), ("all rows but one", machine.rows[1:])):
-        if given:
-            job.leave_out(what)
+    if machine.support:
+        job.leave_out(Note("the support"))
+    if machine.rows[1:]:
+        job.leave_out(Note("all rows but one"))
     job.need_every_joint(structure(machine))
     job.leave_out_motor()
     job.leave_out_planes()

@@ -271,24 +271,40 @@ def _of_links(job: Job) -> Iterator[Part]:
         for number, body in enumerate(link.bodies, 1):
             edges = tuple(_edges(body, link.points))
             if section := _drawn_section(body):
-                job.leave_out(f"body {number} of {name!r}, {section}, which no plate gives")
+                job.leave_out(
+                    Note(
+                        "body {number} of {link!r}, {section}, which no plate gives",
+                        number=number,
+                        link=name,
+                        section=section,
+                    )
+                )
             elif edges:
                 yield Part(name, body.shape, number, body.thickness, edges, body.density)
             elif body.shape != "point" or not job.changes:  # those are told with what was changed
-                job.leave_out(f"body {number} of {name!r}, a {body.shape} without an outline")
+                job.leave_out(
+                    Note(
+                        "body {number} of {link!r} ({shape}) without an outline",
+                        number=number,
+                        link=name,
+                        shape=body.shape,
+                    )
+                )
 
 
-def _drawn_section(body: Body) -> str:
-    """The section of a bar that is cut to length from a tube or rod; empty of what is a plate."""
+def _drawn_section(body: Body) -> Note | None:
+    """The section of a bar that is cut to length from a tube or rod; None of what is a plate."""
     if body.outer_diameter is not None:
         outer = told(body.outer_diameter, "length")
         if not body.inner_diameter:
-            return f"a rod of {outer}"
-        return f"a tube of {outer} with a bore of {told(body.inner_diameter, 'length')}"
+            return Note("a rod of {outer}", outer=outer)
+        bore = told(body.inner_diameter, "length")
+        return Note("a tube of {outer} with a bore of {bore}", outer=outer, bore=bore)
     if body.wall is None or body.width is None:
-        return ""
+        return None
     sides = [told(side, "length") for side in (body.width, body.thickness) if side is not None]
-    return f"a tube of {' x '.join(sides)} with walls of {told(body.wall, 'length')}"
+    wall = told(body.wall, "length")
+    return Note("a tube of {sides} with walls of {wall}", sides=" x ".join(sides), wall=wall)
 
 
 def _edges(body: Body, points: Points) -> Iterator[tuple[Edge, ...]]:
@@ -320,7 +336,7 @@ def _of_changes(job: Job) -> Iterator[Part]:
             if edges:
                 yield part
             else:
-                job.leave_out(f"{part.name}, a point mass without an outline")
+                job.leave_out(Note("{part}, a point mass without an outline", part=part.name))
 
 
 def _edges_of_piece(piece: dict[str, Any], center: complex) -> Iterator[tuple[Edge, ...]]:

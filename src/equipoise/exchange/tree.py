@@ -156,7 +156,11 @@ def trees(job: Job) -> tuple[Tree, ...]:
     for slider in joints.sliders:
         if slider not in joints.needed.sliders:
             job.leave_out(
-                f"the guide {slider.name}, beside which another one leads {slider.link!r}"
+                Note(
+                    "the guide {guide}: another guide constrains {link!r} in the same way",
+                    guide=slider.name,
+                    link=slider.link,
+                )
             )
     rows = rows_of(machine)
     return tuple(
@@ -222,10 +226,10 @@ def constant_loads(job: Job) -> Iterator[tuple[int, Load]]:
     job.leave_out_soil()
     for number, load in enumerate(job.machine.loads, 1):
         if load.jumps or load.rows is not None:
-            job.leave_out(f"load {number}, which is not the same all the time")
+            job.leave_out(Note("load {number}, which is not constant", number=number))
             continue
         if load.reaction is not None and job.machine.support is not None:
-            job.leave_out(f"what load {number} exerts back on the frame")
+            job.leave_out(Note("the reaction of load {number} on the frame", number=number))
         yield number, load
 
 

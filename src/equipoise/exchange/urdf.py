@@ -13,6 +13,7 @@ import numpy as np
 
 from equipoise.exchange.formats import Job
 from equipoise.exchange.tree import Hung, Tree, tensor_of, trees, weighed
+from equipoise.i18n import Note, to_say
 from equipoise.mechanism.kinematics.motion import move
 from equipoise.mechanism.parts.links import size_of
 from equipoise.mechanism.parts.machine import FRAME, Machine, Vector
@@ -34,18 +35,24 @@ def export_bytes(job: Job) -> str:
         for loop in tree.loops:
             item, other = (_end(root, tree, body, loop.pin) for body in (loop.one, loop.other))
             job.leave_out(
-                f"the pin {loop.pin} of {loop.one!r} and {loop.other!r}, which closes a loop; told "
-                f'--pin "{item} = {other}", equipoise import joins them'
+                Note(
+                    "the pin {pin} of {one!r} and {other!r}, which closes a loop; equipoise import "
+                    'joins them with --pin "{pair}"',
+                    pin=loop.pin,
+                    one=loop.one,
+                    other=loop.other,
+                    pair=f"{item} = {other}",
+                )
             )
     missing = {
-        "springs": [*machine.force_elements],
-        "loads": machine.loads,
-        "what the support stands on": machine.support,
-        "the drive's speed": machine.drive.speed,
+        to_say("springs"): [*machine.force_elements],
+        to_say("loads"): machine.loads,
+        to_say("what the support stands on"): machine.support,
+        to_say("the drive's speed"): machine.drive.speed,
     }
     for what, given in missing.items():
         if given:
-            job.leave_out(what)
+            job.leave_out(Note(what))
     job.leave_out_soil()
     ET.indent(root)
     return ET.tostring(root, encoding="unicode") + "\n"
@@ -138,7 +145,7 @@ def _gears(root: ET.Element, tree: Tree, job: Job) -> None:
     """A joint that follows another; of three URDF does not know."""
     for name, factors in tree.proportions:
         if len(factors) != 2:
-            job.leave_out(f"the gears {name}, which join more than two joints")
+            job.leave_out(Note("the gears {name}, which join more than two joints", name=name))
             continue
         (item, by), (other, share) = factors.items()
         joint = next(j for j in root.iter("joint") if j.get("name") == f"{item}{tree.suffix}")

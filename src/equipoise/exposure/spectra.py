@@ -99,21 +99,27 @@ class AccelerationSignal:
         half = self.rate / 2
         if self.periodic:
             if self.rate < LEAST_RATE:
-                yield f"taken to hold nothing above half its sampling rate, {half:.4g} Hz"
+                yield Note(
+                    "taken to hold nothing above half its sampling rate, {frequency} Hz",
+                    frequency=f"{half:.4g}",
+                )
             ends = np.abs(self.acceleration[:, 0] - self.acceleration[:, -1])
             steps = np.max(np.abs(np.diff(self.acceleration)), axis=1)
             if np.any(ends > JUMP * steps):
-                yield "the record does not close as one of whole periods does"
+                yield Note("the record does not close as one of whole periods does")
             return
         if self.rate < WHOLE_RATE:
-            yield (
-                f"the record ends at {half:.0f} Hz, half its sampling rate; ISO 8041-1 asks for a "
-                f"response up to 1995 Hz, which takes {WHOLE_RATE:.0f} Hz"
+            yield Note(
+                "the record ends at {frequency} Hz, half its sampling rate; ISO 8041-1 asks for a "
+                "response up to 1995 Hz, which takes {rate} Hz",
+                frequency=f"{half:.0f}",
+                rate=f"{WHOLE_RATE:.0f}",
             )
         if self.duration < SHORT:
-            yield (
-                f"the record takes {self.duration:.3g} s; ISO 5349-2 calls less than 8 s hardly "
-                "reliable at low frequencies, and asks for a minute in several records"
+            yield Note(
+                "the record takes {time} s; ISO 5349-2 calls less than 8 s hardly reliable at low "
+                "frequencies, and asks for a minute in several records",
+                time=f"{self.duration:.3g}",
             )
 
 
@@ -355,14 +361,15 @@ def _weigh(
 def _on_bands(frequency: Array, bands: bool) -> Iterator[str]:
     """Whether bands are missing, or were meant."""
     if bands and len(frequency) < len(NUMBERS):
-        yield (
-            f"{len(frequency)} of {len(NUMBERS)} bands were given; the others count as without "
-            "vibration"
+        yield Note(
+            "{number} of {most} bands were given; the others count as without vibration",
+            number=len(frequency),
+            most=len(NUMBERS),
         )
     elif not bands and len(frequency) >= LOOKS_LIKE_BANDS and frequency[0] > 0:
         number = 10 * np.log10(frequency)
         if np.all(np.abs(number - np.rint(number)) < BAND_TOLERANCE):
-            yield (
+            yield Note(
                 "the frequencies are middles of one-third-octave bands; say so (bands), and they "
                 "count with the factors of the exact middles"
             )
@@ -371,15 +378,17 @@ def _on_bands(frequency: Array, bands: bool) -> Iterator[str]:
 def _on_axes(axes: tuple[str, ...], single_axis: bool) -> Iterator[str]:
     """What the total value leaves out."""
     if single_axis:
-        yield (
-            f"the total value is estimated as {SINGLE_AXIS} times the largest axis, the cautious "
-            "end of what ISO 5349-1 allows; it has to be justified in a report"
+        yield Note(
+            "the total value is estimated as {times} times the largest axis, the cautious end of "
+            "what ISO 5349-1 allows; it has to be justified in a report",
+            times=SINGLE_AXIS,
         )
     elif len(axes) < len(AXES):
-        given = "one axis" if len(axes) == 1 else "two axes"
-        yield (
-            f"the total value is that of {given} and may be too low; ISO 5349-1 allows "
-            f"{SINGLE_AXIS} times the largest axis as an estimate (single axis)"
+        yield Note(
+            "the total value is that of {given} and may be too low; ISO 5349-1 allows {times} "
+            "times the largest axis as an estimate (single axis)",
+            given=Note("one axis") if len(axes) == 1 else Note("two axes"),
+            times=SINGLE_AXIS,
         )
 
 
@@ -388,7 +397,8 @@ def _on_drift(kind: Kind, frequency: Array, after: Array) -> Iterator[str]:
     whole = float(np.sum(after))
     slow = float(np.sum(after[:, frequency < EDGES[0]]))
     if kind == "signal" and slow > MUCH * whole:
-        yield (
-            f"{100 * slow / whole:.0f} % of the weighted mean square lies below 5.6 Hz; look for "
-            "drift, a shift of the zero (DC shift), or motion of the hand"
+        yield Note(
+            "{share} % of the weighted mean square lies below 5.6 Hz; look for drift, a shift of "
+            "the zero (DC shift), or motion of the hand",
+            share=f"{100 * slow / whole:.0f}",
         )

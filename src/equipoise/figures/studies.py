@@ -12,7 +12,7 @@ import numpy as np
 
 from equipoise.figures.shared import by_name, continued, groups, told_speed
 from equipoise.figures.style import short
-from equipoise.i18n import Note, say
+from equipoise.i18n import Note, all_of, said, say
 from equipoise.quantities import Dimension, Display, display, typeset
 from equipoise.results.charts import (
     Array,
@@ -181,14 +181,21 @@ def number_unit(dimension: str | None) -> Display:
 
 def told_best(landscape: Landscape) -> str:
     """The best place in a sentence."""
-    places = (
+    places = [
         f"{named(landscape, path)} = {_in_units(landscape, path, value, path)}"
         for path, value in zip(landscape.paths, landscape.best, strict=True)
+    ]
+    best = say(
+        "least {aim}: {value}, at {places}",
+        aim=objective_named(landscape.objective),
+        value=f"{shown(landscape.least)} {typeset(landscape.unit)}",
+        places=said(all_of(places)),
     )
-    value = f"{shown(landscape.least)} {typeset(landscape.unit)}"
-    edge = (f"; {named(landscape, path)} is at an end of its range" for path in landscape.at_edge)
-    aim = objective_named(landscape.objective)
-    return f"least {aim}: {value}, at {' and '.join(places)}{''.join(edge)}"
+    edge = [
+        say("{name} is at an end of its range", name=named(landscape, path))
+        for path in landscape.at_edge
+    ]
+    return "; ".join([best, *edge])
 
 
 def _in_units(landscape: Landscape, path: str, value: float, label: str = "") -> str:

@@ -26,7 +26,7 @@ from equipoise.figures.shared import (
 from equipoise.figures.style import KINDS, short
 from equipoise.handheld.exposed import grips
 from equipoise.handheld.response import respond_tool
-from equipoise.i18n import decimals, say, to_say
+from equipoise.i18n import decimals, said, say, to_say
 from equipoise.quantities import Display
 from equipoise.results.charts import (
     DEGREES,
@@ -169,7 +169,7 @@ def _shape(modes: ToolModes, result: PlaneModes, number: int) -> Panel:
             decimals(f"λ = {result.parameter[number]:.3f}"),
         ]
     else:
-        lines = [say("free:"), *wrap(result.rigid[number], LETTERS)]
+        lines = [say("free:"), *wrap(said(result.rigid[number]), LETTERS)]
     return Panel(
         shaft_axis(modes.tool),
         Axis(low=-REACH, high=REACH, ticks=()),

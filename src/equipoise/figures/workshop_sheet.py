@@ -19,7 +19,7 @@ from equipoise.exchange.formats import Job
 from equipoise.exchange.parts import COUNTERWEIGHT, Part, along, in_mm, parts
 from equipoise.figures.paint import fonts_for, settings
 from equipoise.figures.style import INK, MAIN
-from equipoise.i18n import LANGUAGES, said, say, speaking, spoken
+from equipoise.i18n import LANGUAGES, Note, said, say, speaking, spoken
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -59,8 +59,11 @@ def sheets(job: Job) -> Iterator[list[Figure]]:
     texts = [_texts(job, part) for part in result]
     if spoken() != "en" and fonts_for(frozenset("".join(map("".join, texts))))[1]:
         job.leave_out(
-            f"texts in {LANGUAGES[spoken()]}, for which this computer has no font; they are in "
-            "English; install one such as Noto Sans CJK"
+            Note(
+                "texts in {language}, for which this computer has no font; they are in English; "
+                "install one such as Noto Sans CJK",
+                language=LANGUAGES[spoken()],
+            )
         )
         with speaking("en"):
             texts = [_texts(job, part) for part in result]

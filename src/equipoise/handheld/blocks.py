@@ -9,7 +9,7 @@ import numpy as np
 
 from equipoise.handheld.model import PLANES
 from equipoise.handheld.response import rms_over_time
-from equipoise.i18n import Note, say, to_say
+from equipoise.i18n import Note, said, say, to_say
 from equipoise.quantities import PER_RPM, Dimension, number, told
 from equipoise.results.blocks import (
     Block,
@@ -159,7 +159,7 @@ def _frequencies(name: str, plane: PlaneModes) -> Table:
     rows: list[tuple[Cell, ...]] = []
     for k, frequency in enumerate(plane.cycles_per_second.tolist()):
         if k < len(plane.rigid):
-            rigid = say("rigid: {motion}", motion=plane.rigid[k])
+            rigid = say("rigid: {motion}", motion=said(plane.rigid[k]))
             rows.append((str(k + 1), Value(0.0), Value(0.0), Value(0.0), rigid))
             continue
         still = tuple(cell(place, "length") for place in plane.nodes[k].tolist())

@@ -185,7 +185,10 @@ def vibrate_tool(tool: Tool, number: int = 6) -> ToolModes:
         PlaneModes(
             frequency[plane],
             np.sqrt(frequency[plane] / scale_of(tool)),
-            (*rigid_names(rigid[plane]), *(f"absorber at {name} floats" for name in loose[plane])),
+            (
+                *rigid_names(rigid[plane]),
+                *(Note("absorber at {name} floats", name=name) for name in loose[plane]),
+            ),
             shapes[plane],
             tuple(zeros_of(places, shape) for shape in shapes[plane]),
             damped[plane],
@@ -224,15 +227,17 @@ def swinging_below(tool: Tool, highest: float) -> Array:
     return np.asarray(both[both.imag > 0])
 
 
-def rigid_names(free: Array) -> tuple[str, ...]:
+def rigid_names(free: Array) -> tuple[Note, ...]:
     """What rigid motions are called, by displacement of the left end (m) and slope (rad)."""
+    across_alone = Note("moves to and fro")
     if len(free) == 2:
-        return ("moves to and fro", "turns about its left end")
-    names = []
-    for across, slope in free:
-        still = 0.0 - across / slope if slope else np.inf
-        names.append("moves to and fro" if not slope else f"turns about {still:.4g} m")
-    return tuple(names)
+        return (across_alone, Note("turns about its left end"))
+    return tuple(
+        Note("turns about {place} m", place=f"{0.0 - across / slope:.4g}")
+        if slope
+        else across_alone
+        for across, slope in free
+    )
 
 
 def _notes(tool: Tool) -> Iterator[Note]:

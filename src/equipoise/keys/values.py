@@ -26,7 +26,7 @@ def wrong_values(where: str, value: Any) -> Iterator[ModelError]:
         if not isfinite(leaf):
             yield ModelError(place, Note("got {leaf}; give a finite number", leaf=leaf))
         elif abs(leaf) > HUGE or 0 < abs(leaf) < TINY:
-            size = f"{leaf:g} in SI units"
+            size = Note("{size} in SI units", size=f"{leaf:g}")
             yield ModelError(place, Note("got {text}, which no machine can have", text=size))
     for place, leaf, item in leaves:
         names = () if item is None else _names(item)

@@ -29,8 +29,11 @@ POOR = 2.0
 """Residual over the noise of the samples, from where on the model is doubted."""
 MOST_ROUNDING = 1e-6
 """A residual below this share of the first half-swing is rounding, not noise."""
-WHOLE = "whole record"
-TERMS = {"viscous damping": "decay_rate", "Coulomb friction": "coulomb_displacement"}
+WHOLE = to_say("whole record")
+TERMS = {
+    to_say("viscous damping"): "decay_rate",
+    to_say("Coulomb friction"): "coulomb_displacement",
+}
 SHOWN: dict[Kind, str] = {"length": "mm", "angle": "deg"}
 """Unit of displacements."""
 ALWAYS = {
@@ -202,22 +205,28 @@ def _on_record(record: Record, turns: Turns, arm: float | None) -> Iterator[str]
     """Whether a displacement over its arm is still an angle; what is left out of the record."""
     largest = float(np.ptp(record.displacement)) / 2
     if arm is not None and largest > FAR:
-        yield (
-            f"the record swings by {np.degrees(largest):.0f} deg to either side, where the "
-            "displacement over the arm is no longer the angle"
+        yield Note(
+            "the record swings by {angle} deg to either side, where the displacement over the arm "
+            "is no longer the angle",
+            angle=f"{np.degrees(largest):.0f}",
         )
     half = float(np.median(np.diff(turns.time)))
     before = turns.time[0] - record.time[0]
     after = record.time[-1] - turns.time[-1]
     if before > 0.5 * half:
-        yield f"the first {before:.3g} s, before the largest half-swing, are left out"
+        yield Note(
+            "the first {time} s, before the largest half-swing, are left out", time=f"{before:.3g}"
+        )
     if after > 1.5 * half:
-        yield (
-            f"the last {after:.3g} s are left out: the motion has stopped, or swings no more than "
-            "the noise"
+        yield Note(
+            "the last {time} s are left out: the motion has stopped, or swings no more than the "
+            "noise",
+            time=f"{after:.3g}",
         )
     if len(turns.heights) == 3:
-        yield "three half-swings have exactly one line, so that it has no confidence intervals"
+        yield Note(
+            "three half-swings have exactly one line, so that it has no confidence intervals"
+        )
 
 
 def _on_terms(by_line: Quantities, by_record: Quantities, turns: Turns) -> Iterator[str]:
@@ -225,21 +234,28 @@ def _on_terms(by_line: Quantities, by_record: Quantities, turns: Turns) -> Itera
     for term, name in TERMS.items():
         line, record = by_line[name], by_record[name]
         if record.includes_zero:
-            yield f"{term} cannot be told from noise: its interval ({WHOLE}) includes zero"
+            yield Note(
+                "{term} cannot be told from noise: its interval ({method}) includes zero",
+                term=Note(term),
+                method=Note(WHOLE),
+            )
         elif record.value < 0:
-            yield (
-                f"{term} comes out negative: something feeds the vibration, or it is damped "
-                "otherwise than by these two terms"
+            yield Note(
+                "{term} comes out negative: something feeds the vibration, or it is damped "
+                "otherwise than by these two terms",
+                term=Note(term),
             )
         elif line.includes_zero:
-            yield (
-                f"the line alone cannot tell {term} from noise; its interval ({WHOLE}) does not "
-                "include zero"
+            yield Note(
+                "the line alone cannot tell {term} from noise; its interval ({method}) does not "
+                "include zero",
+                term=Note(term),
+                method=Note(WHOLE),
             )
     lost = turns.heights[0] - turns.heights[-1]
     sure = 4 * turns.noise * float(np.max(turns.spread)) + MOST_ROUNDING * turns.heights[0]
     if lost > sure and all(by_record[name].includes_zero for name in TERMS.values()):
-        yield (
+        yield Note(
             "the swings do become smaller, but this record does not tell viscous damping from "
             "Coulomb friction; a longer or clearer one may"
         )
@@ -248,39 +264,45 @@ def _on_terms(by_line: Quantities, by_record: Quantities, turns: Turns) -> Itera
 def _on_methods(by_line: Quantities, by_record: Quantities) -> Iterator[str]:
     """Whether the line decays, and where the methods contradict each other."""
     if by_line["decay_rate"].value <= 0:
-        yield (
+        yield Note(
             "the line of half-swings has a slope of 1 or more: by it the viscous damping does not "
             "take energy out of the vibration"
         )
     for words, name in {**TERMS, "natural frequency": "natural_frequency"}.items():
         if by_line[name].apart_from(by_record[name]):
-            yield (
-                f"line and whole record contradict each other on {words}: their intervals have "
-                "nothing in common"
+            yield Note(
+                "line and whole record contradict each other on {words}: their intervals have "
+                "nothing in common",
+                words=Note(words),
             )
 
 
 def _on_fit(turns: Turns, whole: WholeFit) -> Iterator[str]:
     """How well the exact motion describes the record."""
     if whole.per_point > 1:
-        yield (
-            f"the whole record is fitted to {len(whole.time)} means of {whole.per_point} samples "
-            "each"
+        yield Note(
+            "the whole record is fitted to {count} means of {samples} samples each",
+            count=len(whole.time),
+            samples=whole.per_point,
         )
     if whole.rms < MOST_ROUNDING * turns.heights[0]:
         return
     noise = turns.noise / np.sqrt(whole.per_point)
     if whole.rms > POOR * noise:
         yield (
-            f"the fit of the whole record misses the samples by {whole.rms / noise:.2g} times "
-            "their noise: viscous damping and Coulomb friction alone do not describe this decay"
+            Note(
+                "the fit of the whole record misses the samples by {times} times their noise: "
+                "viscous damping and Coulomb friction alone do not describe this decay",
+                times=f"{whole.rms / noise:.2g}",
+            )
             if noise > 0
-            else "viscous damping and Coulomb friction alone do not describe this decay"
+            else Note("viscous damping and Coulomb friction alone do not describe this decay")
         )
     if whole.correlated > MUCH_CORRELATED:
-        yield (
-            f"what the fit of the whole record leaves is correlated over {whole.correlated:.0f} "
-            "points; its intervals are widened for that"
+        yield Note(
+            "what the fit of the whole record leaves is correlated over {points} points; its "
+            "intervals are widened for that",
+            points=f"{whole.correlated:.0f}",
         )
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from math import pi
 from typing import TYPE_CHECKING
 
@@ -12,7 +12,7 @@ from equipoise.errors import ModelError, lacking
 from equipoise.handheld.design_plan import OUTPUTS
 from equipoise.handheld.hand_blocks import varied_named
 from equipoise.handheld.shaft import Section
-from equipoise.i18n import Note, say, to_say
+from equipoise.i18n import Note, all_of, coordinates, listed, said, say, series, to_say
 from equipoise.mechanism.assembly.cycle import turns_given
 from equipoise.mechanism.assembly.joints import moving_links
 from equipoise.mechanism.assembly.linkage import assemble
@@ -56,6 +56,14 @@ HOW_COMPUTED = {
 }
 """How designs are computed, by what computes them."""
 SLOW = to_say("computed one after the other")
+COMPUTED_HEADS = (
+    to_say("of"),
+    to_say("model"),
+    to_say("at least"),
+    to_say("at most"),
+    to_say("make"),
+)
+"""Of the table of outputs of a study."""
 
 
 def study_blocks(study: Study, units: Units, file: str) -> Iterator[Block]:
@@ -70,7 +78,8 @@ def study_blocks(study: Study, units: Units, file: str) -> Iterator[Block]:
         template = to_say("{count} designs, {method}")
     yield Text(say(template, count=study.size, method=sampling.method, seed=sampling.seed))
     varied = _varied(study, units, own)
-    yield Table.of("What varies", ("", "path", "model", "in the study"), varied)
+    heads = ("", say("path"), say("model"), say("in the study"))
+    yield Table.of(say("What varies"), heads, varied)
     for correlation in study.correlations:
         yield Text(
             say(
@@ -80,8 +89,8 @@ def study_blocks(study: Study, units: Units, file: str) -> Iterator[Block]:
                 coefficient=correlation.coefficient,
             )
         )
-    heads = ("", "of", "model", "at least", "at most", "make")
-    yield Table.of("What is computed", heads, _computed(study, units, outcome))
+    heads = ("", *map(say, COMPUTED_HEADS))
+    yield Table.of(say("What is computed"), heads, _computed(study, units, outcome))
     compiled = getattr(compute, "compiled", False)
     yield Text(say(HOW_COMPUTED[engine()] if compiled else SLOW))
     yield from map(Text, _times(study, compute))
@@ -179,7 +188,12 @@ def machine_blocks(machine: Machine) -> Iterator[Block]:
     linkage = assemble(machine)
     motion, drive = move(machine), machine.drive  # at the angles of an analysis
     cycle = motion.linkage.cycle
-    text = f"{drive.link} at {number(drive.speed / PER_RPM)} rpm about {linkage.pivot}"
+    text = say(
+        "{link} at {speed} rpm about {pivot}",
+        link=drive.link,
+        speed=number(drive.speed / PER_RPM),
+        pivot=linkage.pivot,
+    )
     if not machine.has_crank:
         text = driven(machine, drive.speed)
     links, mobility = moving_links(len(machine.links)), max(len(machine.driven), 1)
@@ -201,9 +215,16 @@ def machine_blocks(machine: Machine) -> Iterator[Block]:
     )
     yield from map(Text, parts)
     if machine.loads:
-        ends = (Column(end, "angle", "deg") for end in ("from", "to"))
-        heads = ("on", "what", *ends, "beyond", "largest", Column("work", "energy"))
-        yield Table.of("Loads, and their work in a cycle", heads, _loads(machine))
+        ends = (Column(end, "angle", "deg") for end in (say("from"), say("to")))
+        heads = (
+            say("on"),
+            say("what"),
+            *ends,
+            say("beyond"),
+            say("largest"),
+            Column(say("work"), "energy"),
+        )
+        yield Table.of(say("Loads, and their work in a cycle"), heads, _loads(machine))
     if notes := (
         *remarks(linkage),
         *where_lost(machine),
@@ -211,7 +232,7 @@ def machine_blocks(machine: Machine) -> Iterator[Block]:
         *_uncarried(machine),
     ):
         yield Notes(notes)
-    yield Text("ready to be analysed")
+    yield Text(say("ready to be analysed"))
 
 
 def _repeats(crank: bool, alone: bool, after: str) -> str:
@@ -225,20 +246,20 @@ def _repeats(crank: bool, alone: bool, after: str) -> str:
     return say("motion and loads repeat after {after}", after=after)
 
 
-def _uncarried(machine: Machine) -> Iterator[str]:
+def _uncarried(machine: Machine) -> Iterator[Note]:
     """Why the mounts do not hold the machine, if they do not."""
     if machine.support is None or massless(machine):
         return
     try:
         at_rest(SupportBody(machine), Shaking(SupportBody(machine), "moment").weights)
     except ModelError as error:
-        yield f"{error}; respond and modes need that"
+        yield Note("{problem}; respond and modes need that", problem=error.note)
 
 
 HOW_SOLVED = {
-    "loops": "by Newton's method on the loop equations",
-    "pointed": "where its pins are brought",
-    "hung": "pushed",
+    "loops": to_say("by Newton's method on the loop equations"),
+    "pointed": to_say("where its pins are brought"),
+    "hung": to_say("pushed"),
 }
 """How a group of links is solved, where that is not its kind."""
 
@@ -246,17 +267,22 @@ HOW_SOLVED = {
 def _build_up(linkage: Linkage) -> Iterable[str]:
     structure = linkage.joints
     for group in linkage.groups:
-        links = " and ".join(link for link in group.links if link not in structure.riders)
         shown = [r for r in group.reactions if not structure.hides(r.name, r.on, r.by)]
-        joints = ", ".join(
-            f"{r.name} (slider)" if r.kind == "slider"
-            else f"{r.name} (pin in a slot)" if r.name in structure.riders
-            else f"{r.name} ({r.kind} on {r.by})"
+        joints = [
+            Note("{joint} (slider)", joint=r.name) if r.kind == "slider"
+            else Note("{joint} (pin in a slot)", joint=r.name) if r.name in structure.riders
+            else Note("{joint} ({kind} on {body})", joint=r.name, kind=r.kind, body=r.by)
             for r in shown
-        )  # fmt: skip
-        yield f"  {links}: {HOW_SOLVED.get(group.kind, group.kind)}; joints {joints}"
+        ]  # fmt: skip
+        yield INDENT + say(
+            "{links}: {how}; joints {joints}",
+            links=said(all_of([link for link in group.links if link not in structure.riders])),
+            how=say(HOW_SOLVED[group.kind]) if group.kind in HOW_SOLVED else group.kind,
+            joints=said(series(joints)),
+        )
 
 
+INDENT = "  "
 MOST_SHOWN = 12
 """Phases of rows in a line."""
 
@@ -266,18 +292,21 @@ def _loads(machine: Machine) -> Iterator[tuple[Cell, ...]]:
     for load in machine.loads:
         work = work_in_cycle(machine, load)
         kind: Dimension = "torque" if load.point is None else "force"
-        place = load.link if load.point is None else f"{load.point} of {load.link}"
-        what: str = kind
+        place = load.link
+        if load.point is not None:
+            place = say("{point} of {link}", point=load.point, link=load.link)
+        what = say(kind)
         ends, beyond = (load.start, load.stop), "zero"
         if (table := load.rows) is not None:
-            what = kind if load.gas is None else f"gas on {told(load.bore or 0.0, 'length')}"
-            what = f"{what}, {table.file}" if table.file else f"{what}, table"
+            if load.gas is not None:
+                what = say("gas on {bore}", bore=told(load.bore or 0.0, "length"))
+            what = listed(what, table.file or say("table"))
             if load.start is None:
                 ends = (table.crank_angle[0], table.crank_angle[-1])
                 beyond = "" if table.covers else load.outside or ""
-        what += ", borne by the frame" if load.reaction else ""
+        what = listed(what, say("borne by the frame")) if load.reaction else what
         shown = [Value(end, after=1) for end in ends if end is not None]
-        where: tuple[Cell, ...] = (*shown, beyond) if shown else ("always", None, None)
+        where: tuple[Cell, ...] = (*shown, beyond) if shown else (say("always"), None, None)
         yield place, what, *where, Value(work.largest, dimension=kind), Value(work.net, work.both)
 
 
@@ -290,81 +319,109 @@ def _elements(motion: Motion) -> Iterator[str]:
 
 def _joints(machine: Machine) -> Iterator[str]:
     for joint in machine.joints:
-        radius = "" if joint.radius is None else f", radius {_length(joint.radius)}"
-        stiff = "" if joint.stiffness is None else f", {told(joint.stiffness, 'stiffness', 'N/m')}"
-        yield f"{joint.joint}{radius}{_bearing(joint)}{stiff}{_friction(joint)}"
+        parts = [joint.joint]
+        if joint.radius is not None:
+            parts.append(say("radius {radius}", radius=_length(joint.radius)))
+        parts += _bearing(joint)
+        if joint.stiffness is not None:
+            parts.append(told(joint.stiffness, "stiffness", "N/m"))
+        yield said(series([*parts, *_friction(joint)]))
 
 
-def _bearing(properties: JointProperties) -> str:
+def _bearing(properties: JointProperties) -> Iterator[str]:
     """The bearing in a pin, plain or rolling."""
-    plain = "" if properties.width is None else f", width {_length(properties.width)}"
-    if (rolling := properties.bearing) is None:
-        return plain
-    wanted = "" if rolling.life is None else f", for {told(rolling.life, 'time', 'h')}"
-    rating = told(rolling.dynamic_rating, "force")
-    return f"{plain}, {rolling.kind} bearing of {rating}{wanted}"
+    if properties.width is not None:
+        yield say("width {width}", width=_length(properties.width))
+    if (rolling := properties.bearing) is not None:
+        rating = told(rolling.dynamic_rating, "force")
+        yield say("{kind} bearing of {rating}", kind=rolling.kind, rating=rating)
+        if rolling.life is not None:
+            yield say("for {time}", time=told(rolling.life, "time", "h"))
 
 
-def _friction(properties: JointProperties) -> str:
+def _friction(properties: JointProperties) -> Iterator[str]:
     """What a joint resists its motion with; a coefficient that is unusual is asked about."""
-    text = ""
     if properties.friction is not None:
-        asked = (
-            " (is it meant? dry steel on steel has 0.2)" if properties.friction > UNUSUAL else ""
-        )
-        text += f", friction {number(properties.friction)}{asked}"
+        template = to_say("friction {coefficient}")
+        if properties.friction > UNUSUAL:
+            template = to_say("friction {coefficient} (is it meant? dry steel on steel has 0.2)")
+        yield say(template, coefficient=number(properties.friction))
     if properties.static_friction is not None and properties.stribeck_speed is not None:
-        speed = told(properties.stribeck_speed, "speed", "m/s")
-        text += f", {number(properties.static_friction)} at rest (Stribeck speed {speed})"
+        yield say(
+            "{coefficient} at rest (Stribeck speed {speed})",
+            coefficient=number(properties.static_friction),
+            speed=told(properties.stribeck_speed, "speed", "m/s"),
+        )
     if properties.guide_length is not None:
-        text += f", guide of {_length(properties.guide_length)}"
+        yield say("guide of {length}", length=_length(properties.guide_length))
     sizes: list[tuple[str, float, Dimension]] = [
-        ("damping", properties.damping, "damping"),
-        ("damping", properties.torsional_damping, "torsional damping"),
-        ("drag", properties.drag_force, "force"),
-        ("drag", properties.drag_torque, "torque"),
+        (to_say("damping {size}"), properties.damping, "damping"),
+        (to_say("damping {size}"), properties.torsional_damping, "torsional damping"),
+        (to_say("drag {size}"), properties.drag_force, "force"),
+        (to_say("drag {size}"), properties.drag_torque, "torque"),
     ]
-    return text + "".join(f", {what} {told(size, kind)}" for what, size, kind in sizes if size)
+    yield from (say(template, size=told(size, kind)) for template, size, kind in sizes if size)
 
 
 def _drive_train(machine: Machine) -> Iterator[str]:
     drive = machine.drive
     if drive.flywheel:
-        yield f"flywheel: {told(drive.flywheel, 'inertia', 'kg m^2')}"
+        yield say("flywheel: {inertia}", inertia=told(drive.flywheel, "inertia", "kg m^2"))
     if drive.brake:
-        yield f"brake: {told(drive.brake, 'torque', 'N m')}, where no motor is on"
+        torque = told(drive.brake, "torque", "N m")
+        yield say("brake: {torque}, where no motor is on", torque=torque)
     if (motor := drive.motor) is not None:
-        rotor = f", rotor {told(motor.inertia, 'inertia', 'kg m^2')}" if motor.inertia else ""
-        speed = "is the drive's" if motor.mean_speed == "held" else "follows from it"
-        yield f"motor: {_curve(motor)}, ratio {number(motor.ratio)}{rotor}; mean speed {speed}"
+        parts = [_curve(motor), say("ratio {ratio}", ratio=number(motor.ratio))]
+        if motor.inertia:
+            inertia = told(motor.inertia, "inertia", "kg m^2")
+            parts.append(say("rotor {inertia}", inertia=inertia))
+        template = to_say("motor: {parts}; mean speed follows from it")
+        if motor.mean_speed == "held":
+            template = to_say("motor: {parts}; mean speed is the drive's")
+        yield say(template, parts=said(series(parts)))
     if machine.timed_loads:
-        yield f"loads over time, in runs alone: {len(machine.timed_loads)}"
+        yield say("loads over time, in runs alone: {count}", count=len(machine.timed_loads))
     if machine.duty:
-        yield f"duty states for the lives of bearings: {len(machine.duty)}"
+        yield say("duty states for the lives of bearings: {count}", count=len(machine.duty))
     if machine.rows:
         unit = display("angle")
         shown = [unit.text(row.phase) for row in machine.rows[:MOST_SHOWN]]
         omitted = len(machine.rows) - len(shown)
-        phases = f"{', '.join(shown)} and {omitted} more" if omitted else _listed(shown)
-        yield f"rows: {len(machine.rows)} on one shaft, ahead by {unit.with_unit(phases)}"
+        phases = said(all_of(shown, commas=True))
+        if omitted:
+            phases = say("{some} and {number} more", some=said(series(shown)), number=omitted)
+        yield say(
+            "rows: {count} on one shaft, ahead by {phases}",
+            count=len(machine.rows),
+            phases=unit.with_unit(phases),
+        )
 
 
 def _curve(motor: Motor) -> str:
     if motor.table is not None:
         speeds = motor.table.speed
-        return f"{len(speeds)} rows from {_rpm(speeds[0])} to {_rpm(speeds[-1])} rpm"
+        low, high = _rpm(speeds[0]), _rpm(speeds[-1])
+        return say("{count} rows from {low} to {high} rpm", count=len(speeds), low=low, high=high)
     if motor.torque is not None:
-        return f"{told(motor.torque, 'torque', 'N m')} at every speed"
+        return say("{torque} at every speed", torque=told(motor.torque, "torque", "N m"))
     if (net := motor.induction) is not None:
-        largest = told(net.breakdown_torque, "torque", "N m")
-        return f"induction, {_rpm(net.synchronous_speed)} rpm without slip, {largest} at most"
+        return say(
+            "induction, {speed} rpm without slip, {torque} at most",
+            speed=_rpm(net.synchronous_speed),
+            torque=told(net.breakdown_torque, "torque", "N m"),
+        )
     if (servo := motor.servo) is not None:
         most = told(servo.torque_limit, "torque", "N m")
-        return f"servo, {_rpm(servo.speed)} rpm, {most} at most"
+        return say("servo, {speed} rpm, {torque} at most", speed=_rpm(servo.speed), torque=most)
     (_, fastest), (stall, _) = motor.rows
-    kind = "" if motor.dc is None else f"{told(motor.dc.voltage, 'voltage')} direct current, "
-    torque = told(stall, "torque", "N m")
-    return f"{kind}{_rpm(fastest)} rpm without load, {torque} at standstill"
+    line = say(
+        "{speed} rpm without load, {torque} at standstill",
+        speed=_rpm(fastest),
+        torque=told(stall, "torque", "N m"),
+    )
+    if motor.dc is None:
+        return line
+    return listed(say("{voltage} direct current", voltage=told(motor.dc.voltage, "voltage")), line)
 
 
 def _rpm(speed: float) -> str:
@@ -375,15 +432,22 @@ def _support(machine: Machine) -> Iterator[str]:
     support = machine.support
     if support is None:
         return
-    about = f" about the pivot at {place_told(support.pivot)}" if support.pivot is not None else ""
-    ways = _listed(support.coordinates)
-    yield f"support: {told(support.mass, 'mass', 'kg')}; it can {ways}{about}"
+    template = to_say("support: {mass}; it can {motions}")
+    if support.pivot is not None:
+        template = to_say("support: {mass}; it can {motions} about the pivot at {pivot}")
+    yield say(
+        template,
+        mass=told(support.mass, "mass", "kg"),
+        motions=said(all_of(support.coordinates, commas=True)),
+        pivot="" if support.pivot is None else place_told(support.pivot),
+    )
     for name, mount in support.mounts.items():
-        yield f"  mount {name}: {', '.join(_mount(mount))}"
+        parts = said(series([*_mount(mount)]))
+        yield INDENT + say("mount {name}: {parts}", name=name, parts=parts)
     for name, gauge in support.gauges.items():
-        yield f"  {name}: a gauge that reads {_reading(gauge)}"
+        yield INDENT + say("{name}: a gauge that reads {what}", name=name, what=_reading(gauge))
     if not support.mounts:
-        yield "  no mounts"
+        yield INDENT + say("no mounts")
 
 
 MOUNT_RATES: dict[str, Dimension] = {
@@ -395,30 +459,26 @@ MOUNT_RATES: dict[str, Dimension] = {
 
 
 def _mount(mount: Mount) -> Iterator[str]:
-    yield _reading(mount) if mount.point is None else f"pushes {_reading(mount)}"
+    reading = _reading(mount)
+    yield reading if mount.point is None else say("pushes {way}", way=reading)
     for key, dimension in MOUNT_RATES.items():
         if value := getattr(mount, key):
             yield told(value, dimension, SI[dimension])
     if mount.preload is not None:
         preload = told(mount.preload, "force" if mount.axis is None else "torque")
-        yield f"{preload} as drawn"
+        yield say("{preload} as drawn", preload=preload)
     if mount.one_sided:
-        yield "one-sided"
+        yield say("one-sided")
 
 
 def _reading(item: Mount | Gauge) -> str:
     if item.point is None:
-        return f"about the {item.axis} axis"
+        return say("about the {axis} axis", axis=item.axis)
     if isinstance(item.direction, tuple):
-        way = f"along ({', '.join(map(number, item.direction))})"
+        way = f"({coordinates(map(number, item.direction))})"
     else:
-        way = f"along {told(item.direction, 'angle')}"
-    return f"{way} at {place_told(item.point)}"
-
-
-def _listed(words: Sequence[str]) -> str:
-    *others, last = words
-    return f"{', '.join(others)} and {last}" if others else last
+        way = told(item.direction, "angle")
+    return say("along {way} at {place}", way=way, place=place_told(item.point))
 
 
 # -- tools ----------------------------------------------------------------------------------------
@@ -434,21 +494,28 @@ RATES: dict[str, Dimension] = {
 
 def tool_blocks(tool: Tool, file: str) -> Iterator[Block]:
     """How the tool is built up."""
-    yield Text(f"{_mass(tool.mass)} without hands")
+    yield Text(say("{mass} without hands", mass=_mass(tool.mass)))
     yield from map(Text, _shaft(tool.shaft))
     for station in tool.stations:
-        parts = ", ".join(_station(station)) or "nothing"
-        yield Text(f"  {station.name} at {_length(station.position)}: {parts}")
+        line = say(
+            "{station} at {place}: {parts}",
+            station=station.name,
+            place=_length(station.position),
+            parts=said(series([*_station(station)])) or say("nothing"),
+        )
+        yield Text(INDENT + line)
     for excitation in tool.excitations:
-        yield Text(f"shaken by {excitation.name}: {', '.join(_excitation(excitation))}")
+        parts = said(series([*_excitation(excitation)]))
+        yield Text(say("excitation {name}: {parts}", name=excitation.name, parts=parts))
     if tool.operation is not None:
-        yield Text(f"engine: {', '.join(_operation(tool.operation))}")
+        speeds = said(series([*_operation(tool.operation)]))
+        yield Text(say("engine: {speeds}", speeds=speeds))
     if tool.work:
-        times = (f"{value.name} {number(value.duration / 3600)} h" for value in tool.work)
-        yield Text(f"day: {', '.join(times)}")
+        times = [f"{value.name} {number(value.duration / 3600)} h" for value in tool.work]
+        yield Text(say("day: {times}", times=said(series(times))))
     if tool.design is not None:
         yield from map(Text, _design(tool.design))
-    yield FileText("", f"ready: equipoise tool {file}")
+    yield FileText("", say("ready: {command}", command=f"equipoise tool {file}"))
 
 
 def _length(value: float) -> str:
@@ -460,7 +527,8 @@ def _mass(value: float) -> str:
 
 
 def _bending(section: Section) -> str:
-    return f"bending stiffness {told(section.bending_stiffness, 'bending stiffness')}"
+    stiffness = told(section.bending_stiffness, "bending stiffness")
+    return say("bending stiffness {stiffness}", stiffness=stiffness)
 
 
 def _material(tube: Tube) -> tuple[str, ...]:
@@ -478,11 +546,16 @@ def _shaft(shaft: Shaft) -> Iterator[str]:
     stuff = () if isinstance(shaft.profile, Section) else _material(shaft.profile)
     parts = [_length(shaft.length), _mass(shaft.mass), *stuff, stiffness, shaft.theory.title()]
     if shaft.loss_factor:
-        parts.append(f"loss factor {number(shaft.loss_factor)}")
-    yield f"shaft: {', '.join(filter(None, parts))}"
+        parts.append(say("loss factor {factor}", factor=number(shaft.loss_factor)))
+    yield say("shaft: {parts}", parts=said(series([*filter(None, parts)])))
     for start, stop, section in pieces if len(pieces) > 1 else ():
         linear = told(section.mass_per_length, "mass per length", "kg/m")
-        yield f"  from {_length(start)} to {_length(stop)}: {_bending(section)}, {linear}"
+        yield INDENT + say(
+            "from {start} to {stop}: {parts}",
+            start=_length(start),
+            stop=_length(stop),
+            parts=listed(_bending(section), linear),
+        )
 
 
 def _station(station: Station) -> Iterator[str]:
@@ -490,12 +563,13 @@ def _station(station: Station) -> Iterator[str]:
         yield _mass(station.mass)
     yield from _rates(station)
     if station.absorber is not None:
-        parts = ", ".join([_mass(station.absorber.mass), *_rates(station.absorber)])
-        yield f"absorber ({parts})"
+        rates = [_mass(station.absorber.mass), *_rates(station.absorber)]
+        yield say("absorber ({rates})", rates=said(series(rates)))
     if station.hand is not None:
-        yield f"{station.hand.hands} hand{'s' * (station.hand.hands - 1)} ({_hand(station.hand)})"
+        hand = station.hand
+        yield say("{count} hands ({parts})", count=hand.hands, parts=said(series([*_hand(hand)])))
     if station.harness is not None:
-        yield f"harness ({', '.join(_rates(station.harness))})"
+        yield say("harness ({rates})", rates=said(series([*_rates(station.harness)])))
 
 
 def _rates(item: object) -> Iterator[str]:
@@ -503,57 +577,64 @@ def _rates(item: object) -> Iterator[str]:
         pair: Both = getattr(item, key, (0.0, 0.0))
         unit = display(dimension, pair, SI[dimension])
         vertical, lateral = map(unit.text, pair)
-        both = f"{vertical} (vertical) and {lateral} (lateral)"
+        template = to_say("{vertical} (vertical) and {lateral} (lateral)")
+        both = say(template, vertical=vertical, lateral=lateral)
         if any(pair):
             yield unit.with_unit(vertical if pair[0] == pair[1] else both)
 
 
-def _hand(hand: Hand) -> str:
-    mass = [_mass(hand.mass)] if hand.mass else []
-    spans = [
-        f"impedance from {number(table.frequency[0])} to {number(table.frequency[-1])} Hz"
-        for table in hand.impedance
-    ]
-    return ", ".join([*mass, *_rates(hand), *spans])
+def _hand(hand: Hand) -> Iterator[str]:
+    if hand.mass:
+        yield _mass(hand.mass)
+    yield from _rates(hand)
+    for table in hand.impedance:
+        low, high = number(table.frequency[0]), number(table.frequency[-1])
+        yield say("impedance from {low} to {high} Hz", low=low, high=high)
 
 
 def _excitation(excitation: Excitation) -> Iterator[str]:
     if excitation.force is not None:
-        yield f"{told(excitation.force, 'force')}, {excitation.direction}"
+        yield listed(told(excitation.force, "force"), say(excitation.direction))
     elif excitation.unbalance is not None:
-        yield f"unbalance {told(excitation.unbalance, 'unbalance')}"
+        yield say("unbalance {size}", size=told(excitation.unbalance, "unbalance"))
     elif excitation.linkage is not None:
-        yield f"linkage {excitation.linkage.title}"
-    yield f"at {excitation.station}"
+        yield say("linkage {title}", title=said(excitation.linkage.title))
+    yield say("at {station}", station=excitation.station)
     if excitation.ratio != 1:
-        yield f"{number(excitation.ratio)} times the engine's speed"
+        yield say("{ratio} times the engine's speed", ratio=number(excitation.ratio))
     if excitation.phase:
-        yield f"ahead by {told(excitation.phase, 'angle')}"
+        yield say("ahead by {angle}", angle=told(excitation.phase, "angle"))
 
 
 def _operation(operation: Operation) -> Iterator[str]:
-    yield f"{_rpm(operation.speed)} rpm at work"
+    yield say("{speed} rpm at work", speed=_rpm(operation.speed))
     if operation.speeds:
         low, high = map(_rpm, operation.speeds)
-        yield f"from {low} to {high} rpm"
+        yield say("from {low} to {high} rpm", low=low, high=high)
     if operation.idling is not None:
-        yield f"idling at {_rpm(operation.idling)} rpm"
+        yield say("idling at {speed} rpm", speed=_rpm(operation.idling))
     if operation.racing is not None:
-        yield f"racing at {_rpm(operation.racing)} rpm"
+        yield say("racing at {speed} rpm", speed=_rpm(operation.racing))
 
 
 LIMITED = {
-    "acceleration": "weighted acceleration at {station}",
-    "force": "force at {station}",
-    "added_mass": "added mass",
+    "acceleration": to_say("weighted acceleration at {station}: at most {limit}"),
+    "force": to_say("force at {station}: at most {limit}"),
+    "added_mass": to_say("added mass: at most {limit}"),
 }
+MEASURES = {"rms": to_say("RMS"), "peak": to_say("largest")}
 
 
 def _design(design: DesignPlan) -> Iterator[str]:
     low, high = map(_rpm, design.speeds)
-    measure = {"rms": "RMS", "peak": "largest"}[design.measure]
-    yield f"design: acceleration of the hands, {measure} over {low} to {high} rpm"
-    yield f"  may change: {', '.join(varied_named(variable.name) for variable in design.variables)}"
+    yield say(
+        "design: acceleration of the hands, {measure} over {low} to {high} rpm",
+        measure=say(MEASURES[design.measure]),
+        low=low,
+        high=high,
+    )
+    names = [varied_named(variable.name) for variable in design.variables]
+    yield INDENT + say("may change: {names}", names=said(series(names)))
     for limit in design.limits:
         most = told(limit.at_most, OUTPUTS[limit.output])
-        yield f"  {LIMITED[limit.output].format(station=limit.station)}: at most {most}"
+        yield INDENT + say(LIMITED[limit.output], station=limit.station, limit=most)

@@ -57,8 +57,15 @@ def cams_told(machine: Machine, joints: Structure) -> Iterator[str]:
     for fit in fits_of(machine, joints):
         cam, (radius, where) = fit.cam, sharpest(fit)
         low, high = (told(extreme, cam.law.dimension) for extreme in cam.law.curve.extremes)
-        yield (
-            f"cam: {cam.driver} moves {cam.driven} from {low} to {high}, {cam.rides}, closed by "
-            f"{cam.closed_by}; least radius of curvature {told(radius, 'length', 'mm')}, at cam "
-            f"angle {degrees(where):.4g} deg"
+        yield say(
+            "cam: {driver} moves {driven} from {low} to {high}, {rides}, closed by {closed_by}; "
+            "least radius of curvature {radius}, at cam angle {angle} deg",
+            driver=cam.driver,
+            driven=cam.driven,
+            low=low,
+            high=high,
+            rides=cam.rides,
+            closed_by=cam.closed_by,
+            radius=told(radius, "length", "mm"),
+            angle=f"{degrees(where):.4g}",
         )

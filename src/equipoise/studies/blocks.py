@@ -104,15 +104,20 @@ def spread_told(spread: Spread, unit: Unit) -> str:
         return number(unit.of_si(value))
 
     if isinstance(spread, Range):
-        steps = "" if spread.steps is None else f", {spread.steps} steps"
-        return f"{formatted(spread.low)} to {formatted(spread.high)}{steps}"
+        low, high = formatted(spread.low), formatted(spread.high)
+        if spread.steps is None:
+            return say("{low} to {high}", low=low, high=high)
+        return say("{low} to {high}, {count} steps", low=low, high=high, count=spread.steps)
     if isinstance(spread, Choices):
         some = ", ".join(map(formatted, spread.values[:MOST_CHOICES]))
         omitted = len(spread.values) - MOST_CHOICES
-        return f"{some} and {omitted} more" if omitted > 0 else some
+        return say("{some} and {number} more", some=some, number=omitted) if omitted > 0 else some
     if isinstance(spread, Normal):
-        cut = "" if spread.cut is None else f", cut at {spread.cut:g}"
-        return f"{formatted(spread.mean)}, deviation {formatted(spread.deviation)}{cut}"
+        template = to_say("{mean}, deviation {deviation}")
+        if spread.cut is not None:
+            template = to_say("{mean}, deviation {deviation}, cut at {cut}")
+        mean, deviation = formatted(spread.mean), formatted(spread.deviation)
+        return say(template, mean=mean, deviation=deviation, cut=f"{spread.cut or 0.0:g}")
     return f"{formatted(spread.centre)} +- {formatted(spread.half_width)}"
 
 

@@ -22,7 +22,7 @@ import numpy as np
 
 from equipoise.dataclass import dataclass
 from equipoise.errors import EquipoiseError, ModelError, UsageError
-from equipoise.i18n import Note
+from equipoise.i18n import Note, to_say
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.assembly.steps import KernelCall
 from equipoise.mechanism.checks import unknown
@@ -158,7 +158,7 @@ class _Finder:
     """
 
     whole: Values
-    stuck: list[tuple[int, str]] = field(default_factory=list)
+    stuck: list[tuple[int, Note]] = field(default_factory=list)
 
     def ways(self, here: Any, rest: str, above: Any = None) -> Iterator[tuple[Step, ...]]:
         """Every way to take the rest of a path from here to a number."""
@@ -167,19 +167,22 @@ class _Finder:
         elif isinstance(here, list | tuple) or np.ndim(here) > 0:
             yield from self.into_list(here, rest, above)
         elif rest:
-            self.ends(rest, f"a single number stands there, without {rest!r} below it")
+            wrong = Note("a single number stands there, without {rest!r} below it", rest=rest)
+            self.ends(rest, wrong)
         elif isinstance(here, str):
-            self.ends(rest, f"that is the text {here!r}; give the path of a number")
+            wrong = Note("that is the text {here!r}; give the path of a number", here=here)
+            self.ends(rest, wrong)
         else:
             yield ()
 
-    def ends(self, rest: str, given: str) -> None:
-        self.stuck.append((len(rest), given))
+    def ends(self, rest: str, wrong: Note) -> None:
+        self.stuck.append((len(rest), wrong))
 
     def into_table(self, here: Values, rest: str) -> Iterator[tuple[Step, ...]]:
         """Names may hold dots, so the longest that fits goes first."""
         if not rest:
-            self.ends(rest, f"that is no number; below it there are {_listed(here)}")
+            wrong = Note("that is no number; below it there are {names}", names=_listed(here))
+            self.ends(rest, wrong)
             return
         quoted = _QUOTED.match(rest)
         if quoted:
@@ -201,7 +204,12 @@ class _Finder:
         elif index[1]:
             yield from self.of_order(here, index[2], rest, above)
         elif "." in index[2] or not 1 <= int(index[2]) <= len(here):
-            self.ends(rest, f"{index[0]} is not in that list of {len(here)}, which counts from 1")
+            wrong = Note(
+                "{place} is not in that list of {count}, which counts from 1",
+                place=index[0],
+                count=len(here),
+            )
+            self.ends(rest, wrong)
         else:
             place = int(index[2]) - 1
             after = rest[index.end() :].removeprefix(".")
@@ -216,23 +224,28 @@ class _Finder:
         if rest in known:
             yield (Of(rest),)
             return
-        ask = "give one of it, such as [1]" if len(here) else "it is empty here"
+        template = to_say("that is a list of {count}; give one of it, such as [1]")
         if known:
-            ask = f"give a figure of it, {_listed(known)}, or one of it, such as [1]"
-        self.ends(rest, f"that is a list of {len(here)}; {ask}")
+            template = to_say(
+                "that is a list of {count}; give a figure of it, {known}, or one of it, such as [1]"
+            )
+        elif not len(here):
+            template = to_say("that is a list of {count}; it is empty here")
+        self.ends(rest, Note(template, count=len(here), known=_listed(known)))
 
     def of_order(self, here: Any, number: str, rest: str, above: Any) -> Iterator[tuple[Step, ...]]:
         orders: Any = above.get("orders", ()) if isinstance(above, Mapping) else ()
         order, count = float(number), len(here)
         if not count or len(orders) != count:
-            self.ends(rest, "that list does not go by orders; give [1] for its first")
+            self.ends(rest, Note("that list does not go by orders; give [1] for its first"))
             return
         spacing = orders[1] - orders[0] if count > 1 else 1.0
         if order in orders or (order > orders[-1] and (order / spacing).is_integer()):
             yield (Order(order),)
             return
         text = ", ".join(f"{k * spacing:g}" for k in range(4))
-        self.ends(rest, f"there is no order {number}; the orders are {text} and so on")
+        template = to_say("there is no order {number}; the orders are {orders} and so on")
+        self.ends(rest, Note(template, number=number, orders=text))
 
 
 def _of_numbers(values: Any) -> bool:
@@ -243,8 +256,12 @@ def _of_numbers(values: Any) -> bool:
 
 def _listed(names: Any, most: int = 12) -> str:
     shown = [str(name) for name in names]
-    text = ", ".join(shown[:most]) or "none"
-    return text if len(shown) <= most else f"{text} and {len(shown) - most} more"
+    if not shown:
+        return Note("none")
+    text = ", ".join(shown[:most])
+    if len(shown) <= most:
+        return text
+    return Note("{some} and {number} more", some=text, number=len(shown) - most)
 
 
 # -- what it is ------------------------------------------------------------------------------------

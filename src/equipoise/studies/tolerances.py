@@ -26,7 +26,7 @@ from equipoise.codegen.figures import COMPUTED
 from equipoise.dataclass import dataclass
 from equipoise.design.variables import Normal, Uniform
 from equipoise.errors import ModelError, UsageError
-from equipoise.i18n import Note
+from equipoise.i18n import Note, to_say
 from equipoise.results.result import Result
 from equipoise.sequences import sobol
 from equipoise.studies.evaluate import pooled
@@ -513,11 +513,17 @@ def _notes(study: Study, causes: Sequence[Cause], outcomes: Sequence[Outcome]) -
     for k, output in enumerate(study.outputs):
         if output.name not in causes[0].effects:
             there = [bool(np.any(np.isfinite(item.figures[:, k]))) for item in outcomes]
-            what = "does not vary" if all(there) else "fails too often"
-            yield f"{output.name} {what}, so that no tolerance is named as its cause"
+            template = to_say(
+                "{output} fails too often, so that no tolerance is named as its cause"
+            )
+            if all(there):
+                template = to_say(
+                    "{output} does not vary, so that no tolerance is named as its cause"
+                )
+            yield Note(template, output=output.name)
     failed = float(np.mean([np.mean(~item.computed) for item in outcomes]))
     if failed > 0:
-        yield (
-            f"{100 * failed:.2g} % of the machines cannot be computed; causes are told apart by "
-            "the others alone"
+        yield Note(
+            "{share} % of the machines cannot be computed; causes are compared by the others alone",
+            share=f"{100 * failed:.2g}",
         )

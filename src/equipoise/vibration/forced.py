@@ -192,8 +192,14 @@ def follow_speeds(
     if not both:
         return louder, []
     return louder, [
-        f"two steady states at {len(both)} of {count} speeds, {range_shown([*both])}; the louder "
-        f"one is told, the other shakes down to {100 * min(both.values()):.0f} % of it"
+        Note(
+            "two steady states at {number} of {count} speeds, {speeds}; the larger one is "
+            "reported, the other is down to {share} % of it",
+            number=len(both),
+            count=count,
+            speeds=range_shown([*both]),
+            share=f"{100 * min(both.values()):.0f}",
+        )
     ]
 
 

@@ -488,9 +488,11 @@ def in_words(multipliers: Array) -> list[Note]:
     return []
 
 
-def range_shown(speeds: Sequence[float]) -> str:
+def range_shown(speeds: Sequence[float]) -> Note:
     """From which to which speed, rad/s, as a text."""
     first, last = (
         f"{speed * 30 / pi:.4g} rpm ({speed:.4g} rad/s)" for speed in (speeds[0], speeds[-1])
     )
-    return f"at {first}" if len(speeds) == 1 else f"from {first} to {last}"
+    if len(speeds) == 1:
+        return Note("at {first}", first=first)
+    return Note("from {first} to {last}", first=first, last=last)

@@ -146,8 +146,11 @@ def nothing_gained(balanced: Balanced) -> str | None:
         return None if balanced.helps else " ".join(nothing_told(balanced))
     if balanced.gain > GAIN:
         return None
-    share = f"{100 * GAIN:g} %"
-    return f"nothing to gain: balancing would not make {aims_told(balanced)} smaller by {share}"
+    return say(
+        "nothing to gain: balancing would not make {aims} smaller by {share} %",
+        aims=aims_told(balanced),
+        share=f"{100 * GAIN:g}",
+    )
 
 
 DIGITS = 9

@@ -56,12 +56,10 @@ def export_bytes(job: Job) -> str:
     ------
     UsageError : no script can be written of the machine, or the page has not been built.
     """
-    for what, given in (
-        ("the support and its mounts", job.machine.support),
-        ("in its drawing all rows but one", job.machine.rows[1:]),
-    ):
-        if given:
-            job.leave_out(what)
+    if job.machine.support:
+        job.leave_out(Note("the support and its mounts"))
+    if job.machine.rows[1:]:
+        job.leave_out(Note("in its drawing all rows but one"))
     job.leave_out_forces()
     job.leave_out_motor()
     machine = replace(job.machine, support=None, balance=None)

@@ -104,7 +104,7 @@ def measured_told(
     try:
         compared = compared_with(record, computed.analysis, gauges_of(computed))
     except EquipoiseError as error:  # of a machine that has been changed meanwhile
-        return {"name": record.name, "told": [str(error)], "left_out": []}
+        return {"name": record.name, "told": [error.told()], "left_out": []}
     for name, values in compared.signals.items():
         count, own = len(values), len(values)
         if name.startswith(GAUGES):

@@ -154,7 +154,7 @@ def test_what_is_left_out_is_told(tmp_path: Path) -> None:
     found = eq.export(eq.load("transplanter"), tmp_path / "m.xml")
     assert found == ("the soil's force",)
     found = eq.export(eq.load("slider-crank-engine"), tmp_path / "m.xml")
-    assert found == ("load 1, which is not the same all the time",)
+    assert found == ("load 1, which is not constant",)
     machine = eq.load("yamashita-1").with_link("coupler", mass=0.0, inertia=0.0)
     (found,) = eq.export(machine.with_drive(acceleration=0.0), tmp_path / "m.xml")
     assert found.startswith("that 'coupler' has no mass")

@@ -158,6 +158,91 @@ def test_templates_are_let_be(made: str) -> None:
     assert found_in(ast.parse(made)) == []
 
 
+LITERAL_WORDS = re.compile(r"(?<![\w.\-/\[{])[A-Za-z]{2,}(?![\w.\-/=(\[{])")
+COMMAND = re.compile(r"(equipoise|respond|pip) ")
+"""What is to be typed."""
+OTHER_TEXTS = {
+    "codegen/": "source of programs",
+    "dataclass.py": "source of programs, and errors of Python",
+    "guarding.py": "errors of calls, which only programmers cause",
+    "folders.py": "errors of the operating system",
+    "i18n/languages.py": "errors of a catalogue, which only programmers cause",
+    "mechanism/dynamics/exerted.py": "errors of attributes, which only programmers cause",
+    "mechanism/dynamics/reactions.py": "errors of attributes, which only programmers cause",
+    "schema/files.py": "errors of types, which only programmers cause",
+    "studies/store.py": "errors inside of a damaged store, as those of the libraries that read it",
+    "partial.py": "marks of files",
+    "exchange/": "files of other programs, which are read by these",
+    "mechanism/assembly/": "comments of lines that are pasted into a file, and names inside",
+    "mechanism/kinematics/motion.py": "what Python shows of an object",
+    "mechanism/parts/circular_slots.py": "names of points inside",
+    "mechanism/parts/objectives.py": "names of objectives in files",
+    "mechanism/parts/bodies.py": "meanings of keys, which are translated as a whole",
+    "mechanism/parts/couplings.py": "meanings of keys, which are translated as a whole",
+    "mechanism/parts/machine.py": "places in a machine",
+    "keys/declaring.py": "meanings of keys, which are translated as a whole",
+    "exposure/daily.py": "meanings of outputs in the documentation, which is English",
+    "balancing/patterns.py": "names of patterns in files",
+    "cli/explaining.py": "help, which is English",
+    "cli/options.py": "help, which is English",
+    "schema/schemas.py": "descriptions of a JSON Schema, which are English",
+    "schema/writing.py": "tables of the documentation, which is English",
+    "figures/animation.py": "SVG and CSS",
+    "figures/vector.py": "SVG and CSS",
+    "symbols/looks.py": "CSS",
+    "present/pages.py": "SVG",
+    "web/site.py": "HTML and metadata of packages",
+    "planting/names.py": "regular expressions",
+    "schema/records.py": "regular expressions",
+    "quantities/expressions.py": "regular expressions",
+    "quantities/reading.py": "regular expressions",
+    "figures/style.py": "names of styles",
+    "figures/tool_shaft.py": "names of styles",
+}
+"""Files or folders with f-strings of words that no reader gets as a sentence, and why."""
+
+
+def spelled_sentences(module: ast.Module) -> list[int]:
+    """Lines on which words of English are joined with values without a template."""
+    texts = (
+        (node, *literals(node)) for node in ast.walk(module) if isinstance(node, ast.JoinedStr)
+    )
+    return [
+        node.lineno
+        for node, text in texts
+        if len(LITERAL_WORDS.findall(text)) > 1 and not COMMAND.match(text)
+    ]
+
+
+def test_no_sentence_is_spelled_out_around_its_values() -> None:
+    """Nor is one that goes into a result, a note or a line of a command."""
+    lines: dict[str, list[int]] = {}
+    for file in FILES:
+        if spelled := spelled_sentences(tree(file)):
+            lines[file.relative_to(SOURCES).as_posix()] = spelled
+    given = {
+        name: spelled for name, spelled in lines.items() if not name.startswith((*OTHER_TEXTS,))
+    }
+    assert given == {}
+    idle = {place for place in OTHER_TEXTS if not any(name.startswith(place) for name in lines)}
+    assert idle == set(), "their reason is gone"
+
+
+@pytest.mark.parametrize(
+    ("line", "is_spelled"),
+    [
+        ('f"the mass of {link} is missing"', True),
+        ('f"{count} designs of {size} numbers"', True),
+        ('f"equipoise sweep {file} -o designs.zarr"', False),
+        ('f"links.{name}.mass"', False),
+        ('f"{value} deg"', False),
+        ('say("the mass of {link} is missing", link=link)', False),
+    ],
+)
+def test_what_is_spelled_out(line: str, is_spelled: bool) -> None:
+    assert bool(spelled_sentences(ast.parse(line))) == is_spelled
+
+
 def test_errors_take_no_plain_text() -> None:
     """By their types, so that a function that makes its sentence elsewhere is found too."""
     declared = [

@@ -11,6 +11,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import MassError, ModelError, UsageError
+from equipoise.i18n import Note
 from equipoise.mechanism.dynamics.assessment import remarks
 from equipoise.mechanism.dynamics.loads import load_at, work_in_cycle
 from equipoise.mechanism.parts.laws import AngleLaw, AngleSegment
@@ -261,12 +262,12 @@ def upright(direction: float, angle: float = 0.0, **points: tuple[float, float])
 
 def test_axes_that_a_slider_turns_are_noted() -> None:
     """With the angle that the note gives, they are those of the frame."""
-    (found,) = remarked(upright(90.0, E=(0.1, 0.9)))
-    assert found.startswith(
-        "sliders[1].direction turns the axes of 'piston': its x axis points along the line, at 90 "
-        "deg in the frame, and its E is told in these axes;"
+    (note,) = remarked(upright(90.0, E=(0.1, 0.9)))
+    assert isinstance(note, Note)
+    assert {"place": "sliders[1]", "link": "piston", "turn": "90", "further": "E"}.items() <= (
+        note.values.items()
     )
-    given = float(found.partition('"')[2].partition(" deg")[0])
+    given = float(note.values["back"])
     for angle, turn in ((0.0, 90.0), (given, 0.0)):
         motion = eq.move(upright(90.0, angle, E=(0.1, 0.9)), 4)
         np.testing.assert_allclose(
@@ -276,7 +277,8 @@ def test_axes_that_a_slider_turns_are_noted() -> None:
 
 def test_axes_that_a_slider_does_not_turn_are_not_noted() -> None:
     off_line = upright(90.0).with_link("piston", center_of_mass=(0.1, 0.3))
-    assert "center_of_mass is told in these" in remarked(off_line)[0]
+    (note,) = remarked(off_line)
+    assert isinstance(note, Note) and note.values["further"] == "center_of_mass"
     for given in (upright(0.0, E=(0.3, 0.9)), upright(90.0), upright(90.0, -90.0, E=(0.3, 0.9))):
         assert remarked(given) == []
 

@@ -81,7 +81,7 @@ def _drawing(document: Any, unit: float | None) -> Drawing:
     drawing = Drawing("")
     units = UNITS.get(int(document.header.get("$INSUNITS", 0)))
     if unit is None and units is None:
-        drawing.note("the drawing tells no unit and is taken for millimetres; --unit tells another")
+        drawing.note(Note("the drawing has no unit; millimetres are assumed, --unit gives another"))
     scale = unit or units or MILLIMETRE
     for entity in _entities(document, document.modelspace()):
         _add(drawing, entity, scale)

@@ -9,7 +9,7 @@ from math import pi, remainder
 
 from equipoise.dataclass import dataclass
 from equipoise.errors import EquipoiseError, ModelError, UsageError, at_place, unknown
-from equipoise.i18n import Note, series
+from equipoise.i18n import Note, said, say, series, to_say
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.kinematics.motion import move
 from equipoise.mechanism.kinematics.outline import STILL, LinkPlacement, MachineDraft, pose_between
@@ -75,14 +75,20 @@ class Imported:
         outline = self.outline
         joints = outline.joints
         pins = sum(len(bodies) - 1 for bodies in joints.pins.values())
-        counts = {"link": len(outline.links), "pin": pins, "sliding joint": len(outline.sliders),
-                  "gear": len(outline.joints.couplings)}  # fmt: skip
-        text = ", ".join(f"{n} {what}{'s' * (n != 1)}" for what, n in counts.items() if n)
-        yield Text(f"{text}; mobility {outline.mobility}")
+        counts = {
+            to_say("{count} links"): len(outline.links),
+            to_say("{count} pins"): pins,
+            to_say("{count} sliding joints"): len(outline.sliders),
+            to_say("{count} gears"): len(outline.joints.couplings),
+        }
+        parts = series([Note(template, count=n) for template, n in counts.items() if n])
+        yield Text(
+            say("{parts}; mobility {mobility}", parts=said(parts), mobility=outline.mobility)
+        )
         heads = ("link", "points", Column("mass", "mass"))
         yield Table.of("", heads, (self._row(name, link) for name, link in outline.links.items()))
         if self.missing:
-            yield Notes(tuple(f"missing: {item}" for item in self.missing))
+            yield Notes(tuple(Note("missing: {item}", item=item) for item in self.missing))
         if self.notes:
             yield Notes(self.notes)
 
@@ -149,7 +155,7 @@ def finished(read: Read, crank: str = "", speed: float | None = None) -> Importe
     if name:
         outline = replace(outline, drive=Drive(name, USUAL_SPEED if given is None else given))
         if given is None:
-            missing.append("the speed of the drive, for which 60 rpm stands in the file")
+            missing.append(Note("the speed of the drive, for which 60 rpm stands in the file"))
     if why:
         notes.append(why)
     if outline.mobility != 1:
@@ -164,7 +170,7 @@ def finished(read: Read, crank: str = "", speed: float | None = None) -> Importe
     if not name:
         missing.append(_undriven(outline))
     if massless := [link for link in outline.links if not outline.links[link].has_mass]:
-        missing.append(f"masses, for forces, of {', '.join(massless)}")
+        missing.append(Note("masses, for forces, of {links}", links=", ".join(massless)))
     return Imported(machine, outline, tuple(missing), tuple(notes))
 
 
@@ -214,8 +220,13 @@ def _crank(outline: MachineDraft, wanted: str, given: str) -> tuple[str, str]:
     able = [name for name in tried if _turns(outline, name)] if outline.mobility == 1 else []
     if not able:
         return "", ""
-    others = f"; {', '.join(able[1:])} could be it too" if len(able) > 1 else ""
-    return able[0], f"{able[0]} is taken as the crank, which turns fully{others}"
+    if len(able) == 1:
+        return able[0], Note("{link} is taken as the crank, which turns fully", link=able[0])
+    return able[0], Note(
+        "{link} is taken as the crank, which turns fully; {others} could be it too",
+        link=able[0],
+        others=", ".join(able[1:]),
+    )
 
 
 def _turns(outline: MachineDraft, name: str) -> bool:
@@ -227,10 +238,15 @@ def _turns(outline: MachineDraft, name: str) -> bool:
     return True
 
 
-def _undriven(outline: MachineDraft) -> str:
+def _undriven(outline: MachineDraft) -> Note:
     if outline.mobility != 1:
-        return f"joints: the mobility is {outline.mobility}, and one drive commands one motion"
-    return "the driven link: none that is pinned to the frame once turns fully; name it by --crank"
+        return Note(
+            "joints: the mobility is {mobility}, and one drive commands one motion",
+            mobility=outline.mobility,
+        )
+    return Note(
+        "the driven link: none that is pinned to the frame once turns fully; name it by --crank"
+    )
 
 
 @dataclass(frozen=True)

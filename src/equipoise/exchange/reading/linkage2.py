@@ -137,7 +137,7 @@ class _File:
             if connector.rpm is not None
         ]
         if len(inputs) > 1:
-            self.notes.append("of several inputs the first is the drive")
+            self.notes.append(Note("of several inputs the first is the drive"))
         for key, item in inputs:
             link = next((name for name, ids in links.items() if key in ids), "")
             if link and item.rpm is not None:

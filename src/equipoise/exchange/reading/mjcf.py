@@ -33,14 +33,14 @@ from equipoise.exchange.reading.spatial import (
     direction,
     turned,
 )
-from equipoise.i18n import Note
+from equipoise.i18n import Note, to_say
 
 UNREAD = {"include", "replicate", "composite", "flexcomp", "attach", "deformable"}
 """Elements that stand for others, which only MuJoCo makes of them."""
 GRAVITY = "0 0 -9.81"
 """MuJoCo's."""
-LOST = {"stiffness": "springs", "damping": "damping", "frictionloss": "friction",
-        "armature": "inertia of rotors"}  # fmt: skip
+LOST = {"stiffness": to_say("springs"), "damping": to_say("damping"),
+        "frictionloss": to_say("friction"), "armature": to_say("inertia of rotors")}  # fmt: skip
 """What joints may have beside, and what it is."""
 
 
@@ -141,7 +141,7 @@ class _Model:
         if inertial is not None and self.from_geoms != "true":
             solid.lump = self._inertial(inertial).placed(solid.axes)
         elif len(lumps) < len(shapes):
-            self.space.note("the masses of links with meshes and no inertial are left open")
+            self.space.note(Note("the masses of links with meshes and no inertial are left open"))
         elif lumps and self.from_geoms != "false":
             solid.lump = combined(lumps)
         elif not joints:
@@ -178,7 +178,7 @@ class _Model:
             )
         for key, what in LOST.items():
             if any(numbers(element, key, "0")):
-                self.space.note(f"{what} of joints are left out")
+                self.space.note(Note("left out of joints: {what}", what=Note(what)))
         axis = solid.axes.turn @ direction(
             f"joint {name!r}", numbers(element, "axis", "0 0 1", (3,))
         )
@@ -311,13 +311,15 @@ class _Model:
         for group in self.root.findall("tendon/spatial"):
             sites = [part.get("site", "") for part in group.findall("site")]
             if len(sites) != 2 or len(group) != 2:
-                self.space.note("tendons of more than two sites are left out")
+                self.space.note(Note("tendons of more than two sites are left out"))
                 continue
             ends = [(self._known(self.sites, site, called(group))[0], site) for site in sites]
             stiffness, *_ = numbers(group, "stiffness", "0")
             length, *rest = numbers(group, "springlength", "-1")
             if stiffness <= 0 or length < 0 or any(item != length for item in rest):
-                self.space.note("tendons without a stiffness and one springlength are left out")
+                self.space.note(
+                    Note("tendons without a stiffness and one springlength are left out")
+                )
                 continue
             self.space.pulls.append(Pull((ends[0], ends[1]), stiffness, length))
 
@@ -329,7 +331,7 @@ class _Model:
         if left := [
             actuator for actuator in actuators if actuator.get("joint") != self.space.driven
         ]:
-            self.space.note(f"{len(left)} other actuators are left out")
+            self.space.note(Note("{count} other actuators are left out", count=len(left)))
         key = self.root.find("keyframe/key")
         rates = numbers(key, "qvel", "") if key is not None else ()
         if self.space.driven and len(rates) == len(self.dofs):

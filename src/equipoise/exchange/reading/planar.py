@@ -237,10 +237,15 @@ def planar(space: Space, options: SpatialOptions) -> Read:
     crank, speed = flat.drive()
     meshing = gears(space, flat.link_of, flat.normal, outline, crank)
     outline = replace(outline, rest={**rest, "gears": tuple(meshing)})
-    hints = [f"{body!r} moves freely in the plane; --frame {body!r} holds it still"
-             for body in space.loose if body not in options.still]  # fmt: skip
+    hints = [
+        Note("{body!r} moves freely in the plane; --frame {body!r} holds it still", body=body)
+        for body in space.loose
+        if body not in options.still
+    ]
     if not space.loops:
-        hints.append('no loop is closed; --pin "A = B" pins two of its bodies or sites together')
+        hints.append(
+            Note('no loop is closed; --pin "A = B" pins two of its bodies or sites together')
+        )
     return Read(outline, crank, speed, tuple(space.notes), tuple(hints))
 
 
@@ -408,7 +413,9 @@ class _Flat:
             ends = sorted((self.points[end] for end in pull.ends), key=lambda end: end[0] == FRAME)
             (link, _), (other, _) = ends
             if other != FRAME or link == FRAME:
-                self.space.note("springs that are not between a link and the frame are left out")
+                self.space.note(
+                    Note("springs that are not between a link and the frame are left out")
+                )
                 continue
             point, to = (names[self.pins.held(*end, "")] for end in ends)
             yield Spring(link, point, to, pull.stiffness, pull.free_length)

@@ -55,9 +55,9 @@ def read(text: str, unit: float | None) -> Read:
     scale = unit or (UNITS[chosen] if chosen < len(UNITS) else 0.01)
     values = [_joint(joint, scale) for joint in joints]
     speed = _whole(integers.partition(",")[0]) * pi / 30
-    notes = ["masses are left out: PMKS+ does not tell their units"]
+    notes: list[str] = [Note("masses are left out: PMKS+ files do not give their units")]
     if forces:
-        notes.append("forces are left out: PMKS+ does not tell when they act")
+        notes.append(Note("forces are left out: PMKS+ files do not say when they act"))
     clockwise = _whole(settings, signed=False) & CLOCKWISE
     return _machine(values, links, -speed if clockwise else speed, notes)
 

@@ -156,8 +156,13 @@ class _Skeleton:
         taken = {id(ground) for ground in (*self.grounds, *self.guides)}
         ignored = [item for item in every if _first((*item.names, "")[0]) in IGNORED]
         if ignored:
-            kinds = "paths, parts, springs, gears, belts, racks and cams"
-            drawing.note(f"{len(ignored)} lines and circles of {kinds} are left out")
+            drawing.note(
+                Note(
+                    "{count} lines and circles of paths, parts, springs, gears, belts, racks and "
+                    "cams are left out",
+                    count=len(ignored),
+                )
+            )
         taken |= {id(item) for item in ignored}
         lines = [stroke for stroke in drawing.strokes if id(stroke) not in taken]
         rings = [ring for ring in drawing.rings if ring not in ignored]
@@ -216,12 +221,18 @@ class _Skeleton:
         gap = min((gap for gap in gaps if self.near < gap < NEARLY * self.size), default=0.0)
         if gap:
             wide = float(f"{2e3 * gap:.1g}")
-            yield (f"two ends nearly meet, {1e3 * gap:.2g} mm apart; --tolerance '{wide:g} mm' "
-                   "would join them")  # fmt: skip
+            yield Note(
+                "two ends nearly meet, {gap} mm apart; --tolerance '{wide} mm' would join them",
+                gap=f"{1e3 * gap:.2g}",
+                wide=f"{wide:g}",
+            )
         holders = Counter(chain(frame, *links.values()))
         for name, points in links.items():
             if all(holders[point] == 1 for point in points):
-                yield f"{name!r} is joined to nothing; leave it out of the drawing, or join it"
+                yield Note(
+                    "{name!r} is joined to nothing; leave it out of the drawing, or join it",
+                    name=name,
+                )
 
     def _carrier(self, guide: DrawnLine, links: Iterable[str]) -> str:
         """What has a guide: the link that its name tells behind "on", else the frame."""
@@ -230,7 +241,13 @@ class _Skeleton:
             if on in links:
                 return on
             if word and on.casefold() not in (self.marks.frame or FRAMES):
-                self.drawing.note(f"{name!r} is taken to stand still: no link is called {on!r}")
+                self.drawing.note(
+                    Note(
+                        "{name!r} is taken to stand still: no link is called {on!r}",
+                        name=name,
+                        on=on,
+                    )
+                )
         return FRAME
 
     # -- lines and corners ---------------------------------------------------------------------
@@ -266,7 +283,7 @@ class _Skeleton:
                   if any(item.distance(ring.center) <= self.near for item in group))  # fmt: skip
             corners = [*dict.fromkeys((*corners, *on))]
             if len(corners) < 2:
-                self.drawing.note("lines that lie wholly in a circle of a pivot are left out")
+                self.drawing.note(Note("lines that lie wholly in a circle of a pivot are left out"))
             elif frozenset(corners) not in used:
                 used.add(frozenset(corners))
                 yield group, corners

@@ -45,7 +45,7 @@ def _scale(root: Element, drawing: Drawing) -> float:
     across, up = _side(root, "width", box[2]), _side(root, "height", box[3])
     if across is None:
         drawing.note(
-            "the drawing tells no width with a unit: 96 of its units are taken for an inch"
+            Note("the drawing has no width with a unit: 96 of its units are assumed to be an inch")
         )
         return METRES[""]
     if up is None or abs(up - across) <= 1e-3 * up:  # programs round sizes
@@ -93,7 +93,7 @@ class _Reader:
             ):
                 continue
             if element.tag == "use":
-                self.drawing.note("copies by <use> are left out")
+                self.drawing.note(Note("copies by <use> are left out"))
                 continue
             inner = at
             if text := element.get("transform"):

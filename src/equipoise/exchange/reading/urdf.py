@@ -59,7 +59,7 @@ def read(root: Element, options: SpatialOptions) -> Read:
     _mimics(space, joints)
     driven = root.find("transmission/joint")
     space.driven = "" if driven is None else driven.get("name", "")
-    space.note("gravity is taken to act against z")
+    space.note(Note("gravity is taken to act against z"))
     return planar(space, options)
 
 
@@ -139,7 +139,7 @@ def _hang(space: Space, joint: Element, parent: str, link: Element) -> None:
     if dynamics is not None and any(
         number(dynamics, name, "0") for name in ("damping", "friction")
     ):
-        space.note("damping and friction of joints are left out")
+        space.note(Note("damping and friction of joints are left out"))
     if kind == "fixed":
         solid = space.solids[child]
         solid.lump = solid.lump or Lump(0.0, axes.origin, np.zeros((3, 3)))

@@ -7,7 +7,7 @@ from math import acos, asin, degrees, isclose, pi, sqrt
 
 from equipoise.dataclass import dataclass
 from equipoise.errors import ChangePointError, MotionError, RangeError
-from equipoise.i18n import Note
+from equipoise.i18n import Note, series
 from equipoise.mechanism.assembly.linkage import Linkage, assemble
 from equipoise.mechanism.assembly.steps import KernelCall, size_of_links
 from equipoise.mechanism.checks import bodies_at, numbered
@@ -230,9 +230,12 @@ def questions(linkage: Linkage) -> Iterator[Note | str]:
             continue
         transmission = degrees(asin(sqrt(min(number, 1.0))))
         if transmission < POOR_TRANSMISSION:
-            yield (
-                f"the dyad at {joint} comes within {transmission:.1f} deg of its dead position, at "
-                f"crank angle {degrees(angle):.1f} deg; joint forces are large there"
+            yield Note(
+                "the dyad at {joint} comes within {transmission} deg of its dead position, at "
+                "crank angle {angle} deg; joint forces are large there",
+                joint=joint,
+                transmission=f"{transmission:.1f}",
+                angle=f"{degrees(angle):.1f}",
             )
     yield from _odd_masses(machine)
     yield from _odd_lengths(linkage)
@@ -244,7 +247,7 @@ def questions(linkage: Linkage) -> Iterator[Note | str]:
     used |= {spring.to for spring in machine.balance.springs} if machine.balance else set()
     for point in machine.frame:
         if point not in used:
-            yield f"frame.points.{point} is not used by any joint or spring"
+            yield Note("frame.points.{point} is not used by any joint or spring", point=point)
 
 
 def _odd_masses(machine: Machine) -> Iterator[Note]:
@@ -296,7 +299,7 @@ def _odd_lengths(linkage: Linkage) -> Iterator[Note]:
             )
 
 
-def _turned_axes(machine: Machine) -> Iterator[str]:
+def _turned_axes(machine: Machine) -> Iterator[Note]:
     """Of links that slide along a line which turns their axes, and that have further points or
     their centre of mass off the line.
 
@@ -309,10 +312,14 @@ def _turned_axes(machine: Machine) -> Iterator[str]:
         if center is not None and center[1] != at[1]:
             further.append("center_of_mass")
         if slider.angle == 0 and further and min(turn, 360 - turn) > LEVEL:
-            axes = "the frame" if slider.on == FRAME else repr(slider.on)
-            yield (
-                f"{place}.direction turns the axes of {slider.link!r}: its x axis points along the "
-                f"line, at {turn:.4g} deg in {axes}, and its {', '.join(further)} "
-                f"{'is' if len(further) == 1 else 'are'} told in these axes; give angle = "
-                f'"{-turn % 360:.4g} deg" if they are meant along those of {axes}'
+            yield Note(
+                "{place}.direction turns the axes of {link!r}: its x axis points along the line, "
+                "at {turn} deg in {axes}, and these axes hold for its {further}; give angle = "
+                '"{back} deg" if the axes of {axes} are meant',
+                place=place,
+                link=slider.link,
+                turn=f"{turn:.4g}",
+                axes=Note("the frame") if slider.on == FRAME else repr(slider.on),
+                further=series(further),
+                back=f"{-turn % 360:.4g}",
             )

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, ClassVar
 
 from equipoise.errors import ModelError
-from equipoise.i18n import Note, to_say
+from equipoise.i18n import Note, all_of, said, say, series, to_say
 from equipoise.keys import Conditions, Listing, Quantity, TextKind, declared, key
 from equipoise.mechanism.checks import FRAME, Bodies
 from equipoise.mechanism.formulas.kernels import cross
@@ -227,7 +227,15 @@ class Bushing(BetweenPoints, RatedElement):
 
     def summary(self) -> str:
         """All its numbers, in a line of `check`."""
-        parts = [f"bushing: {self.point} of {self.link} at {self.to} of {self.on}"]
+        parts = [
+            say(
+                "bushing: {point} of {link} at {to} of {on}",
+                point=self.point,
+                link=self.link,
+                to=self.to,
+                on=self.on,
+            )
+        ]
         pairs: tuple[tuple[Pair, Dimension, str], ...] = (
             (self.stiffness, "stiffness", "N/m"),
             (self.damping, "damping", "N s/m"),
@@ -235,12 +243,12 @@ class Bushing(BetweenPoints, RatedElement):
         )
         for pair, dimension, unit in pairs:
             if any(pair):
-                parts.append(" and ".join(told(number, dimension, unit) for number in pair))
+                parts.append(said(all_of([told(number, dimension, unit) for number in pair])))
         if self.torsional_stiffness is not None:
             rate = told(self.torsional_stiffness, "torsional stiffness", "N m/rad")
-            parts.append(f"{rate} from {told(self.angle, 'angle')}")
+            parts.append(say("{rate} from {angle}", rate=rate, angle=told(self.angle, "angle")))
         if self.torsional_damping is not None:
             parts.append(told(self.torsional_damping, "torsional damping", "N m s/rad"))
         if self.torque:
             parts.append(told(self.torque, "torque"))
-        return ", ".join(parts)
+        return said(series(parts))

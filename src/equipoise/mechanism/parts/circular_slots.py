@@ -11,7 +11,7 @@ from math import pi
 from typing import Any, ClassVar
 
 from equipoise.errors import ModelError
-from equipoise.i18n import Note, to_say
+from equipoise.i18n import Note, say, to_say
 from equipoise.keys import Listing, Quantity, TextKind, declared, key
 from equipoise.mechanism.checks import Bodies
 from equipoise.mechanism.parts.element_kinds import Placed
@@ -106,8 +106,18 @@ class CircularSlot(JointKind):
 
     def summary(self) -> str:
         """All its numbers, in a line of `check`."""
-        ends = (
-            ", from " + " to ".join(told(value, "angle") for value in self.arc) if self.arc else ""
+        template = to_say(
+            "circular slot: {point} of {link} about {center} of {on}, radius {radius}"
         )
-        ends_text = f"{self.point} of {self.link} about {self.center} of {self.on}"
-        return f"circular slot: {ends_text}, radius {told(self.radius, 'length')}{ends}"
+        values = {"point": self.point, "link": self.link, "center": self.center, "on": self.on,
+                  "radius": told(self.radius, "length")}  # fmt: skip
+        if self.arc:
+            template = to_say(
+                "circular slot: {point} of {link} about {center} of {on}, radius {radius}, from "
+                "{start} to {stop}"
+            )
+            values |= {
+                key: told(value, "angle")
+                for key, value in zip(("start", "stop"), self.arc, strict=True)
+            }
+        return say(template, **values)

@@ -11,7 +11,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from equipoise.errors import ModelError
-from equipoise.i18n import Note, to_say
+from equipoise.i18n import Note, said, say, series, to_say
 from equipoise.keys import (
     ROW,
     Conditions,
@@ -197,12 +197,24 @@ class CurvedSlot(JointKind):
 
     def summary(self) -> str:
         """All its numbers, in a line of `check`."""
-        kind = "closed curve" if self.closed else "curve"
-        line = f"{kind} through {len(self.places)} points, {told(self.curve.length, 'length')} long"
+        template = to_say("curve through {count} points, {length} long")
+        if self.closed:
+            template = to_say("closed curve through {count} points, {length} long")
+        length = told(self.curve.length, "length")
+        parts = [say(template, count=len(self.places), length=length)]
         radius, at = self.curve.sharpest
-        bend = (
-            f", smallest radius of curvature {told(radius, 'length')} at {told(at, 'length')}"
-            if radius < float("inf")
-            else ""
+        if radius < float("inf"):
+            parts.append(
+                say(
+                    "smallest radius of curvature {radius} at {place}",
+                    radius=told(radius, "length"),
+                    place=told(at, "length"),
+                )
+            )
+        return say(
+            "curved slot: {point} of {link} in {on}, {parts}",
+            point=self.point,
+            link=self.link,
+            on=self.on,
+            parts=said(series(parts)),
         )
-        return f"curved slot: {self.point} of {self.link} in {self.on}, {line}{bend}"

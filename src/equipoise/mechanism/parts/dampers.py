@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, ClassVar
 
 from equipoise.errors import ModelError
-from equipoise.i18n import Note, to_say
+from equipoise.i18n import Note, say, to_say
 from equipoise.keys import ROW, Conditions, File, Listing, Quantity, TextKind, declared, inside, key
 from equipoise.keys.csv_tables import CsvTable
 from equipoise.mechanism.checks import FRAME, Bodies
@@ -171,7 +171,12 @@ class Damper(BetweenPoints, Damping):
 
     def summary(self) -> str:
         """All its numbers, in a line of `check`."""
-        ends = f"damper: from {self.point} of {self.link} to {self.to}"
-        if self.damping is None:
-            return f"{ends}, {len(self.rows[0])} rows"
-        return f"{ends}, {told(self.damping, 'damping', 'N s/m')}"
+        return say(
+            "damper: from {point} of {link} to {to}, {size}",
+            point=self.point,
+            link=self.link,
+            to=self.to,
+            size=say("{count} rows", count=len(self.rows[0]))
+            if self.damping is None
+            else told(self.damping, "damping", "N s/m"),
+        )

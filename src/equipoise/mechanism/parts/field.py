@@ -266,7 +266,7 @@ def _wrong_arms(planting: Planting, bodies: Bodies) -> Iterator[ModelError]:
         tips.append(arm.tip)
         points = [point for point in bodies[links[0]] if point != arm.tip]
         if arm.finger_from is not None and arm.finger_from not in points:
-            what = f"other point of {links[0]}, the tip's link,"
+            what = Note("other point of {link}, the tip's link,", link=links[0])
             yield ModelError(f"{where}.finger_from", unknown(arm.finger_from, points, what))
 
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from equipoise.displays import Displayed
 from equipoise.errors import ModelError
-from equipoise.i18n import Note
+from equipoise.i18n import Note, say
 from equipoise.keys import (
     SCHEMA_VERSION,
     VERSION,
@@ -356,17 +356,22 @@ class Machine(Driven, Displayed, Frozen):
     @property
     def caption(self) -> str:
         """Title and drive, for a line."""
-        count = len(self.links)
-        links = f"{count} moving link{'s' * (count != 1)}"
-        rate = self.spoken_rate(self.drive.speed)
-        return f"{str(self.title)!r}, {links}, {self.drive.link} at {rate}"
+        return Note(
+            "{title!r}, {links}, {link} at {rate}",
+            title=str(self.title),
+            links=Note("{count} moving links", count=len(self.links)),
+            link=self.drive.link,
+            rate=self.spoken_rate(self.drive.speed),
+        )
 
     def spoken_rate(self, speed: float) -> str:
         """A speed of the crank, rad/s, or the cycles in a minute of what no crank drives."""
         turns = 1 if self.crank_turns else lcm(*(item.turns for item in self.driven))
         rate = display("angular speed", [speed / turns], "rpm")
         text = rate.text(speed / turns)
-        return rate.with_unit(text) if self.crank_turns else f"{text} cycles a minute"
+        return (
+            rate.with_unit(text) if self.crank_turns else say("{rate} cycles a minute", rate=text)
+        )
 
     @property
     def bodies(self) -> Bodies:

@@ -7,7 +7,7 @@ from itertools import pairwise
 from typing import Any, ClassVar
 
 from equipoise.errors import ModelError
-from equipoise.i18n import Note, to_say
+from equipoise.i18n import Note, said, say, series, to_say
 from equipoise.keys import (
     ROW,
     Conditions,
@@ -282,11 +282,12 @@ class Resistance(BetweenPoints, RatedElement):
 
     def summary(self) -> str:
         """All its numbers, in a line of `check`."""
-        parts = [f"resistance: to {self.point} of {self.link} over {self.on}"]
+        template = to_say("resistance: to {point} of {link} over {on}")
+        parts = [say(template, point=self.point, link=self.link, on=self.on)]
         if self.force is not None:
             parts.append(told(self.force, "force", "N"))
         if self.damping is not None:
             parts.append(told(self.damping, "damping", "N s/m"))
         if rows := len(self.rows[0]):
-            parts.append(f"{rows} rows")
-        return ", ".join(parts)
+            parts.append(say("{count} rows", count=rows))
+        return said(series(parts))

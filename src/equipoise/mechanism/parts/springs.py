@@ -7,7 +7,7 @@ from itertools import pairwise
 from typing import Any, ClassVar
 
 from equipoise.errors import ModelError
-from equipoise.i18n import Note, to_say
+from equipoise.i18n import Note, said, say, series, to_say
 from equipoise.keys import (
     ROW,
     Conditions,
@@ -248,15 +248,28 @@ class Spring(BetweenPoints, ForceElement):
 
     def summary(self) -> str:
         """All its numbers, in a line of `check`."""
-        ends_text = f"spring: from {self.point} of {self.link} to {self.to}"
+        return say(
+            "spring: from {point} of {link} to {to}, {parts}",
+            point=self.point,
+            link=self.link,
+            to=self.to,
+            parts=said(series([*self._rates()])),
+        )
+
+    def _rates(self) -> Iterator[str]:
         if self.stiffness is None:
             lengths, _ = self.rows
-            shortest, longest = (told(lengths[end], "length") for end in (0, -1))
-            return f"{ends_text}, {len(lengths)} rows from {shortest} to {longest}"
-        free = f", free at {told(self.free_length, 'length')}" if self.free_length else ""
+            first, last = (told(lengths[end], "length") for end in (0, -1))
+            yield say(
+                "{count} rows from {first} to {last}", count=len(lengths), first=first, last=last
+            )
+            return
+        yield told(self.stiffness, "stiffness", "N/m")
+        length = told(self.free_length, "length")
         if self.preload is not None:
-            free = f", {told(self.preload, 'force')} at {told(self.free_length, 'length')}"
-        return f"{ends_text}, {told(self.stiffness, 'stiffness', 'N/m')}{free}"
+            yield say("{size} at {place}", size=told(self.preload, "force"), place=length)
+        elif self.free_length:
+            yield say("free at {length}", length=length)
 
     def demands(self) -> Iterator[Any]:
         """What has to be true of stiffness and lengths, or of columns of them."""

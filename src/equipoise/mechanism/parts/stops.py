@@ -7,7 +7,7 @@ from math import log
 from typing import Any, ClassVar
 
 from equipoise.errors import ModelError
-from equipoise.i18n import Note, to_say
+from equipoise.i18n import Note, said, say, series, to_say
 from equipoise.keys import Number, TextKind, declared, key
 from equipoise.mechanism.checks import FRAME, Bodies
 from equipoise.mechanism.formulas.kernels import cross, positive
@@ -176,10 +176,14 @@ class Stop(BetweenPoints, RatedElement):
 
     def summary(self) -> str:
         """All its numbers, in a line of `check`."""
-        ends_text = f"stop: {self.point} of {self.link} on {self.to}"
-        rate = told(self.stiffness, "stiffness", "N/m")
-        if self.speed is None:
-            return f"{ends_text}, {rate}"
-        return (
-            f"{ends_text}, {rate}, restitution {self.restitution:g} at {told(self.speed, 'speed')}"
+        parts = [told(self.stiffness, "stiffness", "N/m")]
+        if self.speed is not None:
+            factor, speed = f"{self.restitution:g}", told(self.speed, "speed")
+            parts.append(say("restitution {factor} at {speed}", factor=factor, speed=speed))
+        return say(
+            "stop: {point} of {link} on {to}, {parts}",
+            point=self.point,
+            link=self.link,
+            to=self.to,
+            parts=said(series(parts)),
         )

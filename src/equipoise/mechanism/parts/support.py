@@ -506,7 +506,12 @@ def idle_parts(support: Support | None) -> Iterator[Note | str]:
     for kind, items in (("mounts", support.mounts), ("gauges", support.gauges)):
         for name, item in items.items():
             if item.axis is not None and item.axis not in support.coordinates:
-                yield f"support.{kind}.{name} does nothing: the support cannot {item.axis}"
+                yield Note(
+                    "support.{kind}.{name} does nothing: the support cannot {motion}",
+                    kind=kind,
+                    name=name,
+                    motion=item.axis,
+                )
     for name, gauge in support.gauges.items():
         if gauge.axis is None and not _moves_along(support, gauge):
             yield Note(

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, ClassVar
 
 from equipoise.errors import ModelError
-from equipoise.i18n import Note, to_say
+from equipoise.i18n import Note, say, to_say
 from equipoise.keys import ROW, Conditions, File, Listing, Quantity, TextKind, declared, inside, key
 from equipoise.keys.csv_tables import CsvTable
 from equipoise.mechanism.checks import FRAME, Bodies, unknown_body, unknown_link
@@ -147,7 +147,11 @@ class TorsionDamper(BetweenBodies, Damping):
 
     def summary(self) -> str:
         """All its numbers, in a line of `check`."""
-        ends_text = f"torsion damper: {self.link} on {self.on}"
-        if self.damping is None:
-            return f"{ends_text}, {len(self.rows[0])} rows"
-        return f"{ends_text}, {told(self.damping, 'torsional damping', 'N m s/rad')}"
+        return say(
+            "torsion damper: {link} on {on}, {size}",
+            link=self.link,
+            on=self.on,
+            size=say("{count} rows", count=len(self.rows[0]))
+            if self.damping is None
+            else told(self.damping, "torsional damping", "N m s/rad"),
+        )

@@ -7,7 +7,7 @@ from itertools import pairwise
 from typing import Any, ClassVar
 
 from equipoise.errors import ModelError
-from equipoise.i18n import Note, to_say
+from equipoise.i18n import Note, said, say, series, to_say
 from equipoise.keys import (
     ROW,
     Conditions,
@@ -213,11 +213,18 @@ class TorsionSpring(BetweenBodies, ForceElement):
 
     def summary(self) -> str:
         """All its numbers, in a line of `check`."""
-        ends_text = f"torsion spring: {self.link} on {self.on}"
+        parts = said(series([*self._rates()]))
+        template = to_say("torsion spring: {link} on {on}, {parts}")
+        return say(template, link=self.link, on=self.on, parts=parts)
+
+    def _rates(self) -> Iterator[str]:
         if self.stiffness is None:
-            ends = " to ".join(
-                told(angle, "angle") for angle in self.rows[0][:: len(self.rows[0]) - 1]
+            angles = self.rows[0]
+            first, last = (told(angles[end], "angle") for end in (0, -1))
+            yield say(
+                "{count} rows from {first} to {last}", count=len(angles), first=first, last=last
             )
-            return f"{ends_text}, {len(self.rows[0])} rows from {ends}"
-        rate = told(self.stiffness, "torsional stiffness", "N m/rad")
-        return f"{ends_text}, {rate}, {told(self.preload, 'torque')} at {told(self.angle, 'angle')}"
+            return
+        yield told(self.stiffness, "torsional stiffness", "N m/rad")
+        preload, angle = told(self.preload, "torque"), told(self.angle, "angle")
+        yield say("{size} at {place}", size=preload, place=angle)

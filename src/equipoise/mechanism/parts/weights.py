@@ -251,20 +251,33 @@ def _wrong_plate(where: str, weight: Weight) -> Iterator[ModelError]:
         )
 
 
+TOO_LARGE = {
+    "disc": to_say(
+        "a disc of {mass} and {thickness} {stuff} has a radius of {radius} and does not fit into "
+        "its room of {room}; make it thicker, or the room larger"
+    ),
+    "ring": to_say(
+        "a ring of {mass} and {thickness} {stuff} has an outer radius of {radius} and does not fit "
+        "into its room of {room}; make it thicker, or the room larger"
+    ),
+    "sector": to_say(
+        "a sector of {mass} and {thickness} {stuff} needs, even as a full ring, a radius of "
+        "{radius} and does not fit into its room of {room}; make it thicker, or the room larger"
+    ),
+}
+"""What is said of a weight that its room does not hold, by its shape."""
+
+
 def _too_large(weight: Weight, mass: float) -> Note:
     """Say how much room a mass (kg) cut from a plate would need."""
     assert weight.thickness is not None and weight.density is not None
     inner = weight.inner_radius if weight.shape in HOLLOW else 0.0
     radius = sqrt(mass / (weight.thickness * weight.density * pi) + inner**2)
-    stuff = material_of(weight.density) or f"of {weight.density:.5g} kg/m^3"
-    goes = {
-        "disc": "has a radius of",
-        "ring": "has an outer radius of",
-        "sector": "needs, even as a full ring, a radius of",
-    }
+    density = Note("of {density} kg/m^3", density=f"{weight.density:.5g}")
+    material = material_of(weight.density)
     return Note(
-        f"a {weight.shape} of {{mass}} and {{thickness}} {stuff} {goes[weight.shape]} {{radius}} "
-        "and does not fit into its room of {room}; make it thicker, or the room larger",
+        TOO_LARGE[weight.shape],
+        stuff=Note(material) if material else density,
         mass=Measured(mass, "mass", "g"),
         thickness=_length(weight.thickness),
         radius=_length(radius),
