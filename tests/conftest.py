@@ -19,7 +19,7 @@ from _pytest.assertion import rewrite
 
 from support import gallery
 from support.chosen import DISTINCT
-from support.later import LATER
+from support.later import later
 
 SEEDED = {Path(__file__).parent / room for room in ("laws", "secondroute", "crosscheck")}
 PARAM = type(pytest.param())
@@ -169,11 +169,11 @@ def _rewrite_share(config: pytest.Config) -> None:
 def _later(file: Path) -> frozenset[str]:
     """Tests of a file that only a release has to pass."""
     tests = Path(__file__).parent
-    return frozenset(LATER.get(str(file.relative_to(tests)), ()) if tests in file.parents else ())
+    return later(str(file.relative_to(tests))) if tests in file.parents else frozenset()
 
 
 def _name_tests(items: list[pytest.Item], config: pytest.Config) -> None:
-    """Every name of `LATER` is that of a test, in a file of which all tests were collected."""
+    """Every test that is left to a release is there, in a file whose tests were all collected."""
     if _by_name(config):
         return
     names: defaultdict[Path, set[str]] = defaultdict(set)
@@ -200,16 +200,19 @@ def _machines() -> frozenset[str]:
     return frozenset({*KINDS, *REDUNDANT, *machines_cams.ALL, *examples("linkage")})
 
 
-def _is_tried(law: str, value: Any) -> bool:
-    """Whether a test is tried on one of its many machines, other tests on others.
-
-    Half of those that can do what no other can, and a quarter of the rest.  Whatever else a list
-    has, such as formulas, is tried.
-    """
+def _machine_of(value: Any) -> str:
+    """Name of the machine that a test is tried on; empty for whatever else, such as formulas."""
     values = value.values if isinstance(value, PARAM) else value
     name = values if isinstance(values, str) else values[0] if isinstance(values, tuple) else None
-    if not isinstance(name, str) or re.split("[ :]", name)[0] not in _machines():
-        return True
+    is_machine = isinstance(name, str) and re.split("[ :]", name)[0] in _machines()
+    return str(name) if is_machine else ""
+
+
+def _is_tried(law: str, name: str) -> bool:
+    """Whether a test is tried on one of its many machines, other tests on others.
+
+    Half of those that can do what no other can, and a quarter of the rest.
+    """
     return crc32(f"{law} {name}".encode()) % (2 if name in DISTINCT else 4) == 0
 
 
@@ -233,12 +236,21 @@ def _thinned(mark: pytest.Mark, seeds: int | None, every: bool, some: str | None
                 continue
         kept.append(k)
     if some is not None and len(kept) >= MANY:
-        kept = [k for k in kept if _is_tried(some, values[k])] or kept[:1]
+        kept = _some(some, {k: _machine_of(values[k]) for k in kept})
     how = dict(mark.kwargs)
     ids = how.get("ids")
     if ids is not None and not callable(ids):
         how["ids"] = [one for k, one in enumerate(ids) if k in kept]
     return pytest.mark.parametrize(mark.args[0], [values[k] for k in kept], *rest, **how).mark
+
+
+def _some(law: str, machines: dict[int, str]) -> list[int]:
+    """Of the numbers of values, those that are tried, of which one at least is a machine's."""
+    named = [k for k, name in machines.items() if name]
+    if len(named) < MANY:
+        return [*machines]
+    tried = {k for k in named if _is_tried(law, machines[k])} or {named[0]}
+    return [k for k, name in machines.items() if k in tried or not name]
 
 
 def _seed_of(params: dict[str, Any]) -> tuple[tuple[str, ...], str]:
