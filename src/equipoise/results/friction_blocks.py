@@ -29,7 +29,7 @@ def friction_blocks(analysis: Analysis) -> Iterator[Block]:
         figures = forces.motion.figures(abs(friction.effort))
         resists = largest(figures, dimension=kind)
         share = f"{percent(joint.loss / total)} %" if total else ""
-        wears = None if friction.table else Value(joint.wear_work)
+        wears = Value(joint.wear_work) if friction.wears else None
         rows.append((joint_named(name), Value(joint.loss), share, resists, wears))
     columns = (
         "",

@@ -29,7 +29,7 @@ from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.kinematics.cylinders import pushes
 from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.parts.couplings import Coupling, coupling_kinds
-from equipoise.mechanism.parts.joint_properties import JOINTS
+from equipoise.mechanism.parts.joint_properties import CAMS, JOINTS
 from equipoise.mechanism.parts.machine import FRAME
 
 ANGLES = 7
@@ -265,7 +265,7 @@ class JointFriction(Brief):
     pressing : what presses the surfaces on each other, N.
     rate : of the first body against the other, rad/s or m/s.
     reach : from the rate to the sliding speed: the radius of a pin, m; 1 of a slider.
-    table : list of the file that has it, of gears and belts; empty of a joint.
+    table : list of the file that has it, of gears, belts and cams; empty of a joint.
     """
 
     on: str
@@ -283,11 +283,18 @@ class JointFriction(Brief):
         return -self.effort * self.rate
 
     @property
+    def wears(self) -> bool:
+        """Whether its surfaces slide as fast as told: flanks of gears do not, which slide otherwise
+        than their pitch circles turn.
+        """
+        return self.table in ("", CAMS)
+
+    @property
     def sliding_power(self) -> Array:
         """What presses, times the sliding speed, W: its integral over time is what wears.  None of
         gears and belts, whose flanks slide otherwise than their pitch circles turn.
         """
-        if self.table:
+        if not self.wears:
             return 0.0 * self.pressing
         return self.pressing * np.abs(self.rate) * self.reach
 
@@ -448,6 +455,9 @@ class JointReactions:
         at = Push(self.state, reaction, self.motion.linkage.joints, coupling, preload)
         parts = {name: full(self.motion, part, float) for name, part in coupling.parts(at).items()}
         force = full(self.motion, at.force, complex)
+        rubs = self.friction.get(coupling.name)
+        if rubs is not None and coupling.contact == "surface":
+            force = force - 1j * self.state[f"normal({coupling.name})"] * rubs.effort
         return CouplingForce(force, reaction.on, reaction.by, parts)
 
 

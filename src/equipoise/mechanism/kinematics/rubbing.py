@@ -10,6 +10,7 @@ from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.assembly.steps import Array, Reaction, planar, size_of_links
 from equipoise.mechanism.formulas.kernels import dot
 from equipoise.mechanism.kinematics.motion import Motion
+from equipoise.mechanism.parts.cams import Cam
 from equipoise.mechanism.parts.couplings import Coupling
 from equipoise.mechanism.parts.joint_kinds import JointKind
 from equipoise.mechanism.parts.joint_properties import JOINTS, JointProperties
@@ -27,9 +28,9 @@ class RubbingJoint:
     name : in outputs.  reaction : its force.  given : what the file says of it.
     slider : the sliding joint that it is; None of a pin.  slot : that of a pin in one.
     still : rad or m by rad of the crank, below which it is at rest.
-    mesh : the gears, the rack or the belt that lose in passing their force on; None of a joint.
-        A driven rack has its guide as `slider`.
-    pitch_radius : of the driven one of these, m; 1 of a driven rack.
+    mesh : the gears, the rack or the belt that lose in passing their force on, or the cam on which
+        its follower slides; None of a joint.  A driven rack has its guide as `slider`.
+    pitch_radius : of the driven one of these, m; 1 of a driven rack, and of a cam.
     """
 
     name: str
@@ -51,16 +52,23 @@ class RubbingJoint:
 
     @property
     def by(self) -> str:
-        """The other body: of gears and belts their carrier."""
+        """The other body: of gears and belts their carrier, of a follower its cam."""
         if self.mesh is not None:
-            return self.mesh.carrier
+            return self.mesh.driver if self.on_cam else self.mesh.carrier
         guide = self.slider or self.slot
         return self.reaction.by if guide is None else guide.on
 
     @property
+    def on_cam(self) -> bool:
+        """Whether it is a follower that slides on its cam."""
+        return self.mesh is not None and self.mesh.contact == "surface"
+
+    @property
     def slides(self) -> bool:
-        """Whether its bodies slide on each other, along a guide or a slot, and do not turn."""
-        return self.slider is not None or self.slot is not None
+        """Whether its bodies slide on each other, along a guide, a slot or a cam, and do not
+        turn.
+        """
+        return self.slider is not None or self.slot is not None or self.on_cam
 
     @property
     def reach(self) -> float:
@@ -87,6 +95,8 @@ class RubbingJoint:
         """How fast it turns (rad) or slides (m) by rad of the crank (N,); 0 where it rests."""
         if self.slot is not None:
             rate = self._rate_along(self.slot, motion)
+        elif self.on_cam:
+            rate = self._rate_on_cam(motion)
         elif self.slider is None:
             turns = [motion.state[f"w({body})"] for body in (self.on, self.by)]
             rate = np.broadcast_to(np.asarray(turns[0] - turns[1], float), motion.crank_angle.shape)
@@ -95,7 +105,12 @@ class RubbingJoint:
         return np.where(np.abs(rate) > self.still, rate, 0.0)
 
     def place(self, motion: Motion) -> Array:
-        """Where what slides rubs (N,), m, complex: of a rack where it meets its pinion."""
+        """Where what slides rubs (N,), m, complex: of a rack where it meets its pinion, of a
+        follower where it is on its cam.
+        """
+        if self.on_cam:
+            contact = motion.state[f"p(contact({self.name}))"]
+            return np.asarray(np.broadcast_to(contact, motion.crank_angle.shape))
         if self.mesh is not None:
             ends = self.mesh.driver, self.mesh.driven
             turning = next(body for body in ends if body != self.mesh.slides)
@@ -106,14 +121,29 @@ class RubbingJoint:
         return motion.point(guide.point).place
 
     def direction(self, motion: Motion) -> Array:
-        """Unit vector (N,) along the line of a slider, or along a slot at its pin, complex."""
-        if self.slot is not None:
+        """Unit vector (N,) along the line of a slider, along a slot at its pin, or along a cam
+        where its follower is, complex.
+        """
+        if self.on_cam:
+            line = -1j * motion.state[f"normal({self.name})"]
+        elif self.slot is not None:
             rider = motion.linkage.joints.riders[self.slot.name]
             line = motion.state[f"u({self.slot.name})"] * (-1j * rider.normal)
         else:
             assert self.slider is not None
             line = motion.state[f"u({self.slider.on})"] * np.exp(1j * self.slider.direction)
         return np.asarray(np.broadcast_to(line, motion.crank_angle.shape), complex)
+
+    def _rate_on_cam(self, motion: Motion) -> Array:
+        """How fast the follower slides along its cam, m by rad of the crank (N,)."""
+        cam, at = self.mesh, self.place(motion)
+        assert isinstance(cam, Cam)
+        rates = []
+        pin = motion.linkage.joints.pins_between(cam.driver, cam.carrier)[0]
+        for body, point in ((cam.driven, cam.point), (cam.driver, pin)):
+            own = motion.point(point)
+            rates.append(own.place_1 + 1j * motion.state[f"w({body})"] * (at - own.place))
+        return np.asarray(dot(self.direction(motion), rates[0] - rates[1]))
 
     def _rate_along(self, slot: JointKind, motion: Motion) -> Array:
         """How fast a pin slides along its slot, m by rad of the crank (N,)."""
@@ -150,6 +180,10 @@ def _rubbing(linkage: Linkage) -> list[RubbingJoint]:
                 result.append(RubbingJoint(name, reaction, entry, slider, still, slot=slot))
                 continue
             mesh = couplings[reaction.kind, reaction.name]
+            if isinstance(mesh, Cam):
+                still = STILL * size
+                result.append(RubbingJoint(mesh.name, reaction, entry, None, still, mesh, 1.0))
+                continue
             ends = mesh.driven, mesh.carrier
             guide = next((item for item in machine.sliders if (item.link, item.on) == ends), None)
             if mesh.slides and guide is not None:

@@ -516,10 +516,10 @@ def _members_of(table: str) -> dict[str, Any]:
 
 
 def of_mesh(table: str) -> None:
-    """Declare what gears or belts of a list of the file lose in passing their force on."""
+    """Declare what gears, belts or cams of a list of the file lose in passing their force on."""
 
     def members(machine: Any) -> list[str]:
-        given = {joint.joint for joint in machine.joints if joint.mesh_loss}
+        given = {joint.joint for joint in machine.joints if joint.rubs}
         return [item.name for item in getattr(machine, table) if f"{table}.{item.name}" in given]
 
     def items(result: Any) -> list[str]:

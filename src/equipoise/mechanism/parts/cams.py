@@ -15,6 +15,7 @@ from equipoise.mechanism.outputs.declared import (
     FORCES,
     of_contacts,
     of_coupling,
+    of_mesh,
     part_in_loops,
 )
 from equipoise.mechanism.parts.couplings import Coupling, Pushed, Relation, coupled
@@ -176,6 +177,7 @@ class Cam(Coupling):
         of_contact("pressure_angle", "angle", to_say("pressure angle {name}"), loop=True,
                    yardstick="pressure")  # fmt: skip
         of_contact("curvature", "per length", to_say("curvature of the cam {name}"))
+        of_mesh(table)
 
     def sentence(self) -> Note:
         """Its bodies."""

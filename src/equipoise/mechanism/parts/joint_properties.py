@@ -50,6 +50,8 @@ class RollingBearing(Frozen):
 
 JOINTS = ("pin", "slider")
 """Kinds of joints that hold bodies together, which no coupling is."""
+CAMS = "cams"
+"""The list of couplings whose followers slide, with friction as sliders have it."""
 OF_PIN = ("radius", "torsional_damping", "drag_torque", "width", "bearing")
 OF_SLIDER = ("guide_length", "damping", "drag_force")
 RUBBING = ("friction", "mesh_loss", "damping", "torsional_damping", "drag_force", "drag_torque")
@@ -97,7 +99,9 @@ class JointProperties(Frozen):
     )
     friction: float | None = key(
         Number(),
-        "coefficient of dry friction; a pin with one needs its `radius`",
+        "coefficient of dry friction; a pin with one needs its `radius`; of a cam, such as "
+        "`cams.camshaft to tappet`, of a face or edge that slides on it, or what resists the "
+        "turning of a roller over what presses there",
         default=None,
         example=0.1,
         at_least=0,
@@ -237,8 +241,9 @@ def wrong_of_kind(
         note = Note("{joint!r} is no pin and has no radius; leave it out", joint=properties.joint)
         yield ModelError(f"{where}.radius", note)
     yield from _wrong_for_motion(where, properties, kind, in_slot)
-    if properties.friction is not None and kind not in JOINTS:
-        note = Note("{joint!r} is no pin or slider; leave friction out", joint=properties.joint)
+    if properties.friction is not None and kind not in (*JOINTS, CAMS):
+        what = to_say("{joint!r} is no pin, slider or cam; leave friction out")
+        note = Note(what, joint=properties.joint)
         yield ModelError(f"{where}.friction", note)
     lacks_radius = kind == "pin" and not in_slot and properties.radius is None
     if properties.friction is not None and lacks_radius:
