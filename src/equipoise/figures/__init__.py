@@ -44,12 +44,24 @@ MOST_OF_HALF = 4
 """Panels side by side and below each other that are seen in half of the width of a page."""
 
 
+def is_wide(picture: Chart) -> bool:
+    """Whether a report has it across the page, and not in one of two columns.
+
+    So are drawings side by side whose axes have names, and three of anything.
+    """
+    panels = picture.panels
+    if picture.columns < 2 or len(panels) < 2:
+        return False
+    drawings = all(panel.equal and panel.y.label for panel in panels)
+    return drawings or picture.columns > 2 or len(panels) > MOST_OF_HALF
+
+
 def standalone_svg(picture: Chart) -> tuple[str, bool]:
     """The picture as SVG for a page that tells its heading beside it; whether it is a wide one."""
     from equipoise.figures.layout import HALF, WIDE, lay_out
     from equipoise.figures.vector import svg_of
 
-    wide = picture.columns > 1 and len(picture.panels) > MOST_OF_HALF
+    wide = is_wide(picture)
     return svg_of(lay_out(picture, WIDE if wide else HALF, headed=False)), wide
 
 

@@ -119,8 +119,9 @@ def _sample(sheet: Canvas, key: LegendKey, x: float, y: float) -> None:
 LIKE, ALIGNED = 5.0, 1.3
 """From how much less than others a panel spans that is drawn larger than they are; over the longest
 of some axes, how long all may be so that all have the same ends."""
-SHALLOW = 0.5
-"""Over the usual height, what a panel has at least that needs less than others on their scale."""
+SHALLOW, LOWEST = 0.5, 50.0
+"""Over the usual height, what a panel has at least that needs less than others on their scale; and
+points, for three numbers and two texts."""
 VARIES = 1e-9
 """Over the largest value: what varies by less is rounding."""
 
@@ -149,6 +150,8 @@ class Cell:
     remarks: tuple[str, ...] = ()
     apart: bool = False
     """Lines of its title and of its remark; whether these begin below the last line of that."""
+    drawn_ends: tuple[tuple[float, float], ...] = ()
+    """Of axes of one scale without the room for words, which their ends have then."""
     y_label: tuple[str, ...] = ()
     x_label: tuple[str, ...] = ()
 
@@ -263,7 +266,7 @@ def _stretch(cell: Cell, columns: int) -> None:
         return
     part = 1.0
     if columns == 1 and cell.span and not cell.panel.height:
-        part = min(max((high - low) / cell.least_span, SHALLOW), 1.0)
+        part = min(max((high - low) / cell.least_span, SHALLOW, LOWEST / cell.height), 1.0)
     cell.height *= part
     cell.y_ends = (low, low + part * cell.least_span)
 
@@ -295,13 +298,13 @@ def make_room(cell: Cell, over: float) -> None:
     cell.y_ends = (low - below * rate, high + (above + extra - below) * rate)
 
 
-WIDE, HALF = 518.4, 290.0
+WIDE, HALF = 518.4, 262.0
 """Points: width of a picture, and of one of a pair, which is shown half as wide as a page."""
 
 EDGE, GAP, BELOW = 10.0, 14.0, 12.0
 """Points: free at the edges, between columns, and between rows of panels."""
 TIED = "\N{NO-BREAK SPACE}"
-LINE, OVER, TOP = 12.0, 16.0, 4.0
+LINE, OVER, TOP = 12.0, 16.0, 8.0
 """Points: height of a line of words; by how much the name of an axis may be longer than that; free
 above a picture without a heading."""
 HIGH = {1: 190.0, 2: 132.0, 3: 106.0, 4: 92.0}
@@ -363,15 +366,11 @@ def _panels(sheet: Canvas, chart: Chart, top: float) -> float:
     for number, cell in enumerate(cells):
         later = cells[number + columns :: columns]
         cell.numbered = not (chart.stacked and any(_same_x(cell, item) for item in later[:1]))
-        _sides(cell)
-    one_scale = cells[0].panel.equal  # and so one width
-    for column in range(columns):
-        aligned = cells if one_scale else cells[column::columns]
-        left, right = max(cell.left for cell in aligned), max(cell.right for cell in aligned)
-        for cell in cells[column::columns]:
-            cell.left, cell.right = left, right
-            _settle(cell, inner - left - right, most, small=columns > 1)
-            _above(cell, inner - left - right)
+    _widths(cells, columns, inner, most)
+    if cells[0].panel.equal:  # names beside the axes are as long as these are high then
+        _widths(cells, columns, inner, most)
+    for cell in cells:
+        _above(cell, inner - cell.left - cell.right)
     for number in range(0, len(cells), columns):
         row = cells[number : number + columns]
         above = max(cell.above for cell in row)
@@ -382,6 +381,19 @@ def _panels(sheet: Canvas, chart: Chart, top: float) -> float:
         last = number + columns >= len(cells)
         top += above + height + max(cell.below for cell in row) + (0 if last else BELOW)
     return top
+
+
+def _widths(cells: list[Cell], columns: int, inner: float, most: float) -> None:
+    """What stands beside the axes, alike in each column, and the axes' ends and heights."""
+    one_scale = cells[0].panel.equal  # and so one width
+    for cell in cells:
+        _sides(cell)
+    for column in range(columns):
+        aligned = cells if one_scale else cells[column::columns]
+        left, right = max(cell.left for cell in aligned), max(cell.right for cell in aligned)
+        for cell in cells[column::columns]:
+            cell.left, cell.right = left, right
+            _settle(cell, inner - left - right, most, small=columns > 1)
 
 
 def _same_x(cell: Cell, other: Cell) -> bool:
@@ -423,7 +435,8 @@ def _settle(cell: Cell, width: float, most: float, small: bool) -> None:
     """Ends of axes of one scale, so that they hold what is drawn with room for its words."""
     if not cell.panel.equal:
         return
-    x, y = (np.array(ends) for ends in (cell.x_ends, cell.y_ends))
+    cell.drawn_ends = cell.drawn_ends or (cell.x_ends, cell.y_ends)
+    x, y = map(np.array, cell.drawn_ends)
     fixed = cell.panel.height
     if small and not fixed:
         side = min(width, most)

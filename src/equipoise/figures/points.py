@@ -206,10 +206,7 @@ def _ends(
 ) -> Panel:
     """Ends of arrows (N,), complex, of some points, with crank angles along them."""
     whole = np.concatenate([*values, [0]])
-    x, y = (
-        Axis.of(say("{quantity} along {axis}", quantity=quantity, axis=axis), dimension, whole)
-        for axis in ("x", "y")
-    )
+    x, y = (Axis.of(say("along {axis}", axis=axis), dimension, whole) for axis in ("x", "y"))
     counts: dict[int, int] = {}
     if analysis.motion.whole_cycle:
         counts = told_angles(analysis.crank_angle)
@@ -220,7 +217,7 @@ def _ends(
         lines.append(Curve.of(over(analysis, value)[1], short(name, 14), role))
         marks += numbers(counts, value, role, extent(whole))
     message = "" if names else say("no point moves")
-    return Panel(x, y, tuple(lines), tuple(marks), message=message, equal=True)
+    return Panel(x, y, tuple(lines), tuple(marks), title=quantity, message=message, equal=True)
 
 
 # -- any output ------------------------------------------------------------------------------------

@@ -191,7 +191,7 @@ def lines_of(text: str, room: float, size: float, bold: bool = False) -> list[st
 
 AROUND = tuple(range(0, 360, 30))
 """Directions, deg, in which a text may stand from its point."""
-DISTANCES = (1.0, 2.0, 3.4, 5.2)
+DISTANCES = (1.0, 2.0, 3.4, 5.2, 8.0)
 """How far it may stand away, over the nearest distance."""
 TEXT_ON_TEXT, ON_POINT, FARTHER, TURNED, COVERED = 400.0, 1000.0, 8.0, 2.0, 3.0
 """Costs: of covering another text, or the text's own point, of a step away, of 30 deg off the
@@ -202,6 +202,9 @@ INSIDE = 0.5
 """Weight of a place in an area, of which there is one in each square of two pieces."""
 LINE = 1.25
 """Height of a line of several, over the size of type."""
+HALF_PAGE = 300.0
+"""Points: on a narrower sheet, as of half of a report's page, texts that would stand on others are
+left out; tables have their numbers."""
 ROUNDS = 5000
 """In which texts side by side push each other; as many as a paper full of them takes."""
 ON_TOP, LEAD = 8.0, 4.0
@@ -226,10 +229,13 @@ class CanvasText:
 
 
 class Labels:
-    """Texts inside a box of a sheet."""
+    """Texts inside a box of a sheet.
 
-    def __init__(self, sheet: Canvas, frame: Box) -> None:
-        self.sheet = sheet
+    sparse : whether a text is left out that would have to stand on another.
+    """
+
+    def __init__(self, sheet: Canvas, frame: Box, sparse: bool = False) -> None:
+        self.sheet, self.sparse = sheet, sparse
         self.frame = np.array(frame)
         self.boxes = np.empty((0, 4))
         self._pieces: list[Array] = []
@@ -280,7 +286,8 @@ class Labels:
         size = np.array([wide, text.size * (1 + LINE * (len(lines) - 1))])
         offsets, costs = self._choices(np.array([x, y]), size, text.wish, text.near)
         best = int(np.argmin(costs))
-        if text.optional and costs[best] >= TEXT_ON_TEXT / 8:
+        most = TEXT_ON_TEXT / 8 if text.optional else TEXT_ON_TEXT if self.sparse else np.inf
+        if costs[best] >= most:
             return False
         middle = np.array([x, y]) + offsets[best]
         top = middle[1] - size[1] / 2

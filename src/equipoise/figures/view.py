@@ -11,6 +11,7 @@ import numpy as np
 
 from equipoise.dataclass import dataclass
 from equipoise.figures.sheet import (
+    HALF_PAGE,
     MIDDLE,
     Anchor,
     Box,
@@ -215,7 +216,7 @@ class View:
     @cached_property
     def labels(self) -> Labels:
         """Texts inside of them."""
-        return Labels(self.sheet, self.box)
+        return Labels(self.sheet, self.box, sparse=self.sheet.width < HALF_PAGE)
 
     @cached_property
     def ticks(self) -> tuple[Ticks, Ticks]:

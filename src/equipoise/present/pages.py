@@ -370,9 +370,9 @@ def text_of(name: str) -> str:
     return (resources.files("equipoise.present") / name).read_text(encoding="utf-8")
 
 
-SHRUNK, PAGE, HALF = 0.9, 504.0, 338.0
+SHRUNK, PAGE, HALF = 0.95, 504.0, 338.0
 """Width of a picture over how it is drawn; points between the margins; height that fits twice."""
-LEAST = 0.85
+LEAST = 0.935
 """Scale below which its letters would be too small to read."""
 
 

@@ -10,7 +10,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from equipoise.figures import layout
+from equipoise.figures import is_wide, layout
 from equipoise.figures.layout import lay_out
 from equipoise.figures.sheet import Canvas, CanvasStroke, Item, Words, box_of
 from equipoise.figures.style import PAPER, DrawingStyle, look_of
@@ -37,7 +37,7 @@ class Laid:
     panels: tuple[tuple[View, tuple[Item, ...]], ...]
 
     @classmethod
-    def of(cls, chart: Chart, wide: float = layout.WIDE) -> Laid:
+    def of(cls, chart: Chart, wide: float = layout.WIDE, headed: bool = True) -> Laid:
         found: list[tuple[View, tuple[Item, ...]]] = []
         draw = layout.draw
 
@@ -48,8 +48,13 @@ class Laid:
 
         with pytest.MonkeyPatch.context() as patch:
             patch.setattr(layout, "draw", seen)
-            sheet = lay_out(chart, wide)
+            sheet = lay_out(chart, wide, headed)
         return cls(chart, sheet, tuple(found))
+
+    @classmethod
+    def in_report(cls, chart: Chart) -> Laid:
+        """As reports have it: without a heading, and most in half of the width."""
+        return cls.of(chart, layout.WIDE if is_wide(chart) else layout.HALF, headed=False)
 
     @property
     def faults(self) -> list[Fault]:
@@ -107,7 +112,8 @@ def texts_covered(laid: Laid) -> Iterator[Fault]:
 
 
 def axes(laid: Laid) -> Iterator[Fault]:
-    """Axes are named, with their units; on each that has a size are three numbers or more.
+    """Axes are named, with their units; on each that has a size are three numbers or more, of two
+    axes of one scale on one of them.
 
     Places with names, such as bars of joints, have no numbers; nor has the size of a mode.
     """
@@ -120,9 +126,10 @@ def axes(laid: Laid) -> Iterator[Fault]:
             yield "axis without a name", "x"
         if not (panel.y.label or panel.title or panel.y.ticks is not None or panel.rings):
             yield "axis without a name", "y"
-        for axis, ticks in zip((panel.x, panel.y), view.ticks, strict=True):
-            numbers = [text for _, text in ticks if _is_number(text)]
-            if len(numbers) < NUMBERS and (axis.ticks is None or numbers):
+        every = [[text for _, text in ticks if _is_number(text)] for ticks in view.ticks]
+        scaled = panel.equal and max(map(len, every)) >= NUMBERS
+        for axis, numbers in zip((panel.x, panel.y), every, strict=True):
+            if len(numbers) < NUMBERS and (axis.ticks is None or numbers) and not scaled:
                 yield "few numbers on an axis", f"{axis.text}: {numbers}"
 
 

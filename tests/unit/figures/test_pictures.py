@@ -11,6 +11,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.cli import run
+from equipoise.figures import is_wide
 from equipoise.figures.planting import charts as planting_charts
 from equipoise.figures.sheet import Canvas, CanvasText, Labels, spread
 from equipoise.figures.vector import svg_of
@@ -18,7 +19,7 @@ from equipoise.i18n import speaking
 from equipoise.planting.summary import plant
 from equipoise.present.findings import Findings, ToolFindings
 from equipoise.present.pictures import each
-from equipoise.results.charts import Chart
+from equipoise.results.charts import Axis, Chart, Panel
 from equipoise.results.result import in_own_words
 from support.chosen import DISTINCT, few
 from support.found import found
@@ -64,14 +65,17 @@ def test_pictures_of_bundled_models(name: str, tmp_path: Path) -> None:
     """All pictures of a model are kept in the gallery, and in some languages drawn anew."""
     told = found_of(name)
     with in_own_words(told.owner):  # as commands and reports draw them
-        drawn = [(picture, Laid.of(picture.draw())) for picture in each(told)]
+        charts = [(picture, picture.draw()) for picture in each(told)]
+        drawn = [(picture, Laid.of(chart)) for picture, chart in charts]
+        small = [(picture, Laid.in_report(chart)) for picture, chart in charts]
         kept = [Kept(picture.name, picture.caption, svg_of(laid.sheet)) for picture, laid in drawn]
     if isinstance(told, Findings):
         moving = tmp_path / "animation.svg"
         assert run(["animate", name, "--out", str(moving)]) == 0
         kept.append(Kept(moving.stem, "The linkage moves.", moving.read_text(encoding="utf-8")))
     keep(name, kept)
-    assert not [(picture.name, *fault) for picture, laid in drawn for fault in laid.faults]
+    for pictures in (drawn, small):
+        assert not [(picture.name, *fault) for picture, laid in pictures for fault in laid.faults]
     for language in ("ja", "ko") if name in TRANSLATED else ():
         with speaking(language), in_own_words(told.owner):
             for picture in each(told):
@@ -115,3 +119,27 @@ def test_texts_without_room() -> None:
     assert not sheet.words
     assert labels.put(36.0, 36.0, CanvasText("all the same", "#000000"))
     assert [words.text for words in sheet.words] == ["all the same"]
+
+
+def test_texts_without_room_in_half_of_a_page_are_left_out() -> None:
+    """Rather than written over another; where the page is wide they are written."""
+    for sparse in (True, False):
+        sheet = Canvas(72.0, 72.0)
+        labels = Labels(sheet, (0.0, 0.0, 72.0, 72.0), sparse=sparse)
+        labels.reserve(36.0, 36.0, half=100)
+        assert labels.put(36.0, 36.0, CanvasText("23.22 at 261.0°", "#000000")) is not sparse
+        assert bool(sheet.words) is not sparse
+    assert Laid.in_report(Chart("a", "A", "", (Panel(Axis("x"), Axis("y")),))).sheet.width < 300
+
+
+def test_drawings_side_by_side_run_across_the_page() -> None:
+    x, y = (Axis(f"{axis} in the frame") for axis in "xy")
+    drawing, plain = Panel(x, y, equal=True), Panel(x, y)
+    for panels, columns, wide in (
+        ((drawing,) * 2, 2, True),
+        ((drawing,) * 2, 1, False),
+        ((plain,) * 2, 2, False),
+        ((plain,) * 3, 3, True),
+        ((plain,) * 5, 2, True),
+    ):
+        assert is_wide(Chart("a", "A", "", panels, columns=columns)) is wide
