@@ -189,7 +189,7 @@ def same_joints(pair: Pair) -> None:
     """
     exact = replace(pair.found)
     exact.__dict__["turned"] = TRAVEL  # equal steps of the crank instead of time
-    ride, kept = exact.ride, slice(3 - pair.case.rig.freedoms, 3)
+    ride, kept = exact.base_motion, slice(3 - pair.case.rig.freedoms, 3)
     for found, wanted in zip(ride.change[kept], pair.wanted.acceleration.T[kept], strict=True):
         pair.close(found, wanted)
     turn = np.exp(1j * ride.place[2])

@@ -80,14 +80,14 @@ class DesignVariables(ABC):
     def constrain(self, program: Program, places: Array) -> list[Square]:
         """Keep the numbers at their places within their limits."""
 
-    def tightened(self, numbers: Array, matters: Array) -> Array:
+    def project_feasible(self, numbers: Array, matters: Array) -> Array:
         """The numbers (count,), with squares made equal, and inertia least where it does nothing.
 
         matters : (count,) whether each number changes anything that is asked.
         """
         return numbers
 
-    def lightened(self, numbers: Array, matters: Array) -> Array:
+    def minimize_added_mass(self, numbers: Array, matters: Array) -> Array:
         """Numbers that do the same with the least mass."""
         return numbers
 
@@ -183,7 +183,7 @@ class MovedCenter(DesignVariables):
             return (middle - reach) / self.length, (middle + reach) / self.length
         return -inf, inf
 
-    def tightened(self, numbers: Array, matters: Array) -> Array:
+    def project_feasible(self, numbers: Array, matters: Array) -> Array:
         before = np.array(self.before) / self.length
         place = np.where(matters[:2] | matters[2:], numbers[:2], before)  # else it may stay
         return np.concatenate([place, place**2])

@@ -325,15 +325,15 @@ def bound_measure(
             _bounded_cones(bound, count, inner),
             Affine.fixed(np.tile([1.0, 0.0, 0.0], count)),
         )
-        program.gradually(ConeRows("second-order", rows, 3, name, slope))
+        program.add_lazy_rows(ConeRows("second-order", rows, 3, name, slope))
     elif measure == "peak":
         for sign in (1.0, -1.0):
             slope = Affine.fixed(np.ones(count))
-            program.gradually(ConeRows("nonnegative", bound + sign * value, 1, name, slope))
+            program.add_lazy_rows(ConeRows("nonnegative", bound + sign * value, 1, name, slope))
     elif measure == "peak_to_peak":
         high, low = program.numbers(2)
         for place, sign in ((high, -1.0), (low, 1.0)):
-            program.gradually(ConeRows("nonnegative", Affine.of(place, 1.0) + sign * value))
+            program.add_lazy_rows(ConeRows("nonnegative", Affine.of(place, 1.0) + sign * value))
         program.nonnegative(bound - Affine.of([high, low], [1.0, 1.0]), name, fixed)
     else:
         from scipy import sparse

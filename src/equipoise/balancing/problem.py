@@ -338,15 +338,15 @@ class Problem:
         weights = sum(float(own @ part.effect[:, 0]) for part, own in self.with_numbers(numbers))
         return self.start.mass - self.machine.mass + weights
 
-    def tightened(self, numbers: list[Array]) -> list[Array]:
+    def project_feasible(self, numbers: list[Array]) -> list[Array]:
         """Squares made equal; of numbers that do not matter, the least that are possible."""
         each = zip(self.parts, numbers, self._by_part(self._matters), strict=True)
-        return [part.tightened(own, matters) for part, own, matters in each]
+        return [part.project_feasible(own, matters) for part, own, matters in each]
 
-    def lightened(self, numbers: list[Array]) -> list[Array]:
+    def minimize_added_mass(self, numbers: list[Array]) -> list[Array]:
         """Numbers that do the same with the least mass of each weight."""
         each = zip(self.parts, numbers, self._by_part(self._matters), strict=True)
-        return [part.lightened(own, matters) for part, own, matters in each]
+        return [part.minimize_added_mass(own, matters) for part, own, matters in each]
 
     def _by_part(self, whole: Array) -> list[Array]:
         """What stands beside all numbers (K,), split into that of each part."""

@@ -570,7 +570,7 @@ class Program:
         """Groups of `size` rows, the first of which is at least the length of the others."""
         self.blocks.append(ConeRows("second-order", rows, size, name, slope))
 
-    def gradually(self, block: ConeRows) -> None:
+    def add_lazy_rows(self, block: ConeRows) -> None:
         """A block of many rows, equally spaced round a cycle, few of which will matter."""
         self.waiting.append(block)
         self.blocks.append(block.of(np.arange(0, block.groups, STRIDE)))

@@ -114,7 +114,9 @@ def _on_the_way(
     """A solution between two that costs less than the first; None where there is none."""
     for share in SHARES:
         pairs = zip(solution.numbers, towards.numbers, strict=True)
-        numbers = problem.tightened([(1 - share) * item + share * two for item, two in pairs])
+        numbers = problem.project_feasible(
+            [(1 - share) * item + share * two for item, two in pairs]
+        )
         machine = problem.machine_with(numbers)
         if problem.cost_of(machine) < cost - STILL:
             return replace(towards, numbers=numbers, machine=machine)
@@ -141,7 +143,7 @@ def _solve_once(problem: Problem, progress: Progress | None, above: float = inf)
     except NoSolutionError:
         raise infeasibility(problem) from None
     numbers = _split(problem, best.x) if above < inf else _lightest_numbers(problem, best)
-    numbers = problem.lightened(numbers)
+    numbers = problem.minimize_added_mass(numbers)
     holds = best.nodes == 1
     method = Note("cone program") if holds else Note("branch and bound")
     return Solution(problem, best, numbers, problem.machine_with(numbers), method)
@@ -149,7 +151,7 @@ def _solve_once(problem: Problem, progress: Progress | None, above: float = inf)
 
 def _split(problem: Problem, x: Array) -> list[Array]:
     """The numbers of each part, tightened."""
-    return problem.tightened([x[at] for at in problem.built.places])
+    return problem.project_feasible([x[at] for at in problem.built.places])
 
 
 def _lightest_numbers(problem: Problem, best: ProvedSolution) -> list[Array]:
@@ -195,7 +197,7 @@ def closed_form(problem: Problem) -> list[Array] | None:
         return None
     values = _least_squares(problem, np.concatenate(free), np.concatenate(given))
     counts = np.cumsum([part.count for part in problem.parts])
-    return None if values is None else problem.tightened(np.split(values, counts[:-1]))
+    return None if values is None else problem.project_feasible(np.split(values, counts[:-1]))
 
 
 def _free_numbers(part: DesignVariables) -> tuple[int, int] | None:

@@ -72,12 +72,12 @@ class AddedWeight(DesignVariables):
         self.reach = self.reach or float(size_of_bodies(machine))
         self.name = Note("mass on {link}", link=link)
 
-    def lightened(self, numbers: Array, matters: Array) -> Array:
+    def minimize_added_mass(self, numbers: Array, matters: Array) -> Array:
         if self.weight.mass is not None or matters[0] or not isfinite(self.weight.radius):
             return numbers
         values = np.array(numbers)
         values[0] = min(self._least_mass(numbers, matters), float(numbers[0]))
-        return self.tightened(values, matters)
+        return self.project_feasible(values, matters)
 
     def _least_mass(self, numbers: Array, matters: Array) -> float:
         """The least mass, scaled, of the same moment, and of the same inertia where it matters."""
@@ -275,7 +275,7 @@ class AddedWeight(DesignVariables):
         """Second derivative of the bound, its size; scaled."""
         return abs(self._bound(m)[0]) / self._per_angle**2
 
-    def tightened(self, numbers: Array, matters: Array) -> Array:
+    def project_feasible(self, numbers: Array, matters: Array) -> Array:
         values = np.array(numbers) if numbers[0] > NOTHING else np.zeros(self.count)
         at = {name: k for k, name in enumerate(self.names)}
         m = float(values[0])

@@ -131,7 +131,7 @@ class Aim:
         axis = Axis("", shown_in(unit_of(objective, self.machine), pair))
         what, both = (
             say(MEASURES[objective.measure]),
-            f"{axis.told(pair[0])} → {axis.quantity(pair[1])}",
+            f"{axis.format_value(pair[0])} → {axis.quantity(pair[1])}",
         )
         text = say("{what}: {value}", what=what, value=_whole(both))
         if most is None:

@@ -92,7 +92,7 @@ def draw_surface(view: View, surface: Surface) -> None:
         for line in lines:
             view.labels.avoid(line)
     for level, line in text:
-        _tell(view, surface.axis.told(level / surface.axis.unit.factor), line)
+        _tell(view, surface.axis.format_value(level / surface.axis.unit.factor), line)
 
 
 def finer(x: Array, y: Array, values: Array) -> tuple[Array, Array, Array]:

@@ -139,7 +139,7 @@ def extremes(
     """
     marks = []
     for angle, value in places if varies(values) else ():
-        text = say("{value} at {angle}", value=axis.told(value), angle=degrees_told(angle))
+        text = say("{value} at {angle}", value=axis.format_value(value), angle=degrees_told(angle))
         wish = 90.0 if value > float(np.mean(values)) else -90.0
         marks.append(Mark(angle, value, text, role, wish))
     return tuple(marks)

@@ -299,7 +299,8 @@ def beyond(scene: Scene) -> list[str]:
     for place, names in places.items():
         if not scene.shows(place):
             axis = Axis.of("", "length", [place])
-            at = f"({axis.told(place.real)}, {axis.told(place.imag)}) {axis.unit_name}"
+            x, y = axis.format_value(place.real), axis.format_value(place.imag)
+            at = f"({x}, {y}) {axis.unit_name}"
             text.append(f"{', '.join(names)} {at}")
     return [say("Beyond the drawing: {items}", items="; ".join(text))] if text else []
 

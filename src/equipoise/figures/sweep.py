@@ -123,7 +123,7 @@ def peaks(axis: Axis, speed: Array, curves: Sequence[SpeedCurve]) -> tuple[Mark,
         if any(mark.x == at and abs(size - mark.y) < ALIKE * size for mark in marks):
             continue
         if 0 < k < len(speed) - 1:
-            statement = {"value": axis.told(size), "speed": shown(at * RPM.factor)}
+            statement = {"value": axis.format_value(size), "speed": shown(at * RPM.factor)}
             text = say("{value} at {speed} rpm", **statement)
         marks.append(Mark(at, size, text, role, 20.0, sign=False, optional=bool(marks)))
     return tuple(mark for mark in marks if mark.text)
@@ -144,7 +144,7 @@ def at_work(axis: Axis, sweep: Sweep, curves: Sequence[SpeedCurve]) -> Iterator[
         for number, item in enumerate(curves[: len(KINDS)]):
             value = float(item.values[k])
             if least <= value <= most:
-                text, role = axis.told(value), f"kind {number}"
+                text, role = axis.format_value(value), f"kind {number}"
                 yield Mark(line.at, value, text, role, 30.0, optional=True)
 
 

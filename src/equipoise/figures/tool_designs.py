@@ -247,7 +247,7 @@ def changes_told(design: ToolDesign) -> list[str]:
     words, count = [], len(values)
     for entry, edge in values:
         axis = Axis("", number_unit(entry.dimension))
-        ends = f"{axis.told(entry.before)} → {axis.quantity(entry.after)}"
+        ends = f"{axis.format_value(entry.before)} → {axis.quantity(entry.after)}"
         end = f" ({say(ALLOWED[edge])})" if edge else ""
         words.append(f"{figure_named(entry)}: {ends}{end}")
     if count <= MOST_CHANGES:

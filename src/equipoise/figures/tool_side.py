@@ -173,7 +173,7 @@ def _panel(
         depth = low.imag - (lane + 0.5) * LANE * scene.unit
         tail, head = complex(before, depth), complex(after, depth)
         arrows.append(Arrow(tail, head, "move"))
-        text = f"{x.told(before)} → {x.quantity(after)}"
+        text = f"{x.format_value(before)} → {x.quantity(after)}"
         marks.append(Mark.of(max(tail, head, key=lambda z: z.real), text, "ink", 0.0, False))
     low -= 1j * LANE * scene.unit * len(arrows)
     still = Curve(scene.along[[0, -1]], np.zeros(2), "", "zero")

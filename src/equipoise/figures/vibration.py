@@ -194,7 +194,7 @@ def _bars(signals: GaugeSignals, name: str, last: float) -> Panel:
     if not largest:
         return Panel(x, y, title=title, message=say("does not move"), height=SMALL)
     significant, loudest = sizes > largest * MATTERS, int(np.argmax(sizes))
-    mark = Mark(float(orders[loudest]), largest, y.told(largest), sign=False, near=3.0)
+    mark = Mark(float(orders[loudest]), largest, y.format_value(largest), sign=False, near=3.0)
     bars = Bars(orders[significant], sizes[significant], 0.62 / signal.turns)
     return Panel(x, y, marks=(mark,), bars=(bars,), title=title, height=SMALL)
 
@@ -323,7 +323,7 @@ def _in_time(
             values, which = read[item] + 0.0, (quantity, turning[item])
             y = read_axis(say(LABELS[which]), *which, values, room=0.08)
             low, high = float(np.min(values)), float(np.max(values))
-            ends = say("{low} to {high}", low=y.told(low), high=y.quantity(high))
+            ends = say("{low} to {high}", low=y.format_value(low), high=y.quantity(high))
             panels.append(_time_panel(transient, y, values, title=f"{short(item, 40)}: {ends}"))
         whole = f"{what}{continued(names, every)}, {_from_rest(transient)}"
         own = name + suffix

@@ -99,9 +99,9 @@ def matrices(layout: Layout, plane: int, number: int) -> tuple[Array, Array, Arr
     for station in tool.stations:
         at = int(np.argmin(np.abs(np.array(nodes) - station.position)))
         bare = [replace(station, absorber=None)]
-        still = layout.sitting(bare, 0.0, 0.0, "free")  # affine in s and in its square
+        still = layout.station_impedance(bare, 0.0, 0.0, "free")  # affine in s and in its square
         for matrix, s, square in ((restraint, 0.0, 0.0), (damping, 1.0, 0.0), (mass, 0.0, 1.0)):
-            sits = layout.sitting(bare, s, square, "free")
+            sits = layout.station_impedance(bare, s, square, "free")
             for row, value, stiff in zip((2 * at, 2 * at + 1), sits, still, strict=True):
                 change = value - stiff if s or square else value
                 matrix[row, row] += np.broadcast_to(change, (2, 1))[plane, 0]

@@ -200,7 +200,7 @@ class Layout:
         Without damping s^2 is negative, and all is real.
         """
         square = np.real(s * s) if kind == "undamped" else s * s
-        stations = [self.sitting(stations, s, square, kind) for stations in self.nodes]
+        stations = [self.station_impedance(stations, s, square, kind) for stations in self.nodes]
         if isinstance(square, Dual):  # the cells come before the planes
             square = Dual(square.value[None], square.slopes[:, None])
         lengths = _column([cell.length for cell in self.cells])
@@ -230,7 +230,9 @@ class Layout:
             _column([section.rotary_inertia for section in sections]) * square,
         )
 
-    def sitting(self, stations: Sequence[Station], s: Any, square: Any, kind: Kind) -> NodePair:
+    def station_impedance(
+        self, stations: Sequence[Station], s: Any, square: Any, kind: Kind
+    ) -> NodePair:
         """Dynamic stiffness of what sits at a node."""
         across: Any = np.zeros((2, 1))
         turning: Any = np.zeros((2, 1))

@@ -105,7 +105,7 @@ class Reciprocal:
         if key == "position":
             return self._lengthened(node) - self._lengthened(node - 1)
         sits = [layout.tool.station(name)]
-        stiffness = self._along((name, key)).sitting(sits, s, s * s, self.field.kind)
+        stiffness = self._along((name, key)).station_impedance(sits, s, s * s, self.field.kind)
         unit, own = self._unit.motion[node], self.field.states.motion[node]
         values = np.zeros((len(self.row), *own.across.shape), complex)
         for part, item, other in zip(stiffness, unit, own, strict=True):

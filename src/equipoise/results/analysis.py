@@ -20,7 +20,7 @@ from equipoise.mechanism.dynamics.cam_contacts import CamFigures, cam_figures
 from equipoise.mechanism.dynamics.forces import Forces, forces, massless
 from equipoise.mechanism.dynamics.link_stress import LinkStress, link_stresses
 from equipoise.mechanism.dynamics.losses import Losses, losses_of
-from equipoise.mechanism.dynamics.reactions import undecided
+from equipoise.mechanism.dynamics.reactions import indeterminate_reactions
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.kinematics.jumps import jumps_of, resolved
 from equipoise.mechanism.kinematics.motion import Motion, move, move_again
@@ -321,7 +321,7 @@ class Analysis(Result):
         if chosen := self.outputs.chosen(outputs):
             result["outputs"] = {item.name: _or_none(item.values) for item in chosen}
         if strokes:
-            result["strokes"] = {name: stroke.told() for name, stroke in self.strokes.items()}
+            result["strokes"] = {name: stroke.to_dict() for name, stroke in self.strokes.items()}
             for table, name, figures in figures_by_name(self):
                 result.setdefault(table, {}).setdefault(name, {}).update(figures.to_dict())
             result["notes"] = list(map(str, self.notes))
@@ -490,7 +490,7 @@ def _friction(losses: Losses | None) -> Values:
 
 def _undecided(linkage: Linkage) -> Values:
     """Joints of which statics does not tell the force, where there are such."""
-    outcome = undecided(linkage)
+    outcome = indeterminate_reactions(linkage)
     result: Values = {}
     if outcome.open:
         rule = "stiffness" if outcome.by_stiffness else "least squares"

@@ -71,13 +71,13 @@ class Axis:
             return self.label or self.unit_name
         return say("{quantity}, {unit}", quantity=self.label, unit=self.unit_name)
 
-    def told(self, value: float) -> str:
+    def format_value(self, value: float) -> str:
         """A value in SI units as a number of this axis, with a true minus."""
         return shown(self.unit.factor * value)
 
     def quantity(self, value: float) -> str:
         """Value as the axis shows it, with its unit."""
-        return f"{self.told(value)} {self.unit_name}".rstrip()
+        return f"{self.format_value(value)} {self.unit_name}".rstrip()
 
 
 @dataclass(frozen=True, eq=False)

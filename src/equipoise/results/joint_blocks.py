@@ -9,7 +9,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from equipoise.i18n import say, to_say
-from equipoise.mechanism.dynamics.reactions import JointForce, SliderForce, idle_told, undecided
+from equipoise.mechanism.dynamics.reactions import (
+    JointForce,
+    SliderForce,
+    idle_told,
+    indeterminate_reactions,
+)
 from equipoise.mechanism.outputs.declared import DECLARED, body_named, joint_named
 from equipoise.mechanism.parts.element_kinds import Element, element_kinds, part_kinds
 from equipoise.quantities import Dimension, Display, display
@@ -32,10 +37,10 @@ def joint_blocks(analysis: Analysis) -> Iterator[Block]:
     """Forces in joints, which of them statics leaves open, friction, bearings, stress in links."""
     if analysis.forces.solved.contacts:
         yield joint_table(analysis)
-    items = [*undecided(analysis.motion.linkage).told()]
+    items = [*indeterminate_reactions(analysis.motion.linkage).notes()]
     items += idle_told(analysis.motion.linkage, analysis.forces.solved.state)
     if analysis.machine.has_planes:
-        items += analysis.forces.across.statics.told()
+        items += analysis.forces.across.statics.notes()
     if items:
         yield Notes(tuple(items))
     yield from friction_blocks(analysis)

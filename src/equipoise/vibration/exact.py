@@ -148,7 +148,7 @@ class ExactSolution:
     @property
     def lean(self) -> float:
         """Mean rotation of the support from the drawn position, deg."""
-        return float(np.degrees(self.mean(self.ride.place[PITCH])))
+        return float(np.degrees(self.mean(self.base_motion.place[PITCH])))
 
     @property
     def toppled(self) -> bool:
@@ -212,7 +212,7 @@ class ExactSolution:
         return self.system.sums(self.crank_angle)
 
     @cached_property
-    def ride(self) -> BaseMotion:
+    def base_motion(self) -> BaseMotion:
         """Motion of support and crank at those instants."""
         system, states = self.system, self.states
         place, rate = system.place_and_rate(states)
@@ -227,7 +227,7 @@ class ExactSolution:
     def passes(self) -> tuple[JointReactions, ...]:
         """Joint forces of every row, in the support's axes."""
         return tuple(
-            joint_forces(self.machine, self.ride, row.phase, complex(*row.offset))
+            joint_forces(self.machine, self.base_motion, row.phase, complex(*row.offset))
             for row in rows_of(self.machine)
         )
 
@@ -270,7 +270,7 @@ class ExactSolution:
     def _motion(self) -> Periodic:
         """Of the support, all six coordinates."""
         place = np.zeros((len(FREEDOMS), len(self.crank_angle)))
-        place[list(IN_PLANE)] = self.ride.place
+        place[list(IN_PLANE)] = self.base_motion.place
         return self.signal(place)
 
     def _notes(self) -> Iterator[Note]:
@@ -292,14 +292,14 @@ class ExactSolution:
             yield Note(said, angle=f"{self.lean:.1f}")
 
     def _gauges(self, body: SupportBody) -> dict[str, GaugeSignals]:
-        ride = self.ride
+        base = self.base_motion
         gauge_signals = {}
         for name, gauge in gauges_of(body).items():
             at = Reading.of(body, gauge)
             gauge_signals[name] = GaugeSignals(
-                self.signal(at.displacement(ride.place)),
-                self.signal(at.velocity(ride.place, ride.rate)),
-                self.signal(at.acceleration(ride.place, ride.rate, ride.change)),
+                self.signal(at.displacement(base.place)),
+                self.signal(at.velocity(base.place, base.rate)),
+                self.signal(at.acceleration(base.place, base.rate, base.change)),
                 gauge.axis is not None,
             )
         return gauge_signals
@@ -310,7 +310,7 @@ class ExactSolution:
         exciting = force_amplitudes(self.linear, self.speed)
         mount_forces = {}
         for contact in self.system.contacts:
-            force = contact.force(self.ride.place, self.ride.rate)
+            force = contact.force(self.base_motion.place, self.base_motion.rate)
             hands_on = exciting if contact.at.along is not None else exciting[:0]
             mount = mount_force(self.signal(force), 0.0, hands_on)
             if contact.one_sided:

@@ -347,7 +347,7 @@ class BalanceSession(Protocol):
     def telling(self) -> AbstractContextManager[None]:
         """Inside, the reader's language is spoken, in the units of the file that is open."""
 
-    def told(self, seq: int | None, *notes: str) -> Iterator[Reply]:
+    def state_replies(self, seq: int | None, *notes: str) -> Iterator[Reply]:
         """Tell of what is shown."""
 
 
@@ -394,7 +394,7 @@ def adopted(
     UsageError : the machine is no longer `base`.
     """
     if balancing.design is None:
-        yield from session.told(message.seq, *filter(None, [balancing.nothing]))
+        yield from session.state_replies(message.seq, *filter(None, [balancing.nothing]))
         return
     after = solved(balancing.design)
     with session.lock:
@@ -405,7 +405,7 @@ def adopted(
         session.go_to(after, "balance")
         session.before = base
     yield Reply({"type": "balanced", "seq": message.seq, **balancing.content})
-    yield from session.told(message.seq)
+    yield from session.state_replies(message.seq)
 
 
 def answered(session: BalanceSession, message: Message) -> Iterator[Reply]:

@@ -32,7 +32,7 @@ class FloatBlock:
         self.size += flat.size
 
     @property
-    def told(self) -> dict[str, list[int]]:
+    def placement(self) -> dict[str, list[int]]:
         """Offset and length of each array, in numbers."""
         return {name: list(place) for name, place in self.places.items()}
 

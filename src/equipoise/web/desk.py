@@ -83,7 +83,7 @@ class PageBackend:
             yield refused(message.seq, error, self.session.language)
             return
         if self._of_session and message.kind == "design":
-            yield from self.session.told(message.seq)
+            yield from self.session.state_replies(message.seq)
         elif self._of_session:
             for reply in self.session.receive(message):
                 yield self.hello() if reply.content["type"] == "hello" else reply
@@ -160,7 +160,7 @@ class PageBackend:
             elif self.store is None or message.kind not in OF_STORE:
                 raise UsageError(Note("a study is open; choose one of its designs first"))
             else:
-                replies = [self.store.told(message.seq)]
+                replies = [self.store.reply(message.seq)]
         yield from replies
 
     @property

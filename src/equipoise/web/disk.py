@@ -63,7 +63,7 @@ class Disk:
         """Name of the file, and whether it tells just this model; none is unfinished."""
         return {"name": self.name, "saved": self.model == model, "comments": self.has_comments}
 
-    def told(self, seq: int | None, text: str) -> Reply:
+    def reply(self, seq: int | None, text: str) -> Reply:
         """That it is saved; `text` is the model that the page's steps began with."""
         saved = {"name": self.name, "base": self.base, "text": text}
         return Reply({"type": "saved", "seq": seq, **saved})

@@ -346,8 +346,8 @@ def state_of_sketch(incomplete: Incomplete, scale: Scale) -> tuple[Values, bytes
         "arrows_at": None,
         "arrows": [],
         "status": status_of_sketch(incomplete),
-        "fields": [scale.told(item) for item in fields_of_sketch(sketch).values()],
+        "fields": [scale.field_message(item) for item in fields_of_sketch(sketch).values()],
         **{key: [] for key in ("traced", "figures", "outputs", "charts", "orders", "notes")},
     }
-    content["arrays"] = block.told
+    content["arrays"] = block.placement
     return content, block.data

@@ -34,7 +34,7 @@ class EntrySession(Protocol):
     def telling(self) -> AbstractContextManager[None]:
         """Inside, the reader's language is spoken, in the units of the file that is open."""
 
-    def told(self, seq: int | None, *notes: str) -> Iterator[Reply]:
+    def state_replies(self, seq: int | None, *notes: str) -> Iterator[Reply]:
         """Tell of what is shown."""
 
 
@@ -79,7 +79,7 @@ def _entry(session: EntrySession, message: Message) -> Iterator[Reply]:
         base = session.base()
         entry = stroked(sketch_of(base, 0), message.entry())
         session.go_to(with_entry(base, entry), message.label)
-    yield from session.told(message.seq)
+    yield from session.state_replies(message.seq)
 
 
 ASKED: dict[str, Callable[[EntrySession, Message], Iterator[Reply]]] = {

@@ -73,8 +73,8 @@ class Measure:
         return self.dimension == "length" and not any(points[self.start]) and y == 0 and x > 0
 
     @property
-    def told(self) -> dict[str, Any]:
-        """What a page is told of its points: which one moves, and both ends of a length."""
+    def ends_message(self) -> dict[str, Any]:
+        """The points of the page's field: which one moves, and both ends of a length."""
         ends = {"between": (self.start, self.moves)} if self.dimension == "length" else {}
         return {"moves": self.moves, **ends}
 
@@ -284,7 +284,7 @@ class Scale:
             low, high = sorted((0.0, 2 * start or usual))
         return min(low, field.value), max(high, field.value)
 
-    def told(self, field: Field) -> dict[str, Any]:
+    def field_message(self, field: Field) -> dict[str, Any]:
         """A number as the page is sent it."""
         low, high = self.ends(field)
         start = self.values.get(field.path, field.value)
@@ -303,7 +303,7 @@ class Scale:
             "max": high,
             "step": (high - low) / FINE,
             "kind": "number",
-            **({} if field.measure is None else field.measure.told),
+            **({} if field.measure is None else field.measure.ends_message),
         }
 
 

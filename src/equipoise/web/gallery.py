@@ -185,5 +185,5 @@ def _thumbnail(name: str) -> tuple[Values, bytes]:
     scene = Scene.of(analyze(opened_example(name).machine, SAMPLES).motion)
     block = FloatBlock()
     moves_of(scene, block)
-    text = {"at": clear_angle(scene), "scene": stage_of(scene, ()), "arrays": block.told}
+    text = {"at": clear_angle(scene), "scene": stage_of(scene, ()), "arrays": block.placement}
     return text, block.data

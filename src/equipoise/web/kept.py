@@ -35,7 +35,7 @@ class DesignsSession(Protocol):
     def telling(self) -> AbstractContextManager[None]:
         """Inside, the reader's language is spoken."""
 
-    def told(self, seq: int | None, *notes: str) -> Iterator[Reply]:
+    def state_replies(self, seq: int | None, *notes: str) -> Iterator[Reply]:
         """The design that is shown."""
 
     def open(self, design: Design, computed: Computed | None = None) -> None:
@@ -55,8 +55,8 @@ def _save(session: DesignsSession, message: Message) -> Iterator[Reply]:
     first = history.first
     text = dumps(first.machine) if isinstance(first, Design) else disk.text
     disk.save(current.design.machine)
-    yield from session.told(message.seq)
-    yield disk.told(message.seq, text)
+    yield from session.state_replies(message.seq)
+    yield disk.reply(message.seq, text)
 
 
 def _download(session: DesignsSession, message: Message) -> Iterator[Reply]:

@@ -178,7 +178,9 @@ def _ghost(pale: Computed | None) -> Reply:
     moves_of(pale.scene, block)
     ground_of(pale, block)
     scene = stage_of(pale.scene, ())
-    return Reply({"type": "ghost", "seq": None, "scene": scene, "arrays": block.told}, block.data)
+    return Reply(
+        {"type": "ghost", "seq": None, "scene": scene, "arrays": block.placement}, block.data
+    )
 
 
 # -- what a page may ask ---------------------------------------------------------------------------
@@ -201,7 +203,7 @@ class ViewSession(Protocol):
     def go_to(self, computed: Computed, label: str) -> None:
         """Make another design the one that is."""
 
-    def told(self, seq: int | None, *notes: str) -> Iterator[Reply]:
+    def state_replies(self, seq: int | None, *notes: str) -> Iterator[Reply]:
         """Tell of what is shown."""
 
 
@@ -212,7 +214,7 @@ def _arrows(session: ViewSession, message: Message) -> Iterator[Reply]:
     if point is not None and point not in points:
         raise UsageError(unknown(point, points, "point"))
     session.seen.arrows_at = point
-    yield from session.told(message.seq)
+    yield from session.state_replies(message.seq)
 
 
 def _variant(session: ViewSession, message: Message) -> Iterator[Reply]:
@@ -222,7 +224,7 @@ def _variant(session: ViewSession, message: Message) -> Iterator[Reply]:
         raise UsageError(unknown(doing, DOING, "thing to do with a variant"))
     with session.lock:
         DOING[doing](session, message)
-    yield from session.told(message.seq)
+    yield from session.state_replies(message.seq)
 
 
 def _pin(session: ViewSession, _: Message) -> None:
@@ -260,7 +262,7 @@ def _record(session: ViewSession, message: Message) -> Iterator[Reply]:
         ]
         session.wanted = tuple(dict.fromkeys((*session.wanted, *matching_signals)))[-MOST_OUTPUTS:]
     session.seen.record = record
-    yield from session.told(message.seq)
+    yield from session.state_replies(message.seq)
 
 
 NO_STORE = Note("no store of a study is open; give one to `equipoise serve`")

@@ -106,7 +106,7 @@ class Session:
         yield self.hello()
         self.response_told = None, None  # a page that begins has nothing
         if self.found is not None:
-            yield from self.told(message.seq)
+            yield from self.state_replies(message.seq)
 
     def _balance(self, message: Message) -> Iterator[Reply]:
         from equipoise.web import balanced
@@ -135,7 +135,7 @@ class Session:
         except EquipoiseError as error:
             raise _in_file(error, design.name) from error
         self.disk = disk
-        yield from self.told(message.seq)
+        yield from self.state_replies(message.seq)
 
     def _edit(self, message: Message) -> Iterator[Reply]:
         commit, problem = message.flag("commit", True), None
@@ -155,7 +155,7 @@ class Session:
         if problem is not None:
             yield refused(message.seq, problem, self.language)
         if preview is not None:
-            yield from self.told(message.seq)
+            yield from self.state_replies(message.seq)
 
     def _make(self, message: Message) -> Iterator[Reply]:
         with self.lock, self.telling():
@@ -166,30 +166,30 @@ class Session:
             self._measure(result, False)
             named = message.text("do") == "delete" and message.text("what") in ("point", "link")
             notes = [*lost(base, sketch)] if named else []
-        yield from self.told(message.seq, *notes)
+        yield from self.state_replies(message.seq, *notes)
 
     def _undo(self, message: Message) -> Iterator[Reply]:
         with self.lock:
             self._go(self._past.undone())
-        yield from self.told(message.seq)
+        yield from self.state_replies(message.seq)
 
     def _redo(self, message: Message) -> Iterator[Reply]:
         with self.lock:
             self._go(self._past.redone())
-        yield from self.told(message.seq)
+        yield from self.state_replies(message.seq)
 
     def _compare(self, message: Message) -> Iterator[Reply]:
         first = self._past.first
         on = message.flag("on", False)
         self.before = solved(first) if on and isinstance(first, Design) else None
-        yield from self.told(message.seq)
+        yield from self.state_replies(message.seq)
 
     def _outputs(self, message: Message) -> Iterator[Reply]:
         names = message.names()
         for name in names:
             _ = self.current().analysis.outputs[name]
         self.wanted = names
-        yield from self.told(message.seq)
+        yield from self.state_replies(message.seq)
 
     # -- its state ---------------------------------------------------------------------------------
 
@@ -328,7 +328,7 @@ class Session:
         if self.before is not None and self.before.design is history.now.design:
             self.before = None  # nothing differs from itself
 
-    def told(self, seq: int | None, *notes: str) -> Iterator[Reply]:
+    def state_replies(self, seq: int | None, *notes: str) -> Iterator[Reply]:
         """The design that is shown, and how its support is shaken; notes come before its own."""
         with self.telling():
             state = self._state(seq)
@@ -385,7 +385,7 @@ class Session:
         fields = fields_of(computed.design).values()
         self.written = {
             "figures": figures_of(computed.analysis, against.analysis if against else None),
-            "fields": [self.scale.told(item) for item in fields],
+            "fields": [self.scale.field_message(item) for item in fields],
         }
         return self.written
 

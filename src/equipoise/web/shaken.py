@@ -115,7 +115,7 @@ def swept(shown: Computed, progress: Callable[[int, int], None]) -> tuple[Values
     rpm = display("angular speed", (), "rpm")
     over = {"array": "sweep.speed", "unit": rpm.name, "factor": rpm.factor, "at": response.speed}
     content["charts"].append(chart("sweep", choices, x=over))
-    content["arrays"] = block.told
+    content["arrays"] = block.placement
     return content, block.data
 
 
@@ -134,7 +134,13 @@ def _displacements(shown: Computed, response: Response, block: FloatBlock) -> Va
     notes = list(map(said, response.notes))
     swing = _swing(swinging(shown.scene, response), block)
     modes = [*_modes(shown.scene, response)]
-    return {"charts": charts, "notes": notes, "swing": swing, "modes": modes, "arrays": block.told}
+    return {
+        "charts": charts,
+        "notes": notes,
+        "swing": swing,
+        "modes": modes,
+        "arrays": block.placement,
+    }
 
 
 def _swing(scene: Scene, block: FloatBlock) -> list[str] | None:

@@ -93,7 +93,7 @@ def state_of(
         "arrows": arrows_of(analysis, arrows_at, block) if arrows_at else [],
         **ground_of(computed, block),
     }
-    content["arrays"] = block.told
+    content["arrays"] = block.placement
     return content, block.data
 
 

@@ -128,7 +128,7 @@ class StoreDesk:
             good += int(np.sum(np.all(feasible(self.store.wishes, figures), axis=1)))
         return good, reasons
 
-    def told(self, seq: int | None) -> Reply:
+    def reply(self, seq: int | None) -> Reply:
         """Everything that a page shows of the store.
 
         Arrays are a column each, of the designs that are drawn: ``number``, ``reason`` (0 where a
@@ -164,7 +164,7 @@ class StoreDesk:
             "limited": any(wish.limited for wish in self.store.wishes),
             "refused": refused,
             "best": self._best,
-            "arrays": block.told,
+            "arrays": block.placement,
         }
         return Reply(content, block.data)
 

@@ -97,7 +97,7 @@ def tool_state(now: ToolFigures, first: ToolFigures) -> tuple[Values, bytes]:
         "charts": [*_charts(now, first if changed else None, block)],
         "notes": [said(note) for note in now.modes.notes],
     }
-    content["arrays"] = block.told
+    content["arrays"] = block.placement
     return content, block.data
 
 

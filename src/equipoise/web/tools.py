@@ -105,9 +105,9 @@ class ToolDesk:
             )
         elif message.kind not in ("ready", "open"):
             raise UsageError(Note("{kind} is for linkages; a tool is open", kind=message.kind))
-        yield self.told(message.seq)
+        yield self.reply(message.seq)
         if message.kind == "save" and self.disk is not None:
-            yield self.disk.told(message.seq, self.template.text)
+            yield self.disk.reply(message.seq, self.template.text)
 
     def _save(self) -> None:
         if self.disk is None:
@@ -204,7 +204,7 @@ class ToolDesk:
         """What the page sees."""
         return self.preview or self.now
 
-    def told(self, seq: int | None) -> Reply:
+    def reply(self, seq: int | None) -> Reply:
         """Everything that the page shows of the tool."""
         content, data = tool_state(self.shown.figures, self.first.figures)
         history = {

@@ -124,7 +124,7 @@ class Foreground:
             return False
         if session.brief:
             session.brief = False
-            self._replies = session.told(self._seq)
+            self._replies = session.state_replies(self._seq)
             return True
         if not self.desk.has_more or any(task.message is None for task, _ in self._running):
             return False

@@ -92,7 +92,7 @@ def some_numbers(problem: Problem, seed: int) -> list[np.ndarray]:
         numbers = rng.uniform(0.1, 0.4, part.count)
         if part.count == 4:
             numbers[3] += numbers[1] ** 2 / numbers[0] + numbers[2] ** 2 / numbers[0]
-        found.append(part.tightened(numbers, np.ones(part.count, bool)))
+        found.append(part.project_feasible(numbers, np.ones(part.count, bool)))
     return found
 
 

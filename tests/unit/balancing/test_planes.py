@@ -157,7 +157,7 @@ def test_a_pin_lies_in_one_plane() -> None:
 def test_what_statics_leaves_open_is_told() -> None:
     """A coupler between joints in planes of their own hands couples on; one in its own does not."""
     machine = eq.load("yamashita-1").with_link("coupler", plane=0.02)
-    assert not [*statics(assemble(machine)).told()]
+    assert not [*statics(assemble(machine)).notes()]
     bent = machine.with_link("rocker", planes={"C": 0.05})
     assert statics(assemble(bent)).open == ("B", "C")
     assert any("tilting moments" in str(one) for one in remarks(assemble(bent)))

@@ -207,7 +207,7 @@ def round_about(gradual: bool) -> Program:
     rows = Affine(-np.array([np.cos(angle), np.sin(angle)]).T, np.array([x, y]), np.full(4000, 2.0))
     block = ConeRows("nonnegative", rows, name="radius", slope=fixed(*np.ones(4000)))
     if gradual:
-        program.gradually(block)
+        program.add_lazy_rows(block)
     else:
         program.blocks.append(block)
     program.cost = {x: 1.0, y: 2.0}

@@ -45,7 +45,7 @@ WHOLE = Balance(
     added_mass=1.0,
 )
 PROBLEM = Problem.of(MACHINE, WHOLE)
-NUMBERS = PROBLEM.tightened(
+NUMBERS = PROBLEM.project_feasible(
     [
         np.array([-0.2, 0.1, 9.0, 9.0]),
         np.array([0.5, 0.2, 0.3, 9.0, 9.0]),

@@ -174,7 +174,7 @@ def test_squares_lie_on_or_above_their_parabolas(shape: Shape) -> None:
     program.cost = {square.lift: -1.0 for square in squares} | {int(places[0]): 0.5}
     x = program.solve().x
     assert all(square.missed(x) >= -1e-8 for square in squares)
-    tight = part.tightened(x[places], np.ones(part.count, bool))
+    tight = part.project_feasible(x[places], np.ones(part.count, bool))
     full = np.zeros(program.count)
     full[places] = tight
     assert [square.missed(full) for square in squares] == pytest.approx([0] * len(squares))
@@ -184,13 +184,13 @@ def test_inertia_that_does_not_matter_is_least() -> None:
     part = part_of(ROOMS["any"])
     numbers = np.array([0.5, 0.2, 0.1, 0.4])
     matters = np.array([True, True, True, False])
-    assert part.tightened(numbers, matters)[3] == pytest.approx((0.2**2 + 0.1**2) / 0.5)
-    assert part.tightened(numbers, ~matters)[3] == pytest.approx(0.4)
+    assert part.project_feasible(numbers, matters)[3] == pytest.approx((0.2**2 + 0.1**2) / 0.5)
+    assert part.project_feasible(numbers, ~matters)[3] == pytest.approx(0.4)
 
 
 def test_a_trace_of_mass_is_none() -> None:
     part = part_of(ROOMS["point"])
-    found = part.tightened(np.array([1e-8, 1e-8, 0, 1e-8, 0]), np.ones(5, bool))
+    found = part.project_feasible(np.array([1e-8, 1e-8, 0, 1e-8, 0]), np.ones(5, bool))
     assert not np.any(found)
     (change,) = part.changes(found)
     assert change.values["pieces"] == []
@@ -231,7 +231,7 @@ def best_center(part: MovedCenter, *cost: float) -> tuple[Array, dict[str, float
 def test_effect_of_a_moved_center() -> None:
     part = moved(x=(-0.2, 0.3), y=(-0.1, 0.1))
     mass = 0.5
-    numbers = part.tightened(np.array([0.3, -0.1, 9.0, 9.0]), np.ones(4, bool))
+    numbers = part.project_feasible(np.array([0.3, -0.1, 9.0, 9.0]), np.ones(4, bool))
     place = np.array([0.3, -0.1]) * part.length
     wanted = mass * np.array([0, *place, place @ place])
     assert numbers @ part.effect == pytest.approx(wanted)

@@ -15,7 +15,7 @@ from equipoise.exchange.formats import Job
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.assembly.shared import IDLE
 from equipoise.mechanism.dynamics.across import exerted_in
-from equipoise.mechanism.dynamics.reactions import idle_told, undecided
+from equipoise.mechanism.dynamics.reactions import idle_told, indeterminate_reactions
 from equipoise.mechanism.parts.joint_properties import JointProperties
 from equipoise.mechanism.parts.machine import FRAME, FurtherDrive, Link, Slider, Vector
 from support.machines import make
@@ -156,7 +156,9 @@ def test_points_at_which_nothing_is_joined_leave_forces_as_they_are() -> None:
         for name, force in wanted.items():
             assert found[name].x == pytest.approx(force.x, abs=1e-9), name
             assert found[name].y == pytest.approx(force.y, abs=1e-9), name
-    assert undecided(assemble(block)).reach == pytest.approx(1.0)  # the rod, between its pins
+    assert indeterminate_reactions(assemble(block)).reach == pytest.approx(
+        1.0
+    )  # the rod, between its pins
 
 
 def test_two_guides_need_two_names() -> None:
@@ -267,7 +269,7 @@ def test_a_crossed_parallelogram_turns_as_elliptic_gears_do() -> None:
 
 def test_forces_without_bound_are_not_told() -> None:
     found = eq.analyze(parallel())
-    assert set(undecided(found.motion.linkage).unbounded) == {"A0", "B0", "A1", "B1"}
+    assert set(indeterminate_reactions(found.motion.linkage).unbounded) == {"A0", "B0", "A1", "B1"}
     assert not found.forces.joints
     assert found.to_dict()["unbounded"]["joints"] == ["A0", "A1", "B0", "B1"]
     kinetic = found.forces.frame_force.value - found.forces.weight.value
@@ -300,9 +302,9 @@ def test_forces_between_change_points_are_those_of_a_plain_four_bar() -> None:
 
 
 def test_three_cranks_in_line_do_not_hold_the_change_point() -> None:
-    line = undecided(eq.analyze(cranks(LINE)).motion.linkage)
+    line = indeterminate_reactions(eq.analyze(cranks(LINE)).motion.linkage)
     assert "B2" in line.unbounded
-    assert not undecided(eq.analyze(cranks()).motion.linkage).unbounded
+    assert not indeterminate_reactions(eq.analyze(cranks()).motion.linkage).unbounded
 
 
 def test_a_mode_has_to_be_given() -> None:
@@ -338,7 +340,9 @@ def test_what_statics_decides_does_not_depend_on_the_rule() -> None:
     """Forces that hold each other are added by other stiffness: nothing else may change."""
     given = with_rocker(cranks())
     found = eq.analyze(given)
-    assert set(undecided(found.motion.linkage).open) == {f"{p}{k}" for p in "AB" for k in range(3)}
+    assert set(indeterminate_reactions(found.motion.linkage).open) == {
+        f"{p}{k}" for p in "AB" for k in range(3)
+    }
     assert found.to_dict()["open"]["rule"] == "least squares"
     stiff = (
         JointProperties("joints.B0", stiffness=1e6),
@@ -362,7 +366,10 @@ def test_of_all_kinds_both_rules_tell_alike_what_statics_decides(kind: str) -> N
     rng, names = np.random.default_rng(1), linkage.shared.names
     stiff = tuple(JointProperties(name, stiffness=float(rng.uniform(1e5, 1e6))) for name in names)
     one, two = (eq.analyze(each, 24).forces for each in (given, replace(given, joints=stiff)))
-    told, scale = undecided(linkage).open, max(np.max(joint.size) for joint in one.joints.values())
+    told, scale = (
+        indeterminate_reactions(linkage).open,
+        max(np.max(joint.size) for joint in one.joints.values()),
+    )
     assert told
     size = scale * linkage.shared.group.size
     both = exerted_in(one.solved), exerted_in(two.solved)

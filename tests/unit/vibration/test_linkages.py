@@ -402,7 +402,7 @@ def test_support_is_in_equilibrium(solved: dict[str, ExactSolution], case: str) 
     is a part of it.  A pivot's own force is not asked for.
     """
     solution = solved[case]
-    here = solution.ride
+    here = solution.base_motion
     support = solution.machine.support
     assert support is not None
     turn = np.exp(1j * here.place[2])
@@ -432,7 +432,7 @@ def test_support_is_in_equilibrium(solved: dict[str, ExactSolution], case: str) 
 def test_torques_of_the_rows_add_up(solved: dict[str, ExactSolution], case: str) -> None:
     """Torque of drive or motor: of all cranks, and of what else turns with them."""
     solution = solved[case]
-    here = solution.ride
+    here = solution.base_motion
     carried, own = turning_with_the_crank(solution)
     wanted = sum(one.drive_torque for one in solution.passes)
     wanted = wanted + carried * here.change[2] + own * here.crank_acceleration

@@ -30,7 +30,7 @@ def kept(session: Session, **values: Any) -> Reply:
 
 def charts_of(session: Session) -> dict[str, list[str]]:
     """Choices of every chart that a page is told of, by its name."""
-    told = [*session.told(None), *session.tell_more()]
+    told = [*session.state_replies(None), *session.tell_more()]
     charts = [chart for reply in told for chart in reply.content.get("charts", [])]
     return {chart["name"]: [one["name"] for one in chart["choices"]] for chart in charts}
 

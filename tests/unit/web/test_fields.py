@@ -65,7 +65,7 @@ def test_a_number_without_a_unit_is_shown_typed_and_slid() -> None:
     machine = replace(eq.load("slider-crank-engine"), joints=RUBBING)
     design = Design("engine", machine)
     field = fields_of(design)["joints[1].friction"]
-    shown = Scale.of(design).told(field)
+    shown = Scale.of(design).field_message(field)
     assert (shown["text"], shown["shown"], shown["unit"]) == ("0.08", "0.08", "")
     assert (shown["min"], shown["max"]) == (0.0, 0.16)
     for text, value in (("0.15", 0.15), (" 0.15 ", 0.15), ("=0.3/2", 0.15), ("2*0.1", 0.2)):

@@ -36,7 +36,9 @@ def test_a_parameter_moves_all_that_is_worked_out_from_it() -> None:
 
 
 def test_a_number_that_is_worked_out_shows_by_what() -> None:
-    told = {path: Scale.of(design()).told(one) for path, one in fields_of(design()).items()}
+    told = {
+        path: Scale.of(design()).field_message(one) for path, one in fields_of(design()).items()
+    }
     assert told["links.rod.mass"]["text"] == "=weight"
     assert told["links.rod.mass"]["shown"] == "200 g"
     assert told["frame.points.D.x"]["text"] == "=base"

@@ -182,7 +182,7 @@ def test_numbers_do_not_say_again_what_their_heading_names(language):
     """In any language, whatever its words for what a number is of."""
     with speaking(language):
         tool = tool_of_file("brush-cutter")
-        for field in shown([tool.told(1)])["fields"]:
+        for field in shown([tool.reply(1)])["fields"]:
             if field["path"].startswith(("shaft.", "work", "excitations")):
                 assert field["group"] not in field["label"].split()
                 assert len(field["label"]) < len(said(tool.template.words(field["path"])))

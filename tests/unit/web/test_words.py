@@ -84,7 +84,7 @@ def test_what_a_page_is_told_is_in_its_language(name: str) -> None:
     held = {} if machine.support is None else {**machine.support.mounts, **machine.support.gauges}
     parts = {part for one in (*machine.links, *held) for part in (one, *one.split("_"))}
     names = parts | {part.capitalize() for part in parts}
-    replies = [*session.told(None), *session.tell_more()]
+    replies = [*session.state_replies(None), *session.tell_more()]
     contents = [reply.content for reply in replies]
     found = [text for content in contents for text in english(content, names)]
     fields = next(one["fields"] for one in contents if "fields" in one)
@@ -97,7 +97,7 @@ def test_a_page_speaks_of_cycles_where_no_crank_turns(language: str) -> None:
     """As terminal, notebook and report do: a loader has no crank, whatever the page shows of it."""
     session, _ = opened("hydraulic-loader")
     ask(session, "speak", languages=[language])
-    contents = [reply.content for reply in (*session.told(None), *session.tell_more())]
+    contents = [reply.content for reply in (*session.state_replies(None), *session.tell_more())]
     (wording,) = (one["wording"] for one in contents if "wording" in one)
     cycle = {"en": "Any output over the cycle", "ja": "1周期の任意の出力"}
     if language in cycle:
@@ -114,7 +114,7 @@ def test_a_page_speaks_of_cycles_where_no_crank_turns(language: str) -> None:
 def test_a_page_speaks_of_cranks_again_with_the_next_machine() -> None:
     session, _ = opened("hydraulic-loader")
     session.open(opened_example("yamashita-1"))
-    (first, *_) = session.told(None)
+    (first, *_) = session.state_replies(None)
     assert first.content["wording"] == {"words": {}, "explained": {}}
     labels = {one["label"] for one in first.content["fields"]}
     assert "speed" in labels and "speed of the cycle" not in labels

@@ -186,7 +186,7 @@ class Statics:
             values[item.name] = sum(terms, start=0.0)
         return values
 
-    def told(self) -> Iterator[Note]:
+    def notes(self) -> Iterator[Note]:
         """A sentence on what is open."""
         if self.open:
             yield Note(

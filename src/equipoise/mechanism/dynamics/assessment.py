@@ -13,7 +13,7 @@ from equipoise.mechanism.assembly.steps import KernelCall, size_of_links
 from equipoise.mechanism.checks import bodies_at, numbered
 from equipoise.mechanism.dynamics.across import statics
 from equipoise.mechanism.dynamics.forces import assumed_masses, massless
-from equipoise.mechanism.dynamics.reactions import undecided
+from equipoise.mechanism.dynamics.reactions import indeterminate_reactions
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.kinematics.motion import crossings
 from equipoise.mechanism.parts.constraints import HOLDS
@@ -199,9 +199,9 @@ def remarks(linkage: Linkage) -> Iterator[Note | str]:
     if assumed := assumed_masses(machine):
         yield assumed
     yield from _missed_constraints(machine)
-    yield from undecided(linkage).told()
+    yield from indeterminate_reactions(linkage).notes()
     if machine.has_planes:
-        yield from statics(linkage).told()
+        yield from statics(linkage).notes()
     yield from questions(linkage)
 
 

@@ -55,7 +55,7 @@ LEAST_ENERGY = to_say(
 
 
 @dataclass(frozen=True)
-class Undecided:
+class IndeterminateReactions:
     """Joints by name, in the order of outputs.
 
     open : forces that statics leaves open.  unbounded : forces that grow without bound.
@@ -71,7 +71,7 @@ class Undecided:
     by_stiffness: bool = False
     reach: float = 0.0
 
-    def told(self) -> Iterator[Note]:
+    def notes(self) -> Iterator[Note]:
         """A sentence on each."""
         if self.open:
             rule = LEAST_SQUARES if self.reach == 0 else WITH_GUIDES
@@ -88,7 +88,7 @@ class Undecided:
             )
 
 
-def undecided(linkage: Linkage) -> Undecided:
+def indeterminate_reactions(linkage: Linkage) -> IndeterminateReactions:
     """What statics does not tell of the joints of a linkage; kept with it."""
     return _cached(linkage, _compute)
 
@@ -109,7 +109,7 @@ def refuse_unbounded(linkage: Linkage, output: str) -> None:
     """Raise a `UsageError` for an output of a joint whose force has no bound."""
     result = _cached(linkage, _growing)
     if any(output.partition(".")[2].startswith(name) for name in result.unbounded):
-        *_, text = result.told()
+        *_, text = result.notes()
         raise UsageError(text)
 
 
@@ -122,18 +122,20 @@ def hidden(motion: Motion) -> tuple[str, ...]:
     return () if bounded else result.unbounded
 
 
-def _cached(linkage: Linkage, find: Callable[[Linkage], Undecided]) -> Undecided:
+def _cached(
+    linkage: Linkage, find: Callable[[Linkage], IndeterminateReactions]
+) -> IndeterminateReactions:
     name = find.__name__
     if name not in linkage.memory:
         linkage.memory[name] = find(linkage)
-    result: Undecided = linkage.memory[name]
+    result: IndeterminateReactions = linkage.memory[name]
     return result
 
 
-def _compute(linkage: Linkage) -> Undecided:
+def _compute(linkage: Linkage) -> IndeterminateReactions:
     shared = linkage.shared
     if shared is None:
-        return Undecided()
+        return IndeterminateReactions()
     open_ones = shared.open_joints(_somewhere(linkage)) if shared.count else frozenset()
     return replace(
         _cached(linkage, _growing),
@@ -143,11 +145,11 @@ def _compute(linkage: Linkage) -> Undecided:
     )
 
 
-def _growing(linkage: Linkage) -> Undecided:
+def _growing(linkage: Linkage) -> IndeterminateReactions:
     """Forces without bound alone, which every analysis of joint forces has to know."""
     shared, through = linkage.shared, [group for group in linkage.groups if group.through]
     if shared is None or not through or not _turns(linkage):
-        return Undecided()
+        return IndeterminateReactions()
     weakest = [linkage.cycle.weakest.get(group.joint, (0.0, 0.0))[1] for group in through]
     weak = shared.strength(linkage.solve(np.array(weakest))) < WEAK
     for group, at in compress(zip(through, weakest, strict=True), weak):
@@ -155,8 +157,8 @@ def _growing(linkage: Linkage) -> Undecided:
             linkage.solve(np.array([at - CHANGE_POINT_OFFSET, at + CHANGE_POINT_OFFSET]))
         )
         names = _named(linkage, growing)
-        return Undecided(unbounded=names, at=at % (2 * np.pi), links=group.links)
-    return Undecided()
+        return IndeterminateReactions(unbounded=names, at=at % (2 * np.pi), links=group.links)
+    return IndeterminateReactions()
 
 
 def _named(linkage: Linkage, forces: frozenset[str]) -> tuple[str, ...]:

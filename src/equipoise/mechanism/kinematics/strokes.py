@@ -93,7 +93,7 @@ class Stroke:
         """Of its places."""
         return OF_KIND[self.kind]
 
-    def told(self) -> dict[str, Any]:
+    def to_dict(self) -> dict[str, Any]:
         """As plain data."""
         return vars(self) | {
             "dead_positions": [dict(vars(dead_position)) for dead_position in self.dead_positions]
