@@ -158,7 +158,11 @@ def export_content(
         for coupling in machine.couplings:
             if coupling.preload:
                 job.leave_out(
-                    Note("the tension of {name}, which its pins bear", name=coupling.name)
+                    Note(
+                        "the tension of the {noun} {name}, which its pins bear",
+                        noun=Note(coupling.noun),
+                        name=coupling.name,
+                    )
                 )
     if machine.pushers and not file_format.pushes:
         job.leave_out(Note("what pushes the machine, and its stroke"))
