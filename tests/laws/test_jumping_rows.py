@@ -14,11 +14,11 @@ import pytest
 import equipoise as eq
 from equipoise.balancing import rows_and_masses
 from equipoise.balancing.box_bounds import CLOSE
+from equipoise.balancing.cylinder_phasing import PhasedRows, PhaseObjective
 from equipoise.balancing.design_variables import LinkParameters
 from equipoise.balancing.effects import Effects
 from equipoise.balancing.jump_bounds import CubicPieces, JumpBounds
 from equipoise.balancing.jump_readings import JumpReadings
-from equipoise.balancing.multi_row import PhasedRows, PhaseObjective
 from equipoise.balancing.phasing import choose_phases
 from equipoise.mechanism.dynamics.forces import forces
 from equipoise.mechanism.kinematics.motion import move

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.balancing.multi_row import PhasedRows, PhaseObjective
+from equipoise.balancing.cylinder_phasing import PhasedRows, PhaseObjective
 from equipoise.balancing.phase_grid import PhaseGrid
 from equipoise.balancing.phase_polish import ActivePeaks, square_with_slopes
 from equipoise.balancing.phase_search import PhaseSearch

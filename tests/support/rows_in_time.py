@@ -8,7 +8,7 @@ from math import pi
 import numpy as np
 
 import equipoise as eq
-from equipoise.balancing.multi_row import PhasedRows, PhaseObjective
+from equipoise.balancing.cylinder_phasing import PhasedRows, PhaseObjective
 from equipoise.mechanism.parts.balance import Objective
 from equipoise.mechanism.parts.support import Row
 from unit.vibration.build import Array

@@ -464,11 +464,11 @@ def test_what_is_begun_beside_a_place_goes_through_no_link(
     outside: Outside, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Whoever guesses the name that a file has until it is whole plants a link there."""
-    from equipoise import partial
+    from equipoise import atomic_files
 
-    monkeypatch.setattr("equipoise.partial.os.getpid", lambda: 4242)
+    monkeypatch.setattr("equipoise.atomic_files.os.getpid", lambda: 4242)
     for name in ("out.csv", "out.zarr"):
-        begun = f".{name}.{partial._here()}-4242.tmp"
+        begun = f".{name}.{atomic_files._here()}-4242.tmp"
         Path(begun).symlink_to(outside.folder / ("folder" if "zarr" in name else "secret.txt"))
     Path("mine.toml").write_text(MODEL)
     Path("study.toml").write_text(LENGTHS)

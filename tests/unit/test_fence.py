@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
+from equipoise.atomic_files import transaction
 from equipoise.errors import UsageError
 from equipoise.fence import Fence, fenced
-from equipoise.partial import together
 from equipoise.schema.files import FileError, read_text, write
 
 
@@ -19,7 +19,7 @@ def test_files_beyond_a_fence(tmp_path: Path) -> None:
         (one / "there.txt").write_text("there")
     (folder / "way.txt").symlink_to(beyond / "there.txt")
     fence = Fence(folder)
-    with fenced(fence), together():
+    with fenced(fence), transaction():
         assert read_text(folder / "there.txt") == "there"
         for name in (beyond / "there.txt", folder / ".." / "folder too" / "there.txt"):
             with pytest.raises(FileError, match="outside of the folder"):

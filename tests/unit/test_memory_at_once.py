@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.balancing import box_bounds, multi_row
+from equipoise.balancing import box_bounds, cylinder_phasing
 from equipoise.balancing.box_bounds import largest_reading
-from equipoise.balancing.multi_row import Cost, PhaseObjective, RowSignals
+from equipoise.balancing.cylinder_phasing import Cost, PhaseObjective, RowSignals
 from equipoise.balancing.phase_grid import PhaseGrid
 from equipoise.cli import run
 from equipoise.cli.worker import ToolCall, reply_to
@@ -90,7 +90,7 @@ def test_what_is_computed_in_parts_is_that_of_the_whole(
     phases = np.random.default_rng(6).uniform(0, 6, (7, 2))
     total = some.signals.total(phases)
     values, readings = some.values(phases), largest_reading(some, total)
-    for module in (multi_row, box_bounds):
+    for module in (cylinder_phasing, box_bounds):
         monkeypatch.setattr(module, "AT_ONCE", 3000)
     assert some.values(phases) == pytest.approx(values, rel=1e-12)
     for part, whole in zip(largest_reading(some, total), readings, strict=True):

@@ -20,6 +20,7 @@ import numpy as np
 from equipoise.balancing.balanced import Balanced, MoreRoom, Price, bending_notes
 from equipoise.balancing.beyond_masses import Beyond, beyond_masses
 from equipoise.balancing.box_bounds import PhaseProof
+from equipoise.balancing.cylinder_phasing import PhasedRows, PhaseObjective
 from equipoise.balancing.headlines import (
     Advice,
     AssessedMachine,
@@ -29,7 +30,6 @@ from equipoise.balancing.headlines import (
     headline_objectives,
     watched_of,
 )
-from equipoise.balancing.multi_row import PhasedRows, PhaseObjective
 from equipoise.balancing.objectives import unit_of
 from equipoise.balancing.optimisation import balance, in_phases
 from equipoise.balancing.phase_search import PhaseSearch

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from dataclasses import replace
 
-from equipoise.balancing.multi_row import PhasedRows, PhaseObjective
+from equipoise.balancing.cylinder_phasing import PhasedRows, PhaseObjective
 from equipoise.balancing.objectives import measured
 from equipoise.dataclass import dataclass
 from equipoise.errors import EquipoiseError, ModelError, ResponseError

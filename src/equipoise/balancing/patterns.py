@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.balancing.multi_row import PhasedRows, PhaseObjective
+from equipoise.balancing.cylinder_phasing import PhasedRows, PhaseObjective
 from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
 from equipoise.i18n import Note, say

@@ -18,7 +18,7 @@ from math import comb, factorial, prod
 
 import numpy as np
 
-from equipoise.balancing.multi_row import Cost, PhaseObjective, RowSignals, by_orders
+from equipoise.balancing.cylinder_phasing import Cost, PhaseObjective, RowSignals, by_orders
 from equipoise.dataclass import dataclass
 from equipoise.signals import Array, synthesis
 

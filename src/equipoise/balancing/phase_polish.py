@@ -15,8 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.balancing.jump_bounds import TINY
-from equipoise.balancing.multi_row import (
+from equipoise.balancing.cylinder_phasing import (
     AREA_SAMPLES,
     PENALTY,
     Cost,
@@ -26,6 +25,7 @@ from equipoise.balancing.multi_row import (
     squared,
     tops,
 )
+from equipoise.balancing.jump_bounds import TINY
 from equipoise.dataclass import dataclass
 from equipoise.signals import Array, Periodic
 

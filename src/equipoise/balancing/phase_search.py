@@ -17,7 +17,7 @@ from math import ceil, degrees, pi
 
 import numpy as np
 
-from equipoise.balancing.multi_row import (
+from equipoise.balancing.cylinder_phasing import (
     NOTHING,
     Combine,
     Cost,

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.balancing.box_bounds import PhaseProof, prove
-from equipoise.balancing.multi_row import Combine, PhaseObjective
+from equipoise.balancing.cylinder_phasing import Combine, PhaseObjective
 from equipoise.balancing.objectives import unit_of
 from equipoise.balancing.phase_search import PhaseSearch, Progress, with_phases
 from equipoise.dataclass import dataclass
@@ -135,7 +135,7 @@ def choose_phases(
 
     Parameters
     ----------
-    objectives : outputs with their measures; see `multi_row.Rows.signals`.
+    objectives : outputs with their measures; see `cylinder_phasing.Rows.signals`.
     phases : how finely to look; every 5 deg if None.
     combine : several objectives by their weighted sum, or the root of that of their squares.
     progress : is called with how many arrangements of the grid are computed and how many there

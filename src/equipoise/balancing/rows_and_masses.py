@@ -17,9 +17,9 @@ import numpy as np
 from equipoise.balancing.balanced import proved_of
 from equipoise.balancing.box_bounds import Numbers, PhaseProof, prove
 from equipoise.balancing.branch_and_bound import finite
+from equipoise.balancing.cylinder_phasing import Cost, PhaseObjective, RowSignals
 from equipoise.balancing.effects import Effects
 from equipoise.balancing.jumping_rows import JumpingDesigns
-from equipoise.balancing.multi_row import Cost, PhaseObjective, RowSignals
 from equipoise.balancing.objectives import LinearizationPoint, of_rows_alone, read, reading_of
 from equipoise.balancing.phase_grid import distinct
 from equipoise.balancing.phase_polish import Step, most_steps, polished

@@ -23,11 +23,11 @@ from typing import TYPE_CHECKING
 from cyclopts import App, CycloptsError, Parameter
 
 from equipoise import __version__
+from equipoise.atomic_files import transaction
 from equipoise.cli.help import Laid
 from equipoise.errors import EquipoiseError, UsageError, at_place
 from equipoise.i18n import Note, say
 from equipoise.interrupts import answered, check, recorded
-from equipoise.partial import together
 from equipoise_command import INTERRUPTED
 
 if TYPE_CHECKING:
@@ -92,7 +92,7 @@ def _run(arguments: Sequence[str] | None) -> int:
     try:
         given = sys.argv[1:] if arguments is None else arguments
         _prepare(given)
-        with recorded(), together(), _signs_of_life(given):
+        with recorded(), transaction(), _signs_of_life(given):
             check_repeated(given)
             finished = answered_by(arguments)
             if finished is not None:

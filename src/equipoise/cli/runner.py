@@ -23,6 +23,7 @@ from json import loads
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar, get_type_hints
 
+from equipoise.atomic_files import afterwards
 from equipoise.cli.models import LoadedFile
 from equipoise.cli.options import (
     BelongsTo,
@@ -52,7 +53,6 @@ from equipoise.cli.outputs import (
 from equipoise.dataclass import dataclass
 from equipoise.i18n import say, speaking
 from equipoise.interrupts import check
-from equipoise.partial import afterwards
 
 if TYPE_CHECKING:
     from equipoise.results.blocks import Block, ReportSection

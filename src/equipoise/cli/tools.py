@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, get_args, get_origin
 
 from cyclopts import App
 
+from equipoise.atomic_files import transaction
 from equipoise.cli import answered_by, app, check_repeated
 from equipoise.cli.models import LoadedFile
 from equipoise.cli.runner import declared_of
@@ -23,7 +24,6 @@ from equipoise.errors import UsageError, at_place, unknown
 from equipoise.fence import Fence, fenced
 from equipoise.i18n import Note, say
 from equipoise.mechanism.outputs.declared import declared
-from equipoise.partial import together
 from equipoise.quantities import SI
 
 if TYPE_CHECKING:
@@ -128,7 +128,7 @@ class CommandTool:
         fence = Fence(folder, (bundled,), replaces=given.get("overwrite") is True)
         line = self.line(given, fence)
         check_repeated(line)
-        with fenced(fence), together():
+        with fenced(fence), transaction():
             finished = answered_by(line)
             assert finished is not None  # as of every command that is declared
             values = finished.values

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from equipoise.balancing.cylinder_phasing import PhasedRows
 from equipoise.balancing.effects import Effects, Signal
-from equipoise.balancing.multi_row import PhasedRows
 from equipoise.balancing.objectives import LinearizationPoint, measured, signals_of, unit_of
 from equipoise.balancing.problem import Problem
 from equipoise.dataclass import dataclass

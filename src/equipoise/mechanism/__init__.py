@@ -10,9 +10,9 @@ from equipoise.mechanism.parts import commanded
 
 def _pushed_angles(machine: Any) -> Any:
     """The angles of links that are pushed."""
-    from equipoise.mechanism.kinematics import cylinders, pushed_together
+    from equipoise.mechanism.kinematics import cylinders, multi_stroke
 
-    return (pushed_together if machine.drives else cylinders).commanded(machine)
+    return (multi_stroke if machine.drives else cylinders).commanded(machine)
 
 
 commanded.finders.append(_pushed_angles)

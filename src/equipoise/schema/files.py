@@ -12,11 +12,11 @@ from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from equipoise.atomic_files import make_folder, replaced
 from equipoise.errors import UsageError, at_place
 from equipoise.fence import OutsideError, holding, may_be_replaced, open_file
 from equipoise.folders import NOWHERE, is_nowhere
 from equipoise.i18n import Note
-from equipoise.partial import made, replaced
 from equipoise.quantities import column_heading
 
 if TYPE_CHECKING:
@@ -144,7 +144,7 @@ def write_all(folder: Name, files: Mapping[str, bytes]) -> None:
 
 def _make(folder: Name) -> None:
     try:
-        made(folder)
+        make_folder(folder)
     except FileExistsError as error:
         shown = printable(folder)
         raise UsageError(

@@ -12,6 +12,7 @@ from math import nan
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
+from equipoise.atomic_files import make_folder, temporary_name
 from equipoise.codegen.figures import REASONS
 from equipoise.design.evaluator import Runner, StoppedError
 from equipoise.design.variables import Choices
@@ -19,7 +20,6 @@ from equipoise.errors import UsageError, at_place, needed
 from equipoise.fence import place_of
 from equipoise.folders import Folder
 from equipoise.i18n import Note
-from equipoise.partial import beside, made
 from equipoise.quantities import SI
 from equipoise.studies.clusters import elsewhere
 from equipoise.studies.evaluate import evaluator
@@ -273,9 +273,9 @@ def create_store(path: str | os.PathLike[str], study: Study, chunk: int, engine:
     with as_usage_error(
         target, Note("the store cannot be made"), Note("choose another place or name")
     ):
-        made(target.parent)
+        make_folder(target.parent)
         above, name = place_of(target)
-        with beside(above, name) as begun:
+        with temporary_name(above, name) as begun:
             _write_empty(above.make(begun), study, chunk, engine)
             above.rename(begun, name)
     return open_store(target)

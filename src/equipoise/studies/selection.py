@@ -18,13 +18,13 @@ from typing import TYPE_CHECKING, Any, BinaryIO, ClassVar
 
 import numpy as np
 
+from equipoise.atomic_files import replaced
 from equipoise.codegen.figures import COMPUTED, REASONS
 from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError, at_place, needed
 from equipoise.i18n import Note
 from equipoise.keys.requirement_kinds import Make
 from equipoise.mechanism.checks import unknown
-from equipoise.partial import replaced
 from equipoise.results.result import Result
 from equipoise.studies.outcomes import (
     Block,

@@ -27,13 +27,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import equipoise
+from equipoise.atomic_files import locked
 from equipoise.codegen.figures import COMPUTED
 from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError, at_place, needed
 from equipoise.fence import OutsideError, open_folder
 from equipoise.folders import NOWHERE, Folder, LinkError, is_nowhere
 from equipoise.i18n import Note, worded
-from equipoise.partial import locked
 from equipoise.results.result import Result
 from equipoise.studies.outcomes import Block, Outcome
 from equipoise.studies.study import Output

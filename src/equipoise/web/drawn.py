@@ -28,9 +28,9 @@ from equipoise.web.edits import Computed, edited, settled, solved
 from equipoise.web.fields import Field, Measure, Scale, constrained_place, measures_of
 from equipoise.web.lacking import lacking
 from equipoise.web.messages import Change, Entry, Setting
-from equipoise.web.remaking import moved, with_constraints_met
 from equipoise.web.sketch import Sketch
 from equipoise.web.state import turning
+from equipoise.web.structure_edits import moved, with_constraints_met
 from equipoise.web.tables import entered
 
 EMPTY = (-0.1 - 0.08j, 0.2 + 0.1j)

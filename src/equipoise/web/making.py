@@ -10,10 +10,11 @@ from equipoise.i18n import say, to_say
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.parts.couplings import coupling_kinds
 from equipoise.mechanism.parts.machine import FRAME, Machine
-from equipoise.web import camming, coupling
+from equipoise.web import cam_edits, coupling
 from equipoise.web.adding import with_drive, with_link, with_point, with_slider
 from equipoise.web.messages import Message
-from equipoise.web.remaking import (
+from equipoise.web.sketch import LISTS, Sketch
+from equipoise.web.structure_edits import (
     TABLES,
     freed,
     grounded,
@@ -25,7 +26,6 @@ from equipoise.web.remaking import (
     without_point,
     without_slider,
 )
-from equipoise.web.sketch import LISTS, Sketch
 
 Operation = Callable[[Sketch, Message], Sketch]
 
@@ -87,7 +87,7 @@ OPERATIONS: Mapping[str, tuple[str, Operation]] = {
     "link": (to_say("add a link"), _link),
     "slider": (to_say("add a slider"), _slider),
     **coupling.OPERATIONS,
-    **camming.OPERATIONS,
+    **cam_edits.OPERATIONS,
     "drive": (to_say("set the drive"), _drive),
     "pin": (to_say("pin"), _pin),
     "separate": (to_say("separate"), _separate),

@@ -10,7 +10,13 @@ import pytest
 
 import equipoise as eq
 from equipoise.balancing.box_bounds import CLOSE, Improve, largest_reading, prove
-from equipoise.balancing.multi_row import Combine, Cost, PhasedRows, PhaseObjective, RowSignals
+from equipoise.balancing.cylinder_phasing import (
+    Combine,
+    Cost,
+    PhasedRows,
+    PhaseObjective,
+    RowSignals,
+)
 from equipoise.balancing.phase_search import PhaseSearch
 from equipoise.balancing.phasing import choose_phases
 from equipoise.mechanism.parts.balance import MEASURES, Objective, Phases

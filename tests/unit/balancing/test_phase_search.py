@@ -12,7 +12,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.balancing.box_bounds import CLOSE
-from equipoise.balancing.multi_row import PhasedRows
+from equipoise.balancing.cylinder_phasing import PhasedRows
 from equipoise.balancing.patterns import (
     PATTERNS,
     Pattern,

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.balancing.multi_row import PhasedRows
+from equipoise.balancing.cylinder_phasing import PhasedRows
 from equipoise.balancing.objectives import signals_of
 from equipoise.balancing.problem import Problem
 from equipoise.balancing.told import freedoms

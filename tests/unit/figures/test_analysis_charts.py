@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.balancing.multi_row import PhasedRows
+from equipoise.balancing.cylinder_phasing import PhasedRows
 from equipoise.errors import UsageError
 from equipoise.figures import analysis as of_joints
 from equipoise.figures import analysis as view

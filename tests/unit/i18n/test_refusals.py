@@ -171,7 +171,7 @@ OTHER_TEXTS = {
     "mechanism/dynamics/reactions.py": "errors of attributes, which only programmers cause",
     "schema/files.py": "errors of types, which only programmers cause",
     "studies/store.py": "errors inside of a damaged store, as those of the libraries that read it",
-    "partial.py": "marks of files",
+    "atomic_files.py": "marks of files",
     "exchange/": "files of other programs, which are read by these",
     "mechanism/assembly/": "comments of lines that are pasted into a file, and names inside",
     "mechanism/kinematics/motion.py": "what Python shows of an object",

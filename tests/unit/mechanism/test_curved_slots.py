@@ -29,8 +29,8 @@ from equipoise.web.design import Design
 from equipoise.web.drawn import sketch_of
 from equipoise.web.edits import solved
 from equipoise.web.gallery import opened_file
-from equipoise.web.remaking import straight
 from equipoise.web.session import Session
+from equipoise.web.structure_edits import straight
 from support import free_bodies, newton
 from support.analyses import ANGLES
 from support.poses import from_motion

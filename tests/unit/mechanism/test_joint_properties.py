@@ -15,7 +15,7 @@ from equipoise.mechanism.assembly.steps import size_of_links
 from equipoise.mechanism.parts.joint_properties import JointProperties
 from equipoise.symbols.pieces import pieces, placed
 from equipoise.symbols.scene import Scene
-from equipoise.web.remaking import renamed_in
+from equipoise.web.structure_edits import renamed_in
 from surface.running import equipoise, refused
 from unit.schema.samples import survives
 from unit.web.pages import ask, opened, state

@@ -14,11 +14,11 @@ import pytest
 import xarray
 import zarr
 
+from equipoise.atomic_files import temporary_name
 from equipoise.codegen.figures import REASONS
 from equipoise.design.variables import Range, Variable
 from equipoise.errors import UsageError
 from equipoise.folders import Folder
-from equipoise.partial import beside
 from equipoise.studies.run import create_store, resume
 from equipoise.studies.store import UNKNOWN, DamagedError, open_store, versions
 from equipoise.studies.study import Output, Sampling, samples
@@ -205,7 +205,7 @@ HOLD = """
 import sys, time
 from pathlib import Path
 from equipoise.folders import Folder
-from equipoise.partial import locked
+from equipoise.atomic_files import locked
 with locked(Folder.at(Path(sys.argv[1]))):
     print("held", flush=True)
     time.sleep(60)
@@ -234,7 +234,7 @@ def test_what_killed_processes_have_begun_goes_with_the_next_store(tmp_path: Pat
     """Of a store, and of a file; what a living process has begun stays."""
     ended = subprocess.Popen([sys.executable, "-c", "pass"])
     ended.wait()
-    with beside(Folder.at(tmp_path), "new.zarr") as own:
+    with temporary_name(Folder.at(tmp_path), "new.zarr") as own:
         (tmp_path / own.replace(str(os.getpid()), str(ended.pid)) / "c").mkdir(parents=True)
         for pid in (ended.pid, os.getppid()):
             (

@@ -14,8 +14,8 @@ from equipoise.web.drawn import drawn, sketch_of
 from equipoise.web.edits import solved
 from equipoise.web.fields import Scale, fields_of
 from equipoise.web.gallery import opened_example
-from equipoise.web.remaking import renamed, without_link
 from equipoise.web.session import Session
+from equipoise.web.structure_edits import renamed, without_link
 from unit.web.pages import edit, opened
 
 RUBBING = (JointProperties("joints.piston on frame", friction=0.08),)

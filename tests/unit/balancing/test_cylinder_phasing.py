@@ -13,8 +13,8 @@ import pytest
 
 import equipoise as eq
 from equipoise.balancing.box_bounds import CLOSE
+from equipoise.balancing.cylinder_phasing import PhasedRows
 from equipoise.balancing.effects import Effects
-from equipoise.balancing.multi_row import PhasedRows
 from equipoise.balancing.objectives import of_all_rows
 from equipoise.balancing.phasing import choose_phases
 from equipoise.balancing.problem import Problem

@@ -1,8 +1,9 @@
-"""Files and folders on their way to be whole: made beside their place, and put there at the end.
+"""Files and folders that become whole: written beside their place, and moved there at the end.
 
-What a process that was killed has left beside a place goes when the next one writes there.  Of what
-is written `together`, all takes its place in the end, or nothing where something goes wrong.  Into
-a folder that is `locked` no other process writes.  The folder of a place is held open meanwhile.
+What a killed process has left beside a place is removed when the next one writes there.  Of what is
+written in a `transaction`, all takes its place in the end, or nothing where something goes wrong.
+Into a folder that is `locked` no other process writes.  The folder of a place is held open
+meanwhile.
 """
 
 from __future__ import annotations
@@ -30,8 +31,8 @@ ENDING = ".tmp"
 
 
 @contextmanager
-def beside(folder: Folder, name: str) -> Iterator[str]:
-    """A free name in a folder, for what takes the place of another there; gone in the end."""
+def temporary_name(folder: Folder, name: str) -> Iterator[str]:
+    """Yield a free name in a folder for what replaces a file there; nothing has it in the end."""
     clear_left_over(folder)
     begun = f".{name[:100]}.{_here()}-{os.getpid()}{ENDING}"
     folder.remove(begun)  # of a process that had this number, or planted there
@@ -42,7 +43,7 @@ def beside(folder: Folder, name: str) -> Iterator[str]:
 
 
 @dataclass
-class _Together:
+class _Transaction:
     """What waits until all of it can be done.
 
     places : what is to take whose place, by folder and name.  folders : of these, by path.
@@ -75,17 +76,17 @@ class _Together:
             self.then.pop(0)()
 
 
-_waiting: ContextVar[_Together | None] = ContextVar("_waiting", default=None)
+_waiting: ContextVar[_Transaction | None] = ContextVar("_waiting", default=None)
 
 
 @contextmanager
-def together() -> Iterator[None]:
-    """What is put into its place, and told of it, meanwhile: in the end all of it, or nothing.
+def transaction() -> Iterator[None]:
+    """Inside, files are replaced and reported in the end: all of them, or none.
 
     A reader of the output who has seen enough does not keep files from being written.
     """
     stack = ExitStack()
-    whole = _Together(stack)
+    whole = _Transaction(stack)
     token = _waiting.set(whole)
     try:
         with holding():
@@ -115,13 +116,13 @@ def replaced(path: str | os.PathLike[str], *, links: bool = True) -> Iterator[Bi
     folder, name = place_of(path, links=links)
     whole = _waiting.get()
     if whole is None:
-        with beside(folder, name) as begun:
+        with temporary_name(folder, name) as begun:
             with _synced(folder, begun, like=name) as file:
                 yield file
             folder.rename(begun, name)
         return
     folder = whole.folders.setdefault(folder.path, folder)  # few are open, of however many files
-    begun = whole.stack.enter_context(beside(folder, name))
+    begun = whole.stack.enter_context(temporary_name(folder, name))
     with _synced(folder, begun, like=name) as file:
         yield file
     whole.places[folder.path, name] = folder, begun
@@ -140,7 +141,7 @@ def _synced(folder: Folder, name: str, like: str) -> Iterator[BinaryIO]:
         os.fsync(file.fileno())
 
 
-def made(folder: str | os.PathLike[str]) -> None:
+def make_folder(folder: str | os.PathLike[str]) -> None:
     """Make a folder, with all above it, where it is not there; gone again where nothing comes in.
 
     Raises
