@@ -19,6 +19,7 @@ from equipoise.mechanism.assembly.linkage import assemble
 from support.batches import signals_of
 from support.chosen import DISTINCT, few
 from support.designs import design, drawn, numbers_of
+from support.machines import make
 
 NODE = shutil.which("node")
 ANGLES = 24
@@ -154,3 +155,22 @@ def test_long_functions_are_split() -> None:
         given = sum(" = own[" in line or " = grid[" in line or "work[" in line
                     for line in part.splitlines())  # fmt: skip
         assert len(part.splitlines()) - given <= MOST_LINES + 6
+
+
+@node
+def test_forces_that_joints_share_with_teeth(tmp_path: Path) -> None:
+    """Of a machine whose teeth all bear on one flank, which is watched."""
+    machine = make("rocking_screen", 1).machine
+    linkage = assemble(machine)
+    assert linkage.shared is not None and machine.switches
+    names = signals_of(machine)
+    watched = [one for one in pose_signals(linkage) if one.startswith("cosine")]
+    assert len(watched) == sum(coupling.switches for coupling in machine.couplings)
+    script = javascript(linkage, [*names, *watched])
+    analysis = eq.analyze(machine, ANGLES)
+    got = run(script, script.numbers(linkage), analysis.crank_angle, tmp_path)
+    assert np.all(got[len(names) :] >= FAR)
+    summed = {one.name: one.values for one in analysis.outputs}
+    known = np.array([summed[one] for one in names])
+    got = got[: len(names)]
+    assert np.all(np.abs(got - known) <= 1e-9 * size(known))

@@ -13,10 +13,10 @@ from typing import Any
 from equipoise.codegen.coupled import can_trace_followers
 from equipoise.codegen.figures import Figure, Gathered
 from equipoise.codegen.loops import can_trace
+from equipoise.codegen.redundant_forces import check_shared
 from equipoise.codegen.source import TermSource, source_of
 from equipoise.codegen.steps import (
     bearing_force,
-    check_shared,
     trace_demands,
     trace_joints,
     trace_motion,
@@ -43,6 +43,8 @@ from equipoise.mechanism.parts.joint_properties import JOINTS, family_of
 from equipoise.mechanism.parts.machine import Machine
 
 RUBS = Note("what friction in joints changes cannot be computed in a loop")
+WATCHED = "cosine "
+"""Before the number of what is watched."""
 PARTS: dict[str, Callable[[Any], Any]] = {
     "": lambda value: value,
     "size": length,
@@ -74,6 +76,8 @@ class Signals:
         """
         if signal in self.poses:
             return self.poses[signal]
+        if signal.startswith(WATCHED):
+            return self.watched[signal]
         entry, item = declared(signal) or (None, "")
         if entry is None or entry.loop is None or not self._has(entry):
             raise UsageError(unknown(signal, self._known(), "signal"))
@@ -104,8 +108,7 @@ class Signals:
     def poses(self) -> dict[str, Any]:
         """Signals that are no outputs but tell where each link is, and how far each dyad is from
         its dead positions: ``rotation(crank).x`` of exp(i angle), ``center(crank).x`` of its centre
-        of mass (m), ``margin 0`` of the first dyad, and ``cosine 0`` of the first link whose angle
-        is taken from that of the base.
+        of mass (m), and ``margin 0`` of the first dyad.
         """
         trace = self.trace
         values: dict[str, Any] = {}
@@ -117,8 +120,16 @@ class Signals:
                 vectors["center"] = anchor + turn * arm
             for what, vector in vectors.items():
                 values |= {f"{what}({link}).x": vector.real, f"{what}({link}).y": vector.imag}
-        values |= {f"margin {k}": number for k, (number, _) in enumerate(trace.numbers())}
-        return values | {f"cosine {k}": item for k, item in enumerate(trace.running.values())}
+        return values | {f"margin {k}": number for k, (number, _) in enumerate(trace.numbers())}
+
+    @cached_property
+    def watched(self) -> dict[str, Any]:
+        """Signals that are `FAR` or more where what was traced holds, that is motion and, where
+        there are masses, forces: ``cosine 0`` of the first.
+        """
+        with suppress(UsageError, MassError):
+            self.forces  # noqa: B018  some of them are watched
+        return {f"{WATCHED}{k}": item for k, item in enumerate(self.trace.running.values())}
 
     @cached_property
     def demands(self) -> dict[str, Any]:
@@ -304,10 +315,11 @@ def signals_in_loops(linkage: Linkage, names: Iterable[str]) -> list[str]:
 
 
 def pose_signals(linkage: Linkage) -> list[str]:
-    """Names of the signals in `Signals.poses` of a linkage at crank angles that stand alone; errors
-    as `signals_in_loops`.
+    """Names of the signals in `Signals.poses` and `Signals.watched` of a linkage at crank angles
+    that stand alone; errors as `signals_in_loops`.
     """
-    return [*_traced(linkage, alone=True).poses]
+    signals = _traced(linkage, alone=True)
+    return [*signals.poses, *signals.watched]
 
 
 def _traced(linkage: Linkage, paths: Collection[str] | None = None, alone: bool = False) -> Signals:

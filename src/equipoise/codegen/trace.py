@@ -174,7 +174,7 @@ class Trace:
 
     def point(self, link: str, point: str) -> tuple[Any, Any, Any]:
         """A point of a link and its derivatives."""
-        if f"p({point})" not in self.state:
+        if f"p2({point})" not in self.state:  # of a joint there may be its place alone
             anchor = self.linkage.anchors[link]
 
             def arm(linkage: Linkage) -> Any:

@@ -6,7 +6,6 @@ import ast
 import builtins
 import keyword
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -19,7 +18,6 @@ from equipoise.codegen.figures import Figure, Gathered
 from equipoise.codegen.source import NUMPY, TermSource
 from equipoise.errors import MassError, UsageError
 from equipoise.mechanism.assembly.linkage import assemble
-from equipoise.mechanism.parts.joint_properties import JointProperties
 from equipoise.mechanism.parts.machine import FRAME, Drive, Link, Machine
 from laws.transforms import renamed
 from support.batches import WRITTEN, by_numpy, every_dyad, known_of, same_figures, signals_of
@@ -187,9 +185,8 @@ def test_forces_need_masses() -> None:
 
 
 def test_forces_that_joints_share_are_refused_where_no_formula_holds() -> None:
-    """Teeth that bear by the sense of their force, stiffness, and joints that let go."""
-    train, walker = make("planet_train", 1).machine, eq.load("straw-walker")
-    stiff = replace(walker, joints=(JointProperties("joints.R1", stiffness=1e6),))
+    """Many teeth, and joints that let go."""
+    train = make("planet_train", 1).machine
     square = Machine(
         "square", Drive("crank", 10.0),
         {"A": (0.0, 0.0), "D": (0.2, 0.0)},
@@ -201,8 +198,7 @@ def test_forces_that_joints_share_are_refused_where_no_formula_holds() -> None:
         assembly={"mode": "parallel"},
     )  # fmt: skip
     for machine, reason in (
-        (train, "by the sense"),
-        (stiff, "stiffness"),
+        (train, "many teeth"),
         (square, "singular position"),
     ):
         assert assemble(machine).shared is not None

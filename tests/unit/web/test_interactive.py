@@ -88,13 +88,13 @@ def test_figures_are_those_of_an_analysis(name: str, tmp_path: Path) -> None:
 
 CHANGED = [
     "yamashita-1", "slider-crank-engine", "quick-return", "scotch-yoke", "watt-six-bar",
-    "hydraulic-loader", "planetary-planting-arm", "sieve",
+    "planetary-planting-arm", "sieve",
 ]  # fmt: skip
 
 
 FEWER = [
     "straw-walker", "four-stroke-engine", "pick-and-place", "knife-drive", "cam-pusher",
-    "geared-counterweight", "elliptic-quick-return", "riding-transplanter",
+    "geared-counterweight", "elliptic-quick-return", "riding-transplanter", "hydraulic-loader",
 ]  # fmt: skip
 """Of some of whose numbers scripts can be written, and one of several rows."""
 
