@@ -177,7 +177,7 @@ def with_chain() -> eq.Machine:
 
 @pytest.mark.parametrize(
     "name", ["geared-counterweight", "planetary-planting-arm", "knife-drive", "transplanter",
-             "chain"],
+             "elliptic-quick-return", "chain"],
 )  # fmt: skip
 def test_teeth_chains_and_soil_press_in_a_run_as_in_inverse_dynamics(name: str) -> None:
     """Flanks and strands change within a turn, and the soil pushes; what they press in joints

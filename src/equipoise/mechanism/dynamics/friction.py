@@ -372,7 +372,8 @@ def unit_demands(motion: Motion, joints: Sequence[RubbingJoint]) -> list[dict[st
     """What holds a unit of friction in each joint, on both its bodies."""
     demands = []
     for joint in joints:
-        ends: list[Acting] = [(joint.on, None, 0j, 1.0), (joint.by, None, 0j, -1.0)]  # type: ignore[list-item]
+        lever = joint.lever(motion)
+        ends: list[Acting] = [(joint.on, None, 0j, lever), (joint.by, None, 0j, -lever)]  # type: ignore[list-item]
         if joint.slides:
             at, along = joint.place(motion), joint.direction(motion)
             ends = [(joint.on, at, along, 0.0), (joint.by, at, -along, 0.0)]
@@ -436,7 +437,7 @@ def with_friction(
         JointFriction(
             joint.on,
             joint.by,
-            not joint.slides,
+            not joint.slides and not joint.centres,
             efforts[k],
             size[k],
             law.rates[k],

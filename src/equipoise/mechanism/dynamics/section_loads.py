@@ -331,7 +331,8 @@ def _rubbing(motion: Motion, solved: JointReactions) -> Iterator[Acting]:
         effort = solved.friction[joint.name].effort
         for body, sign in ((joint.on, 1.0), (joint.by, -1.0)):
             if not joint.slides:
-                yield body, motion.state[f"p({joint.reaction.at})"], NO_FORCE, sign * effort
+                torque = sign * effort * joint.lever(motion)
+                yield body, motion.state[f"p({joint.reaction.at})"], NO_FORCE, torque
             else:
                 along = joint.direction(motion)
                 yield body, joint.place(motion), sign * effort * along, 0.0

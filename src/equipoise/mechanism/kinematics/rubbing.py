@@ -12,9 +12,10 @@ from equipoise.mechanism.formulas.kernels import dot
 from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.parts.cams import Cam
 from equipoise.mechanism.parts.couplings import Coupling
+from equipoise.mechanism.parts.gears import Gear
 from equipoise.mechanism.parts.joint_kinds import JointKind
 from equipoise.mechanism.parts.joint_properties import JOINTS, JointProperties
-from equipoise.mechanism.parts.machine import Slider
+from equipoise.mechanism.parts.machine import FRAME, Slider
 
 STILL = 1e-10
 """rad or lengths of the largest link, by rad of the crank: a joint that moves less is at rest, as
@@ -30,7 +31,9 @@ class RubbingJoint:
     still : rad or m by rad of the crank, below which it is at rest.
     mesh : the gears, the rack or the belt that lose in passing their force on, or the cam on which
         its follower slides; None of a joint.  A driven rack has its guide as `slider`.
-    pitch_radius : of the driven one of these, m; 1 of a driven rack, and of a cam.
+    pitch_radius : of the driven one of these, m; 1 of a driven rack, of a cam, and of gears of
+        varying ratio, whose effort is a force along their pitch curves.
+    centres : distance of the pins of gears of varying ratio, m; 0 of all else.
     """
 
     name: str
@@ -41,6 +44,7 @@ class RubbingJoint:
     mesh: Coupling | None = None
     pitch_radius: float = 0.0
     slot: JointKind | None = None
+    centres: float = 0.0
 
     @property
     def on(self) -> str:
@@ -79,6 +83,18 @@ class RubbingJoint:
             return self.pitch_radius
         return 1.0 if self.slides else self.given.radius or 0.0
 
+    def lever(self, motion: Motion) -> Array:
+        """Torque (N,) of a unit of what makes its bodies turn against each other: 1 where its
+        effort is a torque, the driven pitch radius, m, of gears of varying ratio.
+        """
+        if not self.centres:
+            return np.ones(())
+        assert isinstance(self.mesh, Gear) and self.mesh.law is not None
+        ends = (self.mesh.driver, self.mesh.carrier)
+        driver, carrier = (0.0 if end == FRAME else motion.links[end].angle for end in ends)
+        _, ratio, _ = self.mesh.law(driver - carrier)
+        return np.asarray(np.abs(self.centres / (1 - ratio)))
+
     @property
     def coefficient(self) -> float:
         """Of friction while it moves; of gears and belts the share of their force that is lost."""
@@ -99,7 +115,8 @@ class RubbingJoint:
             rate = self._rate_on_cam(motion)
         elif self.slider is None:
             turns = [motion.state[f"w({body})"] for body in (self.on, self.by)]
-            rate = np.broadcast_to(np.asarray(turns[0] - turns[1], float), motion.crank_angle.shape)
+            rate = np.asarray(turns[0] - turns[1], float) * self.lever(motion)
+            rate = np.broadcast_to(rate, motion.crank_angle.shape)
         else:
             rate = motion.slider(self.slider).travel_1
         return np.where(np.abs(rate) > self.still, rate, 0.0)
@@ -190,6 +207,12 @@ def _rubbing(linkage: Linkage) -> list[RubbingJoint]:
                 still = STILL * size
                 result.append(RubbingJoint(mesh.name, reaction, entry, guide, still, mesh, 1.0))
                 continue
+            if isinstance(mesh, Gear) and mesh.law is not None:
+                name, apart = mesh.name, _centres(linkage, mesh)
+                still = STILL * size
+                varying = RubbingJoint(name, reaction, entry, None, still, mesh, 1.0, None, apart)
+                result.append(varying)
+                continue
             radius = _pitch_radius(linkage, mesh)
             result.append(RubbingJoint(mesh.name, reaction, entry, None, still, mesh, radius))
     return result
@@ -197,11 +220,12 @@ def _rubbing(linkage: Linkage) -> list[RubbingJoint]:
 
 def _pitch_radius(linkage: Linkage, mesh: Coupling) -> float:
     """Radius of the pitch circle of the driven gear or pulley, m."""
+    return float(dict(mesh.circles(lambda: _centres(linkage, mesh)))[mesh.driven])
 
-    def apart() -> float:
-        points = linkage.machine.bodies[mesh.carrier]
-        pins = [linkage.joints.pins_between(body, mesh.carrier)[0] for body in mesh.bodies[:2]]
-        driver, driven = (planar(points[pin]) for pin in pins)
-        return abs(driven - driver)
 
-    return float(dict(mesh.circles(apart))[mesh.driven])
+def _centres(linkage: Linkage, mesh: Coupling) -> float:
+    """Distance of the pins of driver and driven body on the carrier, m."""
+    points = linkage.machine.bodies[mesh.carrier]
+    pins = [linkage.joints.pins_between(body, mesh.carrier)[0] for body in mesh.bodies[:2]]
+    driver, driven = (planar(points[pin]) for pin in pins)
+    return abs(driven - driver)

@@ -149,8 +149,8 @@ class Gear(Turning):
 
     @property
     def loses(self) -> bool:
-        """At one ratio."""
-        return self.shape is None
+        """In any case."""
+        return True
 
     @property
     def unevenness(self) -> float:

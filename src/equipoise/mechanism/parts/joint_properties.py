@@ -231,7 +231,7 @@ def wrong_of_kind(
         on.
     """
     if properties.mesh_loss is not None and not loses:
-        note = Note("{joint!r} is no belt, rack or pair of gears of one ratio; leave it out",
+        note = Note("{joint!r} is no belt, rack or pair of gears; leave it out",
                     joint=properties.joint)  # fmt: skip
         yield ModelError(f"{where}.mesh_loss", note)
     if in_slot and (properties.bearing or properties.width) is not None:
