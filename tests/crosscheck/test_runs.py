@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -18,6 +18,7 @@ from equipoise.exchange import mjcf
 from equipoise.exchange.formats import Job
 from equipoise.mechanism import JointProperties
 from equipoise.mechanism.parts.force_elements import Motor
+from equipoise.running.run import Run
 from support.machines import make
 from support.poses import Array
 
@@ -38,11 +39,14 @@ def alone(kind: str, seed: int = 0) -> eq.Machine:
         for name, link in machine.links.items()
     }  # fmt: skip
     drive = replace(machine.drive, acceleration=0.0, motor=None, speed=FASTER * machine.drive.speed)
-    return replace(machine, links=links, drive=drive, loads=(), springs=(), torsion_springs=(),
-                   support=None, rows=(), balance=None, run=None)  # fmt: skip
+    bare: eq.Machine = replace(
+        machine, links=links, drive=drive, loads=(), springs=(), torsion_springs=(), support=None,
+        rows=(), balance=None, run=None,
+    )  # fmt: skip
+    return bare
 
 
-def crank_angles(run: eq.Run, times: Array) -> Array:
+def crank_angles(run: Run, times: Array) -> Array:
     """Crank angles of a run at times, from angles and speeds at its instants."""
     time, places = np.unique(run.time, return_index=True)
     return CubicHermiteSpline(time, run.crank_angle[places], run.crank_speed[places])(times)
@@ -108,6 +112,8 @@ def _in_exudyn(
     machine: eq.Machine, duration: float, act: Callable[[Any], None], steps: int
 ) -> float:
     exudyn = pytest.importorskip("exudyn")
+    from exudyn import itemInterface as item
+
     from equipoise.exchange import exudyn_script
 
     class Free(exudyn_script.Build):
@@ -116,9 +122,9 @@ def _in_exudyn(
         pins : constraints of its pins, in the order of the model.
         """
 
-        def add(self, item: Any) -> int:
-            number = super().add(item)
-            if isinstance(item, exudyn_script.item.ObjectJointRevolute2D):
+        def add(self, entry: Any) -> int:
+            number = super().add(entry)
+            if isinstance(entry, item.ObjectJointRevolute2D):
                 self.pins = [*getattr(self, "pins", []), number]
             return number
 
@@ -126,11 +132,11 @@ def _in_exudyn(
             self.crank = body
             return 0
 
-    built = Free(exudyn_export._model(Job(machine)))
+    built: Any = Free(exudyn_export._model(Job(machine)))
     act(built)
     settings: dict[str, Any] = {"storeInternal": True, "writeToFile": False}
     sensor = built.system.AddSensor(
-        exudyn_script.item.SensorNode(
+        item.SensorNode(
             nodeNumber=built.nodes[built.crank],
             outputVariableType=exudyn.OutputVariableType.Coordinates,
             **settings,
@@ -148,7 +154,7 @@ def _in_exudyn(
     chosen.timeIntegration.generalizedAlpha.useIndex2Constraints = True
     chosen.timeIntegration.verboseMode = 0
     built.system.SolveDynamic(chosen)
-    return float(built.system.GetSensorStoredData(sensor)[-1, 3])
+    return float(np.asarray(built.system.GetSensorStoredData(sensor))[-1, 3])
 
 
 def motor_of(machine: eq.Machine) -> Motor:
@@ -170,9 +176,10 @@ def turns_crank(machine: eq.Machine, motor: Motor) -> Callable[[Any], None]:
     """
 
     def act(built: Any) -> None:
-        from equipoise.exchange.exudyn_script import item
+        from exudyn import itemInterface as item
 
         sense = np.sign(machine.drive.speed)
+        assert motor.stall_torque is not None and motor.no_load_speed is not None
         turning = built.coordinate(built.crank)
         torque = float(sense * motor.stall_torque)
         built.system.AddLoad(item.LoadCoordinate(markerNumber=turning, load=torque))
@@ -213,8 +220,9 @@ def rubbing_engine() -> eq.Machine:
         for pin, radius in RADII.items()
     )
     drive = replace(machine.drive, speed=100.0, motor=Motor(200.0, 60.0, mean_speed="free"))
-    return replace(machine, loads=(), balance=None, support=None, joints=joints, run=None,
-                   drive=drive)  # fmt: skip
+    engine: eq.Machine = replace(machine, loads=(), balance=None, support=None, joints=joints,
+                                 run=None, drive=drive)  # fmt: skip
+    return engine
 
 
 def rubs(machine: eq.Machine) -> Callable[[Any], None]:
@@ -224,8 +232,7 @@ def rubs(machine: eq.Machine) -> Callable[[Any], None]:
 
     def act(built: Any) -> None:
         import exudyn
-
-        from equipoise.exchange.exudyn_script import item
+        from exudyn import itemInterface as item
 
         for number, pin in zip(built.pins, built.model["pins"], strict=True):
             (one, _), (other, _) = pin
@@ -245,7 +252,7 @@ def rubs(machine: eq.Machine) -> Callable[[Any], None]:
                 item.ObjectConnectorCoordinateSpringDamper(
                     markerNumbers=built.pair(*ends),
                     stiffness=0.0,
-                    springForceUserFunction=against,
+                    springForceUserFunction=cast(Any, against),
                 )
             )
 

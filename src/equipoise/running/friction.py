@@ -242,7 +242,7 @@ class Friction(Source):
         and factors of loads over time.
         """
         ways = 2 * self.given[0]
-        efforts = []
+        efforts: list[Array] = []
         if self.elements:
             elements = [element for *_, element in self.elements]
             efforts, _ = rated_efforts(elements, columns[:ways], speed, sense)

@@ -121,7 +121,7 @@ class OfSoil(Source):
         assert self.planting.soil is not None
         depth, x, y = columns.reshape(3, -1, *columns.shape[1:])
         over_ground = (x + 1j * y) * speed + self.planting.forward(speed)
-        return against_soil(self.planting.soil, depth, over_ground)
+        return np.asarray(against_soil(self.planting.soil, depth, over_ground))
 
 
 def _of_loads(motion: Motion) -> Array:
@@ -194,7 +194,7 @@ def _ends(motion: Motion, load: TimedLoad) -> Iterator[Acting]:
     """What a load over time exerts on its link, and on the body that bears its opposite."""
     none = np.zeros(len(motion.crank_angle))
     place, force = None, none + 0j
-    if load.force is not None:
+    if load.force is not None and load.point is not None:
         turn = motion.state[u(load.link)[0]] if load.axes else 1.0
         force, place = (none + complex(*load.force)) * turn, motion.point(load.point).place
     torque = load.torque or 0.0
