@@ -250,12 +250,12 @@ def test_what_takes_too_long_is_refused_when_it_goes_on_evenly(
     count, piece = itertools.count(), Integration._piece
 
     def counted(self: Integration, begin: Instant) -> Instant | None:
-        assert next(count) < 4000
+        assert next(count) < 1000
         return piece(self, begin)
 
     monkeypatch.setattr(Integration, "_piece", counted)
-    monkeypatch.setattr(integration, "MOST_PIECES", 8000)
-    monkeypatch.setattr(integration, "LOOKED", 500)
+    monkeypatch.setattr(integration, "MOST_PIECES", 2000)
+    monkeypatch.setattr(integration, "LOOKED", 125)
     with pytest.raises(ResponseError) as caught:
         eq.run(crank(Motor(300.0, 400.0)), **asked)
     most, turns = re.search(
@@ -263,7 +263,7 @@ def test_what_takes_too_long_is_refused_when_it_goes_on_evenly(
     ).groups()
     assert float(turns) == pytest.approx(float(most) * 300.0 / (2 * pi), rel=0.1)
     monkeypatch.undo()
-    monkeypatch.setattr(integration, "MOST_PIECES", 8000)
+    monkeypatch.setattr(integration, "MOST_PIECES", 2000)
     assert eq.run(crank(Motor(300.0, 400.0)), 0.95 * float(most)).end.kind == "time"
 
 
