@@ -169,7 +169,7 @@ def transmission_sentence(transmission: PoorTransmission, crank_turns: bool) -> 
     return say(
         of_crank if crank_turns else of_cycle,
         joint=joint_named(transmission.joint),
-        value=angle(transmission.transmission),
+        value=told(transmission.transmission, "angle", digits=3),
         angle=angle(transmission.crank_angle),
         limit=angle(transmission.limit, 0),
     )

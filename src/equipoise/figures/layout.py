@@ -310,9 +310,11 @@ above a picture without a heading."""
 HIGH = {1: 190.0, 2: 132.0, 3: 106.0, 4: 92.0}
 HIGH_OF_HALF = {1: 110.0, 2: 70.0, 3: 50.0, 4: 38.0}
 """Height of one of so many panels above each other; the last of more."""
-LEAST, MOST, MOST_OF_HALF, ROOM, SMALL_ROOM = 110.0, 345.0, 140.0, 26.0, 0.13
+LEAST, MOST, ROOM, SMALL_ROOM = 110.0, 345.0, 26.0, 0.13
 """Height of panels of one scale at least and at most; free in them around what is drawn, points
 or, in small ones, a share."""
+MOST_OF_HALF, ONE_OF_HALF = 140.0, 127.0
+"""Height of all such panels in half of a page, and of one."""
 
 
 def lay_out(chart: Chart, wide: float = WIDE, headed: bool = True) -> Canvas:
@@ -355,7 +357,9 @@ def _panels(sheet: Canvas, chart: Chart, top: float) -> float:
     if sheet.width == HALF and not all(panel.equal for panel in chart.panels):
         columns = 1  # words along the axes need the width
     rows = [chart.panels[k : k + columns] for k in range(0, len(chart.panels), columns)]
-    high, most = (HIGH_OF_HALF, MOST_OF_HALF / len(rows)) if sheet.width == HALF else (HIGH, MOST)
+    high, most = HIGH, MOST
+    if sheet.width == HALF:
+        high, most = HIGH_OF_HALF, min(MOST_OF_HALF / len(rows), ONE_OF_HALF)
     usual = high[min(len(rows), max(high))]
     highest = usual if sheet.width == HALF else np.inf
     cells = [cell_of(panel, min(panel.height or usual, highest)) for panel in chart.panels]

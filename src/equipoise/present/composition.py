@@ -107,8 +107,9 @@ AFTER = to_say("Lines that end in “after” are those after the change that he
 Parts = dict[str, list[Block | ReportSection]]
 """What stands in each section, by its name."""
 
-SHORT = 6
-"""Rows of a table that stands among the pictures; longer ones stand in the appendix."""
+SHORT, SHORT_OF_MODEL = 6, 9
+"""Rows of a table that stands among the pictures, and of one of the model, which has room below the
+summary; longer ones stand in the appendix."""
 BEHIND = ("sources", "settings")
 """Sections that stand in the appendix as a whole."""
 
@@ -140,7 +141,7 @@ def build(
 def _of_linkage(findings: Findings, language: str, command: str, parallel: bool) -> ReportDocument:
     machine, analysis = findings.machine, findings.analysis
     pictures = drawings(findings, parallel)
-    blocks: Parts = {"model": [*pictures.get("model", []), *model_blocks(machine)]}
+    blocks: Parts = {"model": [*model_blocks(machine), *pictures.get("model", [])]}
     blocks["motion"] = [*pictures.get("motion", []), *_details(motion_blocks(analysis))]
     blocks["motion"] += [*kind_tables(analysis, "motion"), *elements_tables(analysis)]
     if findings.planting is not None:
@@ -220,18 +221,24 @@ def balance_blocks(findings: Findings) -> Iterator[Block]:
 
 
 def _of_tool(findings: ToolFindings, language: str, command: str) -> ReportDocument:
-    blocks: list[Block | ReportSection] = [*drawings(findings).get("tool", [])]
+    pictures: list[Block | ReportSection] = [*drawings(findings).get("tool", [])]
+    blocks: list[Block | ReportSection] = []
     if findings.design is not None:
         blocks.extend(design_blocks(findings.design, judged=False))  # which the summary says
     if findings.exposure is not None:
         blocks.extend(exposure_of_tool(findings.exposure, judged=False))
+    # Without a design the first page has room for the figures, but not for the pictures.
+    blocks = [*blocks, *pictures] if findings.design is None else [*pictures, *blocks]
     if findings.modes is not None:
         blocks.extend(_details(of_tools.modes_blocks(findings.modes)))
     subtitle = ""
     if findings.tool.operation is not None:
         rpm = number(findings.tool.operation.speed / PER_RPM)
         subtitle = say("hand-held tool, engine at {speed} rpm", speed=rpm)
-    named: Parts = {"model": [*_details(of_tools.model_blocks(findings.tool))], "tool": blocks}
+    model = [*of_tools.model_blocks(findings.tool)]
+    if findings.design is not None:  # which fills the first page
+        model = [*_details(model)]
+    named: Parts = {"model": model, "tool": blocks}
     return ReportDocument(
         language,
         said(findings.tool.title),
@@ -282,7 +289,8 @@ def _sections(
     }
     sections, appendix = [], []
     for name, parts in (blocks | last).items():
-        short, long = ([], parts) if name in BEHIND else parted(parts)
+        rows = SHORT_OF_MODEL if name == "model" else SHORT
+        short, long = ([], parts) if name in BEHIND else parted(parts, rows)
         title = say(TITLES[name])
         if short or headlines.get(name):
             sections.append(ReportSection(name, title, tuple(short), headlines.get(name, "")))
@@ -295,14 +303,14 @@ def _sections(
 
 
 def parted(
-    blocks: Iterable[Block | ReportSection],
+    blocks: Iterable[Block | ReportSection], rows: int = SHORT
 ) -> tuple[list[Block | ReportSection], list[Block | ReportSection]]:
     """What stands in a section; and long tables, pictures and tables of details."""
     short: list[Block | ReportSection] = []
     long: list[Block | ReportSection] = []
     for block in blocks:
         of_detail = isinstance(block, Table | SvgPicture) and block.detail
-        if of_detail or (isinstance(block, Table) and len(block.rows) > SHORT):
+        if of_detail or (isinstance(block, Table) and len(block.rows) > rows):
             long.append(block)
         else:
             short.append(block)

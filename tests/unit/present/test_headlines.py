@@ -186,7 +186,7 @@ FOOT = 0.935
     "name",
     few(
         (*eq.examples("linkage"), *eq.examples("tool")),
-        {"pole-saw", "brush-cutter", "hydraulic-loader", "yamashita-rig"},
+        {"nagamine-irie", "hydraulic-loader", "yamashita-rig", "jansen-leg", "twin-engine"},
     ),
 )
 def test_no_quarter_of_the_first_page_is_empty(name: str) -> None:
@@ -367,3 +367,12 @@ def test_every_picture_is_listed_in_the_documentation(name: str) -> None:
     for picture in each(found_of(name)):
         own = re.sub(r"-(lateral|\d+)$", "", picture.name)
         assert own in listed or picture.name.startswith(begins), picture.name
+
+
+def test_a_transmission_angle_is_the_same_number_wherever_the_first_page_has_it() -> None:
+    told = document("jansen-leg")
+    assert told.verdict is not None
+    first = [told.verdict.text, *(one for answer in told.summary for one in answer.sentences)]
+    values = [re.findall(r"Transmission angle at E[^:]*: ([\d.]+)°", line) for line in first]
+    assert len([*filter(None, values)]) > 1
+    assert len({value for each in values for value in each}) == 1
