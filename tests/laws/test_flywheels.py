@@ -11,6 +11,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import equipoise as eq
+from equipoise.balancing.advice import advise
 from equipoise.errors import ResponseError, UsageError
 from equipoise.mechanism.parts.dc_motors import DcMotor
 from equipoise.mechanism.parts.force_elements import Motor
@@ -19,6 +20,7 @@ from equipoise.running.drivers import Driver
 from equipoise.running.equation import CrankEquation
 from equipoise.running.flywheel import Flywheel, Shooting, SteadyCycle, share_of_mean, size_flywheel
 from equipoise.running.integration import Instant, Integration, Limits
+from equipoise.vibration.coupled import StallError
 from support.analyses import subject_of
 from support.chosen import few
 
@@ -228,3 +230,31 @@ def test_in_the_output() -> None:
     assert isinstance(found.flywheel, Flywheel)
     assert found.to_dict()["flywheel"] == found.flywheel.to_dict()
     assert "textbook" in str([*run_headline(found)])
+
+
+def with_load(machine: eq.Machine, torque: float, **motor: float) -> eq.Machine:
+    """A crank that a torque resists at every angle, N m, with a motor."""
+    load = eq.Load(machine.drive.link, torque=-torque)
+    drive = replace(machine.drive, motor=Motor(no_load_speed=80.0, **motor))
+    return replace(machine, loads=(load,), drive=drive)
+
+
+def test_no_flywheel_is_looked_for_where_the_motor_is_too_weak_in_the_mean(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The work of a turn is that of the load, at any speed: 5 N m is more than twice 2 N m."""
+    machine = with_load(subject_of("transplanter").machine, 5.0, stall_torque=2.0, ratio=2.0)
+    monkeypatch.setattr(Shooting, "_cycle", lambda *_: pytest.fail("a cycle was followed"))
+    with pytest.raises(StallError, match="stalls with any flywheel") as error:
+        size_flywheel(machine, 0.02)
+    needed = SteadyCycle(CrankEquation(machine)).resisting(80.0 / 2 / 48)
+    assert needed == pytest.approx(5.0, rel=0.02)
+    assert f"needs {needed:.4g} N m" in str(error.value)
+    assert "has 3.917 N m" in str(error.value)  # 4 N m, less 1 / 48 of it
+
+
+def test_balancing_ends_where_the_motor_is_too_weak(monkeypatch: pytest.MonkeyPatch) -> None:
+    machine = with_load(subject_of("transplanter").machine, 5.0, stall_torque=2.0, ratio=2.0)
+    monkeypatch.setattr(Shooting, "_cycle", lambda *_: pytest.fail("a cycle was followed"))
+    advice = advise(machine).advice
+    assert advice is not None and advice.beyond.flywheels is None

@@ -31,6 +31,8 @@ from equipoise.running.equation import CrankEquation
 from equipoise.running.integration import Gained, Integration, Limits
 from equipoise.running.tabulated import NODES, POINTS, TO_CHEBYSHEV, integral_to, polynomials
 from equipoise.signals import Array
+from equipoise.vibration.coupled import StallError, mean_stall_note
+from equipoise.vibration.steady import fastest
 
 CLOSE = 1e-9
 """Share of the state by which the last step of the search may change it."""
@@ -164,6 +166,8 @@ MOST_TURNS = 400
 """Of a motor's crank, followed on the way to its steady states, of all inertias together."""
 FIRST_CYCLES = 4
 """Followed before it is tried whether a steady state is near by; then four times as many."""
+SPEEDS = 48
+"""At which the torque of a motor is held against what resists, up to its fastest."""
 WHOLE, TO_NODES = integral_to(1.0, -1.0), integral_to(POINTS, -1.0)
 """Integral over a piece, and up to each of its nodes, by values at the nodes."""
 DENSELY = polynomials(np.linspace(-1.0, 1.0, DENSE + 1))[:, :NODES] @ TO_CHEBYSHEV
@@ -225,6 +229,21 @@ class SteadyCycle:
 
     def _torque(self, speed: Array) -> Array:
         """Of all but the drive at the nodes (P, NODES), about its mean, N m."""
+        torque, driving = self._torque_and_mean(speed)
+        return torque + driving
+
+    def resisting(self, speed: float) -> float:
+        """Mean torque, N m, that the drive needs at a constant speed of the crank, rad/s, without
+        its sense.
+        """
+        sense = float(np.sign(self.equation.machine.drive.speed))
+        _, driving = self._torque_and_mean(np.full_like(self._inertia, sense * speed))
+        return sense * driving
+
+    def _torque_and_mean(self, speed: Array) -> tuple[Array, float]:
+        """Torque of all but the drive at the nodes (P, NODES), and the drive's mean that holds
+        against it, N m.
+        """
         values, driving = self.equation.table.values, 0.0
         if self.equation.friction is not None:
             values = np.concatenate([self._inertia[None], values[1:]])
@@ -235,7 +254,7 @@ class SteadyCycle:
             before, driving = driving, -self._integral(torque) / self.equation.period
             if abs(driving - before) <= SAME * abs(driving):
                 break
-        return np.asarray(torque + driving)
+        return np.asarray(torque), driving
 
     def _work(self, torque: Array) -> Array:
         """Done since the crank angle 0 at the nodes (P, NODES), J."""
@@ -329,6 +348,7 @@ def size_flywheel(
     ------
     MassError, MotionError, UsageError, ResponseError : as `run.run`; or the wanted fluctuation is
         not between 0 and 1.
+    StallError : the motor is too weak at every speed, however large the flywheel.
     """
     wanted = share_of_mean(wanted)
     machine = replace(machine, timed_loads=())  # which are over in a steady state
@@ -336,6 +356,8 @@ def size_flywheel(
     work, own = work_at_constant_speed(equation), equation.shaft_inertia
     needed = work / (wanted * machine.drive.speed**2)
 
+    if machine.drive.motor is not None:
+        _check_mean_torque(SteadyCycle(equation))
     motor = MotorCycles(machine, progress or (lambda done, most: None))
 
     @cache
@@ -350,6 +372,26 @@ def size_flywheel(
     about = max(needed * motor.slower**2, own)
     least = 0.0 if present <= wanted else _least(fluctuation, wanted, about)
     return Flywheel(wanted, present, least, max(needed - own, 0.0), work, speed)
+
+
+def _check_mean_torque(steady: SteadyCycle) -> None:
+    """Refuse a motor that no flywheel helps: one that gives, at every constant speed, less than
+    what resists there in the mean.
+
+    Looking for a steady state would take hundreds of turns for each of many inertias, and meet
+    none.
+    """
+    driver = Driver(steady.equation.machine)
+    motor = steady.equation.machine.drive.motor
+    assert motor is not None
+    most = max(fastest(motor) / motor.ratio, steady.mean_speed)
+    speeds = most * np.arange(1, SPEEDS + 1) / SPEEDS
+    given = driver.sense * driver.torque(driver.sense * speeds)
+    needed = np.array([steady.resisting(float(speed)) for speed in speeds])
+    lacking = needed - given
+    k = int(np.argmin(lacking))
+    if lacking[k] > 0:
+        raise StallError(mean_stall_note(float(needed[k]), float(given[k]), float(speeds[k])))
 
 
 def _least(fluctuation: Callable[[float], float], wanted: float, about: float) -> float:

@@ -32,6 +32,7 @@ from equipoise.mechanism.dynamics.rated import differentiable_torque
 from equipoise.mechanism.kinematics.jumps import jumps_of_rows
 from equipoise.mechanism.parts.force_kinds import RatedElement, rated_elements
 from equipoise.mechanism.parts.machine import Machine
+from equipoise.quantities import PER_RPM, number
 from equipoise.signals import Array, within_period
 from equipoise.vibration.body import IN_PLANE, PITCH, MountContact, Rest, SupportBody, contacts_of
 from equipoise.vibration.collocation import Rates
@@ -161,8 +162,8 @@ class Coupled:
         matrix, right = self._equations(table, states)
         accelerations = self.accelerations(table, states)
         needed: Array = -right[3]
-        for k, number in enumerate(self.free):
-            needed = needed + matrix[3, number] * accelerations[k]
+        for k, place in enumerate(self.free):
+            needed = needed + matrix[3, place] * accelerations[k]
         return needed
 
     def needed_torque(self, table: ReducedInertia, states: Array) -> Array:
@@ -236,6 +237,10 @@ STALLS = to_say(
 STALLS_AT_LIMIT = to_say(
     "the motor stalls at crank angle {angle:.1f} deg: the crank has {given} N m, which just hold "
     "it there; give a stronger motor, a higher ratio or a larger flywheel"
+)
+STALLS_IN_THE_MEAN = to_say(
+    "the motor stalls with any flywheel: in the mean the crank needs {needed} N m at {speed} rpm, "
+    "and has {given} N m; give a stronger motor or a higher ratio"
 )
 STALL_DIGITS = range(4, 8)
 """Of both torques, the fewest in which they differ; beyond that the motor is at its limit."""
@@ -352,6 +357,18 @@ def stall_note(angle: float, needed: float, given: float) -> Note:
         if needed > given and texts[0] != texts[1]:
             return Note(STALLS, angle=angle, needed=texts[0], given=texts[1])
     return Note(STALLS_AT_LIMIT, angle=angle, given=f"{given:.{STALL_DIGITS[0]}g}")
+
+
+def mean_stall_note(needed: float, given: float, speed: float) -> Note:
+    """Say that a motor is too weak in the mean over a cycle: the torques on the crank, N m, at the
+    speed of the crank, rad/s, at which they differ least.
+    """
+    return Note(
+        STALLS_IN_THE_MEAN,
+        needed=number(needed),
+        given=number(given),
+        speed=number(speed / PER_RPM),
+    )
 
 
 def settled(system: Coupled, s: Array) -> Array:
