@@ -20,6 +20,7 @@ from equipoise.balancing.physical_consistency import feasibility
 from equipoise.balancing.sensitivity import known_outputs, sensitivities
 from equipoise.errors import MassError, RangeError, UsageError
 from support.printing import words
+from support.refusals import refused
 from unit.mechanism.build import ORIGIN, crank_rocker, four_bar, heavy, machine, slider_crank
 
 
@@ -107,12 +108,12 @@ def test_plain_data() -> None:
 def test_refusals() -> None:
     with pytest.raises(UsageError, match="give zero or sine"):
         conditions(lone(), "none")  # type: ignore[arg-type]
-    with pytest.raises(UsageError, match="did you mean 'shaking_force'"):
+    with refused(UsageError, name="shaking_force"):
         conditions(lone(), "zero", ["shaking_forces"])
     with pytest.raises(UsageError, match="at least one output"):
         conditions(lone(), "zero", [])
     bare = lone().with_link("crank", mass=None, center_of_mass=None, inertia=None)
-    with pytest.raises(MassError, match="missing for crank"):
+    with refused(MassError, links="crank"):
         conditions(bare)
     with pytest.raises(RangeError):
         conditions(four_bar(1.0, 0.8, 0.9, 0.5))
@@ -161,9 +162,9 @@ def test_slider_crank_needs_rod_and_crank() -> None:
     assert found.totals["rod"] == pytest.approx((-0.5, 0.0))
     assert found.totals["crank"] == pytest.approx((-0.3, 0.0))
     assert np.max(eq.analyze(found.machine).forces.shaking_force.size) < 1e-11
-    with pytest.raises(UsageError, match=r"moments of crank cannot meet rod\.moment_x"):
+    with refused(UsageError, names="crank"):
         least_moments(given, ["crank"])
-    with pytest.raises(UsageError, match="moments of no link cannot meet"):
+    with refused(UsageError, names="no link"):
         least_moments(given, [])
 
 
@@ -191,11 +192,11 @@ def test_least_moments_as_plain_data() -> None:
 
 def test_refusals_of_least_moments() -> None:
     given = crank_rocker()
-    with pytest.raises(UsageError, match="did you mean 'crank'"):
+    with refused(UsageError, name="crank"):
         least_moments(given, ["cranks"])
-    with pytest.raises(UsageError, match="crank is named twice"):
+    with refused(UsageError, name="crank"):
         least_moments(given, ["crank"], ["crank"])
-    with pytest.raises(UsageError, match="rocker has mass 0"):
+    with refused(UsageError, name="rocker"):
         least_moments(given.with_link("rocker", mass=0.0, inertia=0.0), ["crank", "rocker"])
     bare = given.with_link("crank", mass=None, center_of_mass=None, inertia=None)
     with pytest.raises(MassError):
@@ -262,12 +263,12 @@ def test_sensitivities_as_plain_data() -> None:
 
 
 def test_refusals_of_sensitivities() -> None:
-    with pytest.raises(UsageError, match="did you mean 'shaking_force"):
+    with refused(UsageError, given="shaking_force"):
         sensitivities(lone(), "shaking_force")
     for angles in (3, True, 36.0, "36"):
-        with pytest.raises(UsageError, match=r"at least 8|give a whole number"):
+        with refused(UsageError, least_angles="8"):
             sensitivities(lone(), angles=angles)  # type: ignore[arg-type]
-    with pytest.raises(UsageError, match=r"did you mean 'crank\.center_x'"):
+    with refused(UsageError, name="crank.center_x"):
         sensitivities(lone(), angles=36)["crank.centre_x"]
     bare = lone().with_link("crank", mass=None, center_of_mass=None, inertia=None)
     with pytest.raises(MassError):

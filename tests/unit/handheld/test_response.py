@@ -17,6 +17,7 @@ from equipoise.handheld.response import ToolResponse, _check_finite, respond_too
 from equipoise.handheld.shaft import Section, Shaft
 from equipoise.handheld.sweep import speeds_between, sweep_tool
 from support.conformance import compared
+from support.refusals import refused
 from support.sources import CLOSED_FORMS
 from unit.handheld.samples import THEORIES, bare, both, random_tool, shaken
 
@@ -182,10 +183,10 @@ def test_speeds_that_cannot_be(speed: Any) -> None:
 def test_what_is_not_there() -> None:
     found = full_response()
     for call in (found.displacement, found.velocity, found.forces, found.power):
-        with pytest.raises(ModelError, match="'nobody'"):
+        with refused(ModelError, "stations", given="nobody"):
             call("nobody")
     for place in (-0.01, 99.0):
-        with pytest.raises(UsageError, match="off the shaft"):
+        with refused(UsageError, length=1.68645):
             found.line([0.1, place])
     with pytest.raises(ModelError, match="nothing shakes the tool"):
         respond_tool(bare(), 10.0)
@@ -325,5 +326,5 @@ def test_on_a_resonance_without_damping() -> None:
     motion = [NodePair(pair.across.copy(), pair.turning) for pair in found.field.states.motion]
     motion[0].across[0, 1] = np.inf
     field = replace(found.field, states=States(motion, found.field.states.force))
-    with pytest.raises(ResponseError, match=r"at 1432\.39 rpm order 2 meets a resonance without"):
+    with refused(ResponseError, orders=2.0, speeds=1432.39):
         _check_finite(field, found.orders, found.speed)

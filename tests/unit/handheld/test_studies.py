@@ -16,6 +16,7 @@ from equipoise.handheld.modes import (
     vary_tool,
     without_damping,
 )
+from support.refusals import refused
 from unit.handheld.samples import FULL, THEORIES, bare, both, random_tool, still
 
 
@@ -47,17 +48,17 @@ def test_a_number_of_a_pair_is_told_of_the_vertical_plane() -> None:
 
 def test_what_cannot_be_changed() -> None:
     tool = bare(Station("plain", 0.4), FULL)
-    with pytest.raises(ModelError, match="nobody"):
+    with refused(ModelError, "stations", given="nobody"):
         changed(tool, "nobody", "mass", 1.0)
-    with pytest.raises(UsageError, match="'colour'"):
+    with refused(UsageError, given="colour"):
         changed(tool, "plain", "colour", 1.0)
-    with pytest.raises(UsageError, match="'plain' has no absorber; give it one first"):
+    with refused(UsageError, key="absorber", name="plain"):
         changed(tool, "plain", "absorber.mass", 1.0)
-    with pytest.raises(UsageError, match="'plain' has no harness; give it one first"):
+    with refused(UsageError, key="harness", name="plain"):
         changed(tool, "plain", "harness.damping", 1.0)
-    with pytest.raises(ModelError, match="off the shaft"):
+    with refused(ModelError, "shaft.stations[1].position", length="1.5 m", position="7 m"):
         changed(tool, "plain", "position", 7.0)
-    with pytest.raises(ModelError, match="give 0 or more"):
+    with refused(ModelError, "shaft.stations[1].mass", limit="0"):
         changed(tool, "plain", "mass", -1.0)
 
 

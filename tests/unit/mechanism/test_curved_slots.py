@@ -34,6 +34,7 @@ from equipoise.web.structure_edits import straight
 from support import free_bodies, newton
 from support.analyses import ANGLES
 from support.poses import from_motion
+from support.refusals import refused
 from surface.running import equipoise
 from unit.mechanism.test_circular_slots import BASE, in_slot
 from unit.schema.samples import survives
@@ -270,7 +271,7 @@ def test_circular_slots_in_groups_of_loops_are_links_without_mass() -> None:
     np.testing.assert_allclose(np.abs(pushed.value), held.size, atol=1e-9 * np.max(held.size))
     points = {name: place for name, place in base.position.points.items() if name in "BC"}
     lost = replace(slotted, position=replace(base.position, points=points))
-    with pytest.raises(ModelError, match=r"^position: .*'plate'") as error:
+    with refused(ModelError, "position", link="plate") as error:
         eq.move(lost)
     assert "P in frame" not in str(error.value)
 
@@ -297,7 +298,7 @@ def test_slots_have_planes() -> None:
 
 def test_the_ends_of_an_open_curve_are_a_limit(tmp_path: Path) -> None:
     machine = in_curve(circle(9, 1.4, 2.0), closed=False)
-    with pytest.raises(ModelError, match=r"^curved_slots\[1\]: the pin reaches the end of its"):
+    with refused(ModelError, "curved_slots[1]", crank_angle=0.0):
         eq.analyze(machine)
     path = tmp_path / "mine.toml"
     eq.save(machine, path)
@@ -311,7 +312,7 @@ def test_a_pin_that_runs_out_of_an_open_curve_says_where() -> None:
     """The polynomial of the last piece goes on beyond it, up to where nothing is near."""
     machine = machine_named("baler-pickup")
     slot = replace(machine.curved_slots[0], closed=False)
-    with pytest.raises(MotionError, match=r"^curved_slots\[1\]: the pin reaches the end") as error:
+    with refused(MotionError, crank_angle=337.472) as error:
         eq.analyze(replace(machine, curved_slots=(slot,)))
     told = re.search(r"at crank angle ([\d.]+) deg; make the slot longer, or", str(error.value))
     assert told
@@ -345,12 +346,12 @@ def test_a_pin_has_to_fit_into_the_sharpest_bend() -> None:
     joint = JointProperties("joints.C in frame", radius=0.99 * radius)
     assert assemble(replace(egg, joints=(joint,))).pin_radii == {"C": 0.99 * radius}
     thick = replace(egg, joints=(replace(joint, radius=1.01 * radius),))
-    with pytest.raises(ModelError, match=r"^joints\[1\]\.radius: its radius of curvature is "):
+    with refused(ModelError, "joints[1].radius", at="0 mm", least="62.51 mm"):
         assemble(thick)
 
 
 def test_the_position_is_asked_for_by_links_alone() -> None:
-    with pytest.raises(ModelError, match=r"^position: missing; no dyad solves coupler, so"):
+    with refused(ModelError, "position", names="coupler"):
         assemble(replace(in_curve(circle(12)), position=None))
     far = replace(in_curve(circle(12)), position=Position(0.0, {"C": (0.5, 0.5)}, {}))
     with pytest.raises(EquipoiseError) as error:
@@ -388,7 +389,7 @@ def test_points_may_stand_in_a_table(tmp_path: Path) -> None:
     torque = eq.analyze(eq.load(path), 30).forces.drive_torque
     np.testing.assert_array_equal(torque, eq.analyze(machine, 30).forces.drive_torque)
     table.write_text("x [mm],y [mm]\n1,2\n3\n")
-    with pytest.raises(EquipoiseError, match=r"\.csv, line 3: got 1 value"):
+    with refused(EquipoiseError, "curved_slots[1].table", count="1", line="3"):
         eq.load(path)
 
 
@@ -445,7 +446,7 @@ def test_a_slot_is_as_wide_as_its_pin() -> None:
 
 def test_formats_without_it_say_so(tmp_path: Path) -> None:
     for ending in ("xml", "urdf", "mo", "py"):
-        with pytest.raises(UsageError, match=r"^curved_slots\[1\]: a file of .* pin in a slot"):
+        with refused(UsageError, special="pin in a slot"):
             eq.export(in_curve(circle(12)), tmp_path / f"mine.{ending}")
     assert not [*tmp_path.iterdir()]
 

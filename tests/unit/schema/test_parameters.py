@@ -14,6 +14,7 @@ from equipoise.schema.models import text_of
 from equipoise.schema.template import Template
 from equipoise.web.design import Design
 from equipoise.web.fields import fields_of
+from support.refusals import refused
 
 FOUR_BAR = """schema = 1
 title = "Four-bar with parameters"
@@ -93,9 +94,9 @@ def test_studies_vary_parameters(tmp_path: Path) -> None:
         what = f"{path} is worked out by '={expression}'; let a parameter in it vary"
         with pytest.raises(ModelError, match=re.escape(what)):
             template.number(path)
-    with pytest.raises(ModelError, match=r"did you mean 'parameters.crank'"):
+    with refused(ModelError, "parameters.crnk", name="parameters.crank"):
         template.number("parameters.crnk")
-    with pytest.raises(ModelError, match=r"parameters.crank: numbers are worked out from it"):
+    with refused(ModelError, "parameters.crank"):
         eq.loads(FOUR_BAR).with_number("parameters.crank", 0.04)
     changed = template.machine({"parameters.crank": 0.032, "parameters.weight": 0.3})
     whole = FOUR_BAR.replace('"30 mm"', '"32 mm"').replace('"200 g"', '"300 g"')
@@ -155,7 +156,7 @@ def test_two_forms_of_one_name_are_refused() -> None:
     text = FOUR_BAR.replace(
         "[parameters]\n", '[parameters]\n"\N{MICRO SIGN}" = 1\n"\N{GREEK SMALL LETTER MU}" = 2\n'
     )
-    with pytest.raises(ModelError, match="is given twice; give another name"):
+    with refused(ModelError, 'parameters."μ"'):
         eq.loads(text)
 
 
