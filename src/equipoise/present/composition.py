@@ -235,7 +235,7 @@ def _of_tool(findings: ToolFindings, language: str, command: str) -> ReportDocum
     if findings.tool.operation is not None:
         rpm = number(findings.tool.operation.speed / PER_RPM)
         subtitle = say("hand-held tool, engine at {speed} rpm", speed=rpm)
-    model = [*of_tools.model_blocks(findings.tool)]
+    model: list[Block | ReportSection] = [*of_tools.model_blocks(findings.tool)]
     if findings.design is not None:  # which fills the first page
         model = [*_details(model)]
     named: Parts = {"model": model, "tool": blocks}
