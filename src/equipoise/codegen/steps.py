@@ -396,7 +396,7 @@ def _trace_steps(trace: Trace) -> None:
 
 def _run_motion(trace: Trace, driven: Mapping[str, tuple[Any, Any, Any, Any]]) -> None:
     """From the angles of driven links, with their rotations and rates, to every link."""
-    for link, (angle, *values) in ({FRAME: (0.0, 1 + 0j, 0.0, 0.0)} | driven).items():
+    for link, (angle, *values) in {FRAME: (0.0, 1 + 0j, 0.0, 0.0), **driven}.items():
         trace.put(u(link), values)
         if trace.counted:
             trace.state[f"phi({link})"] = angle

@@ -136,7 +136,8 @@ def soil_force(motion: Motion, tip: str | None = None) -> Array:
         return np.zeros(len(motion.crank_angle), complex)
     point = motion.point(tip or planting.tip)
     depth = surface_of(motion.machine) - point.y
-    return against_soil(planting.soil, depth, point.velocity + planting.forward(motion.speed))
+    over_ground = point.velocity + planting.forward(motion.speed)
+    return np.asarray(against_soil(planting.soil, depth, over_ground))
 
 
 def against_soil(soil: Soil, depth: Any, over_ground: Any) -> Any:
