@@ -139,6 +139,26 @@ def test_what_was_loaded_is_used_offline(browser: Browser, host: str) -> None:
         context.close()
 
 
+def test_a_link_opens_on_servers_and_hosts_alike(
+    browser: Browser, host: str, server: tuple[str, int]
+) -> None:
+    context = browser.new_context(viewport={"width": 1280, "height": 900}, reduced_motion="reduce")
+    context.set_default_timeout(LONGEST * 1000)
+    context.grant_permissions(["clipboard-read", "clipboard-write"])
+    places = f"{host}#example=yamashita-1", server[0]
+    for here, there in (places, places[::-1]):
+        live = Live.open(context.new_page(), here)
+        live.type(live.field("crank mass"), "311 g")
+        live.page.get_by_text("Download", exact=True).click()
+        live.button("Copy link").click()
+        expect(live.told("The link is copied")).to_be_visible()
+        _, _, model = live.page.evaluate("navigator.clipboard.readText()").partition("#")
+        other = Live.open(context.new_page(), f"{there.partition('#')[0]}#{model}")
+        expect(other.field("crank mass")).to_have_value("311 g")
+        assert other.machine() == live.machine()
+    context.close()
+
+
 def test_a_damaged_wheel_is_refused(tmp_path: Path) -> None:
     if not RUNTIME.is_dir() or not any(WHEELS.glob("numpy-*.whl")):
         pytest.skip("the runtime and its wheels could not be fetched: make test fetches them")
