@@ -89,8 +89,8 @@ def study_blocks(study: Study, units: Units, file: str) -> Iterator[Block]:
                 coefficient=correlation.coefficient,
             )
         )
-    heads = ("", *map(say, COMPUTED_HEADS))
-    yield Table.of(say("What is computed"), heads, _computed(study, units, outcome))
+    titles = ("", *map(say, COMPUTED_HEADS))
+    yield Table.of(say("What is computed"), titles, _computed(study, units, outcome))
     compiled = getattr(compute, "compiled", False)
     yield Text(say(HOW_COMPUTED[engine()] if compiled else SLOW))
     yield from map(Text, _times(study, compute))
