@@ -389,12 +389,13 @@ class _Adviser:
 
     @cached_property
     def loud_gauges(self) -> tuple[Objective, ...]:
-        """What those gauges read that are loud beside the loudest, each against its limit."""
+        """What those gauges read that are loud, the loudest against its limit first."""
         read = {item.output: item.excess for item in self.before.headline
                 if item.output.startswith(GAUGES)}  # fmt: skip
         least = QUIET_GAUGE * max(read.values(), default=0.0)
-        aims = gauge_aims(self.machine)
-        return tuple(aim for aim in aims if read.get(aim.output, least) >= least)
+        loud = [x for x in gauge_aims(self.machine) if read.get(x.output, least) >= least]
+        # To six digits: gauges that read alike keep their order whatever rounding does.
+        return tuple(sorted(loud, key=lambda aim: -float(f"{read.get(aim.output, least):.6g}")))
 
     @cached_property
     def mounts(self) -> ResonantMounts | None:

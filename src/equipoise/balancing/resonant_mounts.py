@@ -29,7 +29,7 @@ from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.support import Mount
 from equipoise.quantities import PER_RPM, brief, number, percent
 from equipoise.results.declaring import Declarations, ResultOutput
-from equipoise.vibration.linear import Linear, Resonance, around, resonances
+from equipoise.vibration.linear import LEAST_DAMPING, Linear, Resonance, around, resonances
 
 SAME_SPEED = 0.05
 """Share of a speed within which two resonances are one: along and across on like mounts."""
@@ -74,7 +74,7 @@ def outweighs(gain: float, mounts: ResonantMounts) -> bool:
 def resonant_mounts_for(
     machine: Machine, speeds: Sequence[float], gain: Callable[[Machine], float]
 ) -> ResonantMounts | None:
-    """The loudest resonance that lies beside a speed at which a machine runs; None where none does.
+    """The resonance beside a speed of a machine that moves it most there; None where none is.
 
     Parameters
     ----------
@@ -89,7 +89,7 @@ def resonant_mounts_for(
     pairs = _loud_beside(linear, speeds)
     if not pairs:
         return None
-    resonance, speed = max(pairs, key=lambda pair: pair[0].share)
+    resonance, speed = max(pairs, key=lambda pair: _motion_beside(linear, speeds, *pair))
     names = _strained(linear, [item for item in pairs if _is_near(item[0], resonance)])
     tried = [*_tried(machine, speeds, names, gain)]
     most = max((gone for gone, _ in tried), default=0.0)
@@ -117,6 +117,23 @@ def _amplified_between(damping: float, times: float = AMPLIFIED) -> tuple[float,
     low = half - sqrt(half**2 - 1 + 1 / square)
     # r^2 H of r is H of 1 / r.
     return sqrt(low), 1 / sqrt(low)
+
+
+def _motion_beside(
+    linear: Linear, speeds: Sequence[float], resonance: Resonance, speed: float
+) -> float:
+    """What a mode moves a gauge by at a speed, over the loudest resonance at that gauge.
+
+    At its own speed a mode of the damping ratio z amplifies 1 / (2 z) times; at r times that, where
+    what shakes is r^2 times as large, r^2 H times.
+    """
+    slowest, fastest = min(map(abs, speeds)), max(map(abs, speeds))
+    if slowest <= abs(resonance.speed) <= fastest:  # the machine runs through it
+        return resonance.share
+    damping = max(abs(linear.modes[resonance.mode - 1].damping_ratio), LEAST_DAMPING)
+    ratio = speed / resonance.speed
+    amplified = ratio**2 / abs(1 - ratio**2 + 2j * damping * ratio)
+    return resonance.share * 2 * damping * amplified
 
 
 def _loud_beside(

@@ -60,7 +60,8 @@ def response_headline(response: Response, alone: bool = False) -> Iterator[Block
     yield Text(driven(machine, response.speed))
     yield Text(say("Model {model}: {what}", model=response.model, what=say(MODELS[response.model])))
     if response.gauges:
-        yield Facts(say("What the gauges read, peak to peak"), tuple(_readings(response)))
+        worst = "" if first is None else first.item
+        yield Facts(say("What the gauges read, peak to peak"), tuple(_readings(response, worst)))
     yield from map(Text, _resonances(response))
     if response.notes:
         yield Notes(response.notes[:MOST_NOTES])
@@ -68,11 +69,23 @@ def response_headline(response: Response, alone: bool = False) -> Iterator[Block
     yield look_at_next(f'respond --speed "{low:.3g} rpm : {high:.3g} rpm"', "balance")
 
 
-def _readings(response: Response) -> Iterator[str]:
-    for name, gauge in [*response.gauges.items()][:MOST_GAUGES]:
+def _readings(response: Response, worst: str) -> Iterator[str]:
+    """What gauges read: the one that the verdict is about, then the largest of each dimension."""
+
+    def place(name: str) -> tuple[bool, bool, float]:
+        gauge = response.gauges[name]
+        return name != worst, gauge.rotation, -_size(gauge.displacement.peak_to_peak)
+
+    for name in sorted(response.gauges, key=place)[:MOST_GAUGES]:
+        gauge = response.gauges[name]
         size = float(gauge.displacement.peak_to_peak)
         unit = shown_in("rad" if gauge.rotation else "m", [size])
         yield say("{gauge}: {size}", gauge=name, size=unit.with_unit(unit.text(size, digits=3)))
+
+
+def _size(value: float) -> float:
+    """What sizes are ordered by: gauges that read alike keep their order whatever rounding does."""
+    return float(f"{value:.6g}")
 
 
 def _resonances(response: Response) -> Iterator[str]:
@@ -119,17 +132,18 @@ def sweep_headline(sweep: Sweep, alone: bool = False) -> Iterator[Block]:
 
 
 def _peaks(sweep: Sweep) -> Iterator[str]:
-    """The highest peak of each gauge, the first one first."""
-    for name, tops in sweep.peaks.items():
-        if tops:
-            speed, size = tops[0]
-            unit = shown_in("rad" if sweep.gauges[name].rotation else "m", [size])
-            yield say(
-                "Gauge {gauge} moves most at {speed} rpm, by {size} peak to peak",
-                gauge=name,
-                speed=brief(abs(speed) / PER_RPM),
-                size=unit.with_unit(unit.text(size, digits=3)),
-            )
+    """The highest peak of each gauge, of each dimension the largest first."""
+    rotates = {name: gauge.rotation for name, gauge in sweep.gauges.items()}
+    highest = {name: tops[0] for name, tops in sweep.peaks.items() if tops}
+    for name in sorted(highest, key=lambda name: (rotates[name], -_size(highest[name][1]))):
+        speed, size = highest[name]
+        unit = shown_in("rad" if rotates[name] else "m", [size])
+        yield say(
+            "Gauge {gauge} moves most at {speed} rpm, by {size} peak to peak",
+            gauge=name,
+            speed=brief(abs(speed) / PER_RPM),
+            size=unit.with_unit(unit.text(size, digits=3)),
+        )
 
 
 def _loud(sweep: Sweep) -> Iterator[str]:

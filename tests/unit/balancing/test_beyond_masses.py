@@ -27,9 +27,10 @@ from equipoise.balancing.policy import (
 from equipoise.balancing.poor_transmission import poor_transmission_for
 from equipoise.balancing.problem import Problem
 from equipoise.mechanism.parts.force_elements import Motor
-from equipoise.results.blocks import Text
+from equipoise.results.blocks import Facts, Text
 from equipoise.results.yardsticks import assess
 from equipoise.running.flywheel import size_flywheel
+from equipoise.vibration.headline import response_headline
 from equipoise.vibration.linear import Linear, around, resonances
 from support.found import advice_for
 
@@ -240,6 +241,89 @@ def test_a_resonance_beside_the_speed_is_moved_first() -> None:
     words = "First move the resonance at 255 rpm, which amplifies the motion at 280 rpm too"
     first = said("sieve").index(words)  # and not that it is to keep away from speeds that it does
     assert first < said("sieve").index("2 times softer would take 45 % off")
+
+
+SHAKER = """
+schema = 1
+title = "Shaker on soft mounts"
+[drive]
+link = "crank"
+speed = "300 rpm"
+[frame]
+points.O = ["-300 mm", "0 mm"]
+points.L = ["0 mm", "-100 mm"]
+points.R = ["800 mm", "-100 mm"]
+[links.crank]
+points = ["O", "A"]
+length = "12 mm"
+mass = "4 kg"
+center_of_mass = ["2 mm", "0 mm"]
+inertia = "9000 kg mm^2"
+[links.rod]
+points = ["A", "C"]
+length = "350 mm"
+mass = "2 kg"
+center_of_mass = ["175 mm", "0 mm"]
+inertia = "22000 kg mm^2"
+[links.left]
+points = ["L", "C"]
+length = "150 mm"
+mass = "1 kg"
+center_of_mass = ["75 mm", "0 mm"]
+inertia = "2500 kg mm^2"
+[links.pan]
+points.C = ["0 mm", "0 mm"]
+points.E = ["800 mm", "0 mm"]
+mass = "45 kg"
+center_of_mass = ["420 mm", "60 mm"]
+inertia = "8 kg m^2"
+[links.right]
+points = ["R", "E"]
+length = "150 mm"
+mass = "1 kg"
+center_of_mass = ["75 mm", "0 mm"]
+inertia = "2500 kg mm^2"
+[assembly]
+C = "left"
+E = "left"
+[support]
+mass = "160 kg"
+center_of_mass = ["350 mm", "-200 mm"]
+inertia = "28 kg m^2"
+[support.mounts]
+front = {point = ["900 mm", "-350 mm"], stiffness = "300 kN/m", damping = "600 N s/m"}
+back = {point = ["-200 mm", "-350 mm"], stiffness = "300 kN/m", damping = "600 N s/m"}
+[support.mounts.along]
+point = ["350 mm", "-350 mm"]
+direction = "0 deg"
+stiffness = "240 kN/m"
+damping = "600 N s/m"
+[support.gauges]
+middle = {point = ["350 mm", "-200 mm"], direction = "0 deg"}
+end = {point = ["900 mm", "-100 mm"]}
+"""
+"""Resonances at 308, 507 and 650 rpm: the first moves the middle along, the others the end."""
+
+
+@pytest.mark.parametrize(("speed", "resonance", "gauge"),
+                         [(300, 308, "middle"), (500, 507, "end")])  # fmt: skip
+def test_the_resonance_that_moves_the_machine_at_its_speed_is_named(
+    tmp_path: Path, speed: int, resonance: int, gauge: str
+) -> None:
+    """Not the loudest of those beside it, each at its own gauge; and that gauge stands first."""
+    path = tmp_path / "shaker.toml"
+    path.write_text(SHAKER.replace("300 rpm", f"{speed} rpm"), encoding="utf-8")
+    machine = eq.load(path)
+    advised = advise(machine)
+    assert advised.advice is not None
+    mounts = advised.advice.beyond.mounts
+    assert mounts is not None
+    assert mounts.speed / RPM == pytest.approx(resonance, abs=1)
+    assert mounts.avoid[0] < speed * RPM < mounts.avoid[1]
+    assert next(iter(advised.aims)).output == f"gauges.{gauge}"
+    shown = next(block for block in response_headline(eq.respond(machine), alone=True)
+                 if isinstance(block, Facts))  # fmt: skip
+    assert shown.items[0].startswith(f"{gauge}:")
 
 
 def test_other_mounts_bring_what_is_told() -> None:

@@ -60,7 +60,7 @@ def test_on_a_support_that_stands_still_the_crank_obeys_the_equation_of_a_run(la
     needed = inertia * speed * slope + change * speed**2 / 2 - driving
     pairs = zip(theta.tolist(), speed.tolist(), strict=True)
     torques = np.array([
-        [source.torque(values[part], np.asarray(rate))
+        [source.torque(values[part], np.asarray(rate), ())
          for source, part in zip(equation.sources, equation.slices, strict=True)]
         for angle, rate in pairs for values in [equation.table.at(angle)[0]]
     ])  # fmt: skip
