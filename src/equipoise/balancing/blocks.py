@@ -12,6 +12,7 @@ from equipoise.balancing.outcome import (
     advice_blocks,
     beside_mounts,
     beside_the_aim,
+    broken_capacities,
     first_sentences,
     large_besides,
     large_figures,
@@ -84,6 +85,8 @@ def balanced_headline(balanced: Balanced, alone: bool = False) -> Iterator[Block
 
     alone : whether nothing follows, as on a terminal.
     """
+    if alone:
+        yield from (Text(line, broken_if(True)) for line in broken_capacities(balanced))
     if balanced.advice is not None and not balanced.helps:
         if alone:
             yield from map(Text, why_nothing(balanced))

@@ -151,6 +151,13 @@ def large_sentences(advice: Advice, crank_turns: bool) -> Iterator[str]:
         yield say(template if large else nearest, figure=sentence(item, crank_turns))
 
 
+def broken_capacities(balanced: Balanced) -> Iterator[str]:
+    """What parts do not bear, or the motor does not give, before anything is said of masses."""
+    for item in balanced.advice.before if balanced.advice is not None else ():
+        if item.is_capacity and item.is_broken:
+            yield say("{sentence}.", sentence=sentence(item, balanced.original.crank_turns))
+
+
 def reasons_to_leave(balanced: Balanced) -> Iterator[str]:
     """Why the masses are best left as they are."""
     advice = balanced.advice

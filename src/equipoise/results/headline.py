@@ -90,7 +90,7 @@ def verdict_blocks(
     if figure_assessment is not None:
         words.append(contact_sentence(figure_assessment))
     if words:
-        is_broken = first is not None and first.is_limit and first.is_large
+        is_broken = first is not None and first.is_broken
         yield Text(" ".join(words), broken_if(is_broken))
 
 

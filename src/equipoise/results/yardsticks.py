@@ -16,6 +16,9 @@ declared with them (`yardstick` in `mechanism.outputs.declared`):
     pressure      a pressure angle: peak, over 30 deg, of a follower that swings 45 deg
     transmission  a transmission angle: its distance from 90 deg, over 50 deg
     limit         a limit that is declared: of a gauge
+    capacity      what a part bears or a motor gives, over what the machine asks of it: a safety of
+                  a link or bearing, over 1; the life of a bearing, over the one that is wanted; the
+                  largest torque of the motor, over the mean of the drive's
     contact       of a cam: the speed of the crank, over that at which the follower lifts off
     vibration     the velocity of a gauge without a limit: RMS, over 4.5 mm/s; but where nothing
                   moves except rotors (`results.rotors`), which may be there to shake
@@ -31,8 +34,9 @@ ISO 20816-3 ends zone B for machines of 15 to 300 kW on flexible supports.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from dataclasses import fields
 from functools import cached_property
-from math import hypot, pi, radians
+from math import copysign, hypot, pi, radians
 from typing import Any, Protocol
 
 import numpy as np
@@ -41,7 +45,8 @@ from equipoise.dataclass import dataclass
 from equipoise.i18n import Note, say, to_say
 from equipoise.mechanism.assembly.steps import size_of_links
 from equipoise.mechanism.dynamics import acting
-from equipoise.mechanism.outputs.declared import DECLARED, declared, named
+from equipoise.mechanism.dynamics.pin_bearings import joint_properties
+from equipoise.mechanism.outputs.declared import DECLARED, declared, joint_named, named
 from equipoise.mechanism.parts.drives import Drive, FurtherDrive
 from equipoise.mechanism.parts.machine import STANDARD_GRAVITY, Machine
 from equipoise.mechanism.parts.objectives import GAUGES
@@ -104,12 +109,13 @@ class FigureAssessment:
     is_limit : whether the machine does not do what it is meant to do beyond it: a limit that the
         file gives, or contact that is lost.
     is_contact : whether it is the speed at which a follower lifts off.
+    is_capacity : whether it is a limit of what a part bears or a motor gives.
     """
 
     figure: str
     label: Note
     value: float
-    dimension: Dimension
+    dimension: Dimension | None
     yardstick: float
     against: Note
     ratio: float
@@ -118,12 +124,13 @@ class FigureAssessment:
     crank_angle: float | None = None
     is_limit: bool = False
     is_contact: bool = False
+    is_capacity: bool = False
     shown_unit: str | None = None
 
     @property
     def unit(self) -> str:
-        """SI unit of value and yardstick."""
-        return SI[self.dimension]
+        """SI unit of value and yardstick; empty of plain numbers."""
+        return "" if self.dimension is None else SI[self.dimension]
 
     @property
     def family(self) -> tuple[str, str]:
@@ -160,6 +167,11 @@ class FigureAssessment:
     def is_kept_contact(self) -> bool:
         """Whether it is that of a follower that stays on its cam at the speed of the machine."""
         return self.is_contact and not self.is_large
+
+    @property
+    def is_broken(self) -> bool:
+        """Whether it is a limit beyond which the machine does not do what it is meant to."""
+        return self.is_limit and self.is_large
 
     @property
     def is_nearly_dead(self) -> bool:
@@ -217,7 +229,7 @@ def assess(
         family = assessment.family[0]
         if family not in worst or assessment.ratio > worst[family].ratio:
             worst[family] = assessment
-    entries = [*worst.values(), *_of_cams(analysis)]
+    entries = [*worst.values(), *_of_cams(analysis), *_capacities(analysis)]
     for name, reading in (readings or {}).items():
         entries += _of_gauge(analysis.machine, name, reading)
     return tuple(sorted(entries, key=lambda entry: -entry.excess))
@@ -258,14 +270,17 @@ def _yardstick_of_whole(output: AnalysisOutput) -> str:
 
 def verdict(entries: tuple[FigureAssessment, ...]) -> FigureAssessment | None:
     """The figure by which a machine is judged first: a limit, else a dyad that is nearly dead, else
-    what is largest; a contact that is kept comes last, as nothing is wrong there.
+    what is largest.  A contact that is kept comes last, as nothing is wrong there, and what bears
+    or drives enough is no limit to be named first.
 
     entries : from `assess`.
     """
     others = [entry for entry in entries if not entry.is_kept_contact]
-    limits = (entry for entry in others if entry.is_limit)
+    limits = (entry for entry in others if entry.is_limit and not entry.is_capacity)
+    broken = (entry for entry in others if entry.is_capacity and entry.is_broken)
     nearly_dead = (entry for entry in others if entry.is_nearly_dead)
-    return next(limits, next(nearly_dead, others[0] if others else kept_contact(entries)))
+    largest = others[0] if others else kept_contact(entries)
+    return next(broken, next(limits, next(nearly_dead, largest)))
 
 
 def kept_contact(entries: tuple[FigureAssessment, ...]) -> FigureAssessment | None:
@@ -599,6 +614,87 @@ def _of_cams(analysis: Analysis) -> Iterator[FigureAssessment]:
             f"cams.{name}", name, cam.lift_off_at, is_limit=True, is_contact=True,
             shown_unit="rpm",
         )  # fmt: skip
+
+
+def _capacities(analysis: Analysis) -> Iterator[FigureAssessment]:
+    """What parts bear and the motor gives, against what the machine asks of them; of each figure
+    that of the weakest part.
+    """
+    figures: list[FigureAssessment] = []
+    for name, section in analysis.sections.items():
+        figures += _least_figures("sections", name, section)
+    for name, bearing in analysis.rolling_bearings.items():
+        figures += _least_figures("rolling_bearings", name, bearing)
+    figures += _lives(analysis)
+    weakest: dict[str, FigureAssessment] = {}
+    for assessment in figures:
+        kind = assessment.family[1]
+        if kind not in weakest or assessment.ratio > weakest[kind].ratio:
+            weakest[kind] = assessment
+    yield from weakest.values()
+    yield from _of_motor(analysis)
+
+
+def _least_figures(group: str, name: str, part: Any) -> Iterator[FigureAssessment]:
+    """Figures of a part that are declared with what they have to be at least."""
+    for item in fields(part):
+        least, value = item.metadata.get("at_least"), getattr(part, item.name)
+        if least is not None and value is not None:
+            yield _capacity(
+                group, name, item.name, Note(item.metadata["label"]), value, least,
+                item.metadata["dimension"], Note("required minimum"),
+            )  # fmt: skip
+
+
+def _lives(analysis: Analysis) -> Iterator[FigureAssessment]:
+    """Lives of rolling bearings of which one is wanted."""
+    wanted = {name: item.bearing for name, (_, item) in joint_properties(analysis.motion).items()}
+    for name, life in analysis.rolling_bearings.items():
+        bearing = wanted[name]
+        if bearing is not None and bearing.life is not None and life.rated_life is not None:
+            label = Note(to_say("life at the wanted reliability"))
+            yield _capacity(
+                "rolling_bearings", name, "rated_life", label, life.rated_life, bearing.life,
+                "time", Note("required minimum"), "h",
+            )  # fmt: skip
+
+
+def _capacity(
+    group: str,
+    name: str,
+    figure: str,
+    label: Note,
+    value: float,
+    least: float,
+    dimension: Dimension | None,
+    against: Note,
+    shown_unit: str | None = None,
+) -> FigureAssessment:
+    """A figure of a part that has to be so large at least."""
+    ratio = least / value if value > 0 else float("inf")
+    what = Note("{what}, {part}", what=label, part=joint_named(name))
+    output = f"{group}.{name}"
+    return FigureAssessment(
+        f"{output}.{figure}", what, value, dimension, least, against, ratio, output, name,
+        is_limit=True, is_capacity=True, shown_unit=shown_unit,
+    )  # fmt: skip
+
+
+def _of_motor(analysis: Analysis) -> Iterator[FigureAssessment]:
+    """The mean torque of the drive, against the largest that the motor has at the crank."""
+    machine, motor = analysis.machine, analysis.machine.drive.motor
+    name = f"rows.{machine.drive.effort}"
+    name = name if name in analysis.outputs else machine.drive.effort
+    if motor is None or not machine.has_crank or name not in analysis.outputs:
+        return
+    mean, most = analysis.outputs[name].figures.mean, motor.ratio * motor.largest_torque
+    if (needed := copysign(1.0, machine.drive.speed) * mean) <= 0:
+        return
+    yield FigureAssessment(
+        f"{name}.mean", Note("{what}, {part}", what=Note("drive torque"), part=Note("mean")),
+        mean, "torque", most, Note("the largest torque of the motor at the crank"), needed / most,
+        "drive.motor", is_limit=True, is_capacity=True,
+    )  # fmt: skip
 
 
 def _of_gauge(machine: Machine, name: str, reading: GaugeReading) -> Iterator[FigureAssessment]:

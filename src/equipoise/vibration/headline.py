@@ -52,7 +52,7 @@ def response_headline(response: Response, alone: bool = False) -> Iterator[Block
     first = verdict(tuple(read))
     if first is not None:
         words = say("{sentence}.", sentence=sentence(first, machine.crank_turns))
-        yield Text(words, broken_if(first.is_limit and first.is_large))
+        yield Text(words, broken_if(first.is_broken))
     elif words := rotor_sentence(machine):
         yield Text(words)
     if not alone:

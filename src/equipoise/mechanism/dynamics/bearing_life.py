@@ -59,7 +59,7 @@ class BearingLife:
     rated_life: float | None = figure(to_say("life at the wanted reliability"), "time")
     reached: float | None = figure(to_say("share that reaches the wanted life"))
     needed_rating: float | None = figure(to_say("dynamic rating needed"), "force")
-    static_safety: float | None = figure(to_say("static safety"))
+    static_safety: float | None = figure(to_say("static safety"), at_least=1.0)
 
     def to_dict(self) -> dict[str, Any]:
         """As plain data in SI units."""

@@ -32,10 +32,18 @@ OF_KIND: dict[Kind, Dimension] = {"slider": "length", "rocker": "angle"}
 
 
 def figure(
-    label: str, dimension: Dimension | None = None, own: bool = False, default: Any = MISSING
+    label: str,
+    dimension: Dimension | None = None,
+    own: bool = False,
+    default: Any = MISSING,
+    at_least: float | None = None,
 ) -> Any:
-    """A figure: its label for readers, and its dimension, or whether it has that of the stroke."""
-    text = {"label": label, "dimension": dimension, "own": own}
+    """A figure: its label for readers, and its dimension, or whether it has that of the stroke.
+
+    at_least : what it has to be for a part not to fail, SI units; None where there is no such
+        value.
+    """
+    text = {"label": label, "dimension": dimension, "own": own, "at_least": at_least}
     return field(metadata=text, default=default)
 
 

@@ -368,6 +368,17 @@ class Motor(Frozen):
         return (0.0, line.no_load_speed), (line.stall_torque, 0.0)
 
     @property
+    def largest_torque(self) -> float:
+        """Largest torque, N m, at any speed in the sense in which it drives."""
+        if self.induction is not None:
+            return self.induction.breakdown_torque
+        speeds, torques = self.rows
+        forward = [torque for speed, torque in zip(speeds, torques, strict=True) if speed >= 0]
+        (low, first), (high, second) = [*zip(speeds, torques, strict=True)][:2]
+        at_rest = first + (second - first) / (high - low) * (0.0 - low)
+        return max([*forward, at_rest] if low > 0 else forward)
+
+    @property
     def smooth_curve(self) -> InductionMotor | None:
         """Its curve where that is no sequence of straight lines: ``torque`` by speed, and
         ``speed_at`` a torque, up to ``synchronous_speed``.
