@@ -74,7 +74,7 @@ def _readings(response: Response, worst: str) -> Iterator[str]:
 
     def place(name: str) -> tuple[bool, bool, float]:
         gauge = response.gauges[name]
-        return name != worst, gauge.rotation, -_size(gauge.displacement.peak_to_peak)
+        return name != worst, gauge.rotation, -_size(float(gauge.displacement.peak_to_peak))
 
     for name in sorted(response.gauges, key=place)[:MOST_GAUGES]:
         gauge = response.gauges[name]
