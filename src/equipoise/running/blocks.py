@@ -59,7 +59,7 @@ def verdict(run: Run) -> str:
     if lacking is not None:
         needed, given = lacking
         at = degrees(end.crank_angle) % 360
-        return said(stall_note(at, needed, given)) + "."
+        return said(stall_note(at, needed, given, at_rest=not run.turned)) + "."
     values = {"time": number(end.time), "turns": number(abs(run.turned))}
     if end.kind == "standstill":
         angle = number(degrees(end.crank_angle) % 360)

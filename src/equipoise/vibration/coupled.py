@@ -18,7 +18,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import fields
 from functools import cached_property
-from math import copysign, pi
+from math import copysign, floor, log10, pi
 from typing import Any
 
 import numpy as np
@@ -238,10 +238,20 @@ STALLS_AT_LIMIT = to_say(
     "the motor stalls at crank angle {angle:.1f} deg: the crank has {given} N m, which just hold "
     "it there; give a stronger motor, a higher ratio or a larger flywheel"
 )
+STALLS_AT_REST = to_say(
+    "the motor stalls at rest, at crank angle {angle:.1f} deg: the crank needs {needed} N m to "
+    "start, and has {given} N m; give a stronger motor or a higher ratio"
+)
+STALLS_AT_REST_AT_LIMIT = to_say(
+    "the motor stalls at rest, at crank angle {angle:.1f} deg: the crank has {given} N m, which "
+    "just hold it there; give a stronger motor or a higher ratio"
+)
 STALLS_IN_THE_MEAN = to_say(
     "the motor stalls with any flywheel: in the mean the crank needs {needed} N m at {speed} rpm, "
     "and has {given} N m; give a stronger motor or a higher ratio"
 )
+SMALLEST_PLAIN = 1e-4
+"""N m, below which torques are said with an exponent."""
 STALL_DIGITS = range(4, 8)
 """Of both torques, the fewest in which they differ; beyond that the motor is at its limit."""
 SETTLING_TURNS = 40
@@ -350,13 +360,28 @@ def _stalled(system: Coupled, table: ReducedInertia, states: Array, angle: float
     return stall_note(float(np.degrees(angle) % 360), needed, given)
 
 
-def stall_note(angle: float, needed: float, given: float) -> Note:
-    """Say that a motor stalls at a crank angle, deg, and the torques on the crank there, N m."""
+def stall_note(angle: float, needed: float, given: float, at_rest: bool = False) -> Note:
+    """Say that a motor stalls at a crank angle, deg, and the torques on the crank there, N m.
+
+    at_rest : whether the crank has not moved before, so that no flywheel could take it further.
+    """
+    lacks, holds = (
+        (STALLS_AT_REST, STALLS_AT_REST_AT_LIMIT) if at_rest else (STALLS, STALLS_AT_LIMIT)
+    )
     for digits in STALL_DIGITS:
-        texts = f"{needed:.{digits}g}", f"{given:.{digits}g}"
+        texts = _to_one_place(needed, given, digits)
         if needed > given and texts[0] != texts[1]:
-            return Note(STALLS, angle=angle, needed=texts[0], given=texts[1])
-    return Note(STALLS_AT_LIMIT, angle=angle, given=f"{given:.{STALL_DIGITS[0]}g}")
+            return Note(lacks, angle=angle, needed=texts[0], given=texts[1])
+    return Note(holds, angle=angle, given=f"{given:.{STALL_DIGITS[0]}g}")
+
+
+def _to_one_place(first: float, second: float, digits: int) -> tuple[str, str]:
+    """Two numbers with as many decimals as give the larger so many digits."""
+    largest = max(abs(first), abs(second))
+    if not SMALLEST_PLAIN <= largest < 10.0**digits:
+        return f"{first:.{digits}g}", f"{second:.{digits}g}"
+    decimals = digits - 1 - floor(log10(largest))
+    return f"{first:.{decimals}f}", f"{second:.{decimals}f}"
 
 
 def mean_stall_note(needed: float, given: float, speed: float) -> Note:
