@@ -8,7 +8,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.mechanism.parts.force_elements import Motor
-from surface.running import equipoise, read
+from surface.running import equipoise, read, refused
 
 
 def test_a_motor_on_the_command_line_is_the_one_of_a_file() -> None:
@@ -47,3 +47,10 @@ def test_a_motor_has_tables_and_files(tmp_path: Path, monkeypatch: pytest.Monkey
 def test_wrong_motors(motor: str, sentence: str) -> None:
     done = equipoise("run", "transplanter", "--motor", motor)
     assert done.status == 2 and sentence in done.err
+
+
+def test_a_motor_s_number_without_a_unit_is_shown_as_it_was_given() -> None:
+    shown = refused(
+        equipoise("run", "transplanter", "--motor", "no_load_speed = 2000, stall_torque = 2 N m")
+    )
+    assert "--motor" in shown and "2000" in shown and "2000.0" not in shown

@@ -283,10 +283,17 @@ def _motor(option: str, text: str) -> Motor:
         if not isinstance(table, dict) or name in table:
             wrong = Note("got {text!r}, with {word} twice; give it once", text=text, word=path)
             raise UsageError(at_place(option, wrong))
-        table[name] = float(value) if re.fullmatch(NUMBER, value) else value
+        table[name] = _toml_value(value)
     with error_in_option(option):
         motor: Motor = read_table(Motor, content, Context(AdjacentFiles(".").read))
         return motor
+
+
+def _toml_value(text: str) -> str | int | float:
+    """What a text is in a file, where only numbers stand without quotes."""
+    if re.fullmatch(r"[+-]?[0-9]{1,300}", text):
+        return int(text)
+    return float(text) if re.fullmatch(NUMBER, text) else text
 
 
 @command(Length, Outputs)

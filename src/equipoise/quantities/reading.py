@@ -285,7 +285,11 @@ def _unit_complaint(unit: str, number: str, dimension: Dimension) -> str:
     wanted = Note("{noun} is wanted: {units}", noun=Note(kind.noun), units=", ".join(kind.units))
     plain = plain_unit(unit)
     if plain == "Hz" and dimension == "angular speed":
-        return Note('Hz does not tell turns from radians; give "50 turn/s" or "3000 rpm"')
+        return Note(
+            'Hz does not tell turns from radians; give "{turns} turn/s" or "{rpm} rpm"',
+            turns=number,
+            rpm=_plain(60 * Decimal(number)),
+        )
     if plain in kind.units:
         return Note('write "{number} {unit}"', number=number, unit=plain)
     if meant := unit_meant(unit, dimension):
@@ -296,6 +300,12 @@ def _unit_complaint(unit: str, number: str, dimension: Dimension) -> str:
         shown = plain if plain in other.units else _quoted(unit)
         return Note("{unit} is the unit of {of}; {wanted}", unit=shown, of=of, wanted=wanted)
     return Note("there is no unit {unit} here; {wanted}", unit=_quoted(unit), wanted=wanted)
+
+
+def _plain(value: Decimal) -> str:
+    """A decimal without trailing zeros, with an exponent only where many zeros would stand."""
+    exact = value.normalize()
+    return f"{exact:f}" if -6 < exact.adjusted() < 9 else f"{exact:e}"
 
 
 def unit_meant(unit: str, dimension: Dimension) -> str:

@@ -66,7 +66,12 @@ def response_headline(response: Response, alone: bool = False) -> Iterator[Block
     if response.notes:
         yield Notes(response.notes[:MOST_NOTES])
     low, high = sorted(abs(item) / PER_RPM for item in around(machine.drive, response.speed))
-    yield look_at_next(f'respond --speed "{low:.3g} rpm : {high:.3g} rpm"', "balance")
+    yield look_at_next(f'respond --speed "{_rpm(low)} : {_rpm(high)}"', "balance")
+
+
+def _rpm(speed: float) -> str:
+    """A speed in rpm to three digits, without an exponent, to be copied into a command."""
+    return f"{float(f'{speed:.3g}'):.10g} rpm"
 
 
 def _readings(response: Response, worst: str) -> Iterator[str]:

@@ -19,6 +19,7 @@ OWN = [one for one in FORMATS.values() if not one.of_store]
 
 
 CAM, RACK, VARYING, SLOT = "cam", "rack", "gears of varying ratio", "pin in a slot"
+FRICTION = "friction in joints"
 
 
 def lacking(one: Format) -> list[str]:
@@ -39,7 +40,7 @@ def table() -> str:
             f"`{one.name}`",
             one.title,
             one.holds,
-            ", ".join(lacking(one)),
+            ", ".join([*lacking(one), *([] if one.rubs else [FRICTION])]),
             needs,
         )
         rows.append(f"| {' | '.join(cells)} |")

@@ -15,6 +15,7 @@ from hypothesis import strategies as st
 from equipoise import quantities
 from equipoise.errors import UsageError
 from equipoise.quantities import KINDS, Dimension, format_exact, parse
+from support.refusals import refused, values_of
 
 DIMENSIONS = get_args(Dimension)
 numbers = st.floats(1e-29, 1e29) | st.floats(-1e29, -1e-29) | st.floats(-1e4, 1e4)
@@ -116,7 +117,7 @@ def test_degrees_are_the_nearest_floats() -> None:
         ("100-300 rpm", "angular speed", 'not a range; give one such as "100 rpm"'),
         ("3 kg .. 4 kg", "mass", 'a mass is wanted, not a range; give one such as "3 kg"'),
         ("5 mm", "mass", "mm is the unit of a length; a mass is wanted: kg, g"),
-        ("50 Hz", "angular speed", 'give "50 turn/s" or "3000 rpm"'),
+        ("1 Hz", "angular speed", 'give "1 turn/s" or "60 rpm"'),
         ("5 Nm", "torque", 'did you mean "5 N m"?'),
         ("5 kg mm2", "inertia", 'did you mean "5 kg mm^2"?'),
         ("aluminum", "density", 'to name a material, write material = "aluminum" instead'),
@@ -186,3 +187,28 @@ def test_printed_units_are_listed() -> None:
 def test_no_unit_is_in_two_lists() -> None:
     listed = [unit for kind in KINDS.values() for unit in kind.units]
     assert len(set(listed)) == len(listed)
+
+
+@pytest.mark.parametrize(
+    ("given", "turns", "rpm"),
+    [
+        ("1", "1", 60.0),
+        ("20", "20", 1200.0),
+        ("-2.5", "-2.5", -150.0),
+        ("1e3", "1e3", 60_000.0),
+        ("1e-9", "1e-9", 6e-8),
+        ("0.33333333", "0.33333333", 19.9999998),
+        ("0", "0", 0.0),
+    ],
+)
+def test_hertz_are_refused_with_the_same_speed_in_units_that_say_what_turns(
+    given: str, turns: str, rpm: float
+) -> None:
+    """Both that are offered can be read, and are one speed."""
+    with refused(UsageError, turns=turns) as caught:
+        parse(f"{given} Hz", "angular speed")
+    offered = dict(values_of(caught.value.note))
+    assert float(offered["rpm"]) == pytest.approx(rpm, rel=1e-12)
+    assert parse(f"{offered['rpm']} rpm", "angular speed") == pytest.approx(
+        parse(f"{offered['turns']} turn/s", "angular speed"), rel=1e-12
+    )

@@ -15,6 +15,7 @@ from equipoise.handheld.exposed import expose_tool
 from equipoise.i18n import speaking
 from equipoise.present import html_of
 from equipoise.present.pages import page
+from equipoise.quantities import parse
 from equipoise.results.blocks import Facts, Text
 from equipoise.results.yardsticks import assess, verdict
 from support.chosen import EXHAUSTIVE
@@ -246,3 +247,13 @@ def test_what_stands_first_has_every_language() -> None:
                 assert isinstance(first, Text)
                 said.add(first.text)
         assert len(said) == len(COMPLETE)
+
+
+def test_the_next_command_has_no_exponent(capsys: pytest.CaptureFixture[str]) -> None:
+    """Its speeds are the range about the speed, which the command takes as they stand."""
+    text = " ".join(printed(capsys, "respond", "sieve", "--speed", "1000 rpm"))
+    (range_given,) = re.findall(r'respond --speed "([^"]*)"', text)
+    assert "e" not in range_given
+    low, high = (parse(part.strip(), "angular speed") for part in range_given.split(":"))
+    assert low < parse("1000 rpm", "angular speed") < high
+    assert high >= parse("1000 rpm", "angular speed") * 1.5
