@@ -16,6 +16,7 @@ from scipy.special import ellipk
 import equipoise as eq
 from equipoise.errors import ResponseError, UsageError
 from equipoise.mechanism.parts.force_elements import Motor
+from equipoise.mechanism.parts.joint_properties import JointProperties
 from equipoise.running import integration
 from equipoise.running.blocks import run_blocks, verdict
 from equipoise.running.drivers import Driver
@@ -279,3 +280,32 @@ def test_a_crank_that_swings_on_is_said_to_swing(monkeypatch: pytest.MonkeyPatch
     swinging = eq.run(crank(), speed=0.0)
     turned_back = [event for event in swinging.events if event.kind == "reversal"]
     assert f"turned back {len(turned_back)} times" in verdict(swinging)
+
+
+def test_loads_that_drive_a_machine_backwards_are_named() -> None:
+    """A torque of 2 N m resists the motor, and drives the crank back once that is off, against a
+    viscous joint of 0.1 N m s/rad.
+    """
+    driven = crank(Motor(no_load_speed=10.0, stall_torque=9.0), gravity=0.0)
+    damped = JointProperties("joints.A", torsional_damping=0.1)
+    loaded = replace(driven, loads=(eq.Load("crank", torque=-2.0),), joints=(damped,))
+    found = eq.run(loaded, off="2 s")
+    assert found.end.kind == "steady" and found.driven_back is not None
+    assert found.driven_back.kind == "reversal" and found.starting_time is None
+    words = verdict(found)
+    assert words.startswith("Switched off at 2.000 s, the machine turns back at ")
+    assert "driven backwards by the loads" in words and "[[resistances]]" in words
+    cycle = found.last_cycle
+    assert cycle is not None and cycle.highest <= cycle.mean_speed <= cycle.lowest < 0
+    assert cycle.mean_speed == pytest.approx(-2.0 / 0.1, rel=1e-4)
+    assert 0 <= cycle.fluctuation < 1e-4
+
+
+def test_a_machine_that_its_motor_drives_is_not_driven_back() -> None:
+    """Clockwise too: its speeds have the sign of their mean."""
+    motor = Motor(no_load_speed=10.0, stall_torque=9.0)
+    clockwise = crank(motor, speed=-10.0, gravity=1.0)
+    found = eq.run(clockwise)
+    cycle = found.last_cycle
+    assert found.driven_back is None and cycle is not None
+    assert cycle.highest < cycle.mean_speed < cycle.lowest < 0 < cycle.fluctuation

@@ -16,6 +16,7 @@ from equipoise.vibration.coupled import stall_note
 
 if TYPE_CHECKING:
     from equipoise.running.flywheel import Flywheel
+    from equipoise.running.integration import Event
     from equipoise.running.run import Run
 
 EVENTS = {
@@ -39,7 +40,7 @@ def run_headline(run: Run, alone: bool = False) -> Iterator[Block]:
 
     alone : whether nothing follows, as on a terminal.
     """
-    yield Text(verdict(run), broken_if(run.end.kind == "stall"))
+    yield Text(verdict(run), broken_if(run.end.kind == "stall" or run.driven_back is not None))
     if run.machine.drive.motor is None:
         yield Text(
             say(
@@ -55,11 +56,9 @@ def run_headline(run: Run, alone: bool = False) -> Iterator[Block]:
 
 def verdict(run: Run) -> str:
     """What came of the run, in a sentence."""
-    end, cycle, lacking = run.end, run.last_cycle, run.lacking_torque
-    if lacking is not None:
-        needed, given = lacking
-        at = degrees(end.crank_angle) % 360
-        return said(stall_note(at, needed, given, at_rest=not run.turned)) + "."
+    end, cycle = run.end, run.last_cycle
+    if trouble := _trouble(run):
+        return trouble
     values = {"time": number(end.time), "turns": number(abs(run.turned))}
     if end.kind == "standstill":
         angle = number(degrees(end.crank_angle) % 360)
@@ -88,6 +87,35 @@ def verdict(run: Run) -> str:
     speed = number(end.speed / PER_RPM)
     template = to_say("After {time} s and {turns} turns the crank turns at {speed} rpm.")
     return say(template, **values, speed=speed)
+
+
+def _trouble(run: Run) -> str:
+    """That the motor does not turn the machine; empty where it does."""
+    if run.lacking_torque is not None:
+        needed, given = run.lacking_torque
+        at = degrees(run.end.crank_angle) % 360
+        return said(stall_note(at, needed, given, at_rest=not run.turned)) + "."
+    return "" if run.driven_back is None else _driven_back(run, run.driven_back)
+
+
+def _driven_back(run: Run, back: Event) -> str:
+    """That loads drive a machine against the sense of its drive, and what to give instead."""
+    off = next((event for event in run.events if event.kind == "off"), None)
+    switched = to_say(
+        "Switched off at {off} s, the machine turns back at {back} s and is driven backwards by "
+        "the loads, at {speed} rpm in the end; give loads that only resist the motion as "
+        "[[resistances]]."
+    )
+    alone = to_say(
+        "The machine turns back at {back} s and is driven backwards by the loads, at {speed} rpm "
+        "in the end; give loads that only resist the motion as [[resistances]]."
+    )
+    return say(
+        alone if off is None else switched,
+        off="" if off is None else number(off.time),
+        back=number(back.time),
+        speed=number(run.end.speed / PER_RPM),
+    )
 
 
 def _stopped(run: Run) -> Iterator[str]:
@@ -131,7 +159,8 @@ def _figures(run: Run) -> Iterator[str]:
     cycle = run.last_cycle
     if cycle is None:
         return
-    speeds = {"low": cycle.lowest, "mean": abs(cycle.mean_speed), "high": cycle.highest}
+    each = {"low": cycle.lowest, "mean": cycle.mean_speed, "high": cycle.highest}
+    speeds = {name: abs(speed) for name, speed in each.items()}
     yield say(
         "speed from {low} to {high} rpm, {mean} rpm in the mean",
         **{name: number(speed / PER_RPM) for name, speed in speeds.items()},

@@ -21,6 +21,7 @@ from equipoise.running.drivers import Driver
 from equipoise.running.equation import CrankEquation
 from equipoise.running.flywheel import Flywheel, share_of_mean, size_flywheel
 from equipoise.running.integration import ELECTRIC, Event, Instant, Integration, Limits
+from equipoise.running.sources import LOADS
 from equipoise.signals import Array
 
 TURNS = 300
@@ -35,7 +36,9 @@ Progress = Callable[[int, int], None]
 class LastCycle:
     """The last whole cycle of a run.
 
-    mean_speed, highest, lowest : of the crank, rad/s.  turns : of the crank in the cycle.
+    mean_speed : of the crank, rad/s, positive counterclockwise.  highest, lowest : its fastest and
+        slowest, rad/s, with the same sign; of a crank that turns clockwise `highest` is the least.
+    turns : of the crank in the cycle.
     energy : that the drive gives in it, J.  time : that it takes, s.
     """
 
@@ -49,7 +52,7 @@ class LastCycle:
     @property
     def fluctuation(self) -> float:
         """Coefficient of fluctuation: highest minus lowest speed, over the mean."""
-        return (self.highest - self.lowest) / abs(self.mean_speed)
+        return (self.highest - self.lowest) / self.mean_speed
 
     @property
     def energy_per_turn(self) -> float:
@@ -152,11 +155,12 @@ class Run(Result):
             return None
         first, last, turns = whole[-1]
         inside = (self.time >= first.time) & (self.time <= last.time)
-        speed, time = self.crank_speed[inside], last.time - first.time
+        size, time = np.abs(self.crank_speed[inside]), last.time - first.time
+        sense = copysign(1.0, last.angle - first.angle)
         return LastCycle(
             (last.angle - first.angle) / time,
-            float(np.max(np.abs(speed))),
-            float(np.min(np.abs(speed))),
+            sense * float(np.max(size)),
+            sense * float(np.min(size)),
             turns,
             float(last.work[-1] - first.work[-1]),
             time,
@@ -165,10 +169,10 @@ class Run(Result):
     @cached_property
     def starting_time(self) -> float | None:
         """Until the speed first reaches 95 % of its mean in the steady state, s; None without one,
-        or where it began so fast.
+        where it began so fast, or where loads drive it backwards.
         """
         cycle = self.last_cycle
-        if self.end.kind != "steady" or cycle is None:
+        if self.end.kind != "steady" or cycle is None or self.driven_back is not None:
             return None
         fast = np.abs(self.crank_speed) >= STARTED * abs(cycle.mean_speed)
         k = int(np.argmax(fast))
@@ -177,6 +181,21 @@ class Run(Result):
         ends = np.abs(self.crank_speed[k - 1 : k + 1])
         share = (STARTED * abs(cycle.mean_speed) - ends[0]) / (ends[1] - ends[0])
         return float(self.time[k - 1] + share * (self.time[k] - self.time[k - 1]))
+
+    @cached_property
+    def driven_back(self) -> Event | None:
+        """Where the crank turned back for good, against the sense of its drive, and loads have
+        driven it since; None where they have not.
+
+        A load over the crank angle gives energy where the machine passes it backwards.
+        """
+        back = next((event for event in self.events[::-1] if event.kind == "reversal"), None)
+        loads = self.work.get(LOADS)
+        if back is None or loads is None or self.end.kind not in ("steady", "turns", "time"):
+            return None
+        if self.end.speed * self.machine.drive.speed >= 0:
+            return None
+        return back if loads[-1] > np.interp(back.time, self.time, loads) else None
 
     @cached_property
     def stopping(self) -> tuple[float, float] | None:

@@ -79,6 +79,10 @@ class Source(ABC):
         return -sense * float(added)
 
 
+LOADS = "loads"
+"""In the works of a run: loads over the crank angle."""
+
+
 @dataclass(frozen=True)
 class ByAngle(Source):
     """A source that depends on the crank angle alone."""
@@ -215,7 +219,7 @@ def sources_of(machine: Machine) -> Iterator[Source]:
         if own := tuple(item for item in rated if item[2].cause == cause):
             yield OfRatedElements(own, f"{cause}s", CAUSES[cause])
     if machine.loads:
-        yield ByAngle("loads", to_say("loads"), _of_loads)
+        yield ByAngle(LOADS, to_say("loads"), _of_loads)
     if machine.timed_loads:
         yield OfTimedLoads(machine.timed_loads)
     planting = machine.planting
