@@ -258,3 +258,20 @@ def test_balancing_ends_where_the_motor_is_too_weak(monkeypatch: pytest.MonkeyPa
     monkeypatch.setattr(Shooting, "_cycle", lambda *_: pytest.fail("a cycle was followed"))
     advice = advise(machine).advice
     assert advice is not None and advice.beyond.flywheels is None
+
+
+def test_a_flywheel_is_added_to_the_one_that_there_is() -> None:
+    """As much in all as without it, and both are said; the speed is that of a run with it."""
+    machine = with_load(subject_of("transplanter").machine, 2.0, stall_torque=4.0, ratio=2.0)
+    alone, present = size_flywheel(machine, 0.05), 0.3
+    assert (alone.existing, alone.total) == (0.0, alone.inertia)
+    half = present * alone.inertia
+    found = eq.run(with_flywheel(machine, half), fluctuation=0.05)
+    flywheel = found.flywheel
+    assert flywheel is not None and flywheel.existing == half
+    assert flywheel.total == pytest.approx(alone.total, rel=1e-6)
+    assert found.to_dict()["flywheel"]["total"] == flywheel.total
+    assert " in all." in str([*run_headline(found)])
+    running = eq.run(with_flywheel(machine, flywheel.total)).last_cycle
+    assert running is not None and flywheel.speed == pytest.approx(running.mean_speed, rel=1e-4)
+    assert flywheel.speed != pytest.approx(machine.drive.speed, rel=1e-2)

@@ -145,7 +145,7 @@ def _flywheel(flywheel: Flywheel) -> str:
                 "textbook's estimate is {estimate}."
             )
         present = f"{100 * flywheel.present:.3g}"
-    return say(
+    sentence = say(
         template,
         wanted=wanted,
         present=present,
@@ -153,6 +153,14 @@ def _flywheel(flywheel: Flywheel) -> str:
         inertia=told(flywheel.inertia, "inertia", "kg m^2"),
         estimate=told(flywheel.estimate, "inertia", "kg m^2"),
     )
+    if not flywheel.inertia or not flywheel.existing:
+        return sentence
+    together = say(
+        "That is in addition to the flywheel of {existing} in the file: {total} in all.",
+        existing=told(flywheel.existing, "inertia", "kg m^2"),
+        total=told(flywheel.total, "inertia", "kg m^2"),
+    )
+    return f"{sentence} {together}"
 
 
 def _figures(run: Run) -> Iterator[str]:

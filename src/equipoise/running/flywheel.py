@@ -184,7 +184,9 @@ class Flywheel:
     estimate : as textbooks have it, largest less smallest work of the drive's torque about its
         mean at constant speed, over wanted times speed squared, less what turns already, kg m2.
     work : that largest less smallest work, J.
-    speed : mean speed of the crank, rad/s.
+    speed : mean speed of the crank with it, rad/s: that of the drive, or with a motor the one that
+        follows from its curve.
+    existing : flywheel on the crank that the machine has, to which it is added, kg m2.
     """
 
     wanted: float
@@ -193,10 +195,17 @@ class Flywheel:
     estimate: float
     work: float
     speed: float
+    existing: float = 0.0
+
+    @property
+    def total(self) -> float:
+        """Both flywheels on the crank together, kg m2."""
+        return self.existing + self.inertia
 
     def to_dict(self) -> dict[str, Any]:
         """As plain values in SI units."""
-        return vars(self) | {"present": self.present if self.present < inf else None}
+        present = self.present if self.present < inf else None
+        return vars(self) | {"present": present, "total": self.total}
 
 
 @dataclass(frozen=True, eq=False)
@@ -368,10 +377,10 @@ def size_flywheel(
         return motor.fluctuation(steady)
 
     present = fluctuation(0.0)
-    speed = machine.drive.speed
     about = max(needed * motor.slower**2, own)
     least = 0.0 if present <= wanted else _least(fluctuation, wanted, about)
-    return Flywheel(wanted, present, least, max(needed - own, 0.0), work, speed)
+    estimate, speed = max(needed - own, 0.0), machine.drive.speed / motor.slower
+    return Flywheel(wanted, present, least, estimate, work, speed, machine.drive.flywheel)
 
 
 def _check_mean_torque(steady: SteadyCycle) -> None:
