@@ -80,7 +80,6 @@ def pytest_itemcollected(item: pytest.Item) -> None:
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Leave out tests that are exhaustive, unless they were asked for."""
-    _name_tests(items, config)
     if config.getoption("--exhaustive") or _by_name(config):
         return
     left = [item for item in items if item.get_closest_marker("exhaustive")]
@@ -170,18 +169,6 @@ def _later(file: Path) -> frozenset[str]:
     """Tests of a file that only a release has to pass."""
     tests = Path(__file__).parent
     return later(str(file.relative_to(tests))) if tests in file.parents else frozenset()
-
-
-def _name_tests(items: list[pytest.Item], config: pytest.Config) -> None:
-    """Every test that is left to a release is there, in a file whose tests were all collected."""
-    if _by_name(config):
-        return
-    names: defaultdict[Path, set[str]] = defaultdict(set)
-    for item in items:
-        names[item.path].add(item.name)
-    for file, there in names.items():
-        if gone := _later(file) - there:
-            raise pytest.UsageError(f"{file}: has no {sorted(gone)}; mend tests/support/later.py")
 
 
 def _by_name(config: pytest.Config) -> bool:

@@ -213,7 +213,6 @@ VARIANTS: dict[str, dict[str, tuple[str, ...]]] = {
     },
     "unit/present/test_headlines.py": {
         "test_pages_end_alike_whatever_fonts_a_computer_has": ("yamashita-rig",),
-        "test_no_quarter_of_the_first_page_is_empty": ("pole-saw",),
         "test_eastern_letters_are_of_a_font_that_has_them": ("ko",),
         "test_the_pdf_is_short": ("drag-link-7",),
         "test_names_of_the_file_are_told_from_words": ("ko",),
