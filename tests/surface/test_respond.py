@@ -126,7 +126,7 @@ def test_models_that_differ_say_so() -> None:
     text = " ".join(succeeded(equipoise("respond", "--full", RIG)).split())
     assert (
         "the models differ: at gauge, linear gives 12.62 mm and exact, the most complete model, "
-        "12.00 mm; use exact where they differ" in text
+        "12.00 mm; moment, which is used here, agrees with exact" in text
     )
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from time import monotonic, perf_counter
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol, cast
 
 import numpy as np
 
@@ -13,9 +13,11 @@ from equipoise.codegen.figures import COMPUTED, REASONS
 from equipoise.dataclass import dataclass
 from equipoise.errors import needed
 from equipoise.i18n import Note
+from equipoise.quantities import Display, display
 
 if TYPE_CHECKING:
     from equipoise.keys.requirement_kinds import Make
+    from equipoise.quantities import Dimension
     from equipoise.studies.study import Output
 
 Array = np.ndarray[Any, Any]
@@ -153,21 +155,40 @@ def why_none(
             names=", ".join(failed),
         )
     named = zip(outputs, units or [""] * len(outputs), limits, strict=True)
-    texts = [f"{_limit(item, unit)} by {n}" for item, unit, n in named if item.limited]
+    texts = [f"{_limit(item, unit)}: {int(n)}" for item, unit, n in named if item.limited]
     return Note(
-        "none of {computed} designs keeps every limit; kept is {names}; loosen a "
-        "limit, or let more vary",
+        "none of {computed} designs keeps every limit; designs that keep each limit: {names}; "
+        "loosen a limit, or let more vary",
         computed=computed,
         names=", ".join(texts),
     )
 
 
 def _limit(output: Output, unit: str) -> str:
-    """Such as ``2 <= lift <= 3 m``."""
+    """Such as ``2 <= lift <= 3 m``.
+
+    unit : SI, of a figure whose dimension is unknown; others are in the unit in which they are
+        shown everywhere.
+    """
     low, high = output.at_least, output.at_most
-    text = output.name if low is None else f"{low:g} <= {output.name}"
-    text = text if high is None else f"{text} <= {high:g}"
-    return f"{text} {unit}".strip()
+    if output.dimension is None:
+        shown = Display(unit, 1.0)
+    else:
+        dimension = cast("Dimension", output.dimension)
+        shown = display(dimension, [limit for limit in (low, high) if limit is not None])
+    text = output.name
+    if low is not None and high is not None:
+        text = f"{_in(low, shown)} <= {text} <= {_in(high, shown)}"
+    elif low is not None:
+        text = f"{text} >= {_in(low, shown)}"
+    elif high is not None:
+        text = f"{text} <= {_in(high, shown)}"
+    return shown.with_unit(text)
+
+
+def _in(value: float, shown: Display) -> str:
+    """A limit (SI) as it may stand in a file, without its unit."""
+    return f"{value * shown.factor:g}"
 
 
 PATIENCE, STILL, MARGIN = 20, 1e-4, 0.1

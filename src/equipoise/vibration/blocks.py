@@ -98,7 +98,7 @@ def response_blocks(
         yield table_of(title, response.joints, Joint.declared)
     if lines := tuple(_solution(response)):
         yield Facts(say("Periodic solution"), lines)
-    if notes := (*response.notes, *disagreement(others or {})):
+    if notes := (*response.notes, *disagreement(others or {}, response.model)):
         yield Notes(notes)
 
 
@@ -189,8 +189,11 @@ def _by_model(response: Response, others: Mapping[str, Response | None]) -> Tabl
     return Table.of(say("Gauges by each model; peak to peak"), ("", *others), rows)
 
 
-def disagreement(others: Mapping[str, Response | None]) -> Iterator[Note]:
-    """That models differ: the worst reading beside that of the model that leaves out least."""
+def disagreement(others: Mapping[str, Response | None], used: str | None = None) -> Iterator[Note]:
+    """That models differ: the worst reading beside that of the model that leaves out least.
+
+    used : model that the other results are by, which the reader need not change if it agrees.
+    """
     known = {name: other for name, other in others.items() if other is not None}
     reference = next((name for name in MOST_COMPLETE if name in known), None)
     if reference is None:
@@ -215,10 +218,22 @@ def disagreement(others: Mapping[str, Response | None]) -> Iterator[Note]:
         "the models differ: at {gauge}, {model} gives {reading} and {reference}, the most "
         "complete model, {right}; use {reference} where they differ"
     )
+    own = [error(key) for key in readings if key[0] == used]
+    if own and used != reference and max(own) <= AGREEING:
+        template = to_say(
+            "the models differ: at {gauge}, {model} gives {reading} and {reference}, the most "
+            "complete model, {right}; {used}, which is used here, agrees with {reference}"
+        )
     values = (told(readings[key], dimension, unit) for key in (worst, (reference, gauge)))
     reading, right = values
     yield Note(
-        template, gauge=gauge, model=model, reading=reading, reference=reference, right=right
+        template,
+        gauge=gauge,
+        model=model,
+        reading=reading,
+        reference=reference,
+        right=right,
+        used=used or "",
     )
 
 

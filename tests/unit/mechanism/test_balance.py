@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 
 import equipoise as eq
+from equipoise.errors import ModelError
 from equipoise.mechanism.outputs.declared import joint_names
 from equipoise.mechanism.parts.balance import (
     LISTS,
@@ -28,6 +29,7 @@ from equipoise.mechanism.parts.balance import (
 )
 from equipoise.mechanism.parts.objectives import output_of, quantity_of
 from equipoise.mechanism.parts.support import Row
+from support.refusals import refused as refusal
 from unit.mechanism.balances import ALONE, DISC, FOUR, GEARED, ROOM, SHAFTS, SPRING, STEEL, refused
 from unit.mechanism.build import ORIGIN, body, slider_crank
 
@@ -281,6 +283,19 @@ def test_names_of_shafts_against_geared_weights() -> None:
     geared = replace(GEARED, name="balance-shaft-2")
     refused("balance.shafts[1].name", "'balance-shaft-2' is given twice; give each its own name",
             Balance(geared=(geared,), shafts=(SHAFTS,)))  # fmt: skip
+
+
+def test_two_weights_on_one_new_shaft() -> None:
+    """Each of them makes a link, so that a shaft with two masses is one link of the machine."""
+    first = replace(DIRECTED, direction=None, pitch_radius=None, axis=(0.5, -0.5), name="front")
+    rear = replace(first, name="rear")
+    with refusal(ModelError, "balance.geared[2].axis", name="front"):
+        ALONE.with_balance(Balance(geared=(first, rear)))
+    with refusal(ModelError, "balance.shafts[1].axes[2]", name="front"):
+        shafts = replace(SHAFTS, axes=(SHAFTS.axes[0], (0.5, -0.5)))
+        ALONE.with_balance(Balance(geared=(first,), shafts=(shafts,)))
+    apart = replace(rear, axis=(0.5, 0.5))
+    assert ALONE.with_balance(Balance(geared=(first, apart))).balance is not None
 
 
 @pytest.mark.parametrize("degrees", [0, -5, 90.1])

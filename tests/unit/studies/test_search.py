@@ -21,6 +21,7 @@ from equipoise.studies.outcomes import Evaluator, Outcome, feasible, non_dominat
 from equipoise.studies.searching import search, search_size
 from equipoise.studies.study import Correlation, Output, Study
 from support.chosen import EXHAUSTIVE
+from support.refusals import values_of
 from unit.studies.samples import LENGTH, MASS, PATHS, study
 
 Array = np.ndarray[Any, Any]
@@ -223,9 +224,17 @@ def test_sizes(given: dict[str, int], told: str) -> None:
 
 
 def test_nothing_keeps_the_limits() -> None:
-    outputs = (*made("f"), Output("x", value="a.c", at_least=2.0))
-    with pytest.raises(UsageError, match=r"^none of \d+ designs keeps every limit; kept is 2 <= x"):
-        searched(outputs, lambda x, y, z: [x, y], population=8, generations=3)
+    """Each in the unit that its figure is shown in, and by how many designs."""
+    for dimension, limit in (
+        (None, "x >= 2"),
+        ("length", "x >= 2000 mm"),
+        ("angle", "x >= 114.59"),
+    ):
+        outputs = (*made("f"), Output("x", value="a.c", dimension=dimension, at_least=2.0))
+        with pytest.raises(UsageError) as caught:
+            searched(outputs, lambda x, y, z: [x, y], population=8, generations=3)
+        (text,) = [text for name, text in values_of(caught.value.note) if name == "names"]
+        assert text.startswith(limit) and text.endswith(": 0")
 
 
 def test_nothing_can_be_computed() -> None:

@@ -177,8 +177,9 @@ def test_no_design_keeps_the_limits(tmp_path: Path) -> None:
     low = int(np.sum(block.outcome.figures[:, 0] <= 0.1))
     computed = int(np.sum(block.outcome.reason == 0))
     assert refused(store) == (
-        f"{store.path}: none of {computed} designs keeps every limit; kept is force <= 0.1 N by "
-        f"{low}, 2 <= lift <= 3 m by 0; loosen a limit, or let more vary"
+        f"{store.path}: none of {computed} designs keeps every limit; designs that keep each "
+        f"limit: force <= 0.1 N: {low}, 2000 <= lift <= 3000 mm: 0; loosen a limit, or let more "
+        "vary"
     )
 
 

@@ -22,6 +22,7 @@ from equipoise.vibration.linear import around
 from equipoise.vibration.response import MODELS, Model
 from equipoise.vibration.sweep import sweep_speed
 from support.chosen import few
+from support.refusals import has_value
 from unit.vibration.build import PIVOT, SPEED, Mount, block, cart, rig, rocking, short_rig, springs
 
 LINE = Motor(26.0, 6.0)
@@ -87,6 +88,11 @@ def test_models_side_by_side_say_where_they_differ(machine: eq.Machine) -> None:
     close = {model: answers[model] for model in ("moment", "exact")}
     assert not [*disagreement(close)]
     assert not [*disagreement({"moment": answers["moment"], "exact": None})]
+    (agreeing,) = disagreement(answers, "moment")
+    assert has_value(agreeing, "used", "moment") and has_value(agreeing, "reference", "exact")
+    assert "use exact" not in str(agreeing)
+    (differing,) = disagreement(answers, "linear")
+    assert str(differing) == notes
     (note,) = disagreement({**answers, "exact": None})
     assert "use moment" in str(note)
 

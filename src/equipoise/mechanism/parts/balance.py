@@ -212,6 +212,7 @@ class Balance(Frozen):
                     where, Note("{link!r} is given twice; give one of both", link=link)
                 )
         yield from _wrong_names(self, machine.bodies)
+        yield from _shared_axes(self)
         if self.phases is not None:
             yield from _wrong_phases(self.phases.step, len(machine.rows))
 
@@ -236,6 +237,29 @@ def _wrong_names(balance: Balance, bodies: Bodies) -> Iterator[ModelError]:
                 where, Note("{name!r} is given twice; give each its own name", name=name)
             )
         used.add(name)
+
+
+def _shared_axes(balance: Balance) -> Iterator[ModelError]:
+    """New shafts at the same place, each of which would be a link of its own there."""
+    axes = [
+        (f"{place}.axis", geared.name, geared.axis)
+        for place, geared in numbered("balance.geared", balance.geared)
+        if geared.axis is not None
+    ]
+    for place, shafts in numbered("balance.shafts", balance.shafts):
+        for where, axis in numbered(f"{place}.axes", shafts.axes):
+            axes.append((where, shafts.name, axis))
+    names: dict[Any, str] = {}
+    for where, name, axis in axes:
+        if names.setdefault(axis, name) != name:
+            yield ModelError(
+                where,
+                Note(
+                    "lies on the axis of {name!r}; model a shaft with several masses as one link "
+                    "with a pair of [[gears]], and give each of its masses in [[balance.masses]]",
+                    name=names[axis],
+                ),
+            )
 
 
 def _wrong_phases(step: float, rows: int) -> Iterator[ModelError]:
