@@ -18,7 +18,7 @@ from equipoise.mechanism.parts.force_elements import Motor
 from equipoise.mechanism.parts.machine import Drive, Machine
 from equipoise.signals import Array
 from equipoise.vibration.collocation import NOTHING, RULE, BoundaryConditions, Orbit, System, solve
-from equipoise.vibration.coupled import Coupled, Torque
+from equipoise.vibration.coupled import Coupled, StallError, Torque, mean_stall_note
 from equipoise.vibration.linear import Linear
 from equipoise.vibration.linkages import rows_of
 
@@ -341,13 +341,22 @@ def with_motor(states: Iterable[Array], setting: tuple[float, float], s: Array) 
 
 
 def motor_setting(machine: Machine, speed: float) -> tuple[float, float]:
-    """Mean speed of the crank and shift of the motor's curve, rad/s, if the speed were constant."""
+    """Mean speed of the crank and shift of the motor's curve, rad/s, if the speed were constant.
+
+    Raises
+    ------
+    StallError : the mean torque is that of the curve beyond standstill, at which no motor drives.
+    ResponseError : the curve nowhere falls through it.
+    """
     motor = machine.drive.motor
     assert motor is not None
     sense = float(np.sign(speed))
     motion = resolved(move(machine, SAMPLES, speed, 0.0))
     torque = float(motion.mean(forces(motion).drive_torque)) * len(rows_of(machine))
     own = speed_at(motor, sense * torque / motor.ratio)
+    if own < 0:
+        most = motor.ratio * motor.largest_torque
+        raise StallError(mean_stall_note(sense * torque, most, abs(speed)))
     if motor.mean_speed == "free":
         return sense * own / motor.ratio, 0.0
     return speed, motor.ratio * abs(speed) - own

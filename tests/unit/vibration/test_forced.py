@@ -16,6 +16,7 @@ from equipoise.mechanism.parts.support import UP
 from equipoise.present.findings import Findings, find
 from equipoise.present.summary import vibration_told
 from equipoise.vibration.blocks import disagreement
+from equipoise.vibration.coupled import StallError
 from equipoise.vibration.exact import solve_exact
 from equipoise.vibration.forced import chosen_model, excitation_model_of, respond
 from equipoise.vibration.linear import around
@@ -339,3 +340,14 @@ def test_a_sweep_covers_the_speeds_at_which_the_machine_runs() -> None:
     assert around(machine.drive, 20.0) == (1.0, 80.0)
     assert around(machine.drive, -20.0) == (-1.0, -80.0)
     assert around(eq.load("yamashita-rig").drive, 20.0) == (4.0, 40.0)
+
+
+@pytest.mark.parametrize("mean_speed", ["held", "free"])
+def test_no_curve_goes_on_past_standstill(mean_speed: Literal["held", "free"]) -> None:
+    """The mean is beyond the torque at standstill, where the line would go backwards."""
+    machine = eq.load("quick-return")
+    mean = abs(eq.analyze(machine).summary["drive_torque"].mean)
+    weak = Motor(80.0, 0.8 * mean, mean_speed=mean_speed)
+    with pytest.raises(StallError, match="stalls with any flywheel") as error:
+        respond(machine.with_drive(motor=weak), drive=True)
+    assert f"has {0.8 * mean:.4g} N m" in str(error.value)
