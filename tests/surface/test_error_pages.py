@@ -259,6 +259,13 @@ def test_topics_are_listed_and_unknown_ones_refused() -> None:
     assert len(terms()) > 25
     said = succeeded(equipoise_runs("explain", "shaking moment"))
     assert said.startswith("shaking moment\n\nMoment of the inertia forces") and "\\n" not in said
+    for term, meaning in (
+        ("friction", "Resistance of a joint"),
+        ("fluctuation", "Largest less smallest speed"),
+        ("A8", "A(8): the weighted vibration"),
+        ("A(8)", "A(8): the weighted vibration"),
+    ):
+        assert f"\n\n{meaning}" in succeeded(equipoise_runs("explain", term))
     assert known_topic("links.crank.section.width") == "links.NAME.section"
     said = refused(equipoise_runs("explain", "sprngs"))
     assert said == "no topic is called 'sprngs'; did you mean 'springs'?"

@@ -206,7 +206,7 @@ def flywheel_sentences(flywheels: Flywheels, crank: str, links: float) -> Iterat
         yield say(template, crank=crank, ratio=f"{ratio:.4g}", discs=discs)
     if _lets_swing(flywheels.choices):
         yield say(
-            "A motor that lets the speed swing so far then gives {mean} at {crank} ({power}) "
+            "A motor that permits this fluctuation then has to give {mean} at {crank} ({power}) "
             "instead of up to {most}.",
             crank=crank,
             mean=told(flywheels.mean_torque, "torque", digits=3),

@@ -180,13 +180,13 @@ def _refusal(job: Job) -> Note:
     """Why there is nothing to cut, and what would give something."""
     if job.changes is None:
         return Note(
-            "the model tells no outline of anything; give a link bodies such as "
+            "the model has no outlines; give a link bodies such as "
             "plates, or export it balanced, with counterweights that are discs, "
             "rings or sectors"
         )
     if not job.changes:
         return Note(
-            "the model tells no outline of anything, and balancing changes no "
+            "the model has no outlines, and balancing changes no "
             "masses; give a link bodies such as plates"
         )
     cure = Note("give a link bodies such as plates")
@@ -197,8 +197,7 @@ def _refusal(job: Job) -> Note:
 
     changed = ", ".join(dict.fromkeys(change.link for change in job.changes))
     return Note(
-        "the model tells no outline of anything, and balancing gives none to "
-        "what it changes: {changed}; {cure}",
+        "the model has no outlines, and balancing gives none to what it changes: {changed}; {cure}",
         changed=changed,
         cure=cure,
     )

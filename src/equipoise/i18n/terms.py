@@ -8,7 +8,10 @@ from __future__ import annotations
 
 from equipoise.i18n import to_say
 
+_EXPOSURE = to_say("A(8): the weighted vibration of a day's work, as if it lasted eight hours.")
+
 TERMS = {
+    to_say("A(8)"): _EXPOSURE,
     to_say("assembly mode"): to_say(
         "One of the ways in which the same links can be joined; a dyad can lie on either side "
         "of the line between its outer joints."
@@ -25,15 +28,21 @@ TERMS = {
     to_say("crank"): to_say(
         "Link that turns fully about a joint with the frame; usually the driven one."
     ),
-    to_say("daily vibration exposure"): to_say(
-        "A(8): the weighted vibration of a day's work, as if it lasted eight hours."
-    ),
+    to_say("daily vibration exposure"): _EXPOSURE,
     to_say("dyad"): to_say(
         "Two links and three joints without a degree of freedom of their own; linkages are "
         "solved dyad by dyad."
     ),
+    to_say("fluctuation"): to_say(
+        "Largest less smallest speed of the crank in a cycle, over the mean speed; also called "
+        "coefficient of fluctuation."
+    ),
     to_say("frame"): to_say(
         "Body that does not move as a link, in whose axes positions are given."
+    ),
+    to_say("friction"): to_say(
+        "Resistance of a joint to sliding or turning: the coefficient of friction times the "
+        "normal force; a machine at rest has to overcome the static one."
     ),
     to_say("gauge"): to_say("Point of the support at which vibration is read."),
     to_say("mobility"): to_say(

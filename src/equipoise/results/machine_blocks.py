@@ -37,14 +37,8 @@ FOUR_BARS = (
 )
 """Types and classes of `four_bar`."""
 TURNS = {
-    True: to_say(
-        "The crank can turn fully, and at every crank angle the rocker is determined "
-        "(conditions (5) of Yamashita et al.)"
-    ),
-    False: to_say(
-        "The crank cannot turn fully with the rocker determined at every crank angle "
-        "(conditions (5) of Yamashita et al. do not hold)"
-    ),
+    True: to_say("The crank can turn fully, and at every crank angle the rocker is determined"),
+    False: to_say("The crank cannot turn fully with the rocker determined at every crank angle"),
 }
 APART = {
     True: to_say(

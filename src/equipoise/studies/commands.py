@@ -88,7 +88,7 @@ def resolve(values: Values, path: str, short: str | None = None) -> tuple[Step, 
             return (short, *steps)
     for steps in finder.ways(values, path):
         return steps
-    text = min(reversed(finder.stuck), key=lambda failure: failure[0])[1]
+    text = finder.nearest_failure()
     raise UsageError(Note("got {path!r}; {sentence}", path=path, sentence=text))
 
 
@@ -155,10 +155,26 @@ class _Finder:
     """Looks for the ways that a path can be taken.
 
     stuck : how much of the path was left where a way came to its end, and what is there.
+    tables : of ways that ended at an unknown name, how much was left, that name, and the figures
+        there are in its place.
     """
 
     whole: Values
     stuck: list[tuple[int, Note]] = field(default_factory=list)
+    tables: list[tuple[int, str, list[str]]] = field(default_factory=list)
+
+    def nearest_failure(self) -> Note:
+        """Why no way leads to a number: of the way that came furthest, the last of several.
+
+        A name that is unknown in several tables, such as in ``joints.A`` and in its summary, may
+        have been meant in any of them.
+        """
+        left, text = min(reversed(self.stuck), key=lambda failure: failure[0])
+        ends = [(given, names) for rest, given, names in self.tables if rest == left]
+        if len(ends) < 2:
+            return text
+        every = dict.fromkeys(name for _, names in ends for name in names)
+        return unknown(ends[-1][0], every, "figure")
 
     def ways(self, here: Any, rest: str, above: Any = None) -> Iterator[tuple[Step, ...]]:
         """Every way to take the rest of a path from here to a number."""
@@ -195,7 +211,9 @@ class _Finder:
                 yield (name, *steps)
         if not begins:
             given = quoted[1] if quoted else re.split(r"[.\[]", rest)[0] or rest
-            self.ends(rest, unknown(given, here, "figure"))
+            names = [name for name, item in here.items() if not isinstance(item, str)]
+            self.tables.append((len(rest), given, names))
+            self.ends(rest, unknown(given, names, "figure"))
 
     def into_list(self, here: Any, rest: str, above: Any) -> Iterator[tuple[Step, ...]]:
         index = _INDEX.match(rest)

@@ -133,7 +133,9 @@ def test_a_press_is_told_what_its_motor_gives() -> None:
     assert found.mean_torque == pytest.approx(abs(work) / (2 * pi), rel=1e-3)
     assert found.power == pytest.approx(found.mean_torque * machine.drive.speed)
     assert "within 5 %" in said("press") and "within 20 %" in said("press")
-    assert "A motor that lets the speed swing so far then gives 100 N m at crank" in said("press")
+    assert "A motor that permits this fluctuation then has to give 100 N m at crank" in said(
+        "press"
+    )
 
 
 def test_a_flywheel_on_a_faster_shaft_names_what_is_assumed() -> None:

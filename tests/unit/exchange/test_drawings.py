@@ -297,7 +297,7 @@ def test_what_is_cut_to_length_is_no_plate(
 
 
 def test_a_model_without_outlines_has_no_parts(tmp_path: Path) -> None:
-    with pytest.raises(eq.EquipoiseError, match="tells no outline of anything; give a link bodies"):
+    with pytest.raises(eq.EquipoiseError, match="has no outlines; give a link bodies"):
         eq.export(eq.load("lee-kim-a"), tmp_path / "x.svg")
     (told,) = eq.export(eq.load("lee-kim-a"), tmp_path / "x.dxf")
     assert told.startswith("parts to be cut")

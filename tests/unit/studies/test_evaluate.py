@@ -395,7 +395,10 @@ def test_other_reasons(given: Study, values: tuple[float, ...], reasons: list[st
 @pytest.mark.parametrize(
     ("path", "told"),
     [
-        ("shaking_force.z.rms", "no figure is called 'z'; there are 'x', 'y'"),
+        ("shaking_force.z.rms", "no figure is called 'z'; there are 'mean', 'rms', 'peak'"),
+        ("joints.A.biggest", "no figure is called 'biggest'; there are 'mean', 'rms', 'peak'"),
+        ("joints.A.biggest", "'peak_to_peak', 'force_x', 'force_y'"),
+        ("joints.A.force_z.rms", "no figure is called 'force_z'; did you mean 'force_"),
         ("four_bar.type", "that is the text 'crank-rocker'"),
         ("shaking_force.y", "that is a list of 360; give a figure of it, mean, rms"),
         ("shaking_force.y[1]", "one of a list that runs over crank angles, whose number is not"),
