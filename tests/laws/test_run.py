@@ -18,7 +18,7 @@ from equipoise.errors import ResponseError, UsageError
 from equipoise.mechanism.parts.force_elements import Motor
 from equipoise.mechanism.parts.joint_properties import JointProperties
 from equipoise.running import integration
-from equipoise.running.blocks import run_blocks, verdict
+from equipoise.running.blocks import run_blocks, run_headline, verdict
 from equipoise.running.drivers import Driver
 from equipoise.running.equation import CrankEquation
 from equipoise.running.integration import Instant, Integration
@@ -309,3 +309,11 @@ def test_a_machine_that_its_motor_drives_is_not_driven_back() -> None:
     cycle = found.last_cycle
     assert found.driven_back is None and cycle is not None
     assert cycle.highest < cycle.mean_speed < cycle.lowest < 0 < cycle.fluctuation
+
+
+@pytest.mark.parametrize(("speed", "remarks"), [(8.0, True), (10.1, False), (10.0, False)])
+def test_another_speed_than_that_of_the_drive_is_remarked(speed: float, remarks: bool) -> None:
+    """Without weight and loads a motor comes to its speed without load, 10 rad/s = 95.49 rpm."""
+    machine = crank(Motor(no_load_speed=10.0, stall_torque=9.0), speed=speed, gravity=0.0)
+    words = str([*run_headline(eq.run(machine))])
+    assert ("the curve of its motor leads to 95.49 rpm" in words) == remarks

@@ -31,6 +31,8 @@ EVENTS = {
 MOST_EVENTS = 20
 SETTLED = 1e-3
 """Of the kinetic energy: what a drive gives in a cycle beyond it speeds the machine up."""
+SAME_SPEED = 0.02
+"""Share of the speed of the drive by which that of a run may differ without a remark."""
 ROUNDING = 1e-9
 """Share of the kinetic energy below which the drive gives none in a cycle."""
 
@@ -48,6 +50,8 @@ def run_headline(run: Run, alone: bool = False) -> Iterator[Block]:
                 "and loads; add a table [drive.motor] to drive it."
             )
         )
+    if remark := _other_speed(run):
+        yield Text(remark)
     if run.flywheel is not None:
         yield Text(_flywheel(run.flywheel))
     if alone and (lines := tuple(_figures(run))):
@@ -96,6 +100,21 @@ def _trouble(run: Run) -> str:
         at = degrees(run.end.crank_angle) % 360
         return said(stall_note(at, needed, given, at_rest=not run.turned)) + "."
     return "" if run.driven_back is None else _driven_back(run, run.driven_back)
+
+
+def _other_speed(run: Run) -> str:
+    """That the motor turns the crank at another speed than the file gives; empty where not."""
+    cycle, given = run.last_cycle, run.machine.drive.speed
+    if run.machine.drive.motor is None or run.end.kind != "steady" or cycle is None:
+        return ""
+    if run.driven_back is not None or abs(cycle.mean_speed - given) <= SAME_SPEED * abs(given):
+        return ""
+    return say(
+        "The file gives the drive a speed of {given} rpm, for which analyses hold; the curve of "
+        "its motor leads to {speed} rpm.",
+        given=number(given / PER_RPM),
+        speed=number(cycle.mean_speed / PER_RPM),
+    )
 
 
 def _driven_back(run: Run, back: Event) -> str:
