@@ -143,7 +143,7 @@ def test_numbers_of_equations_stand_behind_words():
     assert len(numbered) == 6
     for text in numbered:
         before, _, source = text.partition(" (")
-        assert re.match(r"equations? \(", source) and "of Yamashita et al." in source
+        assert re.match(r"(equations?|conditions) \(", source) and "of Yamashita et al." in source
         assert len(before.split()) > 3
 
 
