@@ -30,7 +30,7 @@ from equipoise.mechanism.kinematics.motion import move
 from equipoise.mechanism.outputs.declared import declared
 from equipoise.mechanism.parts.balance import Balance, Objective
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.mechanism.parts.objectives import ROWS
+from equipoise.mechanism.parts.objectives import GAUGES, ROWS
 from equipoise.planting.names import dimension_of as of_planting
 from equipoise.quantities import Dimension, told
 from equipoise.results.analysis import Analysis
@@ -42,7 +42,7 @@ from equipoise.results.declaring import (
     dimension_at,
     values_of,
 )
-from equipoise.results.outputs import AnalysisOutputs
+from equipoise.results.outputs import AnalysisOutputs, unit_of_measure
 from equipoise.results.result import Result
 from equipoise.results.slender_links import slender_links
 from equipoise.signals import Array
@@ -307,14 +307,23 @@ class Balanced(Result):
         """Speeds (rad/s) at which the new machine shakes as the old one did, by figure.
 
         Shaking forces and moments grow with the square of the speed (Lee and Kim, conclusions).
-        What is gone but for rounding has no such speed.
+        What was nothing but rounding before, or is so after, has no such speed.
         """
         old, new = self._shaking
         return {
             name: self.original.drive.speed * sqrt(old[name] / new[name])
-            for name in old
-            if name.startswith(("shaking_", ROWS)) and new.get(name, 0.0) > GONE * old[name] > 0
+            for name, scale in self._scales.items()
+            if name.startswith(("shaking_", ROWS))
+            and old.get(name, 0.0) > compared.NOTHING * scale
+            and new.get(name, 0.0) > GONE * old[name]
         }
+
+    @property
+    def _scales(self) -> dict[str, float]:
+        """Of each force and moment by name, the largest of its kind before or after."""
+        names = [name for name in self._shaking[0] if "." in name and not name.startswith(GAUGES)]
+        units = {name: unit_of_measure(*name.rsplit(".", 1)) for name in names}
+        return compared.scales_of(*self._shaking, units)
 
     @property
     def _phased(self) -> dict[str, Any]:
@@ -516,9 +525,12 @@ def _over_pins(solution: Solution) -> Iterator[Note]:
             if not pieces or not (moment := change.values["moment"]):
                 continue
             center = complex(*change.values["center"])
-            points = solution.machine.links[change.link].points
-            pins = [name for name, at in points.items() if len(bodies.get(name, ())) > 1
-                    and any(covers(piece, center, complex(*at)) for piece in pieces)]  # fmt: skip
+            link = solution.machine.links[change.link]
+            plane = change.values.get("plane", link.plane)
+            pins = [name for name, at in link.points.items() if len(bodies.get(name, ())) > 1
+                    and any(covers(piece, center, complex(*at))
+                            and _reaches_plane(piece, plane, link.plane_of(name))
+                            for piece in pieces)]  # fmt: skip
             if pins:
                 yield Note(
                     "the plate on {link} lies over pin {pins}: put it in a plane of its own, or "
@@ -528,6 +540,11 @@ def _over_pins(solution: Solution) -> Iterator[Note]:
                     moment=told(moment, "unbalance", digits=3),
                     at=change.values["at"],
                 )
+
+
+def _reaches_plane(piece: Mapping[str, Any], plane: float, other: float) -> bool:
+    """Whether a plate whose middle lies in one plane takes up another too; z of both, m."""
+    return plane == other or abs(plane - other) < (piece.get("thickness") or 0.0) / 2
 
 
 def bending_notes(original: Machine) -> Iterator[Note]:

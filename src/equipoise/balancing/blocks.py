@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from equipoise.balancing.compared import FAINT, WORSE
+from equipoise.balancing.compared import FAINT, NOTHING, WORSE, scales_of
 from equipoise.balancing.objectives import unit_of as si_unit
 from equipoise.balancing.outcome import (
     advice_blocks,
@@ -33,6 +33,7 @@ from equipoise.balancing.workshop import in_short, sentences
 from equipoise.i18n import said, say, to_say
 from equipoise.mechanism.parts.objectives import ROWS
 from equipoise.quantities import Dimension, change, display, number, percent
+from equipoise.quantities.numbers import ROUNDING
 from equipoise.results.blocks import (
     Block,
     Cell,
@@ -223,19 +224,18 @@ def before_after(balanced: Balanced) -> Table:
         for name in before | after
         if not name.startswith("planting.")
     }
-    largest: dict[str, float] = {}
-    for name, unit in units.items():
-        top = max(before.get(name, 0.0), after.get(name, 0.0))
-        largest[_kin(unit)] = max(largest.get(_kin(unit), 0.0), top)
+    scales = scales_of(before, after, units)
     rows: list[tuple[Cell, ...]] = []
     for name, unit in units.items():
-        least = 10 * largest[_kin(unit)]
+        nothing = NOTHING * scales[name]
         old, new = before.get(name), after.get(name, 0.0)
-        had, has = (quantity(x[name], unit, least) if name in x else "" for x in (before, after))
+        had, has = (
+            quantity(x[name], unit, nothing / ROUNDING) if name in x else ""
+            for x in (before, after)
+        )
         changed: Cell = say("new")
         if old is not None:
-            nothing = 1e-10 * least
-            grown = new > (1 + WORSE) * max(old, nothing) and new > FAINT * largest[_kin(unit)]
+            grown = new > (1 + WORSE) * max(old, nothing) and new > FAINT * scales[name]
             worse = worse_if(grown and name != "mass")
             changed = RelativeChange(old, new, worse) if old > nothing else None
             if changed is None and isinstance(has, Value):  # there is no share to stand out
@@ -243,11 +243,6 @@ def before_after(balanced: Balanced) -> Table:
         rows.append((figure_named(name, len(balanced.original.rows)), had, has, changed))
     columns = (Column(""), *(Column(say(label)) for label in BEFORE_AFTER))
     return Table(say("Before and after"), columns, tuple(rows))
-
-
-def _kin(unit: str) -> str:
-    """The unit of which rounding of a unit comes."""
-    return "N m" if unit == "J" else unit
 
 
 def _prices(balanced: Balanced) -> Table:

@@ -24,6 +24,9 @@ SMALL = 0.1
 """Of the largest figure of its unit before: the growth of what was less is measured by that one."""
 FAINT = 1e-4
 """Of the largest figure of its unit: what is smaller is nobody's concern."""
+NOTHING = 1e-6
+"""Of the largest figure of its kind: an optimum is known to about 1e-7, so that masses which would
+cancel leave as much of a figure where there is nothing."""
 IMPORTANT = tuple(dict.fromkeys(("gauges", "rows", *GROUPS)))
 """Groups of outputs in the order in which a reader asks for them."""
 
@@ -72,11 +75,11 @@ def worse_of(
     for item, pair in pairs.items():
         unit = _unit(item)
         usual[unit] = max(usual.get(unit, 0.0), pair[0])
-        largest[_kin(unit)] = max(largest.get(_kin(unit), 0.0), *pair)
+        largest[kin(unit)] = max(largest.get(kin(unit), 0.0), *pair)
     result = []
     for item, (old, new) in pairs.items():
         unit = _unit(item)
-        if new > (1 + WORSE) * old and new > FAINT * largest[_kin(unit)]:
+        if new > (1 + WORSE) * old and new > FAINT * largest[kin(unit)]:
             there = old if old > FAINT * new else 0.0
             scale = old if old > SMALL * usual[unit] else usual[unit]
             weight = 0.0 if _is_part(item) else (new - old) / scale if scale else float("inf")
@@ -109,7 +112,21 @@ def _unit(objective: Objective) -> str:
     return "gauges" if gauge else unit_of_measure(objective.output, objective.measure)
 
 
-def _kin(unit: str) -> str:
+def scales_of(
+    before: Mapping[str, float], after: Mapping[str, float], units: Mapping[str, str]
+) -> dict[str, float]:
+    """Of each figure by name, the largest of its kind before or after, as of all forces.
+
+    units : SI unit of each figure; what has none here is left out.
+    """
+    largest: dict[str, float] = {}
+    for name, unit in units.items():
+        top = max(before.get(name, 0.0), after.get(name, 0.0))
+        largest[kin(unit)] = max(largest.get(kin(unit), 0.0), top)
+    return {name: largest[kin(unit)] for name, unit in units.items()}
+
+
+def kin(unit: str) -> str:
     """Unit of what figures come from, among which one may be nothing but rounding."""
     return "N m" if unit == "J" else unit
 

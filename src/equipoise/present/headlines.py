@@ -30,9 +30,10 @@ from equipoise.quantities import (
     percent,
     told,
 )
-from equipoise.results.analysis_blocks import display_of_totals, scale_of, shares
+from equipoise.results.analysis_blocks import display_of_totals, shares
 from equipoise.results.joint_blocks import display_of_joints
 from equipoise.results.outputs import CAUSES, objective_named, output_named, shown_in
+from equipoise.results.scales import scale_of
 from equipoise.signals import Array, Figures, harmonics
 from equipoise.vibration.linear import nearest_loud
 

@@ -25,11 +25,12 @@ from equipoise.quantities import (
     percent,
     told,
 )
-from equipoise.results.analysis_blocks import CANCELLING, display_of_totals, scale_of, shares
+from equipoise.results.analysis_blocks import CANCELLING, display_of_totals, shares
 from equipoise.results.blocks import worse_if
 from equipoise.results.joint_blocks import display_of_joints
 from equipoise.results.machine_blocks import pushed_named
 from equipoise.results.outputs import CAUSES, objective_named, shown_in
+from equipoise.results.scales import scale_of
 from equipoise.vibration.linear import resonance_note, within
 
 SMALL = 0.005

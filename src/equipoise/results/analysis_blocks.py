@@ -32,6 +32,7 @@ from equipoise.results.machine_blocks import (
     span,
 )
 from equipoise.results.outputs import CAUSES, tops_of
+from equipoise.results.scales import TOTALS, scale_of
 from equipoise.signals import EQUAL, Array, Periodic
 
 if TYPE_CHECKING:
@@ -164,21 +165,6 @@ def advantages_table(analysis: Analysis) -> Table:
 # -- forces ----------------------------------------------------------------------------------------
 
 
-TOTALS = ("forces", "drives", "rows")
-"""Groups of outputs of frame and drive: of one row, of further drives, and of all rows."""
-
-
-def _scale(analysis: Analysis, kind: Dimension | None) -> float:
-    """The largest of all forces, moments or torques on frame and drive."""
-    ones = (item for item in analysis.outputs.summed if item.group in TOTALS[:2])
-    return max((item.figures.peak for item in ones if item.dimension == kind), default=0.0)
-
-
-def scale_of(analysis: Analysis, kind: Dimension) -> float:
-    """The largest force or moment on the frame, beside which forces, or torques, are rounding."""
-    return analysis.summary["frame_moment" if kind == "torque" else "frame_force"].peak
-
-
 def display_of_totals(analysis: Analysis, kind: Dimension | None) -> Display:
     """The unit in which forces, or moments and torques, on frame and drive are shown everywhere."""
     ones = (item.figures for item in analysis.outputs.summed
@@ -195,7 +181,7 @@ def force_blocks(analysis: Analysis) -> Iterator[Block]:
     rows: list[tuple[Cell, ...]] = []
     for entry in ones:
         figures, kind = entry.figures, entry.dimension
-        scale, unit = _scale(analysis, kind), display_of_totals(analysis, kind).unit
+        scale, unit = scale_of(analysis, kind), display_of_totals(analysis, kind).unit
         mean, rms, swing = (
             Value(value, scale, dimension=kind, unit=unit)
             for value in (figures.mean, figures.rms, figures.peak_to_peak)
@@ -283,7 +269,7 @@ def orders_table(analysis: Analysis) -> Table:
     sizes = [np.pad(signal.sizes, (0, count - len(signal.sizes))) for signal in signals]
     tops = tops_of(zip(ones, (size[1:] for size in sizes), strict=True))
     kinds = [item.dimension for item in ones]
-    scales = [max(1e3 * tops[kind], _scale(analysis, kind)) for kind in kinds]
+    scales = [max(1e3 * tops[kind], scale_of(analysis, kind)) for kind in kinds]
     turns = analysis.motion.turns
     per_order = abs(analysis.motion.speed) / (2 * np.pi)
     rows = (
@@ -325,7 +311,11 @@ def harmonic_blocks(analysis: Analysis, orders: int, zero: float) -> Iterator[Bl
         kind = entry.dimension
         columns = [say("order"), *(Column(label, kind, alike=False) for label in ("A", "B", "R"))]
         columns += [Column(say("phase"), "angle"), Column(say("RMS"), kind, alike=False)]
-        rows = _harmonics(signals[entry.name].shifted(zero), orders, 10 * tops[kind])
+        rows = _harmonics(
+            signals[entry.name].shifted(zero),
+            orders,
+            max(10 * tops[kind], scale_of(analysis, kind)),
+        )
         yield Table.of(entry.declared.title(entry.item), columns, rows)
 
 

@@ -22,6 +22,7 @@ from equipoise.results.bearing_blocks import bearing_blocks
 from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Value
 from equipoise.results.friction_blocks import friction_blocks
 from equipoise.results.machine_blocks import largest, smallest
+from equipoise.results.scales import scale_of
 from equipoise.results.section_blocks import section_blocks
 
 if TYPE_CHECKING:
@@ -121,7 +122,7 @@ def joint_table(analysis: Analysis) -> Table:
     joints: dict[str, JointForce] = forces.solved.contacts
     across = forces.across if analysis.machine.has_planes else None
     tilting = {} if across is None else across.tilting_moments
-    scale = analysis.summary["frame_moment"].peak
+    scale = scale_of(analysis, "torque")
     rows: list[tuple[Cell, ...]] = []
     for name, joint in joints.items():
         couple = None
@@ -132,7 +133,7 @@ def joint_table(analysis: Analysis) -> Table:
                 contact_named(forces, name),
                 *_cells(analysis, joint),
                 couple,
-                _peak(tilting.get(name)),
+                _peak(tilting.get(name), scale),
             )
         )
     for name, joint in across.bearings.items() if across is not None else ():
@@ -156,5 +157,5 @@ def _cells(analysis: Analysis, joint: JointForce) -> tuple[Cell, ...]:
     return ends, Value(figures.mean), Value(figures.rms), largest(figures)
 
 
-def _peak(moment: JointForce | None) -> Value | None:
-    return None if moment is None else Value(float(np.max(moment.size)))
+def _peak(moment: JointForce | None, scale: float) -> Value | None:
+    return None if moment is None else Value(float(np.max(moment.size)), scale)

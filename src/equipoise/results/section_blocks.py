@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from equipoise.i18n import Note, say, to_say
 from equipoise.quantities import told
 from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Value
+from equipoise.results.scales import scale_of
 from equipoise.results.slender_links import slender_links
 
 if TYPE_CHECKING:
@@ -23,9 +24,11 @@ def section_blocks(analysis: Analysis) -> Iterator[Block]:
         return
     loads: list[tuple[Cell, ...]] = []
     strength: list[tuple[Cell, ...]] = []
+    force, moment = scale_of(analysis, "force"), scale_of(analysis, "torque")
     for name, section in analysis.sections.items():
-        forces = (section.tension, section.compression, section.shear, section.bending_moment)
-        loads.append((name, *map(Value, forces)))
+        along = (section.tension, section.compression, section.shear)
+        forces = (Value(value, force) for value in along)
+        loads.append((name, *forces, Value(section.bending_moment, moment)))
         safeties = (section.safety, section.buckling_safety, section.fatigue_safety)
         cells = (None if safety is None else Value(safety) for safety in safeties)
         life = None if section.life is None else Value(section.life)

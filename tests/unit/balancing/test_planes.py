@@ -13,13 +13,14 @@ from equipoise.balancing.cylinder_phasing import PhasedRows
 from equipoise.balancing.objectives import signals_of
 from equipoise.balancing.problem import Problem
 from equipoise.balancing.told import freedoms
+from equipoise.balancing.workshop import covers
 from equipoise.errors import ModelError
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.dynamics.across import statics
 from equipoise.mechanism.dynamics.assessment import remarks
 from equipoise.mechanism.parts.balance import AddedMass, Balance, Objective, Weight
 from equipoise.mechanism.parts.bodies import Body
-from equipoise.mechanism.parts.links import Bearing
+from equipoise.mechanism.parts.links import Bearing, Slider
 from equipoise.mechanism.parts.machine import Drive, Link, Machine
 from equipoise.mechanism.parts.support import Row
 from equipoise.vibration.forced import respond
@@ -170,3 +171,59 @@ def test_a_plan_tells_two_counterweights_on_one_shaft_apart() -> None:
         "any mass on shaft about A, in the plane z = 100.0 mm",
         "any mass on shaft about A, in the plane z = 800.0 mm",
     ]
+
+
+def two_cylinders(*planes: float) -> eq.Machine:
+    """Return a crank with two pins at 180 deg in planes 80 mm apart, and room for two sectors of
+    plate 20 mm thick in these planes (m), each towards the pin in the other plane.
+    """
+    links = {
+        "crank": Link(
+            {"O": (0.0, 0.0), "B1": (0.03, 0.0), "B2": (-0.03, 0.0)}, 3.0, (0.0, 0.0), 3e-3,
+            planes={"B1": -0.04, "B2": 0.04},
+        ),
+    }  # fmt: skip
+    for number, z in ((1, -0.04), (2, 0.04)):
+        rod = {f"B{number}": (0.0, 0.0), f"C{number}": (0.11, 0.0)}
+        links[f"rod{number}"] = Link(rod, 0.35, (0.033, 0.0), 6.2e-4, plane=z)
+        piston = {f"C{number}": (0.0, 0.0)}
+        links[f"piston{number}"] = Link(piston, 0.45, (0.0, 0.0), 2e-4, plane=z)
+    steel = Weight("sector", 0.07, inner_radius=0.02, thickness=0.02, density=7850.0)
+    masses = [AddedMass("crank", "O", replace(steel, plane=z)) for z in planes]
+    return Machine(
+        title="two cylinders",
+        drive=Drive("crank", 125.0),
+        frame={"O": (0.0, 0.0)},
+        links=links,
+        sliders=[
+            Slider(f"piston{number}", f"C{number}", "frame", through="O", direction=np.pi / 2)
+            for number in (1, 2)
+        ],
+        assembly={"C1": "forward", "C2": "forward"},
+        bearings={"front": Bearing("crank", -0.08), "rear": Bearing("crank", 0.08)},
+        balance=Balance(masses=masses, objectives=[Objective("rocking_moment")]),
+    )
+
+
+def test_plates_beside_the_planes_of_pins_do_not_lie_over_them() -> None:
+    """Seen along the shaft they cover both; they are 10 mm and more from the planes of these."""
+    found = eq.balance(two_cylinders(-0.06, 0.06))
+    for change, pin in zip(found.changes, (-0.03, 0.03), strict=True):
+        assert any(covers(piece, 0j, complex(pin)) for piece in change.values["pieces"])
+    assert not any("lies over" in str(note) for note in found.notes)
+
+
+@pytest.mark.parametrize(("z", "count"), [(0.0, 1), (0.004, 1), (-0.1, 0), (0.1, 0)])
+def test_a_plate_lies_over_a_pin_whose_plane_it_takes_up(z: float, count: int) -> None:
+    """A plate about z = 0 on a crank with its pin at z."""
+    machine = eq.load("four-stroke-engine")
+    found = eq.balance(machine.with_link("crank", planes={"B": z}))
+    assert len([note for note in found.notes if "lies over pin B" in str(note)]) == count
+
+
+def test_what_was_nothing_has_no_speed_at_which_it_is_as_before() -> None:
+    """The pins cancel: no shaking moment or force along x before, and rounding of it after."""
+    found = eq.balance(two_cylinders(-0.06, 0.06))
+    names = {f"shaking_force{part}.{measure}" for part in ("", ".y") for measure in ("rms", "peak")}
+    assert set(found.equivalent_speeds) == names
+    assert found.equivalent_speeds["shaking_force.rms"] == pytest.approx(125.0)

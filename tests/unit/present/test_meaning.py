@@ -16,6 +16,7 @@ from equipoise.balancing.compared import FAINT as CONCERN
 from equipoise.present.cells import FAINT, FAINT_IN_ROW, grid
 from equipoise.quantities import PER_RPM
 from equipoise.results.blocks import Column, Span, Table, Value
+from equipoise.results.scales import scale_of
 from support.found import found as found_of
 
 MACHINES = (
@@ -128,3 +129,76 @@ def test_a_grown_figure_stands_out_only_beside_what_matters(grown: float, concer
     cells = [cell for row in table.rows for cell in row if isinstance(cell, Value)]
     (cell,) = (one for one in cells if one.value == after[name])
     assert (cell.emphasis == "worse") is concern
+
+
+PUNCH = """
+schema = 1
+title = "punch"
+[drive]
+link = "camshaft"
+speed = "300 rpm"
+[frame]
+points.O = ["0 mm", "0 mm"]
+points.S = ["0 mm", "-120 mm"]
+[links.camshaft]
+points.O = ["0 mm", "0 mm"]
+mass = "3 kg"
+center_of_mass = ["0 mm", "0 mm"]
+inertia = "4000 kg mm^2"
+[links.punch]
+points.R = ["0 mm", "0 mm"]
+points.F = ["30 mm", "0 mm"]
+points.T = ["180 mm", "0 mm"]
+mass = "1.8 kg"
+center_of_mass = ["80 mm", "0 mm"]
+inertia = "6000 kg mm^2"
+section = { between = ["R", "T"], diameter = "14 mm", elastic_modulus = "206 GPa" }
+[[sliders]]
+link = "punch"
+point = "R"
+on = "frame"
+through = "O"
+direction = "-90 deg"
+[[cams]]
+cam = "camshaft"
+follower = "punch"
+rides = "roller"
+point = "R"
+closed_by = "spring"
+base_radius = "30 mm"
+roller_radius = "10 mm"
+[cams.lift]
+segments = [
+  { over = "180 deg", to = "20 mm", law = "modified sine" },
+  { over = "180 deg", to = "0 mm", law = "modified sine" },
+]
+[[springs]]
+link = "punch"
+point = "F"
+to = "S"
+stiffness = "8 N/mm"
+free_length = "60 mm"
+"""
+
+
+def test_moments_of_forces_along_one_line_are_0_in_the_usual_unit() -> None:
+    """All forces on a punch are along its line: what is left of moments is rounding of them."""
+    tables = {block.title: grid(block) for block in eq.analyze(eq.loads(PUNCH)).blocks()
+              if isinstance(block, Table)}  # fmt: skip
+    for title, label in (
+        ("Loads along links, largest", "bending moment"),
+        ("Force in each joint; largest with its crank angle", "moment"),
+    ):
+        table = tables[title]
+        (place,) = (k for k, head in enumerate(table.heads) if head.label == label)
+        assert table.heads[place].unit == "N m"
+        assert {row[place].text for row in table.rows} <= {"0", ""}
+
+
+def test_rounding_of_a_total_is_rounding_beside_the_largest_force_in_a_joint() -> None:
+    """Forces of joints that cancel on the frame leave rounding of themselves there."""
+    analysis = eq.analyze(eq.loads(PUNCH))
+    contacts = analysis.forces.solved.contacts.values()
+    largest = max(float(np.max(contact.size)) for contact in contacts)
+    assert scale_of(analysis, "force") >= largest
+    assert scale_of(analysis, "torque") >= 0.18 * largest > analysis.summary["frame_moment"].peak
