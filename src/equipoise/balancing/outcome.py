@@ -19,6 +19,7 @@ from equipoise.balancing.policy import (
     LEAST_GAIN,
     LEAST_GAIN_OF_ADDED,
     LEAST_NET_GAIN,
+    SMALL_FIGURE,
 )
 from equipoise.balancing.poor_transmission import transmission_sentence
 from equipoise.balancing.remedies import is_worth, least_gain
@@ -36,6 +37,7 @@ from equipoise.i18n import say, to_say
 from equipoise.mechanism.parts.objectives import GAUGES, ROWS
 from equipoise.quantities import change, display, percent, told
 from equipoise.results.blocks import Block, Cell, Column, RelativeChange, Table, Text
+from equipoise.results.lost_contacts import preloads_to_hold
 from equipoise.results.outputs import objective_named, shown_in
 from equipoise.results.rotors import rotor_sentence, unbalances
 from equipoise.results.yardsticks import FigureAssessment, sentence
@@ -213,8 +215,17 @@ def sentences_beyond_masses(balanced: Balanced) -> Iterator[str]:
     """What helps beyond masses, with the change that is offered, if one is; without one, other
     mounts stand before that masses are best left.
     """
+    yield from _preloads(balanced)
     yield from mounts_beside_change(balanced)
     yield from beside_mounts(balanced)
+
+
+def _preloads(balanced: Balanced) -> Iterator[str]:
+    """Preloads of springs that hold followers on their cams, which lift off as things are."""
+    if balanced.advice is not None:
+        machine = balanced.machine if balanced.helps else balanced.original
+        for note in preloads_to_hold(machine):
+            yield say("{sentence}.", sentence=capital(note.said()))
 
 
 def steadying_sentence(balanced: Balanced) -> str:
@@ -453,9 +464,10 @@ def _asking_for_more(balanced: Balanced) -> Iterator[str]:
             "mass by {added} %, and by {net} % more than the share that it adds to the mass of "
             "the moving links), reduces the large figure in its own measure too, increases no "
             "headline figure by more than 1 % or a tenth of the reduction, and no single joint "
-            "force or component of the shaking force by more than 5 % (except figures that stay "
-            "small relative to their reference value), and introduces no couple larger than the "
-            "reduction.",
+            "force or component of the shaking force by more than 5 % (figures that stay below "
+            "{small} % of what counts as large for them may grow more), and introduces no couple "
+            "larger than the reduction.",
+            small=percent(SMALL_FIGURE, 0),
             least=percent(LEAST_GAIN, 0),
             added=percent(LEAST_GAIN_OF_ADDED, 0),
             net=percent(LEAST_NET_GAIN, 0),

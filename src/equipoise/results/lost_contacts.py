@@ -2,15 +2,23 @@
 
 from __future__ import annotations
 
-from math import pi
+from collections.abc import Iterator
+from dataclasses import replace
+from math import ceil, copysign, floor, isfinite, log10, pi
+
+import numpy as np
 
 from equipoise.i18n import Note, all_of
-from equipoise.mechanism.dynamics.cam_contacts import LetGo, let_go
+from equipoise.mechanism.dynamics.cam_contacts import PER_TURN, LetGo, let_go
 from equipoise.mechanism.dynamics.forces import Forces, forces, massless
 from equipoise.mechanism.kinematics.motion import move
 from equipoise.mechanism.outputs.declared import body_named
+from equipoise.mechanism.parts.cams import Cam
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.quantities import PER_RPM, angle, told
+
+LEAST_EFFECT = 1e-6
+"""Contact force over the preload of a spring: one that acts less on a follower does not hold it."""
 
 
 def lost_told(let_go: LetGo, sprung: bool) -> Note:
@@ -50,7 +58,72 @@ def where_lost(machine: Machine) -> tuple[Note, ...]:
     """Where springs do not keep followers on their cams, at the file's speed."""
     if not machine.cams or massless(machine):
         return ()
-    return lost_contacts(forces(move(machine)))
+    lost = lost_contacts(forces(move(machine)))
+    return (*lost, *preloads_to_hold(machine)) if lost else ()
+
+
+def preloads_to_hold(machine: Machine) -> Iterator[Note]:
+    """Of each follower that lifts off at the file's speed, a preload that holds it there.
+
+    Contact forces are linear in the preload of a spring, so that one more analysis tells how much
+    of it each crank angle needs; the spring that needs the least change is named, and none where
+    the contact is lost with that preload all the same.
+    """
+    if not machine.cams or massless(machine):
+        return
+    present = forces(move(machine, PER_TURN))
+    speed = abs(machine.drive.speed)
+    for item in let_go(present):
+        changes = []
+        for number, spring in enumerate(machine.springs if item.ranges else ()):
+            if spring.stiffness is not None and (added := _needed(present, item.cam, number)):
+                changes.append((abs(added), (spring.preload or 0.0) + added, number))
+        for _, preload, number in sorted(changes)[:1]:
+            held = _with_preload(machine, number, preload)
+            limit = {after.cam.name: after for after in let_go(forces(move(held, PER_TURN)))}
+            if limit[item.cam.name].speed >= speed:
+                spring = machine.springs[number]
+                yield Note(
+                    "a preload of {preload} instead of {given} of the spring from {point} to {to} "
+                    "just holds {follower} on {cam} at {speed:.4g} rpm",
+                    preload=told(preload, "force", "N"),
+                    given=told(spring.preload or 0.0, "force", "N"),
+                    point=spring.point,
+                    to=spring.to,
+                    follower=item.cam.driven,
+                    cam=body_named(item.cam.driver),
+                    speed=speed / PER_RPM,
+                )
+
+
+def _with_preload(machine: Machine, number: int, preload: float) -> Machine:
+    springs = [*machine.springs]
+    springs[number] = replace(springs[number], preload=preload)
+    return machine.with_springs(springs)
+
+
+def _needed(present: Forces, cam: Cam, number: int) -> float:
+    """Preload, N, to add to a spring so that a cam's contact force is nowhere below 0; 0 where no
+    preload does that.
+
+    It is rounded away from 0 to two digits: between samples the force is a little lower.
+    """
+    machine = present.motion.machine
+    more = _with_preload(machine, number, (machine.springs[number].preload or 0.0) + 1.0)
+    normal = present.cams[cam.name].normal
+    per_newton = forces(move(more, PER_TURN)).cams[cam.name].normal - normal
+    acts = np.abs(per_newton) > LEAST_EFFECT
+    if np.any(normal[~acts] < 0):
+        return 0.0
+    bounds = -normal[acts] / per_newton[acts]
+    rises = per_newton[acts] > 0
+    low = float(np.max(bounds[rises], initial=-np.inf))
+    high = float(np.min(bounds[~rises], initial=np.inf))
+    added = low if low > 0 else high
+    if not low <= high or not isfinite(added) or added == 0:
+        return 0.0
+    digit = 10.0 ** (floor(log10(abs(added))) - 1)
+    return copysign(ceil(abs(added) / digit) * digit, added)
 
 
 def lost_contacts(forces: Forces) -> tuple[Note, ...]:

@@ -18,7 +18,7 @@ from equipoise.balancing.blocks import outcome_blocks
 from equipoise.balancing.first_order import end_weights_for
 from equipoise.balancing.headlines import Saving, worse_headlines
 from equipoise.balancing.outcome import helps_told, why_not
-from equipoise.balancing.policy import LEAST_GAIN, LEAST_GAIN_OF_ADDED
+from equipoise.balancing.policy import LEAST_GAIN, LEAST_GAIN_OF_ADDED, SMALL_FIGURE
 from equipoise.balancing.remedies import Sector as SectorShape
 from equipoise.balancing.remedies import is_worth, plate_of, sectors, with_sectors
 from equipoise.balancing.room import pivots_of, room_about, rooms_about
@@ -698,3 +698,13 @@ def test_two_weights_at_the_ends_take_the_couple_that_turns_with_the_crank() -> 
     assert ends.gain == pytest.approx(1 - left, abs=1e-9)
     assert abs(best[0]) == pytest.approx(ends.moment)
     assert "opposite each other and 176 mm apart" in " ".join(helps_told(found))
+
+
+def test_the_rule_of_what_is_offered_says_how_far_small_figures_may_grow() -> None:
+    """As `allowed_ratio` has it: by half of what is saved, up to the share that the rule names."""
+    (rule,) = (
+        block.text
+        for block in outcome_blocks(advice_for("yamashita-1"))
+        if isinstance(block, TextBlock) and block.text.startswith("A change is offered if")
+    )
+    assert f"stay below {100 * SMALL_FIGURE:.0f} % of what counts as large for them" in rule

@@ -19,7 +19,7 @@ from equipoise.mechanism.parts.cams import Cam
 from equipoise.mechanism.parts.laws import AngleLaw, AngleSegment, LengthLaw, LengthSegment
 from equipoise.mechanism.parts.machine import FRAME
 from equipoise.quantities import PER_RPM
-from equipoise.results.lost_contacts import where_lost
+from equipoise.results.lost_contacts import preloads_to_hold, where_lost
 from equipoise.schema.files import json_text
 from support.printing import words
 from support.refusals import values_of
@@ -146,6 +146,27 @@ def test_a_spring_presses_the_tappet_on() -> None:
     assert loose.ranges == ((pytest.approx(0), pytest.approx(2 * pi)),)
     (told,) = where_lost(tappet(cam(closed_by="spring"), gravity=(0.0, 5.0)))
     assert str(told).endswith("; no [[springs]] press on it")
+
+
+def test_a_preload_that_holds_the_tappet_at_its_speed() -> None:
+    """At the top it asks for m h speed^2 / 2, less weight and spring; two digits, rounded up."""
+    spring = eq.Spring("tappet", "R", "S", 1000.0, 0.3)
+    slow = tappet(cam(closed_by="spring"), springs=(spring,))
+    top = MASS * GRAVITY + 1000.0 * (0.3 - (0.2 - 0.03 - HIGH))
+    speed = 1.2 * sqrt(top / (MASS * HIGH / 2))
+    assert not [*preloads_to_hold(slow)]
+    fast = replace(slow, drive=replace(slow.drive, speed=-speed))
+    missing = MASS * HIGH / 2 * speed**2 - top
+    (note,) = preloads_to_hold(fast)
+    preload = note.values["preload"]
+    size = -float(str(preload).removesuffix(" N"))
+    assert missing <= size <= 1.1 * missing
+    held = fast.with_springs([replace(spring, preload=-size)])
+    assert len(where_lost(fast)) == 2 and not where_lost(held)
+    assert where_lost(fast)[1] == note
+    lightly = fast.with_springs([replace(spring, preload=-missing * 0.98)])
+    assert where_lost(lightly)
+    assert not [*preloads_to_hold(fast.with_springs([]))]
 
 
 SPRUNG = {

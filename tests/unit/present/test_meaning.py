@@ -11,11 +11,12 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.balancing.blocks import _speeds, before_after
+from equipoise.balancing.advice import advise
+from equipoise.balancing.blocks import _speeds, balanced_headline, before_after
 from equipoise.balancing.compared import FAINT as CONCERN
 from equipoise.present.cells import FAINT, FAINT_IN_ROW, grid
 from equipoise.quantities import PER_RPM
-from equipoise.results.blocks import Column, Span, Table, Value
+from equipoise.results.blocks import Column, Span, Table, Text, Value
 from equipoise.results.scales import scale_of
 from support.found import found as found_of
 
@@ -202,3 +203,18 @@ def test_rounding_of_a_total_is_rounding_beside_the_largest_force_in_a_joint() -
     largest = max(float(np.max(contact.size)) for contact in contacts)
     assert scale_of(analysis, "force") >= largest
     assert scale_of(analysis, "torque") >= 0.18 * largest > analysis.summary["frame_moment"].peak
+
+
+def test_balance_names_the_preload_that_holds_a_follower() -> None:
+    """Where masses are best left, the first page has what holds it; nothing where all is held."""
+    slow = eq.loads(PUNCH)
+    spoken = []
+    for speed in (1.0, 4.0):
+        machine = slow.with_drive(speed=speed * slow.drive.speed)
+        balanced = advise(machine)
+        texts = [block.text for block in balanced_headline(balanced, alone=True)
+                 if isinstance(block, Text)]  # fmt: skip
+        spoken.append([text for text in texts if text.startswith("A preload of")])
+    slowly, (line,) = spoken
+    assert slowly == []
+    assert line.endswith("of the spring from F to S just holds punch on camshaft at 1200 rpm.")
