@@ -211,9 +211,9 @@ class _Finder:
                 yield (name, *steps)
         if not begins:
             given = quoted[1] if quoted else re.split(r"[.\[]", rest)[0] or rest
-            names = [name for name, item in here.items() if not isinstance(item, str)]
-            self.tables.append((len(rest), given, names))
-            self.ends(rest, unknown(given, names, "figure"))
+            known = [name for name, item in here.items() if not isinstance(item, str)]
+            self.tables.append((len(rest), given, known))
+            self.ends(rest, unknown(given, known, "figure"))
 
     def into_list(self, here: Any, rest: str, above: Any) -> Iterator[tuple[Step, ...]]:
         index = _INDEX.match(rest)
