@@ -94,7 +94,7 @@ def test_it_stays_put_until_the_torque_breaks_it_away(torque: float, moves: bool
     if not moves:
         assert (found.end.kind, found.turned) == ("stall", 0.0)
         assert found.lacking_torque == pytest.approx((HALT, torque))
-        assert "needs 23.55 N m to go on, and has 23.53 N m" in verdict(found)
+        assert "needs 23.55 N m to start, and has 23.53 N m" in verdict(found)
 
 
 def test_a_load_below_what_holds_it_does_not_start_a_machine() -> None:
