@@ -303,7 +303,7 @@ ANSWERS = {
     "reciprocating-saw": r"^Nothing of what reciprocates .* No other change that .* Flywheel on",
     "sieve-on-stand": r"stand_along, RMS .* → 0\.257 mm.* First move the resonance at 732 rpm",
     "sieve-short": r"Shaking force, RMS: 500 → .* shaft: drill a hole of ",
-    "stamping-press": r"^No counterweight .* 5 times as fast as crank.* has to give 41\.7 N m at crank",
+    "stamping-press": r"^No counterweight .* 5 times as fast as crank.* to give 41\.7 N m at crank",
     "transplanter-close": r"Leave the masses .* Transmission angle at C: 28",
     "walking-beam": r"Drive torque, RMS about the mean: 70\.2 → .* second: .* angle at F: .* beam",
     "wiper": r"^Transmission angle at C: 162.* arm1 20 % longer .* No other change .* Flywheel",

@@ -467,7 +467,10 @@ def test_the_drawing_of_each_counterweight_is_written_with_the_new_model(tmp_pat
     new, drawing = tmp_path / "new.toml", tmp_path / "new.pdf"
     told = equipoise("balance", "balance-rig", "--out", new, "--drawing", drawing)
     succeeded(told)
-    assert told.err.splitlines()[-2:] == [f"wrote {new}", f"wrote {drawing}"]
+    assert [x for x in told.err.splitlines() if x.startswith("wrote")] == [
+        f"wrote {new}",
+        f"wrote {drawing}",
+    ]
     assert drawing.read_bytes().startswith(b"%PDF") and new.is_file()
     point = ("balance", "balance-crank", "--out", tmp_path / "p.toml")
     told = equipoise(*point, "--drawing", tmp_path / "p.dxf")
