@@ -92,7 +92,7 @@ def test_the_page_opens_designs_of_it_as_machines(
     one = eq.design.Variable("mass_scale", eq.design.Range(0.5, 2.0))
     eq.studies.sweep(study(one), tmp_path / "scaled.zarr", workers=1)
     desk = StoreDesk.load(str(tmp_path / "scaled.zarr"))
-    told = desk.told(1).content
+    told = desk.reply(1).content
     assert [column["name"] for column in told["columns"]] == ["mass_scale", "shaking_force.y.rms"]
     scale = desk.store.read(range(3, 4)).values[0, 0]
     assert desk.model(3).mass == pytest.approx(scale * eq.load("yamashita-1").mass)
