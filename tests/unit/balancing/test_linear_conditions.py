@@ -265,8 +265,10 @@ def test_sensitivities_as_plain_data() -> None:
 def test_refusals_of_sensitivities() -> None:
     with refused(UsageError, given="shaking_force"):
         sensitivities(lone(), "shaking_force")
-    for angles in (3, True, 36.0, "36"):
-        with refused(UsageError, least_angles="8"):
+    with refused(UsageError, least_angles="8"):
+        sensitivities(lone(), angles=3)
+    for angles in (True, 36.0, "36"):
+        with pytest.raises(UsageError):  # or its CallError, by the door of the package
             sensitivities(lone(), angles=angles)  # type: ignore[arg-type]
     with refused(UsageError, name="crank.center_x"):
         sensitivities(lone(), angles=36)["crank.centre_x"]
