@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from equipoise.errors import EquipoiseError
 from equipoise.i18n import said, say, to_say
-from equipoise.quantities import PER_RPM, brief
+from equipoise.quantities import PER_RPM, brief, number
 from equipoise.results import headline
 from equipoise.results.analysis import Analysis, analyze
 from equipoise.results.blocks import Block, Facts, Notes, Text, broken_if
@@ -21,7 +21,7 @@ from equipoise.vibration.linear import Linear, around, resonance_note, resonance
 from equipoise.vibration.response import MODELS
 
 if TYPE_CHECKING:
-    from equipoise.vibration.response import Response
+    from equipoise.vibration.response import DriveSignals, Response
     from equipoise.vibration.sweep import Sweep
 
 MOST_NOTES, MOST_GAUGES, MOST_LOUD = 3, 6, 3
@@ -55,6 +55,8 @@ def response_headline(response: Response, alone: bool = False) -> Iterator[Block
         yield Text(words, broken_if(first.is_broken))
     elif words := rotor_sentence(machine):
         yield Text(words)
+    if response.drive.speed is not None:
+        yield Text(_crank_speed(response.drive))
     if not alone:
         return
     yield Text(driven(machine, response.speed))
@@ -65,6 +67,9 @@ def response_headline(response: Response, alone: bool = False) -> Iterator[Block
     yield from map(Text, _resonances(response))
     if response.notes:
         yield Notes(response.notes[:MOST_NOTES])
+    if machine.support is None:  # which answers at no other speeds
+        yield look_at_next("run", "balance")
+        return
     low, high = sorted(abs(item) / PER_RPM for item in around(machine.drive, response.speed))
     yield look_at_next(f'respond --speed "{_rpm(low)} : {_rpm(high)}"', "balance")
 
@@ -72,6 +77,16 @@ def response_headline(response: Response, alone: bool = False) -> Iterator[Block
 def _rpm(speed: float) -> str:
     """A speed in rpm to three digits, without an exponent, to be copied into a command."""
     return f"{float(f'{speed:.3g}'):.10g} rpm"
+
+
+def _crank_speed(drive: DriveSignals) -> str:
+    """Mean and fluctuation of the speed of a crank that a motor drives."""
+    assert drive.speed is not None
+    return say(
+        "The machine runs at {speed} rpm, with a fluctuation of {share} %.",
+        speed=number(float(drive.speed.mean) / PER_RPM),
+        share=f"{100 * drive.fluctuation:.3g}",
+    )
 
 
 def _readings(response: Response, worst: str) -> Iterator[str]:

@@ -15,10 +15,12 @@ from equipoise.mechanism.parts.force_elements import Motor, MotorTable
 from equipoise.mechanism.parts.support import UP
 from equipoise.present.findings import Findings, find
 from equipoise.present.summary import vibration_told
+from equipoise.results.blocks import Text
 from equipoise.vibration.blocks import disagreement
 from equipoise.vibration.coupled import StallError
 from equipoise.vibration.exact import solve_exact
 from equipoise.vibration.forced import chosen_model, excitation_model_of, respond
+from equipoise.vibration.headline import response_headline
 from equipoise.vibration.linear import around
 from equipoise.vibration.response import MODELS, Model
 from equipoise.vibration.sweep import sweep_speed
@@ -351,3 +353,17 @@ def test_no_curve_goes_on_past_standstill(mean_speed: Literal["held", "free"]) -
     with pytest.raises(StallError, match="stalls with any flywheel") as error:
         respond(machine.with_drive(motor=weak), drive=True)
     assert f"has {0.8 * mean:.4g} N m" in str(error.value)
+
+
+def test_a_motor_on_solid_ground_has_its_speed_first_and_no_other_speeds_to_look_at() -> None:
+    rig = eq.load("yamashita-rig")
+    machine = replace(rig, support=None, balance=None)
+    response = eq.respond(machine, drive=True)
+    assert response.drive.fluctuation > 0
+    first, *_, last = [block.text for block in response_headline(response, alone=True)
+                       if isinstance(block, Text)]  # fmt: skip
+    assert f"{100 * response.drive.fluctuation:.3g} %" in first
+    assert "respond" not in last
+    (on_mounts,) = [block.text for block in response_headline(eq.respond(rig), alone=True)
+                    if isinstance(block, Text) and "respond --speed" in block.text]  # fmt: skip
+    assert on_mounts
