@@ -94,12 +94,12 @@ def test_the_glossary_has_every_term_and_its_meaning_in_every_language(site: Pat
     """As the catalogues say it, and none in English where it is to be in another language."""
     text = (site / "glossary.html").read_text(encoding="utf-8")
     cells = re.findall(r"<strong>(.*?)</strong>(?:<br>)?(.*?)(?:</p>)?</td>", text)
-    shown = {html.unescape(term): html.unescape(meaning) for term, meaning in cells}
+    shown = {(html.unescape(term), html.unescape(meaning)) for term, meaning in cells}
     for language in COMPLETE:
         for term, meaning in (TERMS | MEANINGS).items():
             with speaking(language):
                 said, means = say(term, name="B"), say(meaning)
-            assert shown[said] == means, said
+            assert (said, means) in shown, said  # A(8) is called so in every language
             assert language == "en" or means != meaning
 
 
