@@ -140,6 +140,7 @@ REFUSED = {
         "riding-transplanter --model coupled": "the model coupled is for",
     },
     "simulate yamashita-rig": {
+        "--foo": "Unknown option: --foo.",
         "'1 s' --speed '20:30 rpm'": "--speed: got '20:30 rpm'",
         "'-1 s'": "DURATION: got '-1 s'; give a time of more than 0",
         "'0 s'": "DURATION: got '0 s'; give a time of more than 0",

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from cyclopts import Parameter
+from cyclopts import ArgumentCollection, Parameter, UnknownOptionError
 
 from equipoise.dataclass import dataclass
 from equipoise.errors import (
@@ -62,6 +62,8 @@ def read_by(
 
     def convert(_: Any, tokens: Sequence[Any]) -> Any:
         token = tokens[0]
+        if name and token.value.startswith("--"):  # hyphens may lead, of numbers: "-2 s"
+            raise UnknownOptionError(token=token, argument_collection=ArgumentCollection())
         return read(token.keyword or name or "", token.value)
 
     return Parameter(

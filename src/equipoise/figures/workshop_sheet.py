@@ -18,6 +18,7 @@ from equipoise.balancing.told import capital
 from equipoise.exchange.formats import Job
 from equipoise.exchange.parts import COUNTERWEIGHT, Part, along, in_mm, parts
 from equipoise.figures.paint import fonts_for, settings
+from equipoise.figures.sheet import lines_of
 from equipoise.figures.style import INK, MAIN
 from equipoise.i18n import LANGUAGES, Note, said, say, speaking, spoken
 
@@ -28,6 +29,10 @@ if TYPE_CHECKING:
 MM, INCH = 1e3, 25.4
 """mm in a metre, and in an inch."""
 SHEET = (210.0, 297.0)
+EDGE = 20.0
+"""mm on paper left, right and above what is written."""
+LETTERS, POINTS = 11.0, 72.0
+"""Height of letters, points; points of an inch."""
 ROOM = (150.0, 190.0)
 """Width and height of a sheet and of what is drawn on it, mm."""
 SCALES = (0.2, 0.5, 1, 2, 5, 10, 20, 50, 100)
@@ -110,8 +115,10 @@ def _sheet(part: Part, lines: Sequence[str]) -> Figure:
     elif not part.is_round:
         _widths(axes, low, high, OFF * scale)
     _radii(axes, part, scale)
-    figure.text(20 / SHEET[0], 1 - 20 / SHEET[1], "\n".join(lines), va="top", fontsize=11,
-                linespacing=1.5, color=INK, wrap=True)  # fmt: skip
+    room = (SHEET[0] - 2 * EDGE) / INCH * POINTS
+    short = [piece for line in lines for piece in lines_of(line, room, LETTERS)]
+    figure.text(EDGE / SHEET[0], 1 - EDGE / SHEET[1], "\n".join(short), va="top",
+                fontsize=LETTERS, linespacing=1.5, color=INK)  # fmt: skip
     return figure
 
 

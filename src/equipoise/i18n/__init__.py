@@ -27,13 +27,15 @@ def say(text: str, /, **values: Any) -> str:
     """A text in the language that is spoken, its ``{placeholders}`` filled in.
 
     text : in English, as in the catalogues; one that is in none of them stays English.
+    values : those that are sentences themselves, `Note`, are said in that language, too.
     """
     language = _spoken.get()
     text = _wording.get().get(text, text)
-    said = form_of(text, values, language) or catalogue(language).get(text, text)
+    sentence = form_of(text, values, language) or catalogue(language).get(text, text)
     if values:
-        said = with_particles(filled(said, values, KNOWN[language].decimal), language)
-    return said
+        each = {name: v.said() if isinstance(v, Note) else v for name, v in values.items()}
+        sentence = with_particles(filled(sentence, each, KNOWN[language].decimal), language)
+    return sentence
 
 
 def decimal_sign() -> str:

@@ -213,6 +213,19 @@ def test_texts_of_drawings_are_in_the_language_asked_for(
         eq.export(found, tmp_path / "x.pdf", language="fr")  # type: ignore[arg-type]
 
 
+def test_what_is_written_keeps_the_edges_of_the_sheet() -> None:
+    found = found_of("yamashita-rig")
+    assert isinstance(found, Findings) and found.balanced is not None
+    rounded, sizes = in_whole_sizes(found.balanced)
+    job = Job(rounded.machine, 0.0, rounded.changes, sizes=str(sizes))
+    with workshop_sheet.sheets(job) as figures:
+        for figure in figures:
+            edge = workshop_sheet.EDGE / workshop_sheet.SHEET[0] * figure.bbox.width
+            boxes = [text.get_window_extent() for text in figure.texts]
+            assert boxes
+            assert all(edge - 1 <= box.x0 and box.x1 <= figure.bbox.width - edge for box in boxes)
+
+
 def centroid(edges: list[tuple[complex, float]]) -> complex:
     """Of an outline, from many triangles about the origin."""
     ends = zip(edges, (*edges[1:], edges[0]), strict=True)

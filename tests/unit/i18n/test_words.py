@@ -13,7 +13,7 @@ from threading import Thread
 import pytest
 
 import equipoise
-from equipoise.i18n import LANGUAGES, catalogue, say, speaking
+from equipoise.i18n import LANGUAGES, Note, catalogue, say, speaking
 from equipoise.keys import (
     Direction,
     Frozen,
@@ -31,6 +31,7 @@ from equipoise.keys import (
     Whole,
     all_keys,
 )
+from equipoise.mechanism.assembly.joints import moving_links
 from equipoise.schema.entries import entry_of, own_keys, tables_below
 from equipoise.schema.finding import plain_word
 from equipoise.schema.opening import document_of
@@ -145,6 +146,16 @@ def test_numbers_of_equations_stand_behind_words():
         before, _, source = text.partition(" (")
         assert re.match(r"(equations?|conditions) \(", source) and "of Yamashita et al." in source
         assert len(before.split()) > 3
+
+
+def test_a_sentence_in_a_sentence_is_said_in_the_same_language():
+    """Whether the outer one is said at once or handed on."""
+    links = moving_links(3)
+    with speaking("de"):
+        outer = Note("{links} of {mass} together", links=links, mass="6 kg")
+        assert links.said() != str(links)
+        assert say(outer.template, **outer.values).startswith(links.said())
+        assert outer.said().startswith(links.said())
 
 
 def test_a_language_is_spoken_inside_its_block_and_in_its_thread_only():
