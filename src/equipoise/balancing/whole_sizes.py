@@ -9,7 +9,7 @@ from __future__ import annotations
 from cmath import phase, rect
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
-from math import ceil, floor, inf, isclose, pi, sin
+from math import ceil, floor, inf, isclose, isinf, pi, sin
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -114,16 +114,30 @@ def _limits(
     values = Problem.values_of(machine, [limit.objective for limit in limits])
     for limit, value in zip(limits, values, strict=True):
         yield limit.name, replace(balanced.prices[limit.name], used=value)
-    growth = {
-        old.link: new.values["mass"] - old.values["mass"]
-        for old, new in zip(balanced.changes, changes, strict=True)
-        if old.values.get("pieces")
-    }
+    growth: dict[tuple[str, str], float] = {}
+    for old, new in zip(balanced.changes, changes, strict=True):
+        if old.values.get("pieces"):
+            where = old.link, old.values["at"]
+            gained = new.values["mass"] - old.values["mass"]
+            growth[where] = growth.get(where, 0.0) + gained
     for name, price in balanced.prices.items():
         if name == ADDED:
             yield name, replace(price, used=price.used + sum(growth.values()))
         elif isinstance(name, Note) and name.template in RADII:
-            yield name, replace(price, used=price.used + growth.get(name.values["link"], 0.0))
+            places = _places_of(balanced.plan, name)
+            gained = sum(
+                mass for (link, at), mass in growth.items()
+                if link == name.values["link"] and (not places or at in places)
+            )  # fmt: skip
+            yield name, replace(price, used=price.used + gained)
+
+
+def _places_of(plan: Balance, name: Note) -> list[str]:
+    """Point of the weight that a limit is named for, of a link with several; else empty."""
+    if (number := name.values.get("number")) is None:
+        return []
+    same = [item.at for item in plan.masses if item.link == name.values["link"]]
+    return same[number - 1 : number]
 
 
 def _exceeded(exact: Balanced, rounded: Balanced) -> str:
@@ -198,20 +212,26 @@ def _whole_piece(piece: Piece, way: Round, center: complex, room: float) -> Piec
         return {**piece, "radius": radius, "place": place, "mass": plate * pi * radius**2}
     if piece["shape"] == "ring":
         inner = piece["inner_radius"]
-        outer = _half_of_whole(2 * piece["outer_radius"], way, 2 * room)
-        mass = plate * pi * max(outer**2 - inner**2, 0.0)
+        # The next whole diameter beyond its hole is the thinnest ring that is left of it.
+        least = floor(2 * inner / MILLIMETRE * (1 + WHOLE)) + 1
+        outer = _half_of_whole(2 * piece["outer_radius"], way, 2 * room, least)
+        mass = plate * pi * (outer**2 - inner**2)
         return {**piece, "outer_radius": outer, "mass": mass}
     if piece["shape"] == "sector":
         return _whole_sector(piece, way, plate)
     return piece
 
 
-def _half_of_whole(diameter: float, way: Round, most: float) -> float:
-    """Radius of a circle of whole diameter, which is no larger than most; m."""
-    whole = MILLIMETRE * max(way(diameter / MILLIMETRE), 1)
-    if whole > most * (1 + WHOLE):
-        whole = MILLIMETRE * max(floor(most / MILLIMETRE * (1 + WHOLE)), 1)
-    return whole / 2
+def _half_of_whole(diameter: float, way: Round, most: float, least: int = 1) -> float:
+    """Radius of a circle of whole diameter, which is no larger than most, m; that of the diameter
+    itself where there is no such circle.
+
+    least : the smallest diameter, mm.
+    """
+    largest = most if isinf(most) else floor(most / MILLIMETRE * (1 + WHOLE))
+    if largest < least:
+        return diameter / 2
+    return MILLIMETRE * min(max(way(diameter / MILLIMETRE), least), largest) / 2
 
 
 def _whole_sector(piece: Piece, way: Round, plate: float) -> Piece:
@@ -288,7 +308,10 @@ def _with_mass(machine: Machine, old: Change, new: Change) -> Machine:
 def _with_mass_beside(
     machine: Machine, name: str, plane: float, was: tuple[Any, ...], now: tuple[Any, ...]
 ) -> Machine:
-    """The same for a mass in another plane than its link's, which is one of the link's bodies."""
+    """The machine with a mass in another plane than its link's changed: a body of that link.
+
+    was, now : mass (kg), first moment (kg m) and inertia (kg m2) about the origin of the link.
+    """
     mass, first, inertia = now
     place = first / mass
     body = Body("point", at=(place.real, place.imag), mass=mass,

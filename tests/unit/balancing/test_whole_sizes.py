@@ -141,6 +141,40 @@ def test_sizes_that_would_exceed_a_limit_are_rounded_otherwise_or_not(share: flo
     assert sum(change.values["mass"] for change in result.changes) <= mass * (1 + 1e-6)
 
 
+def test_limits_on_two_weights_of_one_link_are_those_of_the_pieces_that_are_cut() -> None:
+    """Each limit beside the mass of its own piece, and the added mass beside that of both."""
+    masses = tuple(
+        AddedMass("crank", at, Weight("disc", 0.0603, at_most=0.0512, **PLATE)) for at in "AB"
+    )
+    plan = Balance(masses=masses, objectives=(Objective("shaking_force"),), added_mass=10.0)
+    exact = eq.balance(eq.load("yamashita-1"), plan)
+    result, _ = in_whole_sizes(exact)
+    used = {str(name): price.used for name, price in result.prices.items()}
+    changed = [change.values["mass"] for change in result.changes]
+    assert len(changed) == 2 and result.changes != exact.changes
+    assert used["added mass"] == pytest.approx(sum(changed), rel=1e-6)
+    for number, mass in enumerate(changed, 1):
+        assert used[f"mass on crank ({number})"] == pytest.approx(mass, rel=1e-6)
+
+
+@pytest.mark.parametrize(("inner", "outer"), [(0.0202, 0.0205), (0.0302, 0.0302)])
+def test_a_thin_ring_does_not_vanish(inner: float, outer: float) -> None:
+    """Its outer diameter stays beyond its hole; where no whole one fits, it stays as it is."""
+    weight = Weight("ring", outer, inner, mass=0.01, **PLATE)
+    plan = Balance(
+        masses=(AddedMass("rocker", "D", weight),), objectives=(Objective("drive_torque"),)
+    )
+    exact = balanced("ring")
+    (change,) = exact.changes
+    piece = {**change.values["pieces"][0], "inner_radius": inner, "outer_radius": inner + 1e-4}
+    thin = replace(change, values={**change.values, "pieces": [piece]})
+    result, _ = in_whole_sizes(replace(exact, changes=(thin,), plan=plan, prices={}))
+    (cut,) = result.changes[0].values["pieces"]
+    assert cut["mass"] > 0 and inner < cut["outer_radius"]
+    whole = 2e3 * cut["outer_radius"]
+    assert (whole == pytest.approx(round(whole), abs=1e-6)) == (outer > inner)
+
+
 def test_sizes_that_are_whole_stay() -> None:
     """Those of advice are chosen so."""
     advised = eq.balancing.advise(eq.load("yamashita-1"))
