@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import replace
 from math import ceil, copysign, floor, isfinite, log10, pi
 
@@ -66,22 +66,21 @@ def preloads_to_hold(machine: Machine) -> Iterator[Note]:
     """Of each follower that lifts off at the file's speed, a preload that holds it there.
 
     Contact forces are linear in the preload of a spring, so that one more analysis tells how much
-    of it each crank angle needs; the spring that needs the least change is named, and none where
-    the contact is lost with that preload all the same.
+    of it each crank angle needs.  Of the springs with which no follower lifts off that was held
+    before, the one that needs the least change is named; none where there is no such spring.
     """
     if not machine.cams or massless(machine):
         return
     present = forces(move(machine, PER_TURN))
     speed = abs(machine.drive.speed)
+    held = {item.cam.name for item in let_go(present) if item.speed >= speed}
     for item in let_go(present):
         changes = []
         for number, spring in enumerate(machine.springs if item.ranges else ()):
             if spring.stiffness is not None and (added := _needed(present, item.cam, number)):
                 changes.append((abs(added), (spring.preload or 0.0) + added, number))
-        for _, preload, number in sorted(changes)[:1]:
-            held = _with_preload(machine, number, preload)
-            limit = {after.cam.name: after for after in let_go(forces(move(held, PER_TURN)))}
-            if limit[item.cam.name].speed >= speed:
+        for _, preload, number in sorted(changes):
+            if _holds(_with_preload(machine, number, preload), held | {item.cam.name}):
                 spring = machine.springs[number]
                 yield Note(
                     "a preload of {preload} instead of {given} of the spring from {point} to {to} "
@@ -94,6 +93,13 @@ def preloads_to_hold(machine: Machine) -> Iterator[Note]:
                     cam=body_named(item.cam.driver),
                     speed=speed / PER_RPM,
                 )
+                break
+
+
+def _holds(machine: Machine, names: Collection[str]) -> bool:
+    """Whether the followers of cams of these names stay on them at the file's speed."""
+    limits = {item.cam.name: item.speed for item in let_go(forces(move(machine, PER_TURN)))}
+    return all(limits[name] >= abs(machine.drive.speed) for name in names)
 
 
 def _with_preload(machine: Machine, number: int, preload: float) -> Machine:

@@ -169,6 +169,38 @@ def test_a_preload_that_holds_the_tappet_at_its_speed() -> None:
     assert not [*preloads_to_hold(fast.with_springs([]))]
 
 
+@pytest.mark.parametrize(("share", "held"), [(1.2, True), (2.5, False)])
+def test_no_preload_is_named_that_lifts_another_follower_off(share: float, held: bool) -> None:
+    """A spring between two tappets presses one down by what it lifts the other with.
+
+    share : of gravity, that the acceleration of the first has at the top; the second has a quarter
+        of it, and lifts off once it is lifted by three quarters of its weight, or less.
+    """
+    cams = [
+        Cam("crank", name, rides="flat", point=point, closed_by="spring", base_radius=0.03,
+            lift=LengthLaw(between=(0.0, high)))
+        for name, point, high in (("lower", "R", HIGH), ("upper", "Q", HIGH / 4))
+    ]  # fmt: skip
+    both = machine(
+        {"A": ORIGIN},
+        {
+            "crank": heavy(A=ORIGIN),
+            "lower": eq.Link({"R": ORIGIN, "T": (0.1, 0.0)}, MASS, ORIGIN, 1e-4),
+            "upper": eq.Link({"Q": ORIGIN, "U": (0.1, 0.15)}, MASS, ORIGIN, 1e-4),
+        },
+        sliders=tuple(
+            eq.Slider(name, point, FRAME, "A", pi / 2)
+            for name, point in (("lower", "R"), ("upper", "Q"))
+        ),
+        cams=cams,
+        springs=(eq.Spring("lower", "T", "U", 1e-3, 0.15, on="upper"),),
+    )
+    speed = sqrt(share * GRAVITY / (HIGH / 2))
+    both = replace(both, drive=replace(both.drive, speed=speed))
+    notes = [*preloads_to_hold(both)]
+    assert [note.values["follower"] for note in notes] == ["lower"] * held
+
+
 SPRUNG = {
     "tappet": lambda: tappet(
         cam("roller", lift=RISE, closed_by="spring"),
