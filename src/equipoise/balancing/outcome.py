@@ -36,11 +36,12 @@ from equipoise.balancing.workshop import in_its_plane, phases_told, sentences
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.parts.objectives import GAUGES, ROWS
 from equipoise.quantities import change, display, percent, told
+from equipoise.results.analysis import analyze
 from equipoise.results.blocks import Block, Cell, Column, RelativeChange, Table, Text
 from equipoise.results.lost_contacts import preloads_to_hold
 from equipoise.results.outputs import objective_named, shown_in
 from equipoise.results.rotors import rotor_sentence, unbalances
-from equipoise.results.yardsticks import FigureAssessment, sentence
+from equipoise.results.yardsticks import FigureAssessment, capacities, sentence
 
 if TYPE_CHECKING:
     from equipoise.balancing.balanced import Balanced
@@ -154,10 +155,20 @@ def large_sentences(advice: Advice, crank_turns: bool) -> Iterator[str]:
 
 
 def broken_capacities(balanced: Balanced) -> Iterator[str]:
-    """What parts do not bear, or the motor does not give, before anything is said of masses."""
-    for item in balanced.advice.before if balanced.advice is not None else ():
+    """What parts do not bear, or the motor does not give, before anything is said of masses: of the
+    machine as it is where nobody said what may be changed, else with the changes that were asked.
+    """
+    template = to_say("{sentence}.")
+    if balanced.advice is not None:
+        entries = balanced.advice.before
+    else:
+        analysis = analyze(balanced.machine, acceleration=0.0)
+        entries = tuple(sorted(capacities(analysis), key=lambda item: -item.excess))
+        if balanced.changes:
+            template = to_say("With these changes: {sentence}.")
+    for item in entries:
         if item.is_capacity and item.is_broken:
-            yield say("{sentence}.", sentence=sentence(item, balanced.original.crank_turns))
+            yield say(template, sentence=sentence(item, balanced.original.crank_turns))
 
 
 def reasons_to_leave(balanced: Balanced) -> Iterator[str]:

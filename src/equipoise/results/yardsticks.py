@@ -229,7 +229,7 @@ def assess(
         family = assessment.family[0]
         if family not in worst or assessment.ratio > worst[family].ratio:
             worst[family] = assessment
-    entries = [*worst.values(), *_of_cams(analysis), *_capacities(analysis)]
+    entries = [*worst.values(), *_of_cams(analysis), *capacities(analysis)]
     for name, reading in (readings or {}).items():
         entries += _of_gauge(analysis.machine, name, reading)
     return tuple(sorted(entries, key=lambda entry: -entry.excess))
@@ -616,7 +616,7 @@ def _of_cams(analysis: Analysis) -> Iterator[FigureAssessment]:
         )  # fmt: skip
 
 
-def _capacities(analysis: Analysis) -> Iterator[FigureAssessment]:
+def capacities(analysis: Analysis) -> Iterator[FigureAssessment]:
     """What parts bear and the motor gives, against what the machine asks of them; of each figure
     that of the weakest part.
     """

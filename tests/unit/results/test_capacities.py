@@ -9,6 +9,7 @@ import pytest
 import equipoise as eq
 from equipoise.balancing.advice import advise
 from equipoise.balancing.blocks import balanced_headline
+from equipoise.mechanism.parts.balance import AddedMass, Balance, Objective, Weight
 from equipoise.mechanism.parts.force_elements import Motor, MotorTable
 from equipoise.mechanism.parts.joint_properties import JointProperties, RollingBearing
 from equipoise.mechanism.parts.links import LinkSection
@@ -94,6 +95,22 @@ def test_balancing_says_so_before_anything_of_masses() -> None:
     """Of a machine of which nothing else is large, too."""
     first = next(iter(balanced_headline(advise(with_rod(engine(), "2 mm")), alone=True)))
     assert isinstance(first, Text) and first.text.startswith("Safety against")
+
+
+def test_a_plan_of_balancing_says_what_does_not_bear_with_its_changes() -> None:
+    """By the machine with the counterweight, on whose rod its mass does not act."""
+    disc = Weight("disc", 0.1, mass=1.0, thickness=0.02, density=7850.0)
+    plan = Balance(
+        masses=(AddedMass("crank", "A", disc),), objectives=(Objective("shaking_force"),)
+    )
+    for diameter, broken in (("2 mm", True), ("60 mm", False)):
+        balanced = eq.balance(with_rod(engine(), diameter), plan)
+        first = next(iter(balanced_headline(balanced, alone=True)))
+        assert isinstance(first, Text)
+        assert first.text.startswith("With these changes: Safety against") == broken
+        if broken:
+            safety = eq.analyze(balanced.machine).sections["rod"].fatigue_safety
+            assert f"rod: {safety:.4f}" in first.text
 
 
 def test_the_largest_torque_of_a_motor() -> None:
