@@ -463,6 +463,8 @@ def _sections(chance: random.Random, document: Document) -> None:
         section |= dict(chance.sample([*strengths.items()], chance.randint(0, len(strengths))))
         if "fatigue_limit" in section and chance.random() < 0.5:
             section["tensile_strength"] = "510 MPa"
+        if "fatigue_limit" in section and "slope" in section:  # by chance, but without one more
+            section["life"] = "2000 h"
         link["section"] = section
 
 

@@ -17,8 +17,8 @@ declared with them (`yardstick` in `mechanism.outputs.declared`):
     transmission  a transmission angle: its distance from 90 deg, over 50 deg
     limit         a limit that is declared: of a gauge
     capacity      what a part bears or a motor gives, over what the machine asks of it: a safety of
-                  a link or bearing, over 1; the life of a bearing, over the one that is wanted; the
-                  largest torque of the motor, over the mean of the drive's
+                  a link or bearing, over 1; the life of a bearing or link, over the one that is
+                  wanted; the largest torque of the motor, over the mean of the drive's
     contact       of a cam: the speed of the crank, over that at which the follower lifts off
     vibration     the velocity of a gauge without a limit: RMS, over 4.5 mm/s; but where nothing
                   moves except rotors (`results.rotors`), which may be there to shake
@@ -623,6 +623,7 @@ def capacities(analysis: Analysis) -> Iterator[FigureAssessment]:
     figures: list[FigureAssessment] = []
     for name, section in analysis.sections.items():
         figures += _least_figures("sections", name, section)
+        figures += _fatigue(analysis, name)
     for name, bearing in analysis.rolling_bearings.items():
         figures += _least_figures("rolling_bearings", name, bearing)
     figures += _lives(analysis)
@@ -644,6 +645,24 @@ def _least_figures(group: str, name: str, part: Any) -> Iterator[FigureAssessmen
                 group, name, item.name, Note(item.metadata["label"]), value, least,
                 item.metadata["dimension"], Note("required minimum"),
             )  # fmt: skip
+
+
+def _fatigue(analysis: Analysis, link: str) -> Iterator[FigureAssessment]:
+    """The life of a link of which one is wanted, where it is not endless; else its safety against
+    fatigue, since what nobody says the life of is to last.
+    """
+    stress, section = analysis.sections[link], analysis.machine.links[link].section
+    assert section is not None
+    against = Note("required minimum")
+    if section.life is None:
+        if (safety := stress.fatigue_safety) is not None:
+            label = Note(to_say("safety against fatigue"))
+            yield _capacity("sections", link, "fatigue_safety", label, safety, 1.0, None, against)
+    elif stress.life is not None:
+        yield _capacity(
+            "sections", link, "life", Note(to_say("life")), stress.life, section.life, "time",
+            against, "h",
+        )  # fmt: skip
 
 
 def _lives(analysis: Analysis) -> Iterator[FigureAssessment]:

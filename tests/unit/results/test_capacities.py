@@ -9,6 +9,7 @@ import pytest
 import equipoise as eq
 from equipoise.balancing.advice import advise
 from equipoise.balancing.blocks import balanced_headline
+from equipoise.errors import ModelError
 from equipoise.mechanism.parts.balance import AddedMass, Balance, Objective, Weight
 from equipoise.mechanism.parts.force_elements import Motor, MotorTable
 from equipoise.mechanism.parts.joint_properties import JointProperties, RollingBearing
@@ -30,6 +31,13 @@ def with_rod(machine: eq.Machine, diameter: str) -> eq.Machine:
     return replace(
         machine, links=machine.links | {"rod": replace(machine.links["rod"], section=section)}
     )
+
+
+def with_life(machine: eq.Machine, life: float) -> eq.Machine:
+    rod = machine.links["rod"]
+    assert rod.section is not None
+    rod = replace(rod, section=replace(rod.section, life=life))
+    return replace(machine, links=machine.links | {"rod": rod})
 
 
 def with_bearing(machine: eq.Machine, rating: str, life: str = "2000 h") -> eq.Machine:
@@ -68,6 +76,35 @@ def test_a_bearing_that_misses_its_life_is_the_verdict() -> None:
     assert first.output == "rolling_bearings.B" and first.value == life
     assert first.ratio == pytest.approx(2000 * 3600 / life)
     assert headed(machine).startswith("Life at the wanted reliability, B: ")
+
+
+@pytest.mark.parametrize(("share", "broken"), [(0.9, False), (1.1, True)])
+def test_a_rod_of_finite_life_is_judged_by_the_one_that_is_wanted(
+    share: float, broken: bool
+) -> None:
+    """Its safety against fatigue is below 1, as it is meant to be; an endless life is enough."""
+    plain = with_rod(engine(), "5 mm")
+    stress = eq.analyze(plain).sections["rod"]
+    assert stress.fatigue_safety is not None and stress.fatigue_safety < 1 < stress.safety
+    wanted = with_life(plain, share * stress.life)
+    entries = {entry.figure: entry for entry in assess(eq.analyze(wanted)) if entry.is_capacity}
+    assert "sections.rod.fatigue_safety" not in entries
+    entry = entries["sections.rod.life"]
+    assert (entry.is_broken, entry.ratio) == (broken, pytest.approx(share))
+    assert headed(wanted).startswith("Life, rod: ") == broken
+    assert headed(plain).startswith("Safety against fatigue, rod: ")
+    thick = assess(eq.analyze(with_life(with_rod(engine(), "60 mm"), 1e9)))
+    assert {entry.figure for entry in thick if entry.is_capacity} == {
+        "sections.rod.safety", "sections.rod.buckling_safety",
+    }  # fmt: skip
+
+
+def test_a_life_that_is_wanted_goes_with_a_fatigue_limit() -> None:
+    rod = replace(engine().links["rod"], section=LinkSection(None, diameter="9 mm", life="10 h"))
+    with pytest.raises(ModelError) as refused:
+        eq.analyze(replace(engine(), links=engine().links | {"rod": rod}))
+    assert "links.rod.section.life" in str(refused.value)
+    assert "fatigue_limit" in str(refused.value)
 
 
 def test_a_motor_that_is_too_weak_is_the_verdict() -> None:

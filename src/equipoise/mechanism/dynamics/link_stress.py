@@ -191,7 +191,7 @@ class LinkStress:
     bending_moment: float = figure(to_say("largest bending moment"), "torque")
     safety: float | None = figure(to_say("safety against yielding"), at_least=1.0)
     buckling_safety: float | None = figure(to_say("safety against buckling"), at_least=1.0)
-    fatigue_safety: float | None = figure(to_say("safety against fatigue"), at_least=1.0)
+    fatigue_safety: float | None = figure(to_say("safety against fatigue"))
     cycles_to_failure: float | None = figure(to_say("cycles of the machine to failure"))
     life: float | None = figure(to_say("life"), "time")
     rod_mass: float = figure(to_say("mass spread along the line"), "mass")

@@ -37,7 +37,7 @@ class LinkSection(Frozen):
             needs("height", "width") | lacks("diameter"),
             needs("diameter") | lacks("height", "width"),
         ],
-        "dependentRequired": {"tensile_strength": ["fatigue_limit"]},
+        "dependentRequired": {"tensile_strength": ["fatigue_limit"], "life": ["fatigue_limit"]},
     }
 
     between: tuple[str, str] | None = key(
@@ -75,6 +75,10 @@ class LinkSection(Frozen):
     slope: float = key(Number(), "of the Woehler line above its knee", default=5.0, above=0)
     tensile_strength: float | None = key(
         "modulus", "by which stress in the mean counts (Goodman)", default=None, example="510 MPa",
+        above=0,
+    )  # fmt: skip
+    life: float | None = key(
+        "time", "that is wanted of it; an endless one if left out", default=None, example="2000 h",
         above=0,
     )  # fmt: skip
 
@@ -151,9 +155,10 @@ def wrong_section(
             f"{where}.wall",
             Note("got a wall that is lost in rounding beside the section; give more"),
         )
-    if section.tensile_strength is not None and section.fatigue_limit is None:
-        note = Note("goes with {fatigue_limit}; give that too", **key_names("fatigue_limit"))
-        yield ModelError(f"{where}.tensile_strength", note)
+    for key_name in ("tensile_strength", "life"):
+        if getattr(section, key_name) is not None and section.fatigue_limit is None:
+            note = Note("goes with {fatigue_limit}; give that too", **key_names("fatigue_limit"))
+            yield ModelError(f"{where}.{key_name}", note)
     if section.between is None and len(points) != 2:
         yield ModelError(
             f"{where}.between",
