@@ -413,7 +413,8 @@ class Balanced(Result):
         "large": ResultOutput(
             "there: list of `figure`, `value`, `unit`, `yardstick`, `against`, `ratio`, "
             "`crank_angle`: figures [against their yardsticks](balancing.md#without-a-plan), the "
-            "largest ratio first; `figure` is its path in the summary of `analyze`, or in the "
+            "largest ratio first, which is null for a safety or life of 0; `figure` is its path in "
+            "the summary of `analyze`, in its output for cams, sections and bearings, or in the "
             "output of `respond` for gauges",
             read=lambda result: [item.to_dict() for item in result.advice.before],
             present="advice",

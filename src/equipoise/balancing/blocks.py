@@ -17,6 +17,7 @@ from equipoise.balancing.outcome import (
     large_besides,
     large_figures,
     mounts_beside_change,
+    preloads,
     sentences_beyond_masses,
     steadying_sentence,
     why_nothing,
@@ -118,7 +119,7 @@ def balanced_headline(balanced: Balanced, alone: bool = False) -> Iterator[Block
         is_long = balanced.advice.beyond.mounts is not None
         yield from (Text(line, is_detail=is_long) for line in beside_the_aim(balanced))
     yield from (Text(line, "worse") for line in worst_told(balanced))
-    yield from map(Text, mounts_beside_change(balanced))
+    yield from map(Text, (*preloads(balanced), *mounts_beside_change(balanced)))
     details = [*beside_mounts(balanced)]  # of which the last are left out first
     if balanced.advice is not None:
         details += large_besides(balanced)

@@ -226,12 +226,12 @@ def sentences_beyond_masses(balanced: Balanced) -> Iterator[str]:
     """What helps beyond masses, with the change that is offered, if one is; without one, other
     mounts stand before that masses are best left.
     """
-    yield from _preloads(balanced)
+    yield from preloads(balanced)
     yield from mounts_beside_change(balanced)
     yield from beside_mounts(balanced)
 
 
-def _preloads(balanced: Balanced) -> Iterator[str]:
+def preloads(balanced: Balanced) -> Iterator[str]:
     """Preloads of springs that hold followers on their cams, which lift off as things are."""
     if balanced.advice is not None:
         machine = balanced.machine if balanced.helps else balanced.original

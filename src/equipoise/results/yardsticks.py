@@ -36,7 +36,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import fields
 from functools import cached_property
-from math import copysign, hypot, pi, radians
+from math import copysign, hypot, isfinite, pi, radians
 from typing import Any, Protocol
 
 import numpy as np
@@ -198,14 +198,14 @@ class FigureAssessment:
         return self.excess >= LARGE
 
     def to_dict(self) -> dict[str, Any]:
-        """As plain data, SI units and radians."""
+        """As plain data, SI units and radians; an infinite ratio as None."""
         return {
             "figure": self.figure,
             "value": self.value,
             "unit": self.unit,
             "yardstick": self.yardstick,
             "against": str(self.against),
-            "ratio": self.ratio,
+            "ratio": self.ratio if isfinite(self.ratio) else None,
             "large": self.is_large,
             "crank_angle": self.crank_angle,
         }

@@ -218,3 +218,15 @@ def test_balance_names_the_preload_that_holds_a_follower() -> None:
     slowly, (line,) = spoken
     assert slowly == []
     assert line.endswith("of the spring from F to S just holds punch on camshaft at 1200 rpm.")
+
+
+def test_balance_names_the_preload_beside_a_change_that_is_offered() -> None:
+    """Of a camshaft out of balance, whose counterweight does not hold the follower."""
+    at = 'center_of_mass = ["{} mm", "0 mm"]'
+    machine = eq.loads(PUNCH.replace(at.format(0), at.format(20)))
+    balanced = advise(machine.with_drive(speed=4 * machine.drive.speed))
+    assert balanced.helps
+    texts = [block.text for block in balanced_headline(balanced, alone=True)
+             if isinstance(block, Text)]  # fmt: skip
+    (line,) = (text for text in texts if text.startswith("A preload of"))
+    assert line.endswith("just holds punch on camshaft at 1200 rpm.")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 
 import pytest
@@ -97,6 +98,22 @@ def test_a_rod_of_finite_life_is_judged_by_the_one_that_is_wanted(
     assert {entry.figure for entry in thick if entry.is_capacity} == {
         "sections.rod.safety", "sections.rod.buckling_safety",
     }  # fmt: skip
+
+
+def test_a_rod_that_its_mean_stress_breaks_has_no_ratio_in_a_record() -> None:
+    """Its safety is 0, of which 1 is no multiple; JSON has no infinity."""
+    machine = with_rod(engine(), "0.2 mm")
+    rod = machine.links["rod"]
+    assert rod.section is not None
+    rod = replace(rod, section=replace(rod.section, tensile_strength=190e6))
+    balanced = advise(replace(machine, links=machine.links | {"rod": rod}))
+    assert balanced.advice is not None
+    first, *_ = (entry for entry in balanced.advice.before if entry.is_capacity)
+    assert (first.figure, first.value) == ("sections.rod.fatigue_safety", 0.0)
+    large = balanced.to_dict()["large"]
+    record = next(item for item in large if item["figure"] == first.figure)
+    assert record["ratio"] is None and record["large"] is True
+    json.dumps(large, allow_nan=False)
 
 
 def test_a_life_that_is_wanted_goes_with_a_fatigue_limit() -> None:
