@@ -64,6 +64,27 @@ def test_a_load_too_small_to_move_it_leaves_it_at_rest() -> None:
     assert eq.run(wheel(drag=4.0), speed=0.0).end.kind == "standstill"
 
 
+def test_a_load_still_growing_at_the_end_sets_it_in_motion() -> None:
+    """The last row comes after the end of the run."""
+    found = eq.run(wheel((1.0, 11.0), (0.0, 10.0), drag=0.6), "3 s", speed=0.0)
+    free = 1 + 0.6 / TORQUE
+    assert found.end.kind == "time" and found.end.time == 3.0
+    assert found.crank_speed[-1] == pytest.approx(TORQUE * (3 - free) ** 2 / 2 / INERTIA, rel=1e-9)
+
+
+def test_a_load_that_begins_at_the_end_moves_nothing() -> None:
+    found = eq.run(wheel((2.0, 3.0), (1.0, 1.0)), "2 s", speed=0.0)
+    assert found.end.kind == "standstill" and not found.turned
+
+
+def test_a_motor_held_until_it_is_switched_off_does_not_start_later() -> None:
+    """A load holds it for 2 s; it is off after 1 s."""
+    machine = wheel((0.0, 2.0), (-3.0, -3.0)).with_drive(motor=Motor(10.0, 4.0, mean_speed="free"))
+    assert eq.run(machine, "6 s", speed=0.0, off="3 s").crank_speed[-1] > 0
+    found = eq.run(machine, "6 s", speed=0.0, off="1 s")
+    assert found.end.kind == "stall" and not found.turned
+
+
 def test_a_run_goes_on_as_long_as_a_load_is_to_come() -> None:
     """A motor is steady long before a load comes, which the run ends after."""
     machine = wheel((3.0, 3.5, 4.0), (0.0, -1.0, 0.0))

@@ -297,7 +297,7 @@ class Integration:
 
     def _at_rest(self, now: Instant) -> tuple[float, dict[float, float]]:
         """Torques on a crank at rest as of `CrankEquation.at_rest`, at an instant."""
-        factors = self.equation.factors_at(now.time, max(self.since, 0.0))
+        factors = self.equation.factors_at(now.time, self.since)
         return self.equation.at_rest(now.angle, factors)
 
     def _sets_off(self, now: Instant) -> Instant | None:
@@ -305,23 +305,30 @@ class Integration:
         over time sets it in motion; note why where it does not.
         """
         self.since = now.time
-        kind, sense = self._held_by(now)
-        coming = [time for time in self.corners if now.time < time <= self.limits.time]
-        for corner in coming if kind else []:
-            moving = replace(now, time=corner)
-            if not self._held_by(moving)[0]:
-                moving = self._let_go(replace(now, time=self.since), moving)
-            else:
-                self.since = corner  # where the load may change suddenly
-            if not self._held_by(moving)[0]:
-                now, (kind, sense) = moving, self._held_by(moving)
-                self._record(now)
-                break
-        if kind:
+        kind, _ = self._held_by(now)
+        moving = self._released(now)
+        if moving is None:
             self._note(kind, now)
             return None
-        self.direction = sense
-        return now
+        if moving.time > now.time:
+            self._record(moving)
+        _, self.direction = self._held_by(moving)
+        return moving
+
+    def _released(self, now: Instant) -> Instant | None:
+        """The instant from which a crank at rest is held no longer, before the run ends or the
+        motor is switched off; None where it stays.
+        """
+        until = max(now.time, min(self.limits.time, self._off(self.limits.off_time)))
+        corners = (time for time in self.corners if now.time < time < until)
+        for begin, end in pairwise([now.time, *corners, until]):
+            self.since = begin  # where a load may change suddenly
+            held, free = replace(now, time=begin), replace(now, time=end)
+            if not self._held_by(held)[0]:
+                return held
+            if end < inf and not self._held_by(free)[0]:
+                return self._let_go(held, free)
+        return None
 
     def _held_by(self, now: Instant) -> tuple[str, float]:
         """Why a crank at rest stays there, as the kind of an event, empty where it does not; and
