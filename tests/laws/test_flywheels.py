@@ -15,10 +15,18 @@ from equipoise.balancing.advice import advise
 from equipoise.errors import ResponseError, UsageError
 from equipoise.mechanism.parts.dc_motors import DcMotor
 from equipoise.mechanism.parts.force_elements import Motor
+from equipoise.mechanism.parts.induction_motors import InductionMotor
 from equipoise.running.blocks import run_headline
 from equipoise.running.drivers import Driver
 from equipoise.running.equation import CrankEquation
-from equipoise.running.flywheel import Flywheel, Shooting, SteadyCycle, share_of_mean, size_flywheel
+from equipoise.running.flywheel import (
+    Flywheel,
+    Shooting,
+    SteadyCycle,
+    _check_mean_torque,
+    share_of_mean,
+    size_flywheel,
+)
 from equipoise.running.integration import Instant, Integration, Limits
 from equipoise.vibration.coupled import StallError
 from support.analyses import subject_of
@@ -251,6 +259,20 @@ def test_no_flywheel_is_looked_for_where_the_motor_is_too_weak_in_the_mean(
     assert needed == pytest.approx(5.0, rel=0.02)
     assert f"needs {needed:.4g} N m" in str(error.value)
     assert "has 3.917 N m" in str(error.value)  # 4 N m, less 1 / 48 of it
+
+
+def test_the_narrow_top_of_an_induction_motor_is_met() -> None:
+    """Its breakdown torque, 2 % above what is needed, lies between two of the speeds tried."""
+    crank = with_load(subject_of("transplanter").machine, 5.0, stall_torque=9.0)
+    needed = SteadyCycle(CrankEquation(crank)).resisting(80.0)
+    for share in (1.02, 0.98):
+        motor = Motor(induction=InductionMotor(80.0, share * needed, 0.03))
+        steady = SteadyCycle(CrankEquation(replace(crank, drive=replace(crank.drive, motor=motor))))
+        if share > 1:
+            _check_mean_torque(steady)
+        else:
+            with pytest.raises(StallError, match="stalls with any flywheel"):
+                _check_mean_torque(steady)
 
 
 def test_balancing_ends_where_the_motor_is_too_weak(monkeypatch: pytest.MonkeyPatch) -> None:

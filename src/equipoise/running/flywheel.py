@@ -393,14 +393,17 @@ def _check_mean_torque(steady: SteadyCycle) -> None:
     driver = Driver(steady.equation.machine)
     motor = steady.equation.machine.drive.motor
     assert motor is not None
-    most = max(fastest(motor) / motor.ratio, steady.mean_speed)
-    speeds = most * np.arange(1, SPEEDS + 1) / SPEEDS
-    given = driver.sense * driver.torque(driver.sense * speeds)
-    needed = np.array([steady.resisting(float(speed)) for speed in speeds])
-    lacking = needed - given
-    k = int(np.argmin(lacking))
-    if lacking[k] > 0:
-        raise StallError(mean_stall_note(float(needed[k]), float(given[k]), float(speeds[k])))
+    high = max(fastest(motor) / motor.ratio, steady.mean_speed)
+    low = high / SPEEDS
+    for _ in range(2):  # then about the best of them, as the curve may have a narrow top
+        speeds = np.linspace(low, high, SPEEDS)
+        given = driver.sense * driver.torque(driver.sense * speeds)
+        needed = np.array([steady.resisting(float(speed)) for speed in speeds])
+        k = int(np.argmin(needed - given))
+        if needed[k] <= given[k]:
+            return
+        low, high = speeds[max(k - 1, 0)], speeds[min(k + 1, SPEEDS - 1)]
+    raise StallError(mean_stall_note(float(needed[k]), float(given[k]), float(speeds[k])))
 
 
 def _least(fluctuation: Callable[[float], float], wanted: float, about: float) -> float:
