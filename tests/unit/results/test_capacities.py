@@ -174,3 +174,5 @@ def test_the_largest_torque_of_a_motor() -> None:
     assert Motor(table=table).largest_torque == 6.0
     falling = MotorTable((50.0, 100.0), (4.0, 2.0))  # on to standstill as between its rows
     assert Motor(table=falling).largest_torque == 6.0
+    braking = MotorTable((-10.0, 10.0), (50.0, 4.0))  # 27 N m at standstill, between its rows
+    assert Motor(table=braking).largest_torque == 27.0

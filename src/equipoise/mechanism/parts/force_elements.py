@@ -37,6 +37,7 @@ from equipoise.mechanism.checks import (
 )
 from equipoise.mechanism.parts.dc_motors import DcMotor
 from equipoise.mechanism.parts.induction_motors import InductionMotor
+from equipoise.mechanism.parts.ramps import ramp_value, ramps_of
 from equipoise.mechanism.parts.servo_motors import ServoMotor
 
 MOTOR_KINDS = (
@@ -373,10 +374,9 @@ class Motor(Frozen):
         if self.induction is not None:
             return self.induction.breakdown_torque
         speeds, torques = self.rows
-        forward = [torque for speed, torque in zip(speeds, torques, strict=True) if speed >= 0]
-        (low, first), (high, second) = [*zip(speeds, torques, strict=True)][:2]
-        at_rest = first + (second - first) / (high - low) * (0.0 - low)
-        return max([*forward, at_rest] if low > 0 else forward)
+        at_rest = ramp_value(ramps_of(speeds, torques), 0.0)
+        forward = (torque for speed, torque in zip(speeds, torques, strict=True) if speed >= 0)
+        return float(max(at_rest, *forward))
 
     @property
     def smooth_curve(self) -> InductionMotor | None:
