@@ -121,19 +121,15 @@ def _turned(linkage: Linkage, link: str, theta: Array) -> Array:
 
 def _length(trace: Trace, pusher: Pusher) -> tuple[Any, Any, Any]:
     """As of `Motion.lengths`."""
+    values: tuple[Any, Any, Any]
     if pusher.slider:
         slider = slider_of(trace.machine, pusher)
         at, base = trace.point(slider.link, slider.point), trace.point(slider.on, slider.through)
-        d, d1, d2 = (item - other for item, other in zip(at, base, strict=True))
-        _, w, a = (trace.state[name] for name in u(slider.on))
-        along = _along(trace, pusher).conjugate()
-        rate = d1 - 1j * (w * d)
-        bend = d2 - 1j * (2 * w * d1 + a * d) - w * w * d
-        return (along * d).real, (along * rate).real, (along * bend).real
-    d, d1, d2 = (b - a for a, b in zip(*_ends(trace, pusher), strict=True))
-    length = abs(d)
-    first = kernels.dot(d, d1) / length
-    return length, first, (kernels.dot(d1, d1) + kernels.dot(d, d2) - first * first) / length
+        turned = (trace.state[name] for name in u(slider.on))
+        values = kernels.travelled(*at, *base, *turned, _direction(trace, pusher))
+    else:
+        values = kernels.apart(*(b - a for a, b in zip(*_ends(trace, pusher), strict=True)))
+    return values
 
 
 def _ends(trace: Trace, pusher: Pusher) -> list[tuple[Any, Any, Any]]:
@@ -142,15 +138,14 @@ def _ends(trace: Trace, pusher: Pusher) -> list[tuple[Any, Any, Any]]:
     return [trace.point(*end) for end in zip(bodies, pusher.between or (), strict=True)]
 
 
-def _along(trace: Trace, pusher: Pusher) -> Any:
-    """Unit vector along a sliding joint that is driven."""
+def _direction(trace: Trace, pusher: Pusher) -> Any:
+    """Unit vector along a sliding joint that is driven, in the axes of the body that it is on."""
 
     def direction(linkage: Linkage) -> Any:
         return np.exp(1j * slider_of(linkage.machine, pusher).direction)
 
     slider = slider_of(trace.machine, pusher)
-    turn = trace.slot(f"direction of {slider.name}", direction, vector=True)
-    return trace.state[u(slider.on)[0]] * turn
+    return trace.slot(f"direction of {slider.name}", direction, vector=True)
 
 
 # -- forces ----------------------------------------------------------------------------------------
@@ -193,7 +188,8 @@ def _unit(trace: Trace, pusher: Pusher) -> dict[str, tuple[Any, Any]]:
     """What holds 1 N of a drive against each moving link that it pushes, about its anchor."""
     if pusher.slider:
         slider = slider_of(trace.machine, pusher)
-        at, way = trace.point(slider.link, slider.point)[0], _along(trace, pusher)
+        at = trace.point(slider.link, slider.point)[0]
+        way = trace.state[u(slider.on)[0]] * _direction(trace, pusher)
         acting = [(slider.link, at, way), (slider.on, at, -way)]
     else:
         (a, *_), (b, *_) = _ends(trace, pusher)

@@ -120,6 +120,13 @@ def travelled(p, p1, p2, g, g1, g2, u, w, a, along):
     return t.real, t1.real, t2.real
 
 
+def apart(d, d1, d2):
+    """Length of a vector d, and its derivatives."""
+    size = length(d)
+    first = dot(d, d1) / size
+    return size, first, (dot(d1, d1) + dot(d, d2) - first * first) / size
+
+
 def railed(t, t1, t2, g, g1, g2, u, w, a, along, turn):
     """Point and rotation of a link at the way t along a guide through g; others as in `rrp`."""
     n = u * along

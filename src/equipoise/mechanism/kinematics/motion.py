@@ -261,10 +261,9 @@ class Motion(Displayed):
             slid = self.slider(item)
             return slid.travel, slid.travel_1, slid.travel_2
         a, b = (self.point(name) for name in drive.between or ())
-        d, d1, d2 = b.place - a.place, b.place_1 - a.place_1, b.place_2 - a.place_2
-        length = np.abs(d)
-        first = kernels.dot(d, d1) / length
-        second = (np.abs(d1) ** 2 + kernels.dot(d, d2) - first**2) / length
+        length, first, second = kernels.apart(
+            b.place - a.place, b.place_1 - a.place_1, b.place_2 - a.place_2
+        )
         return length, first, second
 
     def way(self, link: str) -> Array:
