@@ -42,7 +42,7 @@ from equipoise.mechanism.dynamics.rated import effort_demands, rated_efforts, ra
 from equipoise.mechanism.dynamics.reactions import Acting, JointReactions, demands_of
 from equipoise.mechanism.dynamics.reduced import reduced_inertia
 from equipoise.mechanism.kinematics.motion import Motion
-from equipoise.mechanism.kinematics.rubbing import RubbingJoint, rubbing_joints
+from equipoise.mechanism.kinematics.rubbing import RubbingJoint, guide_of, rubbing_joints
 from equipoise.mechanism.kinematics.tip import surface_of, tip_link
 from equipoise.mechanism.parts.force_kinds import RatedElement, rated_elements
 from equipoise.mechanism.parts.joint_properties import JointProperties
@@ -341,10 +341,9 @@ def _pushing(motion: Motion, side: RubbingJoint) -> Demands:
     rack along its guide.
     """
     assert side.mesh is not None
-    if side.mesh.slides != side.on:
+    guide = guide_of(motion.machine, side.mesh)
+    if guide is None:
         return demands_of(motion, [(side.on, None, 0j, 1.0)])  # type: ignore[list-item]
-    machine = motion.machine
-    guide = next(item for item in machine.sliders if (item.link, item.on) == (side.on, side.by))
     sliding = replace(side, slider=guide)
     return demands_of(motion, [(side.on, sliding.place(motion), sliding.direction(motion), 0.0)])
 

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from dataclasses import replace
+
 import numpy as np
 
 from equipoise.dataclass import dataclass
@@ -15,7 +18,7 @@ from equipoise.mechanism.parts.couplings import Coupling
 from equipoise.mechanism.parts.gears import Gear
 from equipoise.mechanism.parts.joint_kinds import JointKind
 from equipoise.mechanism.parts.joint_properties import JOINTS, JointProperties
-from equipoise.mechanism.parts.machine import FRAME, Slider
+from equipoise.mechanism.parts.machine import FRAME, Machine, Slider
 
 STILL = 1e-10
 """rad or lengths of the largest link, by rad of the crank: a joint that moves less is at rest, as
@@ -181,41 +184,47 @@ def rubbing_joints(linkage: Linkage) -> tuple[RubbingJoint, ...]:
     return known
 
 
-def _rubbing(linkage: Linkage) -> list[RubbingJoint]:
+def guide_of(machine: Machine, mesh: Coupling) -> Slider | None:
+    """The sliding joint along which a driven rack slides on its carrier; None of all else."""
+    if mesh.slides != mesh.driven:
+        return None
+    ends = mesh.driven, mesh.carrier
+    return next(item for item in machine.sliders if (item.link, item.on) == ends)
+
+
+def _rubbing(linkage: Linkage) -> Iterator[RubbingJoint]:
     machine = linkage.machine
     names = {item.force: name for name, item in linkage.named_reactions}
     sliders = {slider.name: slider for slider in machine.sliders}
     couplings = {(coupling.table, coupling.name): coupling for coupling in machine.couplings}
-    size, result = size_of_links(machine), []
+    size = size_of_links(machine)
     for _, reaction, entry in given_properties(machine, linkage.joints, linkage.reactions):
-        if entry.rubs:
+        if not entry.rubs:
+            continue
+        if reaction.kind in JOINTS:
             slider = sliders[reaction.name] if reaction.kind == "slider" else None
             slot = machine.pins_in_slots.get(reaction.name) if reaction.kind == "pin" else None
             still = STILL * (1.0 if (slider or slot) is None else size)
-            if reaction.kind in JOINTS:
-                name = names[reaction.force]
-                result.append(RubbingJoint(name, reaction, entry, slider, still, slot=slot))
-                continue
+            name = names[reaction.force]
+            yield RubbingJoint(name, reaction, entry, slider, still, slot=slot)
+        else:
             mesh = couplings[reaction.kind, reaction.name]
-            if isinstance(mesh, Cam):
-                still = STILL * size
-                result.append(RubbingJoint(mesh.name, reaction, entry, None, still, mesh, 1.0))
-                continue
-            ends = mesh.driven, mesh.carrier
-            guide = next((item for item in machine.sliders if (item.link, item.on) == ends), None)
-            if mesh.slides and guide is not None:
-                still = STILL * size
-                result.append(RubbingJoint(mesh.name, reaction, entry, guide, still, mesh, 1.0))
-                continue
-            if isinstance(mesh, Gear) and mesh.law is not None:
-                name, apart = mesh.name, _centres(linkage, mesh)
-                still = STILL * size
-                varying = RubbingJoint(name, reaction, entry, None, still, mesh, 1.0, None, apart)
-                result.append(varying)
-                continue
-            radius = _pitch_radius(linkage, mesh)
-            result.append(RubbingJoint(mesh.name, reaction, entry, None, still, mesh, radius))
-    return result
+            yield _passing_on(linkage, mesh, reaction, entry, STILL * size)
+
+
+def _passing_on(
+    linkage: Linkage, mesh: Coupling, reaction: Reaction, entry: JointProperties, still: float
+) -> RubbingJoint:
+    """A coupling that loses a share of what it passes on, or a cam on which its follower slides;
+    still : m by rad of the crank.
+    """
+    guide = guide_of(linkage.machine, mesh)
+    joint = RubbingJoint(mesh.name, reaction, entry, guide, still, mesh, pitch_radius=1.0)
+    if joint.slides:
+        return joint
+    if isinstance(mesh, Gear) and mesh.law is not None:
+        return replace(joint, centres=_centres(linkage, mesh))
+    return replace(joint, still=STILL, pitch_radius=_pitch_radius(linkage, mesh))
 
 
 def _pitch_radius(linkage: Linkage, mesh: Coupling) -> float:
