@@ -263,10 +263,11 @@ class JointFriction(Brief):
     """What a joint resists its motion with; arrays (N,).
 
     on, by : it acts on the first body.  is_pin : whether that turns, against the other.
-    effort : torque in a pin, N m, or force along the line of a slider, N; by damping and drag too.
+    effort : torque in a pin, N m, or force along the line of a slider, the surface of a cam, or
+        the pitch curves of gears of varying ratio, N; by damping and drag too.
     pressing : what presses the surfaces on each other, N.
     rate : of the first body against the other, rad/s or m/s.
-    reach : from the rate to the sliding speed: the radius of a pin, m; 1 of a slider.
+    reach : from the rate to the sliding speed: the radius of a pin, m; 1 of what slides.
     table : list of the file that has it, of gears, belts and cams; empty of a joint.
     """
 
@@ -286,15 +287,15 @@ class JointFriction(Brief):
 
     @property
     def wears(self) -> bool:
-        """Whether its surfaces slide as fast as told: flanks of gears do not, which slide otherwise
-        than their pitch circles turn.
+        """Whether its surfaces slide by `rate` times `reach`: not of gears and belts, whose
+        flanks slide otherwise than their pitch circles turn.
         """
         return self.table in ("", CAMS)
 
     @property
     def sliding_power(self) -> Array:
-        """What presses, times the sliding speed, W: its integral over time is what wears.  None of
-        gears and belts, whose flanks slide otherwise than their pitch circles turn.
+        """What presses, times the sliding speed, W: its integral over time is what wears; 0 of
+        gears and belts, of which `wears` is false.
         """
         if not self.wears:
             return 0.0 * self.pressing

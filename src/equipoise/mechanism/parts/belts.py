@@ -52,6 +52,7 @@ class Belt(Turning):
     sign = "equipoise.symbols.taut:strand_sign"
     noun = to_say("belt")
     group = to_say("belts")
+    loses = True
     heading = Note("Belt")
     tables: ClassVar[Mapping[str, str]] = {"joints": "equipoise.results.belt_blocks:belt_blocks"}
     curves = (
@@ -106,11 +107,6 @@ class Belt(Turning):
     @property
     def preload(self) -> Any:
         return 0.0 if self.tension is None else self.tension
-
-    @property
-    def loses(self) -> bool:
-        """In any case."""
-        return True
 
     @property
     def switches(self) -> bool:

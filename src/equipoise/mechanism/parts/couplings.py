@@ -124,6 +124,7 @@ class Coupling(PartKind):
     touch : what touches where it pushes.
     contact : how it pushes: along the line that `line` tells, or square to a surface.
     grows : whether its pitch circles are as large as the distance of its pins sets them.
+    loses : whether it may lose a share of what it passes on.
     curves : outputs that have a picture of their own, what this shows, and its caption; None where
         there is none.
     columns : numbers that columns of designs may have, and of what is inside of it by its key.
@@ -141,6 +142,7 @@ class Coupling(PartKind):
     touch: ClassVar[str] = to_say("teeth")
     contact: ClassVar[Literal["line", "surface"]] = "line"
     grows: ClassVar[bool] = False
+    loses: ClassVar[bool] = False
     curves: ClassVar[tuple[tuple[str, ...], str, str] | None] = None
     columns: ClassVar[Mapping[str, Set[str]]] = {}
 
@@ -214,11 +216,6 @@ class Coupling(PartKind):
     def unevenness(self) -> float:
         """How many times as fast as in the mean the driven body turns where it is fastest."""
         return 1.0
-
-    @property
-    def loses(self) -> bool:
-        """Whether it may lose a share of what it passes on."""
-        return False
 
     @property
     def jumps(self) -> Any:

@@ -63,6 +63,7 @@ class Gear(Turning):
     table: ClassVar[str] = "gears"
     noun = to_say("pair of gears")
     group = to_say("gears")
+    loses = True
     columns: ClassVar[Mapping[str, Set[str]]] = {
         "": {"start", "pressure_angle"},
         "shape": {"eccentricity", "phase", "cosines", "sines"},
@@ -146,11 +147,6 @@ class Gear(Turning):
         from equipoise.mechanism.parts.pitch_curves import ratios_of
 
         return ratios_of(self.shape, self.speed_ratio)
-
-    @property
-    def loses(self) -> bool:
-        """In any case."""
-        return True
 
     @property
     def unevenness(self) -> float:

@@ -39,6 +39,7 @@ class Rack(Coupling):
     sign = "equipoise.symbols.taut:rack_sign"
     noun = to_say("rack")
     group = to_say("racks")
+    loses = True
     columns: ClassVar[Mapping[str, Set[str]]] = {"": {"angle", "travel", "pressure_angle"}}
     special = "rack"
     counted = to_say("{count} racks")
@@ -85,11 +86,6 @@ class Rack(Coupling):
     @property
     def driven(self) -> str:
         return self.rack if self.drives == "pinion" else self.pinion
-
-    @property
-    def loses(self) -> bool:
-        """In any case."""
-        return True
 
     @property
     def foot(self) -> complex:
