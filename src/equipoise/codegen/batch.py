@@ -259,7 +259,7 @@ class Batch:
                 )
             return np.empty(0), STEP / self.tolerance
         machine = self.base.machine
-        if moves_soil(self.base, ["links"]) or any(len(item.jumps) for item in machine.couplings):
+        if machine.in_soil or any(len(item.jumps) for item in machine.couplings):
             return jumps_of_rows(self.base), FIRST
         every = np.concatenate([np.empty(0), *declared_jumps(machine, self.turns)])
         return of_rows(machine, every, self.turns), FIRST

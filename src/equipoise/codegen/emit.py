@@ -371,9 +371,9 @@ def moves_soil(linkage: Linkage, paths: Sequence[str]) -> bool:
     over a cycle tells.
     """
     tables = force_kinds(type(linkage.machine))
-    planting = linkage.machine.planting
-    in_soil = planting is not None and planting.soil is not None
-    return in_soil and not all(_of_forces(KeyPath.parse(path), tables) for path in paths)
+    return linkage.machine.in_soil and not all(
+        _of_forces(KeyPath.parse(path), tables) for path in paths
+    )
 
 
 def _of_forces(path: KeyPath, tables: Collection[str]) -> bool:

@@ -274,8 +274,7 @@ class Job:
 
     def leave_out_soil(self) -> None:
         """Tell that the soil pushes nothing."""
-        planting = self.machine.planting
-        if planting is not None and planting.soil is not None:
+        if self.machine.in_soil:
             self.leave_out(Note("the soil's force"))
 
     def leave_out_planes(self) -> None:

@@ -64,8 +64,7 @@ class SoilForces:
 
 def soil_forces(machine: Machine, angles: int = 720) -> SoilForces | None:
     """Forces in the soil and in the air; None where no soil or not every mass is given."""
-    planting = machine.planting
-    if planting is None or planting.soil is None or massless(machine):
+    if not machine.in_soil or massless(machine):
         return None
     motion = resolved(move(machine, angles))
     dry = replace(motion, linkage=motion.linkage.of(machine.with_planting(soil=None)))

@@ -104,8 +104,7 @@ SINGULAR = 1e10
 
 def motion_of(machine: Machine) -> Motion:
     """Motion of one linkage at constant speed, from which orders are taken, jumps resolved."""
-    planting = machine.planting
-    sharp = bool(machine.loads) or (planting is not None and planting.soil is not None)
+    sharp = bool(machine.loads) or machine.in_soil
     usual = resolved(move(machine, ANGLES, acceleration=0.0))
     if usual.sampling is None and sharp:  # tables have kinks, whose orders fall slowly
         return move(machine, ANGLES * 8, acceleration=0.0)
@@ -129,11 +128,6 @@ class SupportExcitation:
     @cached_property
     def motion(self) -> Motion:
         return motion_of(self.machine)
-
-    @property
-    def _in_soil(self) -> bool:
-        planting = self.machine.planting
-        return planting is not None and planting.soil is not None
 
     @cached_property
     def pivot(self) -> complex:
@@ -196,14 +190,14 @@ class SupportExcitation:
 
         Without the weight itself, which the mounts carry at rest.
         """
-        if self._in_soil:
+        if self.machine.in_soil:
             return self._of_rows(self._on_pivot(speed).amplitudes)
         still, moving = self._by_square
         return Periodic(still + speed**2 * moving, self.motion.turns)
 
     def at_orders(self, speeds: Array, places: Array) -> Array:
         """Wrenches (6, S) at speeds (S,), rad/s, of one order each, by its place (S,) in `at`."""
-        if self._in_soil:
+        if self.machine.in_soil:
             return self._of_orders_in_soil(speeds, places)
         still, moving = self._by_square
         return np.asarray(still[:, places] + speeds**2 * moving[:, places])
@@ -307,7 +301,7 @@ class SupportExcitation:
 
     def _on_pivot(self, speed: float) -> Periodic:
         """What one linkage does, as `about_reference` takes it; (5, K + 1)."""
-        if self._in_soil:
+        if self.machine.in_soil:
             return self.motion.periodic(self._signals(self.motion.at(speed)))
         still, moving = self._parts
         return Periodic(still + speed**2 * moving, self.motion.turns)

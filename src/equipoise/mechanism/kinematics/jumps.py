@@ -80,9 +80,8 @@ def bends_of_rows(machine: Machine, turns: int) -> Array:
 
 def may_jump(machine: Machine) -> bool:
     """Whether there is anything that jumps, as far as is known without motion."""
-    soil = machine.planting is not None and machine.planting.soil is not None
     return (
-        soil
+        machine.in_soil
         or any(load.jumps for load in machine.loads)
         or any(len(law.jumps(ACCELERATION)) for law in machine.laws.values())
         or any(len(coupling.jumps) for coupling in machine.couplings)

@@ -379,6 +379,11 @@ class Machine(Driven, Displayed, Frozen):
         return {FRAME: self.frame} | {name: link.points for name, link in self.links.items()}
 
     @property
+    def in_soil(self) -> bool:
+        """Whether fingers of a planting tool work in soil."""
+        return self.planting is not None and self.planting.soil is not None
+
+    @property
     def couplings(self) -> tuple[Coupling, ...]:
         """Joints by which one body's angle tells another's, in the order of the file."""
         return tuple(item for table in coupling_kinds(type(self)) for item in getattr(self, table))
