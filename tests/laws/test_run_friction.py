@@ -203,6 +203,30 @@ def test_teeth_chains_and_soil_press_in_a_run_as_in_inverse_dynamics(name: str) 
     assert compared > 10
 
 
+@pytest.mark.parametrize("name", ["rotary-transplanter", "chain"])
+def test_each_row_has_flanks_strands_and_soil_of_its_own(name: str) -> None:
+    """Drive torques of single rows at their phases, by inverse dynamics, add up to nothing."""
+    alone = with_losses(name)
+    phases = (0.0, 1.3)
+    machine = replace(alone, rows=tuple(eq.mechanism.Row(phase=phase) for phase in phases))
+    found = eq.run(machine, speed=alone.drive.speed, turns=1)
+    assert found.energy_error < 1e-9
+    equation, compared = found.equation, 0
+    for k in np.linspace(1, len(found.time) - 2, 8).astype(int):
+        angle, now = float(found.crank_angle[k]), float(found.crank_speed[k])
+        if np.min(np.abs(equation.edges - angle % equation.period)) < 1e-6:
+            continue
+        inertia, slope, torques = equation.at(angle, now, 0.0, float(np.sign(now)))
+        rate = (float(np.sum(torques)) - slope * now**2 / 2) / inertia
+        asked = sum(
+            float(eq.analyze(alone, [angle + phase], now, rate).forces.drive_torque[0])
+            for phase in phases
+        )
+        assert abs(asked) < 1e-8 * (np.max(np.abs(torques)) + inertia * abs(rate))
+        compared += 1
+    assert compared > 4
+
+
 def test_friction_is_refused_where_teeth_share_their_force_with_what_is_redundant() -> None:
     machine = planet_train(np.random.default_rng(1)).machine
     joint = JointProperties(f"gears.{machine.gears[0].name}", mesh_loss=0.02)
