@@ -125,8 +125,8 @@ def _length(trace: Trace, pusher: Pusher) -> tuple[Any, Any, Any]:
     if pusher.slider:
         slider = slider_of(trace.machine, pusher)
         at, base = trace.point(slider.link, slider.point), trace.point(slider.on, slider.through)
-        turned = (trace.state[name] for name in u(slider.on))
-        values = kernels.travelled(*at, *base, *turned, _direction(trace, pusher))
+        turn, w, a = (trace.state[name] for name in u(slider.on))
+        values = kernels.travelled(*at, *base, turn, w, a, _direction(trace, pusher))
     else:
         values = kernels.apart(*(b - a for a, b in zip(*_ends(trace, pusher), strict=True)))
     return values
