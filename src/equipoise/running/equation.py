@@ -39,6 +39,11 @@ CLOSE = 1e-9
 """rad, within which edges of pieces are one: rounding of crank angles at which a load sets in."""
 
 
+def just_after(time: float) -> float:
+    """An instant, s, after a row of a load at a time, s, that rounding may have moved."""
+    return time + LATER * (1 + time)
+
+
 @dataclass(frozen=True, eq=False)
 class CrankEquation:
     """A machine as a function of its crank's angle and speed.
@@ -109,7 +114,7 @@ class CrankEquation:
         """Factors (...) of loads over time at times (...), s, each on the line that it follows
         just after an instant `since`, also beyond the end of that.
         """
-        after = since + LATER * (1 + since)
+        after = just_after(since)
         return [load.line_after(after)(np.asarray(time)) for load in self.machine.timed_loads]
 
     @cached_property

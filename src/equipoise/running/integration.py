@@ -26,7 +26,7 @@ from equipoise.dataclass import dataclass
 from equipoise.errors import ResponseError
 from equipoise.i18n import Note
 from equipoise.running.drivers import LIMIT_REACHED, Driver
-from equipoise.running.equation import LATER, CrankEquation
+from equipoise.running.equation import CrankEquation, just_after
 from equipoise.running.tabulated import NODES, POINTS, integral_to, polynomials, roughness
 from equipoise.signals import Array
 
@@ -709,7 +709,7 @@ class Integration:
             self.driver.observe(now.speed, now.angle, now.time, reached=True)
             kind = "smooth"
         if kind == "corner":
-            self.corners = [time for time in self.corners if time > now.time * (1 + LATER) + LATER]
+            self.corners = [time for time in self.corners if time > just_after(now.time)]
             kind = "smooth"
         if kind == "smooth":  # the torque's law changes, and nothing happens that is reported
             return now
