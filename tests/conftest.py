@@ -19,7 +19,6 @@ from _pytest.assertion import rewrite
 
 from support import gallery
 from support.chosen import DISTINCT
-from support.later import later
 
 SEEDED = {Path(__file__).parent / room for room in ("laws", "secondroute", "crosscheck")}
 PARAM = type(pytest.param())
@@ -73,8 +72,6 @@ def pytest_itemcollected(item: pytest.Item) -> None:
         item.add_marker("browser")
     elif item.path.suffix in {".md", ".ipynb"} or "site" in getattr(item, "fixturenames", ()):
         item.add_marker("documentation")
-    if item.name in _later(item.path):
-        item.add_marker("exhaustive")
 
 
 @pytest.hookimpl(tryfirst=True)
@@ -162,13 +159,6 @@ def _rewrite_share(config: pytest.Config) -> None:
         if rewrite._read_pyc(file, cached) is None and rewrite.try_makedirs(cached.parent):
             written, code = rewrite._rewrite_test(file, config)
             rewrite._write_pyc(config.stash[rewrite.assertstate_key], code, written, cached)
-
-
-@cache
-def _later(file: Path) -> frozenset[str]:
-    """Tests of a file that only a release has to pass."""
-    tests = Path(__file__).parent
-    return later(str(file.relative_to(tests))) if tests in file.parents else frozenset()
 
 
 def _by_name(config: pytest.Config) -> bool:

@@ -199,7 +199,8 @@ def test_what_cannot_turn_is_refused_in_words(open_file: Open) -> None:
 
 
 @pytest.mark.parametrize(("name", "joint"), [
-    ("yamashita-1", "B"), ("planetary-planting-arm", "Q"),
+    ("yamashita-1", "B"),
+    pytest.param("planetary-planting-arm", "Q", marks=EXHAUSTIVE),
     pytest.param("slider-crank-engine", "B", marks=EXHAUSTIVE),
     pytest.param("quick-return", "B", marks=EXHAUSTIVE),
 ])  # fmt: skip

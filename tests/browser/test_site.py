@@ -10,6 +10,7 @@ from playwright.sync_api import Browser, Page, expect
 
 from browser.live import FITS, Live
 from browser.test_looks import SCHEMES, WIDTHS
+from support.chosen import few
 
 
 @pytest.fixture
@@ -41,7 +42,12 @@ SOUGHT = {
 """What is typed into the search, and where its first hit leads."""
 
 
-@pytest.mark.parametrize("typed", SOUGHT)
+ALIKE = {"how to cure a change point", "how to put a machine on mounts", "torsion spring table",
+         "about which point is a shaking moment taken"}  # fmt: skip
+"""English, as others of them."""
+
+
+@pytest.mark.parametrize("typed", few(SOUGHT, {*SOUGHT} - ALIKE))
 def test_the_first_hit_answers(page: Page, site: Path, typed: str) -> None:
     """Each hit is a section; its excerpt has the words, and they are marked there."""
     page.goto((site / "index.html").as_uri())

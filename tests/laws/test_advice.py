@@ -338,7 +338,7 @@ def answer_of(found: Balanced) -> str:
     return " ".join(lines)
 
 
-@pytest.mark.parametrize("name", ANSWERS)
+@pytest.mark.parametrize("name", few(ANSWERS, {*ANSWERS} - {"air-compressor", "walking-beam"}))
 def test_machines_of_other_trades(name: str) -> None:
     """A digger, engines, a press, pumps, sieves and conveyors, which nobody here had modelled."""
     found = advice_for(name)

@@ -102,7 +102,7 @@ def chosen(case: str) -> tuple[eq.Machine, Phasing]:
     return machine, choose_phases(machine, wishes, combine=combine)
 
 
-@pytest.mark.parametrize("case", few(CASES, ["force", "peak", "squares"]))
+@pytest.mark.parametrize("case", few(CASES, ["force", "squares"]))
 def test_nothing_better_is_found_by_evolution(case: str) -> None:
     """1e-6 of the value: sampled peaks are too low by up to 1e-7 times the square of the order."""
     count, wishes, combine = CASES[case]

@@ -34,7 +34,7 @@ from equipoise.mechanism.parts.field import Planting
 from equipoise.planting.figures import Loop
 from equipoise.planting.summary import PlantingFigures, plant
 from support import planting_reference as reference
-from support.chosen import few
+from support.chosen import EXHAUSTIVE, few
 from support.conformance import compared
 from support.planting_reference import Case, Series, Trochoid, planter
 from support.sources import SERIES
@@ -265,6 +265,7 @@ def pair(loop: Loop, others: list[dict[str, float]]) -> tuple[int, Loop]:
     return int(np.argmin(gaps)), loop
 
 
+@EXHAUSTIVE  # Each of these machines is in other tests of this file on every change.
 def test_some_machines_plant_twice() -> None:
     assert [name for name in RANDOM if len(found(name).visits) == 2] == [
         f"crank-rocker-{seed}" for seed in range(25) if seed % 6 == 5

@@ -83,10 +83,7 @@ CASES = {
 }
 
 
-KINDS = (
-    *("193 rpm", "free, reversed", "lifting off"),
-    *("motor on two rows", "springs on two rows, free"),
-)
+KINDS = ("193 rpm", "free, reversed", "lifting off", "motor on two rows")
 """One of each kind of rig and drive."""
 EVERYTHING = "motion, gauge, mounts, drive, joints, work of a turn"
 

@@ -12,7 +12,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import MotionError
-from support.chosen import few
+from support.chosen import EXHAUSTIVE, few
 from surface.running import (
     READY,
     changed,
@@ -533,7 +533,9 @@ def test_interruption_leaves_nothing_half_written(module: str, function: str, fo
 @pytest.mark.parametrize(
     "words",
     [
-        ("analyze", "watt-six-bar", "--angles", "400000", "--csv", "x.csv"),
+        pytest.param(
+            ("analyze", "watt-six-bar", "--angles", "400000", "--csv", "x.csv"), marks=EXHAUSTIVE
+        ),
         ("balance", "balance-geared-a", "-o", "new.toml", "--csv", "x.csv", "--plot", "pictures"),
     ],
 )
@@ -633,8 +635,8 @@ HUGE = {
     "1 MB of spaces": lambda: four_bar("33.5 mm", "1" + " " * 1_000_000 + "x"),
     "a list of 200 000": lambda: four_bar('["33.5 mm",', "[" + '"1 mm",' * 200_000),
 }  # fmt: skip
-LONG = {"20 000 links", "a list of 200 000"} | {
-    f"2 MB of {part}" for part in ("joints", "points", "gears")
+LONG = {"20 000 links", "2000 links in four-bars", "a list of 200 000"} | {
+    f"2 MB of {part}" for part in ("joints", "points", "loads", "gears")
 }
 """Read by the same loops as others, for seconds."""
 

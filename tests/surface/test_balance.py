@@ -19,6 +19,7 @@ import equipoise as eq
 from equipoise.balancing.objectives import measured
 from equipoise.cli.plan import read_objective
 from equipoise.mechanism.parts.balance import Balance, Limit, Objective
+from support.chosen import EXHAUSTIVE, few
 from surface.running import (
     cells,
     changed,
@@ -232,6 +233,8 @@ def test_a_second_geared_counterweight_has_a_name_of_its_own() -> None:
     assert machine.title == "Planting mechanism B (Lee, Kim), balanced"
 
 
+# On every change: `test_two_shafts_with_choices_each` of `unit/balancing/test_gear_search.py`.
+@EXHAUSTIVE
 def test_a_range_of_ratios_is_proved_one_by_one() -> None:
     text = run(*GEARED, "--ratio", "0.8, 0.81")
     assert "value before for each of the gears tried." in text
@@ -496,7 +499,7 @@ def test_nothing_is_printed_beside_a_broken_pipe() -> None:
     assert done.stderr == b""
 
 
-@pytest.mark.parametrize("row", ["drive_torque", "rows.drive_torque"])
+@pytest.mark.parametrize("row", few(["drive_torque", "rows.drive_torque"], {"rows.drive_torque"}))
 def test_outputs_of_several_rows_are_taken_by_the_names_that_results_have(row: str) -> None:
     """What `analyze` calls rows.drive_torque is the drive_torque that balancing makes small."""
     words = ("--phases", "--objective", f"peak {row}", "--limit", f"peak {row} <= 100 %")

@@ -13,7 +13,7 @@ from types import FrameType
 
 import pytest
 
-from support.chosen import few
+from support.chosen import EXHAUSTIVE, few
 from surface.running import SERVER, heed_interrupts, replaced
 from surface.studies import LENGTHS, TOLERANCES
 
@@ -111,7 +111,10 @@ main()
 """
 
 
-@pytest.mark.parametrize(("name", "study"), [("search", LENGTHS_OF_FEW), ("tolerance", TOLERANCES)])
+@pytest.mark.parametrize(
+    ("name", "study"),
+    [("search", LENGTHS_OF_FEW), pytest.param("tolerance", TOLERANCES, marks=EXHAUSTIVE)],
+)
 def test_an_interrupt_while_direction_numbers_are_loaded(
     name: str, study: str, folder: Path
 ) -> None:

@@ -362,6 +362,7 @@ def test_units_of_the_tables_from_rest() -> None:
 # -- rows ------------------------------------------------------------------------------------------
 
 
+@EXHAUSTIVE  # On every change: two rows in `secondroute/test_vibration.py`.
 def test_rows_in_opposite_phase_on_a_float() -> None:
     """What is left shakes less, and the float stays on the ground."""
     rows = changed("walking-transplanter", ('lateral = "150 mm"', 'phase = "180 deg"'))
@@ -473,6 +474,7 @@ def test_the_louder_of_two_steady_states(drive: list[str]) -> None:
     assert not any("another steady state" in note for note in one["notes"])
 
 
+@EXHAUSTIVE  # On every change: `test_the_louder_of_two_steady_states`, at two speeds.
 def test_both_branches_of_a_range() -> None:
     found = read("respond", WALKING, "--model", "exact", "--speed", "160:175 rpm", "--speeds", "16")
     readings = found["gauges"]["planting_part"]["peak_to_peak"]

@@ -32,6 +32,7 @@ from equipoise.results.yardsticks import assess
 from equipoise.running.flywheel import size_flywheel
 from equipoise.vibration.headline import response_headline
 from equipoise.vibration.linear import Linear, around, resonances
+from support.chosen import EXHAUSTIVE
 from support.found import advice_for
 
 RPM = pi / 30
@@ -138,6 +139,7 @@ def test_a_press_is_told_what_its_motor_gives() -> None:
     )
 
 
+@EXHAUSTIVE  # On every change: the flywheel of `plunger-pump`, in `surface/test_balance.py`.
 def test_a_flywheel_on_a_faster_shaft_names_what_is_assumed() -> None:
     """A pump without a motor has such a shaft only if its motor is there."""
     machine = eq.load("plunger-pump")

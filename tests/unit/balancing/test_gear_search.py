@@ -13,6 +13,7 @@ import equipoise as eq
 from equipoise.balancing import geared as gear_search
 from equipoise.errors import UsageError
 from equipoise.mechanism.parts.balance import Balance, GearedWeight, Limit, Objective, Weight
+from support.chosen import EXHAUSTIVE
 from unit.mechanism.build import crank_rocker
 
 MACHINE = crank_rocker()
@@ -87,6 +88,7 @@ def test_what_is_proved_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
     assert some.cost == pytest.approx(every.cost, rel=1e-6)
 
 
+@EXHAUSTIVE  # On every change: `test_two_shafts_with_choices_each`, and `test_geared.py`.
 def test_two_shafts_with_ranges(monkeypatch: pytest.MonkeyPatch) -> None:
     """No pair of ratios and directions of a grid is better; the search uses far fewer."""
     monkeypatch.setattr(gear_search, "MOST_CHOICES", 16)

@@ -24,6 +24,7 @@ from equipoise.schema.template import Template
 from equipoise.studies.blocks import searched_blocks
 from equipoise.studies.evaluate import evaluator
 from equipoise.studies.searching import Searched, search
+from support.chosen import EXHAUSTIVE
 from unit.web.pages import ask, opened
 
 Array = np.ndarray[Any, Any]
@@ -91,6 +92,7 @@ def test_a_search_takes_a_solver_of_ones_own(added: RandomSearch) -> None:
     assert any("the optimum is not proved" in one for one in told(found))
 
 
+@EXHAUSTIVE  # On every change: `test_the_page_balances_by_it`, of the same machine.
 def test_balance_chooses_gears_by_it(added: RandomSearch) -> None:
     """As good as the best of its own few choices, and no better than all of them tried."""
     machine = eq.load("balance-geared-a")

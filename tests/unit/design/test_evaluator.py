@@ -25,6 +25,7 @@ from equipoise.studies.objective_map import landscape
 from equipoise.studies.searching import search
 from equipoise.studies.study import Output, Study, samples
 from equipoise.studies.tolerances import tolerance
+from support.chosen import EXHAUSTIVE
 
 
 def slow(name: str, designs: int) -> Study:
@@ -104,6 +105,7 @@ def test_a_map_is_the_same_with_any_number_of_workers(at_once: list[Any]) -> Non
     assert sum(len(part.values) for part in at_once) == 24, "all but the first"
 
 
+@EXHAUSTIVE  # On every change: the search above, by the same processes.
 def test_a_search_of_geometry_is_the_same_with_any_number_of_workers(at_once: list[Any]) -> None:
     goals = [
         Requirement("curve.width", target=0.1),

@@ -87,6 +87,7 @@ BUNDLED = {f"vibration: {name}" for name in EXAMPLES}
 
 
 ALIKE = {"vibration: clockwise", "vibration: space", "tools: paper", "tools: loose"}
+ALIKE |= {"vibration: odd names", "tools: crowded"}
 ALIKE |= {f"planting: {kind}" for kind in ("slow", "fast", "deep", "still", "backward")}
 """Laid out like others."""
 

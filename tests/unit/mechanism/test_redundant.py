@@ -18,6 +18,7 @@ from equipoise.mechanism.dynamics.across import exerted_in
 from equipoise.mechanism.dynamics.reactions import idle_told, indeterminate_reactions
 from equipoise.mechanism.parts.joint_properties import JointProperties
 from equipoise.mechanism.parts.machine import FRAME, FurtherDrive, Link, Slider, Vector
+from support.chosen import few
 from support.machines import make
 from support.machines_redundant import REDUNDANT
 from unit.mechanism.build import ORIGIN, four_bar, heavy, machine
@@ -359,7 +360,7 @@ def test_what_statics_decides_does_not_depend_on_the_rule() -> None:
         np.testing.assert_allclose(one.joints[name].value, two.joints[name].value, atol=1e-9)
 
 
-@pytest.mark.parametrize("kind", REDUNDANT)
+@pytest.mark.parametrize("kind", few(REDUNDANT, {*REDUNDANT} - {"planet_differential"}))
 def test_of_all_kinds_both_rules_tell_alike_what_statics_decides(kind: str) -> None:
     given = make(kind, 1).machine
     linkage = eq.mechanism.assemble(given)

@@ -218,6 +218,7 @@ def test_gears_on_other_links_are_refused() -> None:
         fit_planting(machine, [Requirement("curve.height", target=0.25)])
 
 
+@EXHAUSTIVE  # On every change: `test_shaking_is_kept_small`, of the same arms.
 def test_arms_on_gears_are_found_again() -> None:
     """Of two arms that are alike the tips move together, and phases of gears turn together."""
     wanted = two_arms()

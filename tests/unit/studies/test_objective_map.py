@@ -120,7 +120,7 @@ def test_quick_and_slow_way_agree(name: str, objective: eq.balancing.Objective) 
     ("name", "output", "measure"),
     [
         ("yamashita-1", "shaking_force", "peak"),
-        ("quick-return", "drive_torque", "area"),
+        pytest.param("quick-return", "drive_torque", "area", marks=EXHAUSTIVE),
         pytest.param("yamashita-1", "shaking_force.y", "ripple", marks=EXHAUSTIVE),
         pytest.param("yamashita-1", "drive_torque", "peak_to_peak", marks=EXHAUSTIVE),
         pytest.param("quick-return", "joints.A", "peak", marks=EXHAUSTIVE),
@@ -155,8 +155,10 @@ def test_a_map_of_masses_makes_no_machine_for_each_point(monkeypatch: pytest.Mon
 
 
 @pytest.mark.parametrize(
-    "output", ["belts.shaft to crank.right", "racks.sector to knife", "joints.D", "drive_torque"]
-)
+    "output",
+    ["belts.shaft to crank.right", "racks.sector to knife",
+     pytest.param("joints.D", marks=EXHAUSTIVE), "drive_torque"],
+)  # fmt: skip
 def test_contacts_that_change_sides_are_those_of_each_machine(output: str, tmp_path: Path) -> None:
     """The knife's mass against the load on its rack decides which strand and which flank bears."""
     from equipoise.balancing.problem import Problem

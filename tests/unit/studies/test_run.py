@@ -24,6 +24,7 @@ from equipoise.studies.run import chunk_of, resume, sweep
 from equipoise.studies.store import Store, open_store
 from equipoise.studies.study import Output, Study, samples
 from support import studies
+from support.chosen import EXHAUSTIVE
 from support.studies import Formulas, contents, restore, short_study
 
 STUDY = short_study()
@@ -92,6 +93,8 @@ def test_an_interrupted_sweep_keeps_its_chunks_and_goes_on_to_the_same_bytes(
     assert kept.items() <= undisturbed.items()
 
 
+# On every change: `test_the_end_may_come_at_any_file_of_a_chunk`, and `surface/test_sweep.py`.
+@EXHAUSTIVE
 def test_killed_processes_leave_a_store_that_ends_with_the_same_bytes(
     tmp_path: Path, undisturbed: dict[str, bytes]
 ) -> None:
