@@ -17,7 +17,6 @@ from equipoise.i18n import Note
 from support.refusals import refused
 
 SOURCES = Path(equipoise.__file__).parent
-TESTS = Path(__file__).parents[2]
 FILES = sorted(SOURCES.rglob("*.py"))
 SAID_BY = {"Notes", "at_place", "FileError", "StoppedError"}
 """What else takes sentences."""
@@ -244,23 +243,6 @@ def test_no_sentence_is_spelled_out_around_its_values() -> None:
 )
 def test_what_is_spelled_out(line: str, is_spelled: bool) -> None:
     assert bool(spelled_sentences(ast.parse(line))) == is_spelled
-
-
-WORDED = 380
-"""Most tests of refusals by wording, `match` of `pytest.raises`: none is added; it sinks."""
-
-
-def test_refusals_are_recognised_by_place_and_values() -> None:
-    """So that wording can improve: `refused` of `tests/support/refusals.py`."""
-    worded = [
-        node
-        for file in TESTS.rglob("*.py")
-        for node in ast.walk(ast.parse(file.read_text(encoding="utf-8")))
-        if isinstance(node, ast.Call)
-        and name_of(node.func) == "raises"
-        and any(argument.arg == "match" for argument in node.keywords)
-    ]
-    assert len(worded) <= WORDED
 
 
 def test_a_refusal_of_other_values_or_at_another_place_is_another() -> None:
