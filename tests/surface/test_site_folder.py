@@ -119,6 +119,17 @@ def test_what_node_cannot_compile_can_be_left_to_the_browser(
     succeeded(equipoise(*WORDS, "--no-compile"))
 
 
+def test_a_node_that_fails_half_way_leaves_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Neither what it has written by then, nor a site without it."""
+    node = Path("node").absolute()
+    node.write_text('#!/bin/sh\necho half > "$3"\nprintf "Error: no space \\377" >&2\nexit 1\n')
+    node.chmod(0o755)
+    monkeypatch.setattr("equipoise.web.bytecode.find_node", lambda: str(node))
+    monkeypatch.setattr(site_module, "is_published", lambda _: True)
+    sentence = wrote_nothing(equipoise(*WORDS))
+    assert "Node could not compile the modules of the site (Error: no space" in sentence
+
+
 @pytest.mark.parametrize(
     ("place", "target"),
     [

@@ -118,7 +118,7 @@ class Part:
         if self.density is not None:
             said.append(say("material: {stuff}", stuff=stuff_named(self.density)))
         if self.mass is not None:
-            said.append(say("mass {mass}", mass=weighed(self.mass)))
+            said.append(say("mass {mass}", mass=workshop_mass(self.mass)))
         said.extend(self._round_lines())
         holes = [curve.text for edges in self.edges[1:] for curve in _curves(edges) if curve.whole]
         if holes:
@@ -212,7 +212,7 @@ GRAM, LIGHT = 1e-3, 1e-2
 """kg; below the second a workshop weighs to a tenth of the first."""
 
 
-def weighed(mass: float) -> str:
+def workshop_mass(mass: float) -> str:
     """A mass as a workshop weighs it, with its unit: to a gram, a small one to a tenth of it."""
     unit = display("mass", [mass])
     step = GRAM if mass >= LIGHT else GRAM / 10

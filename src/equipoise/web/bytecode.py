@@ -78,24 +78,34 @@ def bytecode(node: str, runtime: Mapping[str, bytes], wheels: Iterable[bytes]) -
         for number, wheel in enumerate(wheels):
             files.append(Path(folder) / f"{number}.zip")
             files[-1].write_bytes(wheel)
-        command = [node, str(script), folder, str(out), *map(str, files)]
-        try:
-            done = subprocess.run(
-                command, capture_output=True, encoding="utf-8", check=False, timeout=LONGEST
-            )
-            why = next((line for line in done.stderr.splitlines()[::-1] if "Error" in line), "")
-        except (OSError, subprocess.TimeoutExpired) as error:
-            why = str(error)
-        if not out.is_file():
+        failure = _failure_of([node, str(script), folder, str(out), *map(str, files)])
+        if failure is not None:
             raise UsageError(
                 Note(
                     "Node could not compile the modules of the site ({reason}); "
                     "give --no-compile to leave this to the browser",
-                    reason=why[:200].strip() or "?",
+                    reason=failure,
                 )
             )
         with zipfile.ZipFile(out) as archive:
             return {name: archive.read(name) for name in archive.namelist()}
+
+
+def _failure_of(command: list[str]) -> str | None:
+    """Run a command, and return why it failed; None if it succeeded."""
+    try:
+        done = subprocess.run(
+            command, capture_output=True, encoding="utf-8", errors="replace", check=False,
+            timeout=LONGEST,
+        )  # fmt: skip
+    except OSError as error:
+        return str(error)
+    except subprocess.TimeoutExpired:
+        return Note("no result after {time} s", time=LONGEST)
+    if done.returncode == 0:
+        return None
+    last = next((line for line in done.stderr.splitlines()[::-1] if "Error" in line), "")
+    return last[:200].strip() or Note("exit status {status}", status=done.returncode)
 
 
 def in_place(

@@ -188,11 +188,10 @@ class _SiteContent:
         own = dict(_wheel(distribution(name)) for name in ("equipoise", *PURE))
         complete = len(needed) == len(FIRST)
         compiled = compiler([*needed.values(), *own.values()]) if compiler and complete else {}
-        packed = {}
-        for path, data in needed.items():
-            packed[path] = _packed(_compiled(data, compiled))
-            hashed = hashlib.sha256(packed[path]).hexdigest()
-            next(one for one in packages.values() if one["file_name"] == path)["sha256"] = hashed
+        packed = {path: _packed(_compiled(data, compiled)) for path, data in needed.items()}
+        for entry in (packages[name] for name in FIRST):
+            if entry["file_name"] in packed:
+                entry["sha256"] = hashlib.sha256(packed[entry["file_name"]]).hexdigest()
         for name, data in own.items():
             packed[f"wheels/{name}"] = _packed(_compiled(data, compiled))
         spoken, texts = _texts()

@@ -158,8 +158,7 @@ class _Skeleton:
         if ignored:
             drawing.note(
                 Note(
-                    "{count} lines and circles of paths, parts, springs, gears, belts, racks and "
-                    "cams are left out",
+                    "{count} lines and circles on layers without links or guides are left out",
                     count=len(ignored),
                 )
             )
