@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import gzip
+import os
 import re
+import shutil
 from io import BytesIO
 from pathlib import Path
 from zipfile import ZipFile
@@ -16,7 +18,8 @@ from equipoise.errors import UsageError
 from equipoise.i18n import LANGUAGES, catalogue
 from equipoise.web.bytecode import find_node
 from equipoise.web.site import Site, write_site
-from support.host import RUNTIME, WHEELS
+from support.chosen import EXHAUSTIVE
+from support.host import RUNTIME, WHEELS, hosting
 
 TEXTS = re.compile(r"/equipoise_(\w+)-[^/]+\.whl")
 """A package with the catalogue of a language."""
@@ -31,6 +34,19 @@ def opened(page: Page, address: str, name: str) -> Live:
     live = Live(page)
     live.settled()
     return live
+
+
+def until(page: Page, promise: str) -> None:
+    """Wait until what a promise brings is true; `wait_for_function` takes the promise for that."""
+    page.evaluate(
+        f"""async () => {{
+            const end = Date.now() + {LONGEST * 1000};
+            while (!(await {promise})) {{
+                if (Date.now() > end) throw new Error("in vain");
+                await new Promise(done => setTimeout(done, 50));
+            }}
+        }}"""
+    )
 
 
 def test_the_first_load_is_small(context: BrowserContext, hosted: Site, host: str) -> None:
@@ -126,7 +142,7 @@ def test_what_was_loaded_is_used_offline(browser: Browser, host: str) -> None:
     context.set_default_timeout(LONGEST * 1000)
     page = context.new_page()
     opened(page, host, "yamashita-1")
-    page.wait_for_function("caches.match(location.origin + '/').then(kept => !!kept)")
+    until(page, "caches.match(location.origin + '/')")
     page.close()
     again = context.new_page()
     context.set_offline(True)
@@ -137,6 +153,43 @@ def test_what_was_loaded_is_used_offline(browser: Browser, host: str) -> None:
         live.settled()
     finally:
         context.close()
+
+
+@EXHAUSTIVE
+def test_a_new_build_takes_the_place_of_the_old_one(
+    browser: Browser, hosted: Site, tmp_path: Path
+) -> None:
+    """Whatever the browser's own cache has: the visit after the next has all of the new one."""
+    site = tmp_path / "site"
+    shutil.copytree(hosted.folder, site)
+    script, start = site / "worker.js", site / "index.html"
+    os.utime(script)  # it has just been written, so that browsers ask whether there is a newer one
+    context = browser.new_context(viewport={"width": 1280, "height": 900}, reduced_motion="reduce")
+    context.set_default_timeout(LONGEST * 1000)
+
+    def visited(address: str, build: str) -> str:
+        """The script that the visit of a build leaves with what is kept."""
+        text = start.read_text(encoding="utf-8")
+        start.write_text(re.sub(r"build=\w+", f"build={build}", text), encoding="utf-8")
+        page = context.new_page()
+        opened(page, address, "yamashita-1")
+        until(page, f"caches.has('equipoise {build}')")
+        if build == "old":
+            until(page, f"caches.match('{address}')")
+        page.wait_for_timeout(2000)  # for what must not be kept
+        kept: str = page.evaluate(
+            "caches.match('/worker.js').then(script => script ? script.text() : '')"
+        )
+        page.close()
+        return kept
+
+    with hosting(site) as address:
+        old = visited(address, "old")
+        assert old == script.read_text(encoding="utf-8")
+        script.write_text(f"{old}// newer\n", encoding="utf-8")
+        assert visited(address, "new") != old
+        assert visited(address, "new") == f"{old}// newer\n"
+    context.close()
 
 
 def test_a_link_opens_on_servers_and_hosts_alike(
