@@ -150,7 +150,7 @@ def _solve_once(problem: Problem, progress: Progress | None, above: float = inf)
 
 
 def _split(problem: Problem, x: Array) -> list[Array]:
-    """The numbers of each part, tightened."""
+    """The numbers of each part, projected onto what is feasible."""
     return problem.project_feasible([x[at] for at in problem.built.places])
 
 

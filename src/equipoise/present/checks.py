@@ -20,6 +20,7 @@ from equipoise.mechanism.dynamics.assessment import remarks
 from equipoise.mechanism.dynamics.forces import massless
 from equipoise.mechanism.dynamics.loads import work_in_cycle
 from equipoise.mechanism.kinematics.motion import move
+from equipoise.mechanism.outputs.declared import body_named
 from equipoise.mechanism.parts.support import idle_parts
 from equipoise.quantities import PER_RPM, SI, Dimension, angle, display, number, told
 from equipoise.quantities.numbers import rate_told, time_told
@@ -257,11 +258,13 @@ def _uncarried(machine: Machine) -> Iterator[Note]:
 
 
 HOW_SOLVED = {
+    "dyad": to_say("dyad"),
+    "coupled": to_say("coupled"),
     "loops": to_say("by Newton's method on the loop equations"),
     "pointed": to_say("where its pins are brought"),
     "hung": to_say("pushed"),
 }
-"""How a group of links is solved, where that is not its kind."""
+"""How a group of links is solved, by its kind."""
 
 
 def _build_up(linkage: Linkage) -> Iterable[str]:
@@ -271,13 +274,15 @@ def _build_up(linkage: Linkage) -> Iterable[str]:
         joints = [
             Note("{joint} (slider)", joint=r.name) if r.kind == "slider"
             else Note("{joint} (pin in a slot)", joint=r.name) if r.name in structure.riders
-            else Note("{joint} ({kind} on {body})", joint=r.name, kind=r.kind, body=r.by)
+            else Note("{joint} (pin on {body})", joint=r.name, body=body_named(r.by))
+            if r.kind == "pin"
+            else Note("{joint} ({kind} on {body})", joint=r.name, kind=Note(r.kind), body=r.by)
             for r in shown
         ]  # fmt: skip
         yield INDENT + say(
             "{links}: {how}; joints {joints}",
             links=said(all_of([link for link in group.links if link not in structure.riders])),
-            how=say(HOW_SOLVED[group.kind]) if group.kind in HOW_SOLVED else group.kind,
+            how=say(HOW_SOLVED[group.kind]),
             joints=said(series(joints)),
         )
 
