@@ -63,7 +63,8 @@ def read_by(
     def convert(_: Any, tokens: Sequence[Any]) -> Any:
         token = tokens[0]
         if name and token.value.startswith("--"):  # hyphens may lead, of numbers: "-2 s"
-            raise UnknownOptionError(token=token, argument_collection=ArgumentCollection())
+            none = ArgumentCollection()  # type: ignore[no-untyped-call]
+            raise UnknownOptionError(token=token, argument_collection=none)
         return read(token.keyword or name or "", token.value)
 
     return Parameter(
