@@ -30,8 +30,8 @@ from scipy.optimize import differential_evolution
 
 from equipoise.handheld.design import design_tool
 from equipoise.handheld.design_plan import DesignLimit, DesignPlan, DesignVariable
-from equipoise.handheld.exposed import grips
 from equipoise.handheld.frequencies import natural_frequencies
+from equipoise.handheld.hand_exposure import grips
 from equipoise.handheld.model import Tool
 from equipoise.handheld.modes import changed, vibrate_tool
 from equipoise.handheld.response import respond_tool

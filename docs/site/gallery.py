@@ -16,7 +16,7 @@ from lessons import TABLE, lessons
 from pictures import command_of
 
 from equipoise.i18n import speaking
-from equipoise.schema.opening import bundled, kind_of
+from equipoise.schema.open_files import bundled, kind_of
 from equipoise.web import gallery as kinds
 from equipoise.web.gallery import opened_example
 

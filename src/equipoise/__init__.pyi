@@ -36,7 +36,7 @@ from .schema.documents import dumps as dumps
 from .schema.documents import load as load
 from .schema.documents import loads as loads
 from .schema.documents import save as save
-from .schema.opening import examples as examples
+from .schema.open_files import examples as examples
 from .studies.run import sweep as sweep
 from .studies.searching import search as search
 from .studies.tolerances import tolerance as tolerance

@@ -17,7 +17,7 @@ import equipoise as eq
 from browser.live import FITS, SCREENSHOTS, Live
 from equipoise.present.composition import report_page
 from support.chosen import few, few_together
-from support.found import found
+from support.findings import findings_of
 from surface.running import equipoise, succeeded
 
 WIDTHS = (1280, 400)
@@ -130,7 +130,7 @@ def test_reports_are_short_and_fit(name: str, new_page: Callable[..., Page]) -> 
     side to side, and the machine is on the first screen.
     """
     page = new_page()
-    page.set_content(report_page(found(name)))
+    page.set_content(report_page(findings_of(name)))
     for width in (1280, 400):
         page.set_viewport_size({"width": width, "height": 900})
         page.evaluate("document.querySelectorAll('details').forEach(one => one.open = true)")

@@ -17,10 +17,10 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-import support.found
+import support.findings
 from equipoise.balancing.advice import advise
 from equipoise.balancing.balanced import Balanced
-from equipoise.balancing.told import worse_told
+from equipoise.balancing.sentences import worse_told
 from equipoise.balancing.workshop import in_short
 from equipoise.mechanism.checks import bodies_at
 from equipoise.mechanism.outputs.declared import declared
@@ -30,7 +30,7 @@ from equipoise.results.outputs import output_named
 from equipoise.results.yardsticks import FigureAssessment
 from laws.test_vibration_laws import supported
 from support.chosen import DISTINCT, EXHAUSTIVE, few
-from support.found import advice_for
+from support.findings import advice_for
 from support.machines import make
 
 KINDS = ("crank_rocker", "slider_crank", "stephenson", "quick_return", "scotch_yoke", "watt")
@@ -288,7 +288,7 @@ def test_random_machines_with_loads(kind: str, number: int, seed: int) -> None:
     check(advise(loaded(kind, IN_A_BATCH * seed + number)))
 
 
-ADVISED = Path(support.found.__file__).parent / "advised"
+ADVISED = Path(support.findings.__file__).parent / "advised"
 ANSWERS = {
     "air-compressor": r"Reading at foot_up, RMS about the mean: 1\.05 → 0\.217 mm .* of steel",
     "beam-pump": r"^A weight of 2963 kg m .* off the swing of the drive torque.* No other change",

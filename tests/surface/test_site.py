@@ -17,7 +17,7 @@ import pytest
 from equipoise.cli import COMMANDS, app
 from equipoise.i18n import say, speaking
 from equipoise.i18n.terms import MEANINGS, TERMS
-from equipoise.schema.opening import bundled
+from equipoise.schema.open_files import bundled
 from support.languages import COMPLETE
 from unit.test_public_names import NAMES
 

@@ -20,7 +20,7 @@ from equipoise.cli import run
 from equipoise.cli.worker import ToolCall, reply_to
 from equipoise.design.variables import Range, Variable
 from equipoise.limits import memory_limit, out_of_memory
-from equipoise.mechanism.assembly.shared import min_norm
+from equipoise.mechanism.assembly.redundant_reactions import min_norm
 from equipoise.mechanism.parts.balance import Measure, Objective
 from equipoise.schema.template import Template
 from equipoise.signals import Array, Periodic

@@ -11,7 +11,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from equipoise.balancing import compared
+from equipoise.balancing import comparison
 from equipoise.balancing.beyond_masses import Beyond
 from equipoise.balancing.design_variables import Bound
 from equipoise.balancing.effects import ANGLES
@@ -191,25 +191,25 @@ class Balanced(Result):
     @cached_property
     def before(self) -> dict[str, float]:
         """Figures of the machine as it was, by name; SI units."""
-        return self._shaking[0] | compared.planting_of(self.original)
+        return self._shaking[0] | comparison.planting_of(self.original)
 
     @cached_property
     def after(self) -> dict[str, float]:
         """Figures of the balanced machine, by name; SI units."""
-        return self._shaking[1] | compared.planting_of(self.machine)
+        return self._shaking[1] | comparison.planting_of(self.machine)
 
     @cached_property
     def _shaking(self) -> tuple[dict[str, float], dict[str, float]]:
         """Before and after without planting, which every remedy that is tried would compute."""
-        return compared.figures_of(self.original), compared.figures_of(self.machine)
+        return comparison.figures_of(self.original), comparison.figures_of(self.machine)
 
     @cached_property
-    def aims(self) -> dict[Objective, compared.Pair]:
+    def aims(self) -> dict[Objective, comparison.Pair]:
         """What was made small, before and after; of an output at several speeds the loudest."""
-        return compared.merged(self.plan, self.reported)
+        return comparison.merged(self.plan, self.reported)
 
     @cached_property
-    def reported(self) -> dict[str, compared.Pair]:
+    def reported(self) -> dict[str, comparison.Pair]:
         """Each objective before and after by its name, as `before` and `after` have it.
 
         Those that are no such figures, such as single orders, are as the optimisation has them.
@@ -229,15 +229,15 @@ class Balanced(Result):
         """Names of the figures before and after that objectives are, by the objective's name."""
         both = self._shaking[0].keys() & self._shaking[1].keys()
         rows = len(self.original.rows)
-        figures = {item.name: compared.figure_of(item, rows, both) for item in asked}
+        figures = {item.name: comparison.figure_of(item, rows, both) for item in asked}
         return {item: name for item, name in figures.items() if name is not None}
 
     @cached_property
-    def worse(self) -> tuple[compared.Worse, ...]:
+    def worse(self) -> tuple[comparison.Worse, ...]:
         """Every figure that got larger by more than 1 %, the important ones first."""
         each = {objective: self.objectives[objective.name] for objective in self.plan.objectives}
         own = (item for item in each if item.speeds or item.about or item.orders)
-        return compared.worse_of(*self._shaking, {item: each[item] for item in own})
+        return comparison.worse_of(*self._shaking, {item: each[item] for item in own})
 
     @property
     def gain(self) -> float:
@@ -251,7 +251,7 @@ class Balanced(Result):
         """Whether it is worth a change; of what nobody asked for, whether it is offered."""
         if self.advice is not None:
             return self.advice.offered
-        moved = (abs(b - a) > compared.WORSE * a for a, b in self.objectives.values())
+        moved = (abs(b - a) > comparison.WORSE * a for a, b in self.objectives.values())
         return bool(self.plan.limits) or any(moved)
 
     @property
@@ -314,7 +314,7 @@ class Balanced(Result):
             name: self.original.drive.speed * sqrt(old[name] / new[name])
             for name, scale in self._scales.items()
             if name.startswith(("shaking_", ROWS))
-            and old.get(name, 0.0) > compared.NOTHING * scale
+            and old.get(name, 0.0) > comparison.NOTHING * scale
             and new.get(name, 0.0) > GONE * old[name]
         }
 
@@ -323,7 +323,7 @@ class Balanced(Result):
         """Of each force and moment by name, the largest of its kind before or after."""
         names = [name for name in self._shaking[0] if "." in name and not name.startswith(GAUGES)]
         units = {name: unit_of_measure(*name.rsplit(".", 1)) for name in names}
-        return compared.scales_of(*self._shaking, units)
+        return comparison.scales_of(*self._shaking, units)
 
     @property
     def _phased(self) -> dict[str, Any]:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from equipoise.balancing.compared import FAINT, NOTHING, WORSE, scales_of
+from equipoise.balancing.comparison import FAINT, NOTHING, WORSE, scales_of
 from equipoise.balancing.objectives import unit_of as si_unit
 from equipoise.balancing.outcome import (
     advice_blocks,
@@ -22,7 +22,7 @@ from equipoise.balancing.outcome import (
     steadying_sentence,
     why_nothing,
 )
-from equipoise.balancing.told import (
+from equipoise.balancing.sentences import (
     capital,
     figure_named,
     figure_unit,

@@ -17,9 +17,9 @@ from equipoise.balancing.design_variables import DesignVariables, FreeSpring, Li
 from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
 from equipoise.mechanism.checks import unknown
-from equipoise.mechanism.dynamics.across import OutOfPlaneMoments, exerted_in
-from equipoise.mechanism.dynamics.exerted import ForceReadings
+from equipoise.mechanism.dynamics.force_readings import ForceReadings
 from equipoise.mechanism.dynamics.forces import Forces, demand_of_inertia, forces
+from equipoise.mechanism.dynamics.out_of_plane import OutOfPlaneMoments, exerted_in
 from equipoise.mechanism.dynamics.reactions import (
     Demand,
     JointReactions,

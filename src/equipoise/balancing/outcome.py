@@ -24,7 +24,7 @@ from equipoise.balancing.policy import (
 from equipoise.balancing.poor_transmission import transmission_sentence
 from equipoise.balancing.remedies import is_worth, least_gain
 from equipoise.balancing.resonant_mounts import mount_sentences, outweighs
-from equipoise.balancing.told import (
+from equipoise.balancing.sentences import (
     aims_told,
     capital,
     freedoms,

@@ -16,7 +16,7 @@ from equipoise.balancing.blocks import shown_unit
 from equipoise.balancing.objectives import unit_of
 from equipoise.balancing.optimisation import balance
 from equipoise.balancing.problem import Problem
-from equipoise.balancing.told import gap_told, scope_of
+from equipoise.balancing.sentences import gap_told, scope_of
 from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
 from equipoise.i18n import Note, say

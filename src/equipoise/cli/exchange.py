@@ -73,7 +73,7 @@ def export(
     """
     from equipoise.exchange.export import check_kind, check_link_loads, format_of, write_file
     from equipoise.schema.models import load_linkage
-    from equipoise.schema.opening import bundled
+    from equipoise.schema.open_files import bundled
 
     if out is None:
         raise UsageError(at_place("--out", Note("missing; give the name of a file")))

@@ -28,9 +28,9 @@ STARTS = {
 def examples() -> CommandResult:
     """List the bundled models and studies; their names can stand for FILE and STUDY everywhere."""
     from equipoise.results.blocks import Table
-    from equipoise.schema import opening
+    from equipoise.schema import open_files
 
-    return CommandResult(lambda: [Table.of("", ("", ""), opening.examples().items())], title="")
+    return CommandResult(lambda: [Table.of("", ("", ""), open_files.examples().items())], title="")
 
 
 @command(Shown)

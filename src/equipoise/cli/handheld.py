@@ -42,7 +42,7 @@ if TYPE_CHECKING:
     import numpy as np
 
     from equipoise.figures import Picture
-    from equipoise.handheld.exposed import ToolExposure
+    from equipoise.handheld.hand_exposure import ToolExposure
     from equipoise.handheld.model import Tool
     from equipoise.handheld.modes import ToolModes
     from equipoise.handheld.sweep import ToolSweep
@@ -196,7 +196,7 @@ class Asked:
     @cached_property
     def exposure(self) -> ToolExposure:
         """What the hands get."""
-        from equipoise.handheld.exposed import expose_tool
+        from equipoise.handheld.hand_exposure import expose_tool
 
         return expose_tool(self.tool, self.speeds, self.duration)
 
@@ -337,8 +337,8 @@ def sensitivities(
     import numpy as np
 
     from equipoise.handheld.blocks import summary_blocks
-    from equipoise.handheld.exposed import tool_sensitivities
     from equipoise.handheld.hand_blocks import sensitivity_blocks
+    from equipoise.handheld.hand_exposure import tool_sensitivities
 
     band = tool.design.speeds if speeds is None and tool.design is not None else speeds
     ends = Asked(tool, range=band).ends

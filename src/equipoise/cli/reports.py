@@ -96,7 +96,7 @@ def animate(
     from equipoise.results.analysis import analyze
     from equipoise.schema.files import write
     from equipoise.schema.models import load_linkage
-    from equipoise.schema.opening import kind_of_text, opened
+    from equipoise.schema.open_files import kind_of_text, opened
 
     name = default_name(file, ".svg") if out is None else out
     kind = _kind(name)

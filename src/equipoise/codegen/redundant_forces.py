@@ -23,7 +23,7 @@ from equipoise.codegen.trace import Trace
 from equipoise.errors import UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism.assembly.loops import CouplingLoop, Pose, Poses
-from equipoise.mechanism.assembly.shared import RedundantReactions
+from equipoise.mechanism.assembly.redundant_reactions import RedundantReactions
 from equipoise.mechanism.checks import FRAME
 from equipoise.mechanism.dynamics.forces import forces
 from equipoise.mechanism.dynamics.reactions import idle_told

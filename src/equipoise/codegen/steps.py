@@ -37,7 +37,7 @@ from equipoise.mechanism.assembly.joints import coupling_pins
 from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.assembly.loopgroup import LoopForces
 from equipoise.mechanism.assembly.loops import LoopGroup
-from equipoise.mechanism.assembly.shared import RedundantReactions
+from equipoise.mechanism.assembly.redundant_reactions import RedundantReactions
 from equipoise.mechanism.assembly.steps import (
     KernelCall,
     Rotation,
@@ -50,10 +50,10 @@ from equipoise.mechanism.assembly.steps import (
     size_of_bodies,
     u,
 )
-from equipoise.mechanism.dynamics.across import contacts, statics
-from equipoise.mechanism.dynamics.acting import against_soil
+from equipoise.mechanism.dynamics.applied_loads import against_soil
 from equipoise.mechanism.dynamics.forces import inertia_moved, massless
 from equipoise.mechanism.dynamics.loads import load_at
+from equipoise.mechanism.dynamics.out_of_plane import contacts, statics
 from equipoise.mechanism.formulas import cam_kernels, kernels
 from equipoise.mechanism.formulas.curves import PlaneCurve
 from equipoise.mechanism.kinematics.motion import ROUNDING

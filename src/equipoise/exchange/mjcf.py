@@ -29,10 +29,10 @@ from equipoise.i18n import Note
 from equipoise.mechanism.assembly.steps import Array
 from equipoise.mechanism.dynamics.forces import forces
 from equipoise.mechanism.kinematics.motion import move
-from equipoise.mechanism.parts.between import BetweenPoints
 from equipoise.mechanism.parts.links import Link, size_of
 from equipoise.mechanism.parts.machine import FRAME, Machine
 from equipoise.mechanism.parts.support import FREEDOMS, Support, unit_vector
+from equipoise.mechanism.parts.two_body_elements import BetweenPoints
 
 STEPS = 2000
 """Steps of the integration in a turn of the crank."""

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from equipoise.dataclass import dataclass
-from equipoise.figures.shared import (
+from equipoise.figures.chart_parts import (
     ROOM,
     closed,
     continued,

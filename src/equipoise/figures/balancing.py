@@ -17,6 +17,16 @@ from equipoise.balancing.problem import Problem
 from equipoise.dataclass import dataclass
 from equipoise.figures.analysis import rounding, settled
 from equipoise.figures.changes import grams
+from equipoise.figures.chart_parts import (
+    GAUGES,
+    by_name,
+    continued,
+    extent,
+    groups,
+    numbers,
+    told_angles,
+    told_speed,
+)
 from equipoise.figures.forces import Read, last_order, order_panel
 from equipoise.figures.pairs import (
     NOTHING,
@@ -27,16 +37,6 @@ from equipoise.figures.pairs import (
     keys,
     paired,
     roles_of,
-)
-from equipoise.figures.shared import (
-    GAUGES,
-    by_name,
-    continued,
-    extent,
-    groups,
-    numbers,
-    told_angles,
-    told_speed,
 )
 from equipoise.figures.style import short
 from equipoise.i18n import say, to_say

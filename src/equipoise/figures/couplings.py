@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from equipoise.figures.analysis import ALL, angle_axis, over, title
+from equipoise.figures.chart_parts import compared
 from equipoise.figures.points import FORBIDDEN, outputs_chart
-from equipoise.figures.shared import compared
 from equipoise.figures.style import short
 from equipoise.i18n import say
 from equipoise.mechanism.checks import FRAME

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from equipoise.dataclass import dataclass
-from equipoise.figures.shared import by_name, continued, groups
+from equipoise.figures.chart_parts import by_name, continued, groups
 from equipoise.figures.sheet import lines_of
 from equipoise.figures.studies import PERCENT, Units, unit_of
 from equipoise.figures.style import SMALL, short

@@ -20,7 +20,7 @@ from equipoise.figures.analysis import (
     settled,
     title,
 )
-from equipoise.figures.shared import (
+from equipoise.figures.chart_parts import (
     ROOM,
     compared,
     degrees_told,

@@ -12,7 +12,7 @@ import numpy as np
 from equipoise.exposure.blocks import VERDICTS
 from equipoise.exposure.daily import ACTION, LIMIT, partial_exposure, verdict_of
 from equipoise.exposure.weighting import EDGES, factor
-from equipoise.figures.shared import by_name, ends
+from equipoise.figures.chart_parts import by_name, ends
 from equipoise.figures.style import free_name, short
 from equipoise.i18n import decimals, say
 from equipoise.quantities import Display

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.figures.analysis import settled
-from equipoise.figures.shared import closed, compared, crank_axis
+from equipoise.figures.chart_parts import closed, compared, crank_axis
 from equipoise.figures.style import short
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.parts.machine import Drive

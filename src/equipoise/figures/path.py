@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from equipoise.dataclass import dataclass
+from equipoise.figures.chart_parts import angle_step
 from equipoise.figures.linkage import panel_content
-from equipoise.figures.shared import angle_step
 from equipoise.figures.style import short
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.kinematics.motion import move

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from equipoise.figures.analysis import named
-from equipoise.figures.points import FORBIDDEN
-from equipoise.figures.shared import (
+from equipoise.figures.chart_parts import (
     ROOM,
     by_name,
     closed,
@@ -18,6 +17,7 @@ from equipoise.figures.shared import (
     extremes,
     sampled_extremes,
 )
+from equipoise.figures.points import FORBIDDEN
 from equipoise.figures.style import free_name, short
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.kinematics.tip import largest, smallest

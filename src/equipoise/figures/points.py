@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from equipoise.figures.analysis import ALL, angle_axis, over, title
-from equipoise.figures.shared import (
+from equipoise.figures.chart_parts import (
     angle_step,
     compared,
     extent,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from equipoise.figures.shared import varies
+from equipoise.figures.chart_parts import varies
 from equipoise.i18n import say
 from equipoise.results.charts import Axis, Chart, Curve, Panel
 from equipoise.running.blocks import verdict

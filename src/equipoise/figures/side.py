@@ -11,7 +11,7 @@ from equipoise.figures.linkage import told_angle
 from equipoise.figures.style import short
 from equipoise.i18n import say
 from equipoise.mechanism.checks import FRAME
-from equipoise.mechanism.dynamics.across import contacts, pushing
+from equipoise.mechanism.dynamics.out_of_plane import contacts, pushing
 from equipoise.mechanism.kinematics.motion import move
 from equipoise.mechanism.parts.bodies import outlines
 from equipoise.mechanism.parts.links import masses_of

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from equipoise.figures.shared import by_name, continued, groups, told_speed
+from equipoise.figures.chart_parts import by_name, continued, groups, told_speed
 from equipoise.figures.style import short
 from equipoise.i18n import Note, all_of, said, say
 from equipoise.quantities import Dimension, Display, display, typeset

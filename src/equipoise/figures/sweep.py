@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from equipoise.figures.shared import (
+from equipoise.figures.chart_parts import (
     SpeedCurve,
     bounded,
     by_name,

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from equipoise.figures.shared import SpeedCurve, curves_of, ends, log_ends
+from equipoise.figures.chart_parts import SpeedCurve, curves_of, ends, log_ends
 from equipoise.figures.style import short
 from equipoise.figures.tool_shaft import (
     RATE,
@@ -20,9 +20,9 @@ from equipoise.figures.tool_shaft import (
     work_mark,
 )
 from equipoise.handheld.design_plan import KEYS, MEASURES
-from equipoise.handheld.exposed import grips
 from equipoise.handheld.frequencies import scale_of
 from equipoise.handheld.hand_blocks import figure_named
+from equipoise.handheld.hand_exposure import grips
 from equipoise.handheld.modes import number_of
 from equipoise.handheld.response import respond_tool
 from equipoise.i18n import decimals, say, to_say

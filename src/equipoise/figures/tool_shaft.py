@@ -13,7 +13,7 @@ import numpy as np
 from equipoise.exposure.blocks import VERDICTS
 from equipoise.exposure.daily import ACTION, EIGHT_HOURS, LIMIT
 from equipoise.exposure.weighting import factor
-from equipoise.figures.shared import (
+from equipoise.figures.chart_parts import (
     SpeedCurve,
     by_name,
     continued,
@@ -24,7 +24,7 @@ from equipoise.figures.shared import (
     ordered,
 )
 from equipoise.figures.style import KINDS, short
-from equipoise.handheld.exposed import grips
+from equipoise.handheld.hand_exposure import grips
 from equipoise.handheld.response import respond_tool
 from equipoise.i18n import decimals, said, say, to_say
 from equipoise.quantities import Display
@@ -46,7 +46,7 @@ from equipoise.results.charts import (
 from equipoise.signals import highest_at
 
 if TYPE_CHECKING:
-    from equipoise.handheld.exposed import ToolExposure
+    from equipoise.handheld.hand_exposure import ToolExposure
     from equipoise.handheld.layout import ShaftDeflection as ShaftLine
     from equipoise.handheld.model import Station, Tool
     from equipoise.handheld.modes import PlaneModes, ToolModes

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from equipoise.errors import UsageError
-from equipoise.figures.shared import by_name
+from equipoise.figures.chart_parts import by_name
 from equipoise.figures.style import short
 from equipoise.figures.tool_designs import changes_told, design
 from equipoise.figures.tool_shaft import (

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from equipoise.figures.shared import (
+from equipoise.figures.chart_parts import (
     ROOM,
     VARIES,
     continued,

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from equipoise.balancing.told import capital
+from equipoise.balancing.sentences import capital
 from equipoise.exchange.formats import Job
 from equipoise.exchange.parts import COUNTERWEIGHT, Part, along, in_mm, parts
 from equipoise.figures.paint import fonts_for, settings

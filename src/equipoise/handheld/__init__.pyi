@@ -3,9 +3,9 @@ from .design import design_tool as design_tool
 from .design_plan import DesignLimit as DesignLimit
 from .design_plan import DesignPlan as DesignPlan
 from .design_plan import DesignVariable as DesignVariable
-from .exposed import ToolExposure as ToolExposure
-from .exposed import expose_tool as expose_tool
-from .exposed import tool_sensitivities as tool_sensitivities
+from .hand_exposure import ToolExposure as ToolExposure
+from .hand_exposure import expose_tool as expose_tool
+from .hand_exposure import tool_sensitivities as tool_sensitivities
 from .model import Absorber as Absorber
 from .model import Excitation as Excitation
 from .model import Hand as Hand

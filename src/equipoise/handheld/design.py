@@ -15,7 +15,7 @@ from equipoise.errors import ModelError, ResponseError
 from equipoise.exposure.daily import Exposure
 from equipoise.handheld.chain import Dual
 from equipoise.handheld.design_plan import KEYS, DesignLimit, DesignPlan
-from equipoise.handheld.exposed import (
+from equipoise.handheld.hand_exposure import (
     BandFigures,
     SpeedBand,
     days_of,

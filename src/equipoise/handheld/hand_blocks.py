@@ -19,7 +19,7 @@ from equipoise.handheld.blocks import (
     unbounded,
 )
 from equipoise.handheld.design_plan import KEYS
-from equipoise.handheld.exposed import IDLING, RACING, WORKING
+from equipoise.handheld.hand_exposure import IDLING, RACING, WORKING
 from equipoise.handheld.model import PLANES
 from equipoise.handheld.modes import number_of
 from equipoise.i18n import say, to_say
@@ -39,7 +39,7 @@ from equipoise.signals import highest_at
 
 if TYPE_CHECKING:
     from equipoise.handheld.design import Before, ToolDesign
-    from equipoise.handheld.exposed import ToolExposure
+    from equipoise.handheld.hand_exposure import ToolExposure
     from equipoise.handheld.model import Tool
     from equipoise.handheld.modes import Variation
 

@@ -10,7 +10,7 @@ import numpy as np
 from equipoise.exposure.blocks import MEANING, VERDICTS, clock, limit_broken
 from equipoise.exposure.daily import DAY
 from equipoise.handheld.blocks import rpm
-from equipoise.handheld.exposed import WORKING
+from equipoise.handheld.hand_exposure import WORKING
 from equipoise.handheld.model import PLANES
 from equipoise.i18n import number_list, say, to_say
 from equipoise.quantities import brief
@@ -19,7 +19,7 @@ from equipoise.signals import highest_at
 
 if TYPE_CHECKING:
     from equipoise.exposure.daily import WorkingTimes
-    from equipoise.handheld.exposed import ToolExposure
+    from equipoise.handheld.hand_exposure import ToolExposure
     from equipoise.handheld.modes import ToolModes
     from equipoise.handheld.sweep import ToolSweep
 

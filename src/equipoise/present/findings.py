@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from equipoise.balancing.balanced import Balanced
     from equipoise.handheld.design import ToolDesign
-    from equipoise.handheld.exposed import ToolExposure
+    from equipoise.handheld.hand_exposure import ToolExposure
     from equipoise.handheld.modes import ToolModes
     from equipoise.handheld.sweep import ToolSweep, Transmissions
     from equipoise.planting.summary import PlantingFigures
@@ -202,7 +202,7 @@ class ToolFindings(_ComputedParts):
     @part(to_say("exposure"))
     def exposure(self) -> ToolExposure | None:
         """What the hands get; None where nothing shakes the tool or no hand holds it."""
-        from equipoise.handheld.exposed import expose_tool
+        from equipoise.handheld.hand_exposure import expose_tool
 
         if self.speeds is None or not self.tool.excitations or not self.tool.grips:
             return None
@@ -218,7 +218,7 @@ class ToolFindings(_ComputedParts):
     @part(to_say("exposure after the change"))
     def exposure_after(self) -> ToolExposure | None:
         """What the hands get of the changed tool; None where the file asks for no change."""
-        from equipoise.handheld.exposed import expose_tool
+        from equipoise.handheld.hand_exposure import expose_tool
 
         if self.design is None or self.exposure is None or self.speeds is None:
             return None
@@ -269,7 +269,7 @@ def _with_text(
     """
     from equipoise.schema.files import printable
     from equipoise.schema.models import dumped, loads_linkage, loads_tool
-    from equipoise.schema.opening import kind_of_text, opened
+    from equipoise.schema.open_files import kind_of_text, opened
 
     if isinstance(model, Machine | Tool):
         try:

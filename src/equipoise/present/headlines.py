@@ -14,7 +14,7 @@ import numpy as np
 
 from equipoise.balancing.objectives import unit_of
 from equipoise.balancing.outcome import good_already
-from equipoise.balancing.told import capital, figure_named, figure_unit
+from equipoise.balancing.sentences import capital, figure_named, figure_unit
 from equipoise.dataclass import dataclass
 from equipoise.i18n import said, say, to_say
 from equipoise.mechanism.assembly.joints import moving_links

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from math import pi
 
-from equipoise.balancing.compared import WORSE
+from equipoise.balancing.comparison import WORSE
 from equipoise.balancing.outcome import good_already, helps_told
-from equipoise.balancing.told import capital, listed, worse_told
+from equipoise.balancing.sentences import capital, listed, worse_told
 from equipoise.errors import UsageError
 from equipoise.i18n import Note, say, to_say
 from equipoise.mechanism.outputs.declared import joint_named, named

@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from equipoise.balancing.compared import WORSE
-from equipoise.balancing.told import capital, larger
+from equipoise.balancing.comparison import WORSE
+from equipoise.balancing.sentences import capital, larger
 from equipoise.exposure.blocks import VERDICTS, clock, limit_broken
 from equipoise.exposure.daily import verdict_of
 from equipoise.handheld.blocks import UNITS
-from equipoise.handheld.exposed import WORKING, grips
 from equipoise.handheld.hand_blocks import figure_named, varied_named
+from equipoise.handheld.hand_exposure import WORKING, grips
 from equipoise.handheld.response import respond_tool
 from equipoise.i18n import number_list, say, to_say
 from equipoise.mechanism.outputs.declared import named
@@ -26,7 +26,7 @@ from equipoise.signals import highest_at
 
 if TYPE_CHECKING:
     from equipoise.handheld.design import ToolDesign
-    from equipoise.handheld.exposed import ToolExposure
+    from equipoise.handheld.hand_exposure import ToolExposure
     from equipoise.handheld.model import Tool
     from equipoise.handheld.modes import ToolModes
     from equipoise.handheld.sweep import Transmissions

@@ -44,7 +44,7 @@ import numpy as np
 from equipoise.dataclass import dataclass
 from equipoise.i18n import Note, say, to_say
 from equipoise.mechanism.assembly.steps import size_of_links
-from equipoise.mechanism.dynamics import acting
+from equipoise.mechanism.dynamics import applied_loads
 from equipoise.mechanism.dynamics.pin_bearings import joint_properties
 from equipoise.mechanism.outputs.declared import DECLARED, declared, joint_named, named
 from equipoise.mechanism.parts.drives import Drive, FurtherDrive
@@ -382,12 +382,12 @@ class _Scales:
     @cached_property
     def outer_load(self) -> float:
         """Largest of a load from outside."""
-        return _largest(acting.outer_loads(self.analysis.motion))
+        return _largest(applied_loads.outer_loads(self.analysis.motion))
 
     @cached_property
     def load(self) -> float:
         """Largest of any load, those that the frame bears too."""
-        return max(self.outer_load, _largest(acting.acting_loads(self.analysis.motion)))
+        return max(self.outer_load, _largest(applied_loads.acting_loads(self.analysis.motion)))
 
     @cached_property
     def steadying(self) -> tuple[float, Note]:

@@ -16,8 +16,8 @@ from equipoise.dataclass import dataclass
 from equipoise.i18n import to_say
 from equipoise.mechanism.assembly.steps import u
 from equipoise.mechanism.checks import FRAME
-from equipoise.mechanism.dynamics.acting import against_soil, given_loads, spring_demands
-from equipoise.mechanism.dynamics.rated import rated_torque, rated_ways
+from equipoise.mechanism.dynamics.applied_loads import against_soil, given_loads, spring_demands
+from equipoise.mechanism.dynamics.rated_elements import rated_torque, rated_ways
 from equipoise.mechanism.dynamics.reactions import Acting, Demand, demands_of
 from equipoise.mechanism.dynamics.reduced import generalized_force, weight_torque
 from equipoise.mechanism.dynamics.shares import ELEMENTS

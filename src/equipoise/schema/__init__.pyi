@@ -6,7 +6,7 @@ from .models import load_linkage as load_linkage
 from .models import load_tool as load_tool
 from .models import loads_linkage as loads_linkage
 from .models import loads_tool as loads_tool
-from .opening import examples as examples
+from .open_files import examples as examples
 from .records import read_accelerations as read_accelerations
 from .records import read_record as read_record
 from .schemas import json_schema as json_schema

@@ -10,7 +10,7 @@ from equipoise.keys import Frozen
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.schema.files import write
 from equipoise.schema.models import dumped, loads_linkage, loads_tool, save_model
-from equipoise.schema.opening import Folder, Opened, kind_of_text, opened
+from equipoise.schema.open_files import Folder, Opened, kind_of_text, opened
 
 if TYPE_CHECKING:
     from equipoise.handheld.model import Tool

@@ -19,7 +19,7 @@ from equipoise.mechanism.parts.shown_units import PARAMETERS, amounts_of, units_
 from equipoise.quantities import format_exact, parse, showing_by_default
 from equipoise.schema.files import printable, write
 from equipoise.schema.numbers import format_share, parse_share
-from equipoise.schema.opening import (
+from equipoise.schema.open_files import (
     Folder,
     Opened,
     bundled,

@@ -9,7 +9,7 @@ from equipoise import keys
 from equipoise.i18n import LANGUAGES
 from equipoise.quantities import KINDS, Dimension, pattern
 from equipoise.schema.numbers import Polar
-from equipoise.schema.opening import FileKind, document_of
+from equipoise.schema.open_files import FileKind, document_of
 from equipoise.schema.writing import plain_default
 
 Schema = dict[str, Any]

@@ -15,7 +15,7 @@ from equipoise.keys.requirement_kinds import REQUIREMENT_KINDS
 from equipoise.quantities import KINDS, format_exact
 from equipoise.quantities.reading import described
 from equipoise.schema.numbers import read_number, si_value
-from equipoise.schema.opening import (
+from equipoise.schema.open_files import (
     Opened,
     bundled,
     in_file,

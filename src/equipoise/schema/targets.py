@@ -34,7 +34,7 @@ from equipoise.planting.names import dimension_of
 from equipoise.planting.search import GENERATIONS, POPULATION, Sense, check_asks
 from equipoise.schema.files import FileError, printable, read_text
 from equipoise.schema.numbers import si_value
-from equipoise.schema.opening import in_file, toml_content
+from equipoise.schema.open_files import in_file, toml_content
 from equipoise.schema.reading import Context, read_table
 
 Quantity = str | float

@@ -23,7 +23,7 @@ from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.checks import numbered
 from equipoise.mechanism.parts.constraints import HOLDS
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.schema.finding import (
+from equipoise.schema.file_numbers import (
     NumberLocation,
     all_numbers,
     find,
@@ -35,7 +35,7 @@ from equipoise.schema.finding import (
 )
 from equipoise.schema.models import AdjacentFiles, HeldFiles, machine_of, parts_of, text_of, tool_of
 from equipoise.schema.numbers import FileNumber
-from equipoise.schema.opening import Kind, Opened, in_file, kind_of, model_content, opened
+from equipoise.schema.open_files import Kind, Opened, in_file, kind_of, model_content, opened
 from equipoise.schema.tables import TABLES
 
 if TYPE_CHECKING:

@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 from equipoise import keys
 from equipoise.i18n.terms import MEANINGS, TERMS
-from equipoise.schema.opening import FileKind, document_of
+from equipoise.schema.open_files import FileKind, document_of
 
 FILES: tuple[FileKind, ...] = ("linkage", "tool", "study")
 CODE = re.compile(r"^```\w*\n(.*?)^```$", re.MULTILINE | re.DOTALL)

@@ -349,7 +349,7 @@ def declarations(of: str) -> Iterator[Declarations]:
 
 def answers_about_tools() -> dict[str, Declarations]:
     """What each answer about a tool declares."""
-    from equipoise.handheld.exposed import ToolExposure
+    from equipoise.handheld.hand_exposure import ToolExposure
     from equipoise.handheld.modes import ToolModes
     from equipoise.handheld.sweep import ToolSweep
 
@@ -460,7 +460,7 @@ def _of_tool(model: Machine | Tool, wanted: Wanted) -> Values:
 
 
 def _answer(tool: Tool, name: str, wanted: Wanted) -> Values:
-    from equipoise.handheld.exposed import ToolExposure, expose_tool
+    from equipoise.handheld.hand_exposure import ToolExposure, expose_tool
     from equipoise.handheld.modes import vibrate_tool
     from equipoise.handheld.sweep import MODES, sweep_tool
 

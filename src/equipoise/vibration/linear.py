@@ -24,7 +24,7 @@ from equipoise.decompositions import cond, lstsq, svd
 from equipoise.errors import ModelError, ResponseError
 from equipoise.i18n import Note, all_of, to_say
 from equipoise.limits import check_memory
-from equipoise.mechanism.dynamics.acting import outer_loads, soil_loads
+from equipoise.mechanism.dynamics.applied_loads import outer_loads, soil_loads
 from equipoise.mechanism.dynamics.forces import Forces, forces
 from equipoise.mechanism.dynamics.reactions import demands_of
 from equipoise.mechanism.formulas.kernels import cross

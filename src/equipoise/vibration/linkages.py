@@ -26,14 +26,14 @@ import numpy as np
 from equipoise.dataclass import dataclass
 from equipoise.errors import MassError
 from equipoise.mechanism.assembly.steps import p, u
-from equipoise.mechanism.dynamics.acting import (
+from equipoise.mechanism.dynamics.applied_loads import (
     inner_demands,
     load_demands,
     outer_loads,
     spring_demands,
 )
 from equipoise.mechanism.dynamics.forces import massless
-from equipoise.mechanism.dynamics.rated import rated_ways
+from equipoise.mechanism.dynamics.rated_elements import rated_ways
 from equipoise.mechanism.dynamics.reactions import Demand, JointReactions, demands_of, reactions
 from equipoise.mechanism.dynamics.reduced import generalized_force, reduced_inertia
 from equipoise.mechanism.formulas.kernels import cross, dot

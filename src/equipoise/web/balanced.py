@@ -18,7 +18,7 @@ from equipoise.balancing.optimisation import balance
 from equipoise.balancing.outcome import nothing_told
 from equipoise.balancing.phase_search import PhaseSearch
 from equipoise.balancing.problem import Problem
-from equipoise.balancing.told import (
+from equipoise.balancing.sentences import (
     aims_told,
     figure_named,
     figure_unit,
@@ -37,9 +37,9 @@ from equipoise.mechanism.parts.machine import Link, Machine
 from equipoise.quantities import clean, clean_place, display, told
 from equipoise.results.outputs import objective_named, shown_in
 from equipoise.web.design import Counterweight, Design, joined, pin_of, place_of_pin
-from equipoise.web.drawn import Incomplete
 from equipoise.web.edits import Computed, solved
 from equipoise.web.figures import compared, figures_of
+from equipoise.web.incomplete import Incomplete
 from equipoise.web.messages import Message
 from equipoise.web.replies import Reply
 

@@ -18,12 +18,12 @@ from equipoise.mechanism.assembly.builder import Guide
 from equipoise.mechanism.assembly.cam_fits import check_shape, fitted
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.formulas.kernels import cross, dot
-from equipoise.mechanism.kinematics.outline import LinkPlacement
+from equipoise.mechanism.kinematics.machine_draft import LinkPlacement
 from equipoise.mechanism.parts.cams import RIDES, Cam
 from equipoise.mechanism.parts.laws import AngleLaw, AngleSegment, LengthLaw, LengthSegment
 from equipoise.mechanism.parts.machine import FRAME, Slider
 from equipoise.quantities import clean
-from equipoise.web.adding import COINCIDENT, check_body, check_link, put, the
+from equipoise.web.additions import COINCIDENT, check_body, check_link, put, the
 from equipoise.web.messages import Message, Spot
 from equipoise.web.sketch import Sketch
 
@@ -214,4 +214,4 @@ def _asked(sketch: Sketch, asked: Message) -> Sketch:
 OPERATIONS: Mapping[str, tuple[str, Callable[[Sketch, Message], Sketch]]] = {
     "cam": (to_say("add a cam"), _asked)
 }
-"""Of `making`."""
+"""Read by `sketch_edits`."""

@@ -20,7 +20,7 @@ from equipoise.mechanism.parts.couplings import Coupling
 from equipoise.mechanism.parts.machine import FRAME, Gear
 from equipoise.mechanism.parts.racks import Rack
 from equipoise.quantities import clean
-from equipoise.web.adding import COINCIDENT, check_body, the
+from equipoise.web.additions import COINCIDENT, check_body, the
 from equipoise.web.messages import Message
 from equipoise.web.sketch import Sketch
 
@@ -147,4 +147,4 @@ OPERATIONS: Mapping[str, tuple[str, Callable[[Sketch, Message], Sketch]]] = {
         lambda sketch, asked: with_rack(sketch, asked.text("driver"), asked.text("driven")),
     ),
 }
-"""Of `making`."""
+"""Read by `sketch_edits`."""

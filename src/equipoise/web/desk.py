@@ -16,15 +16,15 @@ from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.shown_units import units_of
 from equipoise.quantities import showing_by_default
 from equipoise.schema.files import printable
-from equipoise.schema.opening import kind_of_text, opened
+from equipoise.schema.open_files import kind_of_text, opened
 from equipoise.web.design import Design
 from equipoise.web.disk import on_disk
 from equipoise.web.edits import solved
 from equipoise.web.gallery import opened_file, wants_tool
 from equipoise.web.messages import Message
 from equipoise.web.replies import Reply, refused
-from equipoise.web.seen import NO_STORE
 from equipoise.web.session import Session
+from equipoise.web.view_state import NO_STORE
 
 if TYPE_CHECKING:
     from equipoise.web.stores import StoreDesk

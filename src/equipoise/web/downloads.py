@@ -14,11 +14,11 @@ from equipoise.mechanism.checks import unknown
 from equipoise.results.charts import Chart
 from equipoise.schema.files import to_csv
 from equipoise.schema.models import taken_along
+from equipoise.web.deferred import responded
 from equipoise.web.documents import played
 from equipoise.web.edits import Computed
 from equipoise.web.messages import Message
 from equipoise.web.replies import Reply
-from equipoise.web.shaken import responded
 
 SAME = {
     "polar": "polar",

@@ -15,8 +15,8 @@ from equipoise import keys
 from equipoise.i18n import say
 from equipoise.quantities import display
 from equipoise.schema.entries import entry_of, own_keys, tables_below
-from equipoise.schema.finding import plain_word
-from equipoise.schema.opening import document_of
+from equipoise.schema.file_numbers import plain_word
+from equipoise.schema.open_files import document_of
 from equipoise.schema.writing import plain_default
 
 Values = dict[str, Any]

@@ -18,7 +18,7 @@ from equipoise.mechanism.parts.machine import Machine
 from equipoise.results.analysis import analyze
 from equipoise.schema.files import printable
 from equipoise.schema.models import HeldFiles, load_linkage, loads_linkage, machine_of
-from equipoise.schema.opening import content_of, examples, in_file, kind_of_text, opened
+from equipoise.schema.open_files import content_of, examples, in_file, kind_of_text, opened
 from equipoise.symbols.scene import Scene, clear_angle
 from equipoise.web.block import FloatBlock, Values
 from equipoise.web.design import Design

@@ -14,19 +14,25 @@ from equipoise import __version__
 from equipoise.dataclass import dataclass
 from equipoise.errors import EquipoiseError, ModelError, UsageError, at_place
 from equipoise.i18n import Note, said, speaking, wording
-from equipoise.mechanism.kinematics.outline import USUAL_SIZE
+from equipoise.mechanism.kinematics.machine_draft import USUAL_SIZE
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.shown_units import units_of
 from equipoise.quantities import display_rules, showing_by_default
 from equipoise.results.result import words_of
 from equipoise.schema.files import LARGEST
 from equipoise.schema.template import named_parts
-from equipoise.web import entering, kept
+from equipoise.web import file_requests, table_requests
 from equipoise.web.block import Values
+from equipoise.web.deferred import deferred_replies, response_of
 from equipoise.web.design import Design
 from equipoise.web.disk import Disk
 from equipoise.web.documents import language_of, spoken_in, wording_of
-from equipoise.web.drawn import (
+from equipoise.web.edits import Computed, settled, solved
+from equipoise.web.fields import Scale, fields_of
+from equipoise.web.figures import figures_of
+from equipoise.web.gallery import opened_example, opened_text, titles, tool_titles
+from equipoise.web.history import History, HistoryStep
+from equipoise.web.incomplete import (
     Incomplete,
     changed,
     computed,
@@ -35,19 +41,13 @@ from equipoise.web.drawn import (
     sketch_of,
     state_of_sketch,
 )
-from equipoise.web.edits import Computed, settled, solved
-from equipoise.web.fields import Scale, fields_of
-from equipoise.web.figures import figures_of
-from equipoise.web.gallery import opened_example, opened_text, titles, tool_titles
-from equipoise.web.history import History, HistoryStep
-from equipoise.web.making import lost, sketch_after
+from equipoise.web.measured_records import MeasuredSignals
 from equipoise.web.messages import MOST_LANGUAGES, Message
-from equipoise.web.recorded import MeasuredSignals
 from equipoise.web.replies import Reply, refused
-from equipoise.web.seen import ASKED, ViewState
-from equipoise.web.shaken import deferred_replies, response_of
 from equipoise.web.sketch import Sketch
+from equipoise.web.sketch_edits import lost, sketch_after
 from equipoise.web.state import first_of, state_of
+from equipoise.web.view_state import ASKED, ViewState
 
 
 @dataclass
@@ -88,7 +88,7 @@ class Session:
         """Answer a message; what takes long comes last, and may be left unasked."""
         good = self.history, self.found, self.preview
         try:
-            for asked in (kept.ASKED, entering.ASKED, ASKED):
+            for asked in (file_requests.ASKED, table_requests.ASKED, ASKED):
                 if message.kind in asked:
                     yield from asked[message.kind](self, message)
                     return

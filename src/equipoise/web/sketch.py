@@ -7,12 +7,12 @@ from dataclasses import field, fields, replace
 from typing import Any
 
 from equipoise.dataclass import dataclass
-from equipoise.mechanism.kinematics.outline import STILL, LinkPlacement, MachineDraft
+from equipoise.mechanism.kinematics.machine_draft import STILL, LinkPlacement, MachineDraft
 from equipoise.mechanism.parts.element_kinds import part_kinds
 from equipoise.mechanism.parts.machine import FRAME, Link, Machine, Vector
 from equipoise.mechanism.parts.shown_units import ShownUnits
 from equipoise.quantities import clean_place
-from equipoise.web.assuming import rebuilt
+from equipoise.web.assumed_masses import rebuilt
 from equipoise.web.design import Counterweight, Design
 from equipoise.web.edits import Computed, solved
 

@@ -17,13 +17,13 @@ from equipoise.results.analysis import Analysis
 from equipoise.results.machine_blocks import driven
 from equipoise.signals import Periodic
 from equipoise.web.block import Array, FloatBlock, Values
+from equipoise.web.completeness import forces_lack
 from equipoise.web.drawing import cams_told, ground_of, moves_of, stage_of
 from equipoise.web.edits import Computed, movable
 from equipoise.web.figures import charts_of, least_of, signals_of
 from equipoise.web.following import extent_of
-from equipoise.web.lacking import forces_lack
-from equipoise.web.recorded import MeasuredSignals
-from equipoise.web.seen import arrows_of, measured_told, points_of
+from equipoise.web.measured_records import MeasuredSignals
+from equipoise.web.view_state import arrows_of, measured_told, points_of
 
 MOST_ORDER = 20
 """Highest order of the spectra."""

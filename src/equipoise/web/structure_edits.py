@@ -16,7 +16,7 @@ from equipoise.i18n import Note, all_of
 from equipoise.keys import Frozen, Kind, Point, TextKind, innermost, keys_of
 from equipoise.mechanism.assembly.joints import joint_names
 from equipoise.mechanism.checks import Bodies, unknown
-from equipoise.mechanism.kinematics.outline import LinkPlacement, length_between, pose_between
+from equipoise.mechanism.kinematics.machine_draft import LinkPlacement, length_between, pose_between
 from equipoise.mechanism.parts.balance import Balance
 from equipoise.mechanism.parts.constraint_solver import constrained
 from equipoise.mechanism.parts.constraints import changed_points
@@ -25,7 +25,7 @@ from equipoise.mechanism.parts.element_kinds import Element, PartKind
 from equipoise.mechanism.parts.machine import FRAME, Machine, Slider
 from equipoise.mechanism.parts.objectives import JOINTS
 from equipoise.quantities import DIGITS, clean, clean_place
-from equipoise.web.adding import (
+from equipoise.web.additions import (
     COINCIDENT,
     check_body,
     check_link,

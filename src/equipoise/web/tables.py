@@ -20,7 +20,7 @@ from equipoise.quantities import clean, format_exact, parse_expression, pattern,
 from equipoise.quantities.expressions import Names, names_in
 from equipoise.schema.entries import Document, entry_of, kind_at, own_keys, tables_below
 from equipoise.schema.writing import value_text
-from equipoise.web.completing import completed
+from equipoise.web.dependent_entries import completed
 from equipoise.web.design import Design, pin_of
 from equipoise.web.forms import Values, forms_of, text_of, word_of
 from equipoise.web.messages import Entry

@@ -17,7 +17,7 @@ from equipoise.quantities.units import KINDS
 from equipoise.schema.files import printable
 from equipoise.schema.models import taken_along
 from equipoise.schema.numbers import FileNumber, format_share, parse_share
-from equipoise.schema.opening import opened
+from equipoise.schema.open_files import opened
 from equipoise.schema.template import Template, named_parts
 from equipoise.web.disk import NOT_OF_FILE, Disk
 from equipoise.web.messages import Message, Setting

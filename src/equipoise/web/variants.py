@@ -15,9 +15,9 @@ from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.outputs.declared import DECLARED
 from equipoise.quantities import Dimension, display
 from equipoise.quantities.numbers import SAME
+from equipoise.web.deferred import can_be_shaken, responded
 from equipoise.web.edits import Computed
 from equipoise.web.figures import figures_of, text_of
-from equipoise.web.shaken import can_be_shaken, responded
 
 Values = dict[str, Any]
 MOST, LONGEST = 12, 40

@@ -19,13 +19,13 @@ from typing import Any
 from equipoise.dataclass import dataclass
 from equipoise.errors import EquipoiseError, UsageError
 from equipoise.i18n import Note, to_say
+from equipoise.web.deferred import deferred_replies
 from equipoise.web.design import Design
 from equipoise.web.desk import PageBackend
 from equipoise.web.edits import Computed, solved
 from equipoise.web.messages import SLOW, Message, makes_way, read
 from equipoise.web.replies import Reply, completed, packed, refused, unexpected
 from equipoise.web.session import Session
-from equipoise.web.shaken import deferred_replies
 from equipoise.web.state_changes import StateChanges
 
 OF_MACHINE = ("balance", "download")

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-import support.found
+import support.findings
 from equipoise.balancing.advice import advise, running_speeds
 from equipoise.balancing.balanced import Balanced
 from equipoise.balancing.blocks import outcome_blocks
@@ -22,8 +22,8 @@ from equipoise.balancing.policy import LEAST_GAIN, LEAST_GAIN_OF_ADDED, SMALL_FI
 from equipoise.balancing.remedies import Sector as SectorShape
 from equipoise.balancing.remedies import is_worth, plate_of, sectors, with_sectors
 from equipoise.balancing.room import pivots_of, room_about, rooms_about
+from equipoise.balancing.sentences import aims_told, proof_told, worse_told
 from equipoise.balancing.spaced_arms import spaced_arms_for
-from equipoise.balancing.told import aims_told, proof_told, worse_told
 from equipoise.balancing.workshop import in_short, sentences
 from equipoise.errors import EquipoiseError, MassError
 from equipoise.mechanism.parts.balance import AddedMass, Balance, Limit, Objective, Phases, Weight
@@ -34,7 +34,7 @@ from equipoise.results.blocks import Text as TextBlock
 from equipoise.results.yardsticks import assess
 from equipoise.signals import Array
 from equipoise.vibration.linear import Linear
-from support.found import advice_for
+from support.findings import advice_for
 
 RIG, RIDING = eq.load("yamashita-rig"), eq.load("riding-transplanter")
 RPM = pi / 30
@@ -597,7 +597,7 @@ def test_mounts_without_a_steady_state_leave_what_shakes() -> None:
 
 # -- machines of other trades ----------------------------------------------------------------------
 
-ADVISED = Path(support.found.__file__).parent / "advised"
+ADVISED = Path(support.findings.__file__).parent / "advised"
 
 
 def advised(name: str) -> eq.Machine:

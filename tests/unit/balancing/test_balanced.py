@@ -12,7 +12,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.balancing.balanced import Balanced
-from equipoise.balancing.compared import figures_of, worse_of
+from equipoise.balancing.comparison import figures_of, worse_of
 from equipoise.balancing.workshop import Change, in_short
 from equipoise.mechanism.outputs.declared import DECLARED
 from equipoise.mechanism.parts.balance import AddedMass, Balance, Limit, Objective, Weight

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-import support.found
+import support.findings
 from equipoise.balancing.advice import advise, gauge_aims
 from equipoise.balancing.beyond_masses import Beyond
 from equipoise.balancing.cylinder_sizes import MODULUS
@@ -33,10 +33,10 @@ from equipoise.running.flywheel import size_flywheel
 from equipoise.vibration.headline import response_headline
 from equipoise.vibration.linear import Linear, around, resonances
 from support.chosen import EXHAUSTIVE
-from support.found import advice_for
+from support.findings import advice_for
 
 RPM = pi / 30
-ADVISED = Path(support.found.__file__).parent / "advised"
+ADVISED = Path(support.findings.__file__).parent / "advised"
 
 
 def beyond(name: str) -> Beyond:

@@ -12,12 +12,12 @@ import equipoise as eq
 from equipoise.balancing.cylinder_phasing import PhasedRows
 from equipoise.balancing.objectives import signals_of
 from equipoise.balancing.problem import Problem
-from equipoise.balancing.told import freedoms
+from equipoise.balancing.sentences import freedoms
 from equipoise.balancing.workshop import covers
 from equipoise.errors import ModelError
 from equipoise.mechanism.assembly.linkage import assemble
-from equipoise.mechanism.dynamics.across import statics
 from equipoise.mechanism.dynamics.assessment import remarks
+from equipoise.mechanism.dynamics.out_of_plane import statics
 from equipoise.mechanism.parts.balance import AddedMass, Balance, Objective, Weight
 from equipoise.mechanism.parts.bodies import Body
 from equipoise.mechanism.parts.links import Bearing, Slider

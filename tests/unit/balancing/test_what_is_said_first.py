@@ -20,7 +20,7 @@ from equipoise.balancing.workshop import covers, in_short, sentences
 from equipoise.mechanism.kinematics.tip import surface_of
 from equipoise.mechanism.parts.balance import AddedMass, Balance, Objective, Weight
 from equipoise.results.blocks import Facts, Text
-from support.found import advice_for
+from support.findings import advice_for
 from unit.balancing.test_beyond_masses import beyond, said
 
 

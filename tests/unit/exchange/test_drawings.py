@@ -22,7 +22,7 @@ from equipoise.exchange.reading.formats import import_machine
 from equipoise.figures import workshop_sheet
 from equipoise.i18n.languages import KNOWN
 from equipoise.present.findings import Findings
-from support.found import found as found_of
+from support.findings import findings_of
 
 START = 0.4
 SAME = 1e-9
@@ -171,7 +171,7 @@ def test_a_workshop_drawing_gives_what_was_advised(name: str, tmp_path: Path) ->
 @pytest.mark.parametrize("name", ["yamashita-1", "kim-chung-c", "yamashita-rig"])
 def test_measures_that_are_advised_are_whole(name: str) -> None:
     """Millimetres and degrees, and the figures are those of the shape that has them."""
-    found = found_of(name)
+    found = findings_of(name)
     assert isinstance(found, Findings) and found.balanced is not None and found.helped
     drawn_parts = parts(Job(found.balanced.machine, 0.0, found.balanced.changes))
     assert drawn_parts
@@ -186,7 +186,7 @@ def test_texts_of_drawings_are_in_the_language_asked_for(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """English where no font has its letters, and that is said; names of layers stay."""
-    found = found_of("yamashita-1").balanced  # type: ignore[union-attr]
+    found = findings_of("yamashita-1").balanced  # type: ignore[union-attr]
     shown: list[str] = []
     sheet = workshop_sheet._sheet
 
@@ -214,7 +214,7 @@ def test_texts_of_drawings_are_in_the_language_asked_for(
 
 
 def test_what_is_written_keeps_the_edges_of_the_sheet() -> None:
-    found = found_of("yamashita-rig")
+    found = findings_of("yamashita-rig")
     assert isinstance(found, Findings) and found.balanced is not None
     rounded, sizes = in_whole_sizes(found.balanced)
     job = Job(rounded.machine, 0.0, rounded.changes, sizes=str(sizes))

@@ -15,8 +15,8 @@ from equipoise.errors import UsageError
 from equipoise.figures import analysis as of_joints
 from equipoise.figures import analysis as view
 from equipoise.figures import forces, planting, points
+from equipoise.figures.chart_parts import angle_step
 from equipoise.figures.pictures import analysis_pictures, planting_pictures
-from equipoise.figures.shared import angle_step
 from equipoise.figures.style import look_of
 from equipoise.mechanism.dynamics.shares import CAUSES
 from equipoise.mechanism.parts.balance import Objective

@@ -22,7 +22,7 @@ from equipoise.present.pictures import each
 from equipoise.results.charts import Axis, Chart, Panel
 from equipoise.results.result import in_own_words
 from support.chosen import DISTINCT, few
-from support.found import found
+from support.findings import findings_of
 from support.gallery import Kept, keep
 from unit.figures import balance_samples, samples, tool_samples, vibration_samples
 from unit.figures.checks import Laid, check
@@ -39,7 +39,7 @@ ODD = {
 
 def found_of(name: str) -> Findings | ToolFindings:
     """What can be told of a bundled model; ratios of gears are set, and not looked for."""
-    told = found(name)
+    told = findings_of(name)
     plan = None if isinstance(told, ToolFindings) else told.machine.balance
     if plan is None or not plan.geared:
         return told

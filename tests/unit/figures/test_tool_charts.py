@@ -13,8 +13,8 @@ from equipoise.exposure.weighting import factor
 from equipoise.figures import tool_designs, tool_shaft, tool_side
 from equipoise.handheld.design import Before, ToolDesign
 from equipoise.handheld.design_plan import KEYS
-from equipoise.handheld.exposed import expose_tool, grips
 from equipoise.handheld.frequencies import scale_of
+from equipoise.handheld.hand_exposure import expose_tool, grips
 from equipoise.handheld.modes import changed, determinant_chart, vary_tool, vibrate_tool
 from equipoise.handheld.response import respond_tool
 from equipoise.handheld.sweep import transmit

@@ -8,7 +8,7 @@ from functools import cache
 import numpy as np
 
 from equipoise.figures import tool_designs, tool_shaft, tool_side
-from equipoise.handheld.exposed import expose_tool
+from equipoise.handheld.hand_exposure import expose_tool
 from equipoise.handheld.model import Absorber, Excitation, Hand, Station, Tool, Work
 from equipoise.handheld.modes import determinant_chart, vary_tool, vibrate_tool
 from equipoise.handheld.response import respond_tool

@@ -14,8 +14,8 @@ from equipoise.errors import ModelError, ResponseError
 from equipoise.handheld import design
 from equipoise.handheld.design import ToolDesign, design_tool
 from equipoise.handheld.design_plan import DesignLimit, DesignPlan, DesignVariable
-from equipoise.handheld.exposed import grips
 from equipoise.handheld.hand_blocks import design_blocks
+from equipoise.handheld.hand_exposure import grips
 from equipoise.handheld.model import Absorber, Excitation, Hand, Harness, Station, Tool, Work
 from equipoise.handheld.modes import changed, number_of
 from equipoise.handheld.response import respond_tool

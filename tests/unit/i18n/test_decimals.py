@@ -19,7 +19,7 @@ from equipoise.quantities import typeset
 from equipoise.results.charts import shown
 from equipoise.schema.documents import dumps
 from equipoise.schema.template import Template
-from support.found import report_of
+from support.findings import report_of
 from support.interactive import block
 
 POINTED = r"(?<![\w.])\d+\.\d+(?![\w.])"

@@ -169,7 +169,7 @@ OTHER_TEXTS = {
     "guarding.py": "errors of calls, which only programmers cause",
     "folders.py": "errors of the operating system",
     "i18n/languages.py": "errors of a catalogue, which only programmers cause",
-    "mechanism/dynamics/exerted.py": "errors of attributes, which only programmers cause",
+    "mechanism/dynamics/force_readings.py": "errors of attributes, which only programmers cause",
     "mechanism/dynamics/reactions.py": "errors of attributes, which only programmers cause",
     "schema/files.py": "errors of types, which only programmers cause",
     "studies/store.py": "errors inside of a damaged store, as those of the libraries that read it",

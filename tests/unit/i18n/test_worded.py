@@ -17,7 +17,7 @@ from equipoise.present.composition import build
 from equipoise.present.findings import find
 from equipoise.present.pages import page
 from equipoise.schema.documents import dumps, loads
-from equipoise.schema.opening import Opened, bundled, toml_content
+from equipoise.schema.open_files import Opened, bundled, toml_content
 from equipoise.schema.studies import restore, study_in
 from equipoise.web.messages import message_of
 from equipoise.web.session import Session

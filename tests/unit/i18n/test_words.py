@@ -33,8 +33,8 @@ from equipoise.keys import (
 )
 from equipoise.mechanism.assembly.joints import moving_links
 from equipoise.schema.entries import entry_of, own_keys, tables_below
-from equipoise.schema.finding import plain_word
-from equipoise.schema.opening import document_of
+from equipoise.schema.file_numbers import plain_word
+from equipoise.schema.open_files import document_of
 from support.languages import COMPLETE
 
 SOURCES = Path(equipoise.__file__).parent

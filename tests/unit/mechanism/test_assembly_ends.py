@@ -16,7 +16,7 @@ import tomli_w
 
 import equipoise as eq
 from equipoise.errors import EquipoiseError, MobilityError, ModelError
-from equipoise.mechanism.assembly import linkage, sides
+from equipoise.mechanism.assembly import assembly_modes, linkage
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.assembly.steps import initial_state
 from support import machines_any
@@ -88,7 +88,7 @@ def test_sides_are_tried_without_asking_for_sides_again(
     first: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Two dyads that shared a name asked for each other's sides without an end."""
-    decided, grouped = sides.decided, linkage._grouped
+    decided, grouped = assembly_modes.decided, linkage._grouped
     asking, rounds = [], []
 
     def ask(*given: Any) -> Any:
@@ -103,7 +103,7 @@ def test_sides_are_tried_without_asking_for_sides_again(
         rounds.append(True)
         return grouped(*given, **more)
 
-    monkeypatch.setattr(sides, "decided", ask)
+    monkeypatch.setattr(assembly_modes, "decided", ask)
     monkeypatch.setattr(linkage, "_grouped", group)
     asked = 0
     for machine in grown(first, tmp_path):
@@ -113,7 +113,7 @@ def test_sides_are_tried_without_asking_for_sides_again(
             assemble(bare)
         except EquipoiseError as error:
             asked += isinstance(error, ModelError) and error.where.startswith("assembly")
-        assert len(rounds) <= 2 + 2**sides.MOST_TRIED
+        assert len(rounds) <= 2 + 2**assembly_modes.MOST_TRIED
     assert asked > 3
 
 

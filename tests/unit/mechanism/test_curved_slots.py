@@ -26,9 +26,9 @@ from equipoise.mechanism.parts.machine import Link, Position
 from equipoise.symbols.pieces import pieces
 from equipoise.symbols.scene import Scene
 from equipoise.web.design import Design
-from equipoise.web.drawn import sketch_of
 from equipoise.web.edits import solved
 from equipoise.web.gallery import opened_file
+from equipoise.web.incomplete import sketch_of
 from equipoise.web.session import Session
 from equipoise.web.structure_edits import straight
 from support import free_bodies, newton

@@ -13,8 +13,8 @@ from equipoise.errors import EquipoiseError, MobilityError, ModelError, UsageErr
 from equipoise.exchange import mjcf, modelica
 from equipoise.exchange.formats import Job
 from equipoise.mechanism.assembly.linkage import assemble
-from equipoise.mechanism.assembly.shared import IDLE
-from equipoise.mechanism.dynamics.across import exerted_in
+from equipoise.mechanism.assembly.redundant_reactions import IDLE
+from equipoise.mechanism.dynamics.out_of_plane import exerted_in
 from equipoise.mechanism.dynamics.reactions import idle_told, indeterminate_reactions
 from equipoise.mechanism.parts.joint_properties import JointProperties
 from equipoise.mechanism.parts.machine import FRAME, FurtherDrive, Link, Slider, Vector

@@ -32,8 +32,7 @@ from equipoise.results.analysis_blocks import orders_table
 from equipoise.results.blocks import SvgPicture, Table, Text, Value
 from equipoise.results.machine_blocks import angles_told
 from support.chosen import EXHAUSTIVE, few
-from support.found import found as found_of
-from support.found import report_of
+from support.findings import findings_of, report_of
 from support.languages import COMPLETE
 
 
@@ -124,7 +123,7 @@ def test_pictures_stand_in_pairs() -> None:
 
 @pytest.mark.parametrize("name", ["yamashita-1", "brush-cutter", "cam-pusher"])
 def test_long_tables_stand_in_the_appendix_and_none_is_lost(name: str) -> None:
-    found, told = found_of(name), document(name)
+    found, told = findings_of(name), document(name)
     in_sections = [b for s in told.sections for b in s.blocks if isinstance(b, Table)]
     behind = [b for b in told.together if isinstance(b, Table)]
     assert all(len(table.rows) <= SHORT for table in in_sections)
@@ -147,7 +146,7 @@ def test_details_stand_in_the_appendix_and_no_picture_is_lost(name: str) -> None
         for part in (told.sections, told.appendix)
     )
     assert len(first) <= len(behind) + 1
-    assert sorted([*first, *behind]) == sorted(one.name for one in each(found_of(name)))
+    assert sorted([*first, *behind]) == sorted(one.name for one in each(findings_of(name)))
     later = ("mode", "balanced", "hodograph", "joint", "resonance-map")
     assert not [one for one in first if one.startswith(later)]
     tried = [b.title for s in told.sections for b in s.blocks if isinstance(b, Table)]
@@ -238,7 +237,7 @@ def test_letters_of_pictures_can_be_read_on_paper(name: str) -> None:
 
 
 def test_whether_a_limit_is_met_after_the_change_is_said() -> None:
-    found = found_of("brush-cutter")
+    found = findings_of("brush-cutter")
     assert isinstance(found, ToolFindings) and found.exposure_after is not None
     later = found.exposure_after.a8
     told = " ".join(one for answer in document("brush-cutter").summary for one in answer.sentences)
@@ -253,7 +252,7 @@ def test_a_time_is_the_same_wherever_it_stands() -> None:
     """A time until a limit is rounded down to minutes everywhere."""
     html = page(document("brush-cutter"))
     assert {*re.findall(r"after ([\d.]+)\s*min", html.replace("\xa0", " "))} == {"31"}
-    found = found_of("brush-cutter")
+    found = findings_of("brush-cutter")
     assert isinstance(found, ToolFindings) and found.exposure is not None
     printed = [str(block) for block in found.exposure.headline(False)]
     assert not [text for text in printed if re.search(r"\d\.\d+ h", text)]
@@ -270,7 +269,7 @@ def test_what_the_summary_says_is_not_said_again(name: str) -> None:
 
 
 def test_what_helps_is_told_before_and_after_at_once() -> None:
-    found = found_of("kim-chung-c")
+    found = findings_of("kim-chung-c")
     assert isinstance(found, Findings) and found.after is not None
     shown = {tile.label: tile for tile in document("kim-chung-c").tiles}
     peak = shown["shaking force, peak"]
@@ -364,7 +363,7 @@ def test_every_picture_is_listed_in_the_documentation(name: str) -> None:
     text = (Path(eq.__file__).parents[2] / "docs" / "figures.md").read_text(encoding="utf-8")
     listed = re.findall(r"`([\w-]+)`", text.partition("## Which pictures")[2].partition("## ")[0])
     begins = tuple(re.sub("(NAME|LINK|1)$", "", one) for one in listed if re.search("[A-Z1]$", one))
-    for picture in each(found_of(name)):
+    for picture in each(findings_of(name)):
         own = re.sub(r"-(lateral|\d+)$", "", picture.name)
         assert own in listed or picture.name.startswith(begins), picture.name
 

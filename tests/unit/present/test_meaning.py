@@ -13,12 +13,12 @@ import pytest
 import equipoise as eq
 from equipoise.balancing.advice import advise
 from equipoise.balancing.blocks import _speeds, balanced_headline, before_after
-from equipoise.balancing.compared import FAINT as CONCERN
+from equipoise.balancing.comparison import FAINT as CONCERN
 from equipoise.present.cells import FAINT, FAINT_IN_ROW, grid
 from equipoise.quantities import PER_RPM
 from equipoise.results.blocks import Column, Span, Table, Text, Value
 from equipoise.results.scales import scale_of
-from support.found import found as found_of
+from support.findings import findings_of
 
 MACHINES = (
     *("hydraulic-loader", "pick-and-place", "sieve", "twin-engine", "exudyn-slider-crank"),
@@ -28,7 +28,7 @@ MACHINES = (
 
 @cache
 def tables(name: str) -> tuple[Table, ...]:
-    found = found_of(name)
+    found = findings_of(name)
     results = (found.analysis, found.balanced, found.response, found.sweep)
     return tuple(
         block for one in results if one is not None for block in one.blocks()
@@ -117,7 +117,7 @@ def test_only_speeds_that_say_something_are_told() -> None:
 @pytest.mark.parametrize(("grown", "concern"), [(0.5, False), (2.0, True)])
 def test_a_grown_figure_stands_out_only_beside_what_matters(grown: float, concern: bool) -> None:
     """0.18 N in a joint without force before, beside 10 kN, is nobody's concern."""
-    balanced = found_of("yamashita-1").balanced
+    balanced = findings_of("yamashita-1").balanced
     assert balanced is not None
     name = next(
         one for one in balanced.before if one.startswith("joints.") and one.endswith(".peak")

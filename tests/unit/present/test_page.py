@@ -17,8 +17,7 @@ from equipoise.present.composition import build
 from equipoise.present.findings import ToolFindings, find
 from equipoise.present.pages import PRINTED_STRESS, boxed_in_pdf, colored, colors, page, pdf
 from equipoise.present.pictures import pictures
-from support.found import found as found_of
-from support.found import report_of
+from support.findings import findings_of, report_of
 from surface.running import equipoise
 from unit.figures.checks import lightness
 
@@ -54,7 +53,7 @@ class Page(HTMLParser):
 
 @pytest.fixture(scope="module")
 def found():
-    return found_of("yamashita-rig")
+    return findings_of("yamashita-rig")
 
 
 @pytest.fixture(scope="module")
@@ -94,7 +93,7 @@ def test_it_is_the_same_on_every_run_in_another_language():
 
 
 def test_a_tool_has_its_report():
-    found = found_of("brush-cutter")
+    found = findings_of("brush-cutter")
     assert isinstance(found, ToolFindings)
     shorter = ToolFindings(replace(found.tool, design=None), found.text, found.file)
     document = build(shorter)

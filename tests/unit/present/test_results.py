@@ -18,7 +18,7 @@ from equipoise.balancing.linear_conditions import conditions
 from equipoise.balancing.pareto import trade_off
 from equipoise.balancing.sensitivity import sensitivities
 from equipoise.exposure.daily import Exposure, Task, daily_exposure
-from equipoise.handheld.exposed import expose_tool
+from equipoise.handheld.hand_exposure import expose_tool
 from equipoise.handheld.modes import vary_tool, vibrate_tool
 from equipoise.handheld.response import respond_tool
 from equipoise.handheld.sweep import sweep_tool
@@ -35,7 +35,7 @@ from equipoise.results.analysis import Analysis
 from equipoise.results.blocks import Column, RelativeChange, ReportSection, Span, Table, Text, Value
 from equipoise.schema.models import load_tool
 from support.chosen import few
-from support.found import found
+from support.findings import findings_of
 from support.printing import printed as shown
 from support.printing import words
 
@@ -285,7 +285,7 @@ def test_a_daily_exposure_beyond_the_limit_value_stands_out() -> None:
     assert "7.071, over the limit of 5" in words(day.blocks())
     allowed = daily_exposure([Task("mowing", 5.0, 8 * 3600.0)])
     assert "over the limit" not in words(allowed.blocks())
-    tile = next(one for one in tool_tiles(found("brush-cutter")) if "A(8)" in one.label)
+    tile = next(one for one in tool_tiles(findings_of("brush-cutter")) if "A(8)" in one.label)
     assert tile.emphasis == "broken"
     document = ReportDocument("en", "", "", "", (tile, replace(tile, emphasis=None)), (), "", ())
     html = page(document)

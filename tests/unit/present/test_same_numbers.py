@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.balancing import compared
+from equipoise.balancing import comparison
 from equipoise.cli.linkage import analyze as command
 from equipoise.figures import analysis as charts
 from equipoise.figures import forces as forces_charts
@@ -33,8 +33,7 @@ from equipoise.web.edits import solved
 from equipoise.web.figures import figures_of
 from equipoise.web.gallery import opened_example
 from support.chosen import DISTINCT, few
-from support.found import found as found_of
-from support.found import report_of
+from support.findings import findings_of, report_of
 
 MACHINES = (
     *("cam-pusher", "four-stroke-engine", "hydraulic-loader", "riding-transplanter"),
@@ -77,7 +76,7 @@ def sizes_of(found: Mapping[str, Any]) -> Iterator[np.ndarray]:
 @cache
 def told(name: str) -> np.ndarray:
     """Every number of what the commands print as JSON, sorted; of signals their figures."""
-    found = found_of(name)
+    found = findings_of(name)
     assert isinstance(found, Findings)
     given = [
         one.to_dict()
@@ -174,7 +173,7 @@ def cells_of(table: Table) -> Iterator[tuple[str, Value]]:
 
 @pytest.mark.parametrize("name", few(MACHINES, {*MACHINES} - {"riding-transplanter"}))
 def test_every_number_of_tables_is_in_the_json(name: str) -> None:
-    found = found_of(name)
+    found = findings_of(name)
     assert isinstance(found, Findings)
     count = 0
     for table in found.analysis.blocks():
@@ -189,7 +188,7 @@ def test_every_number_of_tables_is_in_the_json(name: str) -> None:
 @pytest.mark.parametrize("name", MACHINES)
 def test_every_number_of_respond_and_balance_is_in_the_json(name: str) -> None:
     """Orders of modes, and places of rows across the machine, stand in tables alone."""
-    found = found_of(name)
+    found = findings_of(name)
     assert isinstance(found, Findings)
     results = [one for one in (found.response, found.sweep, found.balanced) if one is not None]
     tables = [one for result in results for one in result.blocks() if isinstance(one, Table)]
@@ -233,7 +232,7 @@ def same_as_analyzed(analysis: eq.Analysis, figures: Mapping[str, float | None])
 def test_other_surfaces_have_the_figures_of_analyze(name: str) -> None:
     machine = eq.load(name)
     analysis = eq.analyze(machine, acceleration=0.0)
-    assert same_as_analyzed(analysis, compared.figures_of(machine)) > 8
+    assert same_as_analyzed(analysis, comparison.figures_of(machine)) > 8
     page = solved(opened_example(name)).analysis
     shown = {one["name"]: one["value"] for one in figures_of(page)}
     assert same_as_analyzed(page, shown) >= 8
@@ -289,7 +288,7 @@ def test_every_surface_takes_the_same_crank_angles() -> None:
 
 
 def test_the_crank_angle_of_a_peak_is_one() -> None:
-    found, made = found_of("cam-pusher"), document("cam-pusher")
+    found, made = findings_of("cam-pusher"), document("cam-pusher")
     at = eq.analyze(found.machine).summary["drive_torque"].peak_at
     (note,) = (one.note for one in made.tiles if one.label == "drive torque, peak")
     assert note == f"at crank angle {np.degrees(at):.1f}\N{DEGREE SIGN}"
@@ -308,7 +307,7 @@ def test_a_peak_has_its_sign() -> None:
 
 
 def test_cards_and_titles_speak_of_all_rows() -> None:
-    found, made = found_of("riding-transplanter"), document("riding-transplanter")
+    found, made = findings_of("riding-transplanter"), document("riding-transplanter")
     summary = found.analysis.summary
     values = {one.label: float(one.value) for one in made.tiles if one.unit in ("N", "N m")}
     for what in ("shaking_force", "shaking_moment", "drive_torque"):
@@ -324,7 +323,7 @@ def test_cards_and_titles_speak_of_all_rows() -> None:
 
 
 def test_a_cam_is_called_a_cam() -> None:
-    chart = next(iter(charts.joints(found_of("cam-pusher").analysis)))
+    chart = next(iter(charts.joints(findings_of("cam-pusher").analysis)))
     titles = [panel.title for panel in chart.panels]
     assert any(title.startswith("cam: ") for title in titles)
     assert not any("teeth" in title for title in titles)
@@ -344,7 +343,7 @@ def test_of_resonances_the_loud_one_is_told() -> None:
 @pytest.mark.parametrize("name", ["four-stroke-engine", "hydraulic-loader"])
 def test_a_figure_has_one_unit_everywhere(name: str) -> None:
     """Large forces of joints and drives stand beside small ones of the frame."""
-    found, made = found_of(name), document(name)
+    found, made = findings_of(name), document(name)
     analysis = found.analysis
     units = {"force": display_of_totals(analysis, "force").name}
     (frame,) = (t for t in analysis.blocks() if isinstance(t, Table) and "frame" in t.title)

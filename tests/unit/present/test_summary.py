@@ -14,7 +14,7 @@ import equipoise as eq
 from equipoise.balancing.advice import advise
 from equipoise.balancing.blocks import outcome_blocks
 from equipoise.balancing.outcome import helps_told
-from equipoise.balancing.told import worse_told
+from equipoise.balancing.sentences import worse_told
 from equipoise.i18n import Note, speaking
 from equipoise.mechanism.kinematics.motion import move
 from equipoise.mechanism.parts.balance import AddedMass, Balance, Objective, Weight
@@ -28,7 +28,7 @@ from equipoise.quantities import brief
 from equipoise.results.analysis_blocks import shares
 from equipoise.results.blocks import Table
 from equipoise.schema.documents import dumps
-from support.found import found as found_of
+from support.findings import findings_of
 from unit.planting.build import two_arms
 
 
@@ -37,7 +37,7 @@ def text_of(found) -> str:
 
 
 def test_shares_of_links_follow_from_masses_and_accelerations():
-    found = found_of("yamashita-1")
+    found = findings_of("yamashita-1")
     machine, motion = found.machine, found.analysis.motion
     pulls = {
         name: -machine.links[name].mass * center.acceleration_vector
@@ -62,7 +62,7 @@ def test_parts_that_cancel_but_for_rounding_have_no_shares() -> None:
 
 def test_cycles_are_told_of_drives_without_a_crank() -> None:
     """The file says how long a lift, a stop and a descent take together: 10 s."""
-    found = found_of("hydraulic-loader")
+    found = findings_of("hydraulic-loader")
     pace = next(iter(tiles(found)))
     assert (pace.label, pace.value, pace.unit) == ("cycles", "6.00", "a minute")
     assert pace.note == "cylinder A to B"
@@ -75,7 +75,7 @@ def test_cycles_are_told_of_drives_without_a_crank() -> None:
 
 
 def test_rows_shake_together_as_they_do_one_by_one():
-    found = found_of("riding-transplanter")
+    found = findings_of("riding-transplanter")
     rows = found.machine.rows
     theta = np.arange(360) * (2 * pi / 360)
     force = sum(
@@ -93,7 +93,7 @@ def test_rows_shake_together_as_they_do_one_by_one():
 
 def test_what_helps_most_is_what_balancing_finds():
     """What the gauge reads is told, and what it reads after."""
-    found = found_of("riding-transplanter")
+    found = findings_of("riding-transplanter")
     told = text_of(found)
     before, after = (
         eq.respond(machine).gauges["left_end"].displacement
@@ -121,7 +121,7 @@ def test_what_gets_worse_is_told():
 
 
 def test_without_masses_nothing_is_said_of_forces():
-    found = found_of("drag-link")
+    found = findings_of("drag-link")
     told = text_of(found)
     assert (found.analysis.solved is None) == ("masses of links are missing" in told)
 
@@ -129,7 +129,7 @@ def test_without_masses_nothing_is_said_of_forces():
 @pytest.mark.parametrize("language", ["en", "ja", "ko"])
 def test_no_placeholder_is_left(language):
     with speaking(language):
-        told = text_of(found_of("kim-chung-a"))
+        told = text_of(findings_of("kim-chung-a"))
     assert not {"{", "}"} & set(told)
 
 
@@ -158,7 +158,7 @@ def test_numbers_are_set_as_in_print():
 
 
 def test_where_balancing_brings_nothing_that_is_said_and_not_drawn():
-    found = found_of("slider-crank-engine")
+    found = findings_of("slider-crank-engine")
     before, after = next(iter(found.balanced.objectives.values()))
     assert after == before
     told = text_of(found)
@@ -171,7 +171,7 @@ def test_where_balancing_brings_nothing_that_is_said_and_not_drawn():
 
 
 def test_a_remedy_that_makes_something_far_worse_is_told_and_not_recommended():
-    found = found_of("class-three")
+    found = findings_of("class-three")
     assert not found.helped and found.after is None
     told = text_of(found)
     assert "Leave the masses as they are: the best change within the assumed space" in told
@@ -181,7 +181,7 @@ def test_a_remedy_that_makes_something_far_worse_is_told_and_not_recommended():
 
 
 def test_rows_are_not_told_of_a_counterweight():
-    found = found_of("walking-transplanter")
+    found = findings_of("walking-transplanter")
     told = " ".join(str(block) for block in balance_blocks(found))
     assert "other phases of the rows" in told and "add a counterweight" not in told
     rolls = found.balanced.after["rows.roll_moment.peak"]
@@ -190,13 +190,13 @@ def test_rows_are_not_told_of_a_counterweight():
 
 
 def test_a_mass_that_is_large_beside_the_links_is_told():
-    found = found_of("balance-crank")
+    found = findings_of("balance-crank")
     added = found.balanced.after["mass"] - found.balanced.before["mass"]
     assert f"have {brief(found.machine.mass)} kg, and {brief(added)} kg are added" in text_of(found)
 
 
 def test_rounding_has_no_crank_angle():
-    found = found_of("planetary-planting-arm")
+    found = findings_of("planetary-planting-arm")
     moment = next(tile for tile in tiles(found) if "moment" in tile.label)
     assert (moment.value, moment.note) == ("0", "")
     weight = AddedMass("carrier", "A", Weight("any", 0.05, at_most=0.2))
@@ -219,7 +219,7 @@ def test_notes_are_said_in_the_language_of_the_reader():
 
 def test_a_tool_s_hand_that_gets_worse_is_told():
     """Beside the gain of the hand that felt most; a gain is not."""
-    found = copy(found_of("brush-cutter"))  # which is given other designs
+    found = copy(findings_of("brush-cutter"))  # which is given other designs
     design = found.design
     first, *others = design.figures
     kept = [replace(one, after=0.9 * one.before) for one in others]

@@ -18,7 +18,7 @@ from equipoise.quantities import KINDS, Measured, as_written, plain_unit
 from equipoise.quantities.units import OF_UNIT
 from equipoise.schema import examples
 from equipoise.schema.models import AdjacentFiles, machine_of, tool_of
-from equipoise.schema.opening import opened_example
+from equipoise.schema.open_files import opened_example
 
 OFF = Note("got {at}; give {low} to {high}", at=Measured(1.6, "length"),
            low=Measured(0.0, "length", limit=True), high=Measured(1.5, "length"))  # fmt: skip

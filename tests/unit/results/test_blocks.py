@@ -6,7 +6,7 @@ import pytest
 
 from equipoise.present.pages import page
 from equipoise.results.blocks import Column, Table, Text, Value, interleave_changes
-from support.found import report_of
+from support.findings import report_of
 
 
 def table(label: str, *rows: tuple[str, float]) -> Table:

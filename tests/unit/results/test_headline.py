@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 
 import equipoise as eq
-import support.found
+import support.findings
 from equipoise.cli import run
-from equipoise.handheld.exposed import expose_tool
+from equipoise.handheld.hand_exposure import expose_tool
 from equipoise.i18n import speaking
 from equipoise.present import html_of
 from equipoise.present.pages import page
@@ -19,14 +19,11 @@ from equipoise.quantities import parse
 from equipoise.results.blocks import Facts, Text
 from equipoise.results.yardsticks import assess, verdict
 from support.chosen import EXHAUSTIVE
-from support.found import found as found_of
-from support.found import report_of
+from support.findings import findings_of, report_of
 from support.languages import COMPLETE
 
 EXAMPLES = Path(eq.__file__).parent / "examples"
-ADVISED = [
-    str(file) for file in sorted((Path(support.found.__file__).parent / "advised").glob("*.toml"))
-]
+ADVISED = [*map(str, sorted((Path(support.findings.__file__).parent / "advised").glob("*.toml")))]
 (EXCAVATOR,) = (file for file in ADVISED if Path(file).stem == "excavator")
 NARROW = "\N{NO-BREAK SPACE}"
 VERDICTS = {
@@ -145,7 +142,7 @@ def test_the_verdict_of_a_tool_is_what_a_day_amounts_to(capsys: pytest.CaptureFi
     brief = printed(capsys, "tool", "brush-cutter")
     assert brief[1].startswith("! A day of work: A(8) = 6.85 m/s^2, above the limit value")
     assert printed(capsys, "tool", "brush-cutter", "--full")[1] == brief[1]
-    found, document = found_of("brush-cutter"), report_of("brush-cutter")
+    found, document = findings_of("brush-cutter"), report_of("brush-cutter")
     assert document.verdict is not None and document.verdict.emphasis == "broken"
     a8 = expose_tool(found.tool, found.speeds).a8  # type: ignore[union-attr]
     assert f"A(8) = {a8:.2f} m/s²" in document.verdict.text

@@ -15,7 +15,7 @@ import equipoise as eq
 from equipoise.balancing.balanced import Balanced
 from equipoise.design.variables import Range, Variable
 from equipoise.exposure.daily import Exposure
-from equipoise.handheld.exposed import ToolExposure, expose_tool
+from equipoise.handheld.hand_exposure import ToolExposure, expose_tool
 from equipoise.handheld.modes import ToolModes, vibrate_tool
 from equipoise.handheld.sweep import ToolSweep, Transmission, sweep_tool
 from equipoise.planting.summary import PlantingFigures

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-import support.found
+import support.findings
 from equipoise.mechanism.outputs.declared import DECLARED, declaring, output
 from equipoise.mechanism.parts.balance import Balance, Limit, Objective
 from equipoise.results.yardsticks import OF_OUTPUT, FigureAssessment, assess, sentence, verdict
@@ -241,7 +241,7 @@ def test_a_torque_that_loads_swing_is_judged_by_their_work() -> None:
     """A press whose links weigh more at its throw than its mean torque is; turned without its load
     it only swings its links.
     """
-    press = eq.load(Path(support.found.__file__).parent / "advised" / "stamping-press.toml")
+    press = eq.load(Path(support.findings.__file__).parent / "advised" / "stamping-press.toml")
     found = assessed(press)["drive_torque.peak_to_peak"]
     assert str(found.against) == "its mean" and found.yardstick < 60 < found.ratio
     idle = assessed(replace(press, loads=()))["drive_torque.peak_to_peak"]

@@ -52,7 +52,7 @@ from equipoise.mechanism.parts.stops import Stop
 from equipoise.mechanism.parts.timed_loads import TimedLoad
 from equipoise.mechanism.parts.torsion_dampers import TorsionDamper
 from equipoise.mechanism.parts.torsion_springs import TorsionSpring
-from equipoise.schema import finding, models, schemas
+from equipoise.schema import file_numbers, models, schemas
 from equipoise.schema.documents import dumps, loads
 from equipoise.schema.reading import Context, read_table
 from equipoise.schema.schemas import json_schema
@@ -193,7 +193,7 @@ LOSSY = f'{SPRING}loss = "3 N s/m"\n'
 def lossy(monkeypatch: pytest.MonkeyPatch) -> None:
     """Files of linkages are those of `LossyMachine`."""
     monkeypatch.setattr(models, "Machine", LossyMachine)
-    monkeypatch.setattr(finding, "document_of", lambda kind: LossyMachine)
+    monkeypatch.setattr(file_numbers, "document_of", lambda kind: LossyMachine)
     monkeypatch.setattr(schemas, "document_of", lambda kind: LossyMachine)
 
 

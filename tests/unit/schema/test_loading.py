@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from equipoise.errors import EquipoiseError, ModelError
 from equipoise.mechanism.parts.machine import STANDARD_GRAVITY, Gear
-from equipoise.schema import examples, load, loads, opening
+from equipoise.schema import examples, load, loads, open_files
 from support.refusals import refused
 from unit.schema.samples import EVERYTHING, FOUR_BAR
 
@@ -59,7 +59,7 @@ def test_a_file_of_an_older_version_is_brought_up_to_date(monkeypatch: pytest.Mo
             },
         }
 
-    monkeypatch.setattr(opening, "MIGRATIONS", {-1: links, 0: masses})
+    monkeypatch.setattr(open_files, "MIGRATIONS", {-1: links, 0: masses})
     older = FOUR_BAR.replace("\nmass =", "\nweight =").replace("[links.", "[bars.")
     assert loads(older.replace("schema = 1", "schema = -1")) == loads(FOUR_BAR)
     with refused(ModelError, "bars", given="bars", more="17"):

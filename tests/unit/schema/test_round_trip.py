@@ -41,7 +41,7 @@ from equipoise.keys import (
 )
 from equipoise.quantities import KINDS
 from equipoise.schema.documents import dumps, loads
-from equipoise.schema.opening import bundled, document_of, examples
+from equipoise.schema.open_files import bundled, document_of, examples
 
 Tables_ = Iterator[tuple[type[Frozen], dict[str, Any]]]
 FILES = {kind: sorted(examples(kind)) for kind in ("linkage", "tool", "study")}

@@ -23,7 +23,7 @@ from equipoise.mechanism.parts.laws import AngleLaw, AngleTable
 from equipoise.mechanism.parts.machine import Load, LoadTable, Machine
 from equipoise.schema import dumps, load, loads, save
 from equipoise.schema.models import files_of, parts_of
-from equipoise.schema.opening import opened_example
+from equipoise.schema.open_files import opened_example
 from equipoise.schema.tables import format_table, parse_table, read_beside
 from equipoise.schema.template import Template
 from unit.schema.samples import FOUR_BAR, PLANTING

@@ -19,9 +19,9 @@ from equipoise.errors import ModelError, MotionError
 from equipoise.handheld.model import Tool
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.quantities.units import KINDS, OF_UNIT
-from equipoise.schema.finding import is_whole
+from equipoise.schema.file_numbers import is_whole
 from equipoise.schema.numbers import from_polar
-from equipoise.schema.opening import examples
+from equipoise.schema.open_files import examples
 from equipoise.schema.template import Template
 from unit.schema.samples import FOUR_BAR, SUPPORT
 from unit.schema.tool_samples import TOOL

@@ -10,10 +10,10 @@ import equipoise as eq
 from equipoise.errors import ModelError, UsageError
 from equipoise.mechanism.parts.joint_properties import JointProperties
 from equipoise.web.design import Design
-from equipoise.web.drawn import drawn, sketch_of
 from equipoise.web.edits import solved
 from equipoise.web.fields import Scale, fields_of
 from equipoise.web.gallery import opened_example
+from equipoise.web.incomplete import drawn, sketch_of
 from equipoise.web.session import Session
 from equipoise.web.structure_edits import renamed, without_link
 from unit.web.pages import edit, opened

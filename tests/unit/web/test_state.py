@@ -7,10 +7,10 @@ import pytest
 
 import equipoise as eq
 from equipoise.quantities import change, display, display_rules, number, typeset
+from equipoise.web.deferred import responded
 from equipoise.web.design import Design
 from equipoise.web.edits import solved
 from equipoise.web.gallery import opened_example, titles
-from equipoise.web.shaken import responded
 from surface.running import example_text, massless
 from unit.web.pages import ask, edit, opened
 

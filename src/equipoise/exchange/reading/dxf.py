@@ -11,7 +11,7 @@ from itertools import count as count_from
 from typing import Any
 
 from equipoise.errors import EquipoiseError, ModelError, needed
-from equipoise.exchange.reading.found import Read
+from equipoise.exchange.reading.imported import Read
 from equipoise.exchange.reading.strokes import WORDS, Drawing, DrawnLine, Marks, Ring, skeleton
 from equipoise.i18n import Note
 from equipoise.limits import check_memory

@@ -13,7 +13,7 @@ from xml.etree.ElementTree import Element
 from equipoise.dataclass import dataclass
 from equipoise.errors import ModelError, UsageError, at_place
 from equipoise.exchange.reading import dxf, linkage2, mjcf, pmks, svg, urdf
-from equipoise.exchange.reading.found import Imported, Read, finished
+from equipoise.exchange.reading.imported import Imported, Read, finished
 from equipoise.exchange.reading.markup import tree_of
 from equipoise.exchange.reading.spatial import SpatialOptions as Bodies
 from equipoise.exchange.reading.strokes import Marks

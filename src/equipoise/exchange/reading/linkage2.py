@@ -12,7 +12,7 @@ from xml.etree.ElementTree import Element
 
 from equipoise.dataclass import dataclass
 from equipoise.errors import ModelError
-from equipoise.exchange.reading.found import Read, SlotLine, free, outline_of
+from equipoise.exchange.reading.imported import Read, SlotLine, free, outline_of
 from equipoise.exchange.reading.markup import called, number
 from equipoise.i18n import Note
 from equipoise.mechanism.parts.machine import FRAME

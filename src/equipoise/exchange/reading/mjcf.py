@@ -13,7 +13,7 @@ import numpy as np
 from equipoise.dataclass import dataclass
 from equipoise.errors import ModelError, at_place
 from equipoise.exchange.reading import spatial
-from equipoise.exchange.reading.found import Read
+from equipoise.exchange.reading.imported import Read
 from equipoise.exchange.reading.markup import called, number, numbers
 from equipoise.exchange.reading.planar import planar
 from equipoise.exchange.reading.spatial import (

@@ -14,7 +14,7 @@ import numpy as np
 from equipoise.dataclass import dataclass
 from equipoise.decompositions import lstsq
 from equipoise.errors import ModelError, UsageError, at_place, unknown
-from equipoise.exchange.reading.found import Read
+from equipoise.exchange.reading.imported import Read
 from equipoise.exchange.reading.spatial import (
     WORLD,
     Array,
@@ -26,7 +26,7 @@ from equipoise.exchange.reading.spatial import (
     combined,
 )
 from equipoise.i18n import Note
-from equipoise.mechanism.kinematics.outline import STILL, LinkPlacement, MachineDraft
+from equipoise.mechanism.kinematics.machine_draft import STILL, LinkPlacement, MachineDraft
 from equipoise.mechanism.parts.machine import FRAME, Gear, Link, Slider, Spring, Vector
 
 SAME = 1e-9

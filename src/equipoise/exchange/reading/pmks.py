@@ -14,7 +14,7 @@ from urllib.parse import unquote
 
 from equipoise.dataclass import dataclass
 from equipoise.errors import ModelError
-from equipoise.exchange.reading.found import Read, SlotLine, free, outline_of
+from equipoise.exchange.reading.imported import Read, SlotLine, free, outline_of
 from equipoise.i18n import Note
 from equipoise.mechanism.parts.machine import FRAME
 

@@ -11,7 +11,7 @@ from string import ascii_uppercase
 
 from equipoise.dataclass import dataclass
 from equipoise.errors import ModelError, at_place, unknown
-from equipoise.exchange.reading.found import Read, SlotLine, free, outline_of
+from equipoise.exchange.reading.imported import Read, SlotLine, free, outline_of
 from equipoise.i18n import Note
 from equipoise.mechanism.parts.element_kinds import part_kinds
 from equipoise.mechanism.parts.machine import FRAME, Machine

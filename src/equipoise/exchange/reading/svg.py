@@ -8,7 +8,7 @@ from typing import Any
 from xml.etree.ElementTree import Element
 
 from equipoise.errors import ModelError, at_place, needed
-from equipoise.exchange.reading.found import Read
+from equipoise.exchange.reading.imported import Read
 from equipoise.exchange.reading.markup import called, number, numbers
 from equipoise.exchange.reading.strokes import Drawing, DrawnLine, Marks, Ring, skeleton
 from equipoise.i18n import Note

@@ -9,7 +9,7 @@ from xml.etree.ElementTree import Element
 import numpy as np
 
 from equipoise.errors import ModelError
-from equipoise.exchange.reading.found import Read
+from equipoise.exchange.reading.imported import Read
 from equipoise.exchange.reading.markup import called, number, numbers
 from equipoise.exchange.reading.planar import planar
 from equipoise.exchange.reading.spatial import (

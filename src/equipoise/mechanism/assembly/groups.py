@@ -15,7 +15,7 @@ import numpy as np
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note
-from equipoise.mechanism.assembly import sides
+from equipoise.mechanism.assembly import assembly_modes
 from equipoise.mechanism.assembly.builder import (
     Builder,
     Group,
@@ -94,13 +94,13 @@ def _dyad(
 def rrr(builder: Builder, first: Outer, second: Outer, pin: str) -> Group:
     """Two links and three pins."""
     link, other = first.link, second.link
-    if closed := sides.parallel_by(builder, first, second, pin):
+    if closed := assembly_modes.parallel_by(builder, first, second, pin):
         return _through(builder, first, second, pin, closed)
     meaning = f"{pin} lies left or right of the line from {first.point} to {second.point}"
     side = builder.side(pin, ("left", "right"), meaning)
     arms = (builder.arm(link, first.point, pin), builder.arm(other, second.point, pin))
     places = (f"p({first.point})", f"p({second.point})", f"p({pin})")
-    closed = sides.closed_by(builder, first, second, pin)
+    closed = assembly_modes.closed_by(builder, first, second, pin)
     group = _dyad(
         builder,
         (first, second),
@@ -114,7 +114,7 @@ def rrr(builder: Builder, first: Outer, second: Outer, pin: str) -> Group:
 
 
 def _through(
-    builder: Builder, first: Outer, second: Outer, pin: str, closed: sides.Closed
+    builder: Builder, first: Outer, second: Outer, pin: str, closed: assembly_modes.Closed
 ) -> Group:
     """Two links and three pins that close a four-bar of equal opposite sides."""
     link, other, pivot = first.link, second.link, closed.pivot

@@ -26,7 +26,8 @@ from equipoise.displays import Brief
 from equipoise.errors import ChangePointError, ModelError, RangeError
 from equipoise.i18n import Note, series
 from equipoise.keys.kinds import choice
-from equipoise.mechanism.assembly import sides
+from equipoise.mechanism.assembly import assembly_modes
+from equipoise.mechanism.assembly.assembly_modes import surplus_cranks
 from equipoise.mechanism.assembly.builder import Builder, Group
 from equipoise.mechanism.assembly.cycle import Cycle, close
 from equipoise.mechanism.assembly.groups import hung
@@ -41,8 +42,7 @@ from equipoise.mechanism.assembly.joints import (
 from equipoise.mechanism.assembly.loops import BranchError
 from equipoise.mechanism.assembly.ordering import has_two_known_pins, next_group
 from equipoise.mechanism.assembly.reach import with_cures
-from equipoise.mechanism.assembly.shared import RedundantReactions, shared
-from equipoise.mechanism.assembly.sides import surplus_cranks
+from equipoise.mechanism.assembly.redundant_reactions import RedundantReactions, shared
 from equipoise.mechanism.assembly.steps import (
     Reaction,
     State,
@@ -262,9 +262,9 @@ def _check_sides(machine: Machine, joints: Structure, grouping: Grouping) -> Non
         def turns_fully(tried: Mapping[str, str]) -> None:  # never by `ordered`, which asks again
             _linked(machine, joints, _grouped(machine, joints, tried=tried)).close()
 
-        if decided := sides.decided(choices, turns_fully):
+        if decided := assembly_modes.decided(choices, turns_fully):
             choices = _grouped(machine, joints, assumed=decided).choices
-        raise sides.missing(machine, choices, idle)
+        raise assembly_modes.missing(machine, choices, idle)
     for joint in idle:
         if joint == MODE and machine.assembly[joint] in MODES:
             raise ModelError(f"assembly.{joint}", NO_PARALLELS)
@@ -370,7 +370,7 @@ def _grouped(
     builder.add({FRAME: drives[machine.drive.link], **drives})
     unknown = [link for link in (*machine.links, *joints.riders) if link not in drives]
     groups: list[Group] = []
-    choices: list[sides.Choice] = []
+    choices: list[assembly_modes.Choice] = []
     while unknown:
         try:
             ready = [
@@ -383,10 +383,10 @@ def _grouped(
             group = hung(builder, joints, waiting) or next_group(builder, joints, ready)
         except ModelError:
             if choices:  # sides come first: on a wrong one what hangs on it cannot be right
-                raise sides.missing(machine, _with_keys(choices, groups)) from None
+                raise assembly_modes.missing(machine, _with_keys(choices, groups)) from None
             raise
         if group.joint in builder.missing:
-            choices.append(sides.chosen(builder, group, assumed))
+            choices.append(assembly_modes.chosen(builder, group, assumed))
             group = choices[-1].group
         group = builder.anchored(group, joints)
         groups.append(group)

@@ -12,11 +12,11 @@ from equipoise.decompositions import lstsq
 from equipoise.errors import MobilityError, MotionError
 from equipoise.i18n import Note
 from equipoise.mechanism.assembly import groups
+from equipoise.mechanism.assembly.assembly_modes import pointed
 from equipoise.mechanism.assembly.builder import Builder, Group, Outer, outer_joints
 from equipoise.mechanism.assembly.contacts import contact_of
 from equipoise.mechanism.assembly.joints import Structure, held_fast, subsets
 from equipoise.mechanism.assembly.loops import LoopGroup, poses_in
-from equipoise.mechanism.assembly.sides import pointed
 from equipoise.mechanism.parts.machine import Position
 
 

@@ -16,9 +16,9 @@ import numpy as np
 from equipoise.dataclass import dataclass
 from equipoise.errors import ChangePointError, MotionError, Paste, RangeError, at_place
 from equipoise.i18n import Note, all_of, to_say
+from equipoise.mechanism.assembly.assembly_modes import key_text
 from equipoise.mechanism.assembly.builder import Group
 from equipoise.mechanism.assembly.loops import BranchError
-from equipoise.mechanism.assembly.sides import key_text
 from equipoise.mechanism.assembly.steps import (
     Array,
     State,

@@ -11,8 +11,8 @@ from equipoise.i18n import Note, series
 from equipoise.mechanism.assembly.linkage import Linkage, assemble
 from equipoise.mechanism.assembly.steps import KernelCall, size_of_links
 from equipoise.mechanism.checks import bodies_at, numbered
-from equipoise.mechanism.dynamics.across import statics
 from equipoise.mechanism.dynamics.forces import assumed_masses, massless
+from equipoise.mechanism.dynamics.out_of_plane import statics
 from equipoise.mechanism.dynamics.reactions import indeterminate_reactions
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.kinematics.motion import crossings

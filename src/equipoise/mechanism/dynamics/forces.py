@@ -20,8 +20,10 @@ from equipoise.displays import Displayed
 from equipoise.errors import MassError
 from equipoise.i18n import Note, key_names
 from equipoise.mechanism.assembly.steps import Array, p, planar, u
-from equipoise.mechanism.dynamics import acting
-from equipoise.mechanism.dynamics.across import (
+from equipoise.mechanism.dynamics import applied_loads
+from equipoise.mechanism.dynamics.force_readings import ForceReadings
+from equipoise.mechanism.dynamics.friction import unit_demands, with_friction
+from equipoise.mechanism.dynamics.out_of_plane import (
     OutOfPlaneMoments,
     apart,
     exerted_in,
@@ -29,8 +31,6 @@ from equipoise.mechanism.dynamics.across import (
     pushes_across,
     springs_across,
 )
-from equipoise.mechanism.dynamics.exerted import ForceReadings
-from equipoise.mechanism.dynamics.friction import unit_demands, with_friction
 from equipoise.mechanism.dynamics.pin_bearings import PlainBearing, plain_bearings
 from equipoise.mechanism.dynamics.reactions import (
     Demand,
@@ -45,8 +45,8 @@ from equipoise.mechanism.dynamics.reactions import (
 from equipoise.mechanism.dynamics.section_loads import SectionLoads, section_loads
 from equipoise.mechanism.dynamics.shares import CAUSES, ELEMENTS, EVERYWHERE, INERTIA, Split
 from equipoise.mechanism.formulas import kernels
+from equipoise.mechanism.kinematics.friction_joints import rubbing_joints
 from equipoise.mechanism.kinematics.motion import Motion
-from equipoise.mechanism.kinematics.rubbing import rubbing_joints
 from equipoise.mechanism.parts.couplings import Coupling
 from equipoise.mechanism.parts.machine import Link, Machine, Vector
 from equipoise.mechanism.parts.places import in_frame
@@ -163,7 +163,7 @@ class Forces(ForceReadings, Displayed):
     @property
     def outer(self) -> Forces:
         """Forces without what links and frame exert on each other: springs, and loads between."""
-        outside = demands_of(self.motion, acting.outer_loads(self.motion))
+        outside = demands_of(self.motion, applied_loads.outer_loads(self.motion))
         return replace(self, loads=outside, springs={}, inner={})
 
     @property
@@ -205,9 +205,9 @@ class Forces(ForceReadings, Displayed):
     def across(self) -> OutOfPlaneMoments:
         """What links beside each other do across the plane."""
         motion = self.motion
-        loads = pushes_across(motion, acting.acting_loads(motion))
+        loads = pushes_across(motion, applied_loads.acting_loads(motion))
         springs = springs_across(motion)
-        outer = pushes_across(motion, acting.outer_loads(motion))
+        outer = pushes_across(motion, applied_loads.outer_loads(motion))
         return OutOfPlaneMoments(
             motion, *masses_across(motion), loads, springs, exerted_in(self.solved), outer
         )
@@ -268,9 +268,9 @@ def forces(motion: Motion, about: str | Vector | complex | None = None) -> Force
         inertia[link] = _needed([(rate, units[link]) for rate, units in rates], *own)
         weights[link] = kernels.weight_demand(motion.state[f"u({link})"], *own[:2], gravity)
     applied = (
-        acting.load_demands(motion),
-        acting.spring_demands(motion),
-        acting.inner_demands(motion),
+        applied_loads.load_demands(motion),
+        applied_loads.spring_demands(motion),
+        applied_loads.inner_demands(motion),
     )
     return Forces(motion, pole, inertia, weights, *applied)
 
@@ -425,7 +425,11 @@ def _split_demands(
     """Demands of each link by cause and link, (C, L, N), but for friction."""
     motion, demands = whole.motion, {}
     elements = {
-        cause: acting.spring_demands(motion, cause=cause) for cause in causes if cause in ELEMENTS
+        cause: applied_loads.spring_demands(motion, cause=cause)
+        for cause in causes
+        if cause in ELEMENTS
+        for cause in causes
+        if cause in ELEMENTS
     }
     for k, link in enumerate(whole.inertia):
         force, moment = np.zeros(shape, complex), np.zeros(shape)

@@ -44,8 +44,8 @@ from equipoise.mechanism.dynamics.reactions import (
     reactions,
 )
 from equipoise.mechanism.formulas.kernels import cross
+from equipoise.mechanism.kinematics.friction_joints import RubbingJoint, rubbing_joints
 from equipoise.mechanism.kinematics.motion import Motion
-from equipoise.mechanism.kinematics.rubbing import RubbingJoint, rubbing_joints
 
 Demands = Mapping[str, Demand]
 Cached = TypeVar("Cached")

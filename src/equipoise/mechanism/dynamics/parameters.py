@@ -25,12 +25,16 @@ from equipoise.displays import Brief
 from equipoise.errors import MassError, UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism.assembly.steps import Array, planar
-from equipoise.mechanism.dynamics.across import OutOfPlaneMoments, exerted_in, needed_by_inertia
-from equipoise.mechanism.dynamics.acting import spring_direction, spring_vector
+from equipoise.mechanism.dynamics.applied_loads import spring_direction, spring_vector
 from equipoise.mechanism.dynamics.forces import (
     demand_of_inertia,
     forces,
     massless,
+)
+from equipoise.mechanism.dynamics.out_of_plane import (
+    OutOfPlaneMoments,
+    exerted_in,
+    needed_by_inertia,
 )
 from equipoise.mechanism.dynamics.reactions import JointReactions, pushed, reactions
 from equipoise.mechanism.dynamics.shares import Shares

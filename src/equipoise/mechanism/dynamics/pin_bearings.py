@@ -10,8 +10,8 @@ from equipoise.dataclass import dataclass
 from equipoise.mechanism.assembly.joints import given_properties
 from equipoise.mechanism.assembly.steps import Array, Reaction
 from equipoise.mechanism.dynamics.reactions import JointForce
+from equipoise.mechanism.kinematics.friction_joints import STILL
 from equipoise.mechanism.kinematics.motion import Motion
-from equipoise.mechanism.kinematics.rubbing import STILL
 from equipoise.mechanism.parts.joint_properties import JointProperties
 
 

@@ -22,7 +22,7 @@ from equipoise.errors import RangeError, UsageError
 from equipoise.i18n import Note, all_of, to_say
 from equipoise.mechanism.assembly.joints import Structure
 from equipoise.mechanism.assembly.linkage import Linkage
-from equipoise.mechanism.assembly.shared import CHANGE_POINT_OFFSET, IDLE, WEAK
+from equipoise.mechanism.assembly.redundant_reactions import CHANGE_POINT_OFFSET, IDLE, WEAK
 from equipoise.mechanism.assembly.steps import Array, Reaction, State, demand_names, run
 from equipoise.mechanism.checks import NamedItems
 from equipoise.mechanism.formulas import kernels

@@ -23,12 +23,12 @@ import numpy as np
 
 from equipoise.dataclass import dataclass
 from equipoise.mechanism.assembly.steps import Array, p, planar
-from equipoise.mechanism.dynamics import acting
+from equipoise.mechanism.dynamics import applied_loads
 from equipoise.mechanism.dynamics.reactions import PUSH, TORQUE, Acting, JointReactions, full
 from equipoise.mechanism.formulas.kernels import cross
 from equipoise.mechanism.kinematics.cylinders import pushes
+from equipoise.mechanism.kinematics.friction_joints import rubbing_joints
 from equipoise.mechanism.kinematics.motion import Motion
-from equipoise.mechanism.kinematics.rubbing import rubbing_joints
 from equipoise.mechanism.parts.links import Link
 from equipoise.mechanism.parts.sections import LinkSection
 
@@ -294,9 +294,9 @@ def _acting_on(motion: Motion, solved: JointReactions, link: str) -> Iterator[tu
                 couple = 0.0 if reaction.couple is None else state[reaction.couple]
                 yield state[f"p({reaction.at})"], sign * state[reaction.force], sign * couple
     actings: Iterator[Acting] = chain(
-        acting.acting_loads(motion),
-        acting.acting_elements(motion),
-        *(ends for _, ends in acting.acting_preloads(motion)),
+        applied_loads.acting_loads(motion),
+        applied_loads.acting_elements(motion),
+        *(ends for _, ends in applied_loads.acting_preloads(motion)),
         _driving(motion, solved),
         _rubbing(motion, solved),
     )

@@ -12,8 +12,8 @@ from equipoise.displays import Brief
 from equipoise.errors import UsageError
 from equipoise.mechanism.assembly.steps import Array
 from equipoise.mechanism.checks import unknown
-from equipoise.mechanism.dynamics.across import OF_FRAME, OutOfPlaneMoments
-from equipoise.mechanism.dynamics.exerted import HasCouplings
+from equipoise.mechanism.dynamics.force_readings import HasCouplings
+from equipoise.mechanism.dynamics.out_of_plane import OF_FRAME, OutOfPlaneMoments
 from equipoise.mechanism.dynamics.reactions import (
     CouplingForces,
     JointForce,

@@ -16,8 +16,8 @@ import numpy as np
 
 from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.assembly.steps import Array, size_of_links
+from equipoise.mechanism.kinematics.friction_joints import STILL, rubbing_joints
 from equipoise.mechanism.kinematics.motion import Motion, PlacedBodies, move, move_again
-from equipoise.mechanism.kinematics.rubbing import STILL, rubbing_joints
 from equipoise.mechanism.kinematics.tip import crossings, roots, surface_of
 from equipoise.mechanism.parts.couplings import Coupling
 from equipoise.mechanism.parts.machine import FRAME, Machine

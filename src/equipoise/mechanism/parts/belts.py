@@ -49,7 +49,7 @@ class Belt(Turning):
     }
 
     table: ClassVar[str] = "belts"
-    sign = "equipoise.symbols.taut:strand_sign"
+    sign = "equipoise.symbols.straight_pieces:strand_sign"
     noun = to_say("belt")
     group = to_say("belts")
     loses = True

@@ -11,11 +11,11 @@ from equipoise.keys import ROW, Conditions, File, Listing, Quantity, TextKind, d
 from equipoise.keys.csv_tables import CsvTable
 from equipoise.mechanism.checks import FRAME, Bodies
 from equipoise.mechanism.formulas import kernels
-from equipoise.mechanism.parts.between import BetweenPoints
 from equipoise.mechanism.parts.damping import Damping, one_law
 from equipoise.mechanism.parts.element_kinds import Placed
 from equipoise.mechanism.parts.force_kinds import Action
 from equipoise.mechanism.parts.springs import wrong_ends
+from equipoise.mechanism.parts.two_body_elements import BetweenPoints
 from equipoise.quantities import Dimension, told
 
 

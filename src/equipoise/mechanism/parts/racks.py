@@ -36,7 +36,7 @@ class Rack(Coupling):
     called = to_say("{what} of rack {number}")
 
     table: ClassVar[str] = "racks"
-    sign = "equipoise.symbols.taut:rack_sign"
+    sign = "equipoise.symbols.straight_pieces:rack_sign"
     noun = to_say("rack")
     group = to_say("racks")
     loses = True

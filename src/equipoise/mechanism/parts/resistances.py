@@ -24,10 +24,10 @@ from equipoise.keys import (
 from equipoise.keys.csv_tables import CsvTable
 from equipoise.mechanism.checks import FRAME, Bodies
 from equipoise.mechanism.formulas.kernels import cross, positive
-from equipoise.mechanism.parts.between import BetweenPoints
 from equipoise.mechanism.parts.element_kinds import Placed
 from equipoise.mechanism.parts.force_kinds import Action, RatedElement
 from equipoise.mechanism.parts.ramps import table_value, wrong_rows
+from equipoise.mechanism.parts.two_body_elements import BetweenPoints
 from equipoise.quantities import Dimension, told
 
 TINY = 1e-300

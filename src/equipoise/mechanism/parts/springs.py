@@ -24,10 +24,10 @@ from equipoise.keys import (
 from equipoise.keys.csv_tables import CsvTable
 from equipoise.mechanism.checks import FRAME, Bodies, unknown, unknown_body, unknown_link
 from equipoise.mechanism.formulas import kernels
-from equipoise.mechanism.parts.between import BetweenPoints
 from equipoise.mechanism.parts.element_kinds import Placed
 from equipoise.mechanism.parts.force_kinds import Action, ForceElement
 from equipoise.mechanism.parts.ramps import Ramps, ramp_value, ramps_of, wrong_rows
+from equipoise.mechanism.parts.two_body_elements import BetweenPoints
 from equipoise.quantities import Dimension, told
 
 MEETING = to_say(

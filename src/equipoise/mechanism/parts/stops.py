@@ -11,9 +11,9 @@ from equipoise.i18n import Note, said, say, series, to_say
 from equipoise.keys import Number, TextKind, declared, key
 from equipoise.mechanism.checks import FRAME, Bodies
 from equipoise.mechanism.formulas.kernels import cross, positive
-from equipoise.mechanism.parts.between import BetweenPoints
 from equipoise.mechanism.parts.element_kinds import Placed
 from equipoise.mechanism.parts.force_kinds import Action, RatedElement
+from equipoise.mechanism.parts.two_body_elements import BetweenPoints
 from equipoise.quantities import Dimension, told
 
 LEAST_RESTITUTION = 0.01

@@ -10,10 +10,10 @@ from equipoise.i18n import Note, say, to_say
 from equipoise.keys import ROW, Conditions, File, Listing, Quantity, TextKind, declared, inside, key
 from equipoise.keys.csv_tables import CsvTable
 from equipoise.mechanism.checks import FRAME, Bodies, unknown_body, unknown_link
-from equipoise.mechanism.parts.between import BetweenBodies
 from equipoise.mechanism.parts.damping import Damping, one_law
 from equipoise.mechanism.parts.element_kinds import Placed
 from equipoise.mechanism.parts.force_kinds import Action
+from equipoise.mechanism.parts.two_body_elements import BetweenBodies
 from equipoise.quantities import Dimension, told
 
 

@@ -23,10 +23,10 @@ from equipoise.keys import (
 )
 from equipoise.keys.csv_tables import CsvTable
 from equipoise.mechanism.checks import FRAME, Bodies, unknown_body, unknown_link
-from equipoise.mechanism.parts.between import BetweenBodies
 from equipoise.mechanism.parts.element_kinds import Placed
 from equipoise.mechanism.parts.force_kinds import Action, ForceElement
 from equipoise.mechanism.parts.ramps import Ramps, ramp_integral, ramp_value, ramps_of, wrong_rows
+from equipoise.mechanism.parts.two_body_elements import BetweenBodies
 from equipoise.quantities import Dimension, told
 
 

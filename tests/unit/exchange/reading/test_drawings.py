@@ -13,7 +13,7 @@ import pytest
 from equipoise.errors import EquipoiseError
 from equipoise.exchange.export import export
 from equipoise.exchange.reading.formats import import_machine
-from equipoise.exchange.reading.found import Imported
+from equipoise.exchange.reading.imported import Imported
 from equipoise.mechanism.kinematics.motion import move
 from equipoise.mechanism.parts.machine import FRAME, Machine
 from equipoise.results.blocks import Table

@@ -18,7 +18,7 @@ import pytest
 from equipoise.errors import EquipoiseError
 from equipoise.exchange.export import export
 from equipoise.exchange.reading.formats import import_machine
-from equipoise.exchange.reading.found import Imported
+from equipoise.exchange.reading.imported import Imported
 from equipoise.mechanism.dynamics.forces import forces
 from equipoise.mechanism.kinematics.motion import Motion, move
 from equipoise.mechanism.parts.links import size_of

@@ -11,7 +11,7 @@ from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.parts.couplings import coupling_kinds
 from equipoise.mechanism.parts.machine import FRAME, Machine
 from equipoise.web import cam_edits, coupling
-from equipoise.web.adding import with_drive, with_link, with_point, with_slider
+from equipoise.web.additions import with_drive, with_link, with_point, with_slider
 from equipoise.web.messages import Message
 from equipoise.web.sketch import LISTS, Sketch
 from equipoise.web.structure_edits import (

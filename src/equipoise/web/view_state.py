@@ -17,13 +17,13 @@ from equipoise.mechanism.outputs.declared import body_named
 from equipoise.quantities import Dimension, display
 from equipoise.results.analysis import Analysis
 from equipoise.web.block import Array, FloatBlock, Values
+from equipoise.web.deferred import SAMPLES
 from equipoise.web.drawing import ground_of, moves_of, stage_of
 from equipoise.web.edits import Computed
 from equipoise.web.figures import told_signals
+from equipoise.web.measured_records import MeasuredSignals, compared_with, record_of_text
 from equipoise.web.messages import MOST_OUTPUTS, Message
-from equipoise.web.recorded import MeasuredSignals, compared_with, record_of_text
 from equipoise.web.replies import Reply
-from equipoise.web.shaken import SAMPLES
 from equipoise.web.variants import NOTHING, OPENED, STEP, VARIANT, Variants
 
 

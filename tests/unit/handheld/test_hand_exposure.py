@@ -14,11 +14,11 @@ import equipoise as eq
 from equipoise.errors import ModelError
 from equipoise.exposure.spectra import weigh_signal
 from equipoise.exposure.weighting import weighting
-from equipoise.handheld import exposed
+from equipoise.handheld import hand_exposure
 from equipoise.handheld import response as reciprocal
 from equipoise.handheld.chain import Dual, carry, solve
 from equipoise.handheld.design_plan import KEYS
-from equipoise.handheld.exposed import (
+from equipoise.handheld.hand_exposure import (
     SpeedBand,
     expose_tool,
     grips,
@@ -307,7 +307,7 @@ def test_slopes_of_many_numbers_are_those_of_each() -> None:
 def test_slopes_cost_one_more_run_along_the_shaft(monkeypatch: pytest.MonkeyPatch) -> None:
     """However many numbers there are."""
     runs: list[int] = []
-    for module, run in ((exposed, solve), (reciprocal, solve), (exposed, carry)):
+    for module, run in ((hand_exposure, solve), (reciprocal, solve), (hand_exposure, carry)):
 
         def counted(*given: Any, run: Callable[..., Any] = run) -> Any:
             runs.append(1)

@@ -24,7 +24,7 @@ from equipoise.results.outputs import (
 
 if TYPE_CHECKING:
     from equipoise.balancing.balanced import Balanced
-    from equipoise.balancing.compared import Worse
+    from equipoise.balancing.comparison import Worse
 
 EXACT, SMALL = 1e-12, 1.01e-4
 """Gap below which nothing more is told of it; above which it is told in percent."""

@@ -17,7 +17,7 @@ ADVISED = Path(__file__).parent / "advised"
 
 
 @cache
-def found(name: str) -> Findings | ToolFindings:
+def findings_of(name: str) -> Findings | ToolFindings:
     """Findings of a model at its own speed; their parts are computed when one first asks."""
     return find(name)
 
@@ -25,7 +25,7 @@ def found(name: str) -> Findings | ToolFindings:
 @cache
 def report_of(name: str, language: str = "en") -> ReportDocument:
     """What stands in the report of a model at its own speed."""
-    return build(found(name), language)
+    return build(findings_of(name), language)
 
 
 @cache

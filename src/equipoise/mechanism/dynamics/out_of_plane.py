@@ -27,7 +27,7 @@ from equipoise.decompositions import pinv
 from equipoise.i18n import Note, all_of
 from equipoise.mechanism.assembly.steps import p, u
 from equipoise.mechanism.checks import FRAME, NamedItems
-from equipoise.mechanism.dynamics.acting import acting_elements, acting_preloads
+from equipoise.mechanism.dynamics.applied_loads import acting_elements, acting_preloads
 from equipoise.mechanism.dynamics.reactions import (
     PUSH,
     Acting,

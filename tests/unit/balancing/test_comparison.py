@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from equipoise.balancing.compared import worse_of
+from equipoise.balancing.comparison import worse_of
 
 
 @pytest.mark.parametrize("more", [1.0 - 1e-14, 1.0 + 1e-14])

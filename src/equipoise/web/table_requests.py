@@ -9,8 +9,8 @@ from threading import Lock
 from typing import Any, Protocol
 
 from equipoise.quantities import clean, format_exact
-from equipoise.web.drawn import Incomplete, plain_of, sketch_of, with_entry
 from equipoise.web.edits import Computed
+from equipoise.web.incomplete import Incomplete, plain_of, sketch_of, with_entry
 from equipoise.web.messages import Entry, Message
 from equipoise.web.replies import Reply
 from equipoise.web.sketch import Sketch

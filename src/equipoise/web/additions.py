@@ -14,10 +14,10 @@ from string import ascii_uppercase
 from equipoise.errors import UsageError
 from equipoise.i18n import Note, all_of
 from equipoise.mechanism.checks import unknown
-from equipoise.mechanism.kinematics.outline import LinkPlacement, length_between, pose_between
+from equipoise.mechanism.kinematics.machine_draft import LinkPlacement, length_between, pose_between
 from equipoise.mechanism.parts.machine import FRAME, Drive, Link, Slider
 from equipoise.quantities import clean
-from equipoise.web.assuming import assumed_bar, assumed_block
+from equipoise.web.assumed_masses import assumed_bar, assumed_block
 from equipoise.web.messages import Spot
 from equipoise.web.sketch import Sketch
 

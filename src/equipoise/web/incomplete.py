@@ -22,11 +22,11 @@ from equipoise.symbols.part_signs import Surroundings, in_order, signs_of
 from equipoise.symbols.scene import DriveSign, GuideSign, Scene, Wheel, bodies_of, wheels_of
 from equipoise.symbols.shapes import BodyMark
 from equipoise.web.block import FloatBlock, Values
+from equipoise.web.completeness import lacking
 from equipoise.web.design import Design
 from equipoise.web.drawing import moves_of, stage_of
 from equipoise.web.edits import Computed, edited, settled, solved
 from equipoise.web.fields import Field, Measure, Scale, constrained_place, measures_of
-from equipoise.web.lacking import lacking
 from equipoise.web.messages import Change, Entry, Setting
 from equipoise.web.sketch import Sketch
 from equipoise.web.state import turning

@@ -44,7 +44,7 @@ from equipoise.schema.numbers import (
     read_number,
     vector_of,
 )
-from equipoise.schema.opening import Kind, document_of
+from equipoise.schema.open_files import Kind, document_of
 from equipoise.schema.writing import plain_default
 
 Content = Mapping[str, Any]

@@ -11,8 +11,13 @@ from equipoise.dataclass import dataclass
 from equipoise.errors import EquipoiseError, ModelError, UsageError, at_place, unknown
 from equipoise.i18n import Note, said, say, series, to_say
 from equipoise.mechanism.assembly.linkage import assemble
+from equipoise.mechanism.kinematics.machine_draft import (
+    STILL,
+    LinkPlacement,
+    MachineDraft,
+    pose_between,
+)
 from equipoise.mechanism.kinematics.motion import move
-from equipoise.mechanism.kinematics.outline import STILL, LinkPlacement, MachineDraft, pose_between
 from equipoise.mechanism.parts.machine import FRAME, Drive, Link, Machine, Slider
 from equipoise.mechanism.parts.shown_units import ShownUnits
 from equipoise.quantities import Dimension, clean, clean_place
