@@ -23,7 +23,8 @@ from equipoise.mechanism.parts.servo_motors import ServoMotor
 from equipoise.running.blocks import verdict
 from equipoise.running.drivers import Controller
 from equipoise.running.equation import CrankEquation
-from equipoise.running.integration import Instant, Integration
+from equipoise.running.integration import Integration
+from equipoise.running.piece_motion import Instant
 from equipoise.schema.files import json_text
 from equipoise.vibration.steady import speed_at
 from laws.test_run import GRAVITY, INERTIA, WEIGHT, crank

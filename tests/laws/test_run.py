@@ -21,7 +21,8 @@ from equipoise.running import integration
 from equipoise.running.blocks import run_blocks, run_headline, verdict
 from equipoise.running.drivers import Driver
 from equipoise.running.equation import CrankEquation
-from equipoise.running.integration import Instant, Integration
+from equipoise.running.integration import Integration
+from equipoise.running.piece_motion import Instant
 from equipoise.running.run import Run
 from support.analyses import subject_of
 from support.chosen import EXHAUSTIVE

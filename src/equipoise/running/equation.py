@@ -29,7 +29,7 @@ from equipoise.running.sources import Factors, Source, sources_of
 from equipoise.running.tabulated import Tabulated
 from equipoise.signals import Array
 
-PIECES = 24
+PIECES = 12
 """Pieces of a turn, to begin with."""
 DIFFERENCE = 1e-6
 """rad/s, or of a speed: steps of a difference that only tells whether the motion is stiff."""

@@ -155,7 +155,7 @@ class Shooting:
         return np.array(ends) / self.sizes
 
 
-DENSE = 24
+DENSE = 48
 """Places in a piece at which extremes are read, beside the nodes: a few hundredths of a degree."""
 ROUNDS, SAME = 60, 1e-13
 """Of the iteration where what resists depends on the speed; share of the speed that is rounding."""

@@ -15,9 +15,9 @@ energy of the linkage itself.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import field, replace
+from dataclasses import replace
 from itertools import pairwise
-from math import copysign, inf, nan, pi
+from math import copysign, inf, isfinite, nan, pi
 from typing import Any
 
 import numpy as np
@@ -27,7 +27,17 @@ from equipoise.errors import ResponseError
 from equipoise.i18n import Note
 from equipoise.running.drivers import LIMIT_REACHED, Driver
 from equipoise.running.equation import CrankEquation, just_after
-from equipoise.running.tabulated import NODES, POINTS, integral_to, polynomials, roughness
+from equipoise.running.piece_motion import (
+    AT_ENDS,
+    ELECTRIC,
+    PATHS,
+    STATIONS,
+    Instant,
+    PieceMotion,
+    TableRange,
+    instant_of,
+)
+from equipoise.running.tabulated import NODES, roughness
 from equipoise.signals import Array
 
 RELATIVE, ABSOLUTE = 1e-11, 1e-13
@@ -38,9 +48,9 @@ whose angle is the clock."""
 WITH_CORNERS = 1e-7
 """The same with friction, whose torque has corners where what presses changes its side: time and
 speed are off by less than that, and a piece takes a hundredth of the time that one in time does."""
-HALVINGS = 5
+HALVINGS = 6
 """After which a part of a piece whose motion is not resolved by angle is integrated in time."""
-SPEEDING_UP = 1 / 8
+SPEEDING_UP = 1 / 16
 """Share of a piece that is integrated in time where the crank speeds up: from a rest on, 1 / speed
 is resolved over parts as long as the way from that rest."""
 CLOSE, MOST_ITERATIONS = 1e-13, 8
@@ -65,7 +75,6 @@ AT_EASE = 1e-6
 million-millionth of the energy is left, less than what the integration misses of it."""
 SAMPLES = 72
 """In a cycle, from which sizes are read."""
-PATHS = {end: integral_to(POINTS, end) for end in (-1.0, 1.0)}
 PATIENCE, SLOW = 1000.0, 1e-6
 """rad at its usual speed, after which a crank that creeps along is looked at; share of that speed
 below which it stands still then."""
@@ -80,8 +89,6 @@ method takes thousands of steps to a piece."""
 DAMPED = 0.1
 """rad at the usual speed within which dampers bring a speed to its lasting one, below which an
 explicit method, whose steps are six times as long, takes too many of them until `PATIENCE`."""
-ELECTRIC = 3
-"""Values of a motor's circuit in a row of the track: its current, and two works."""
 BETWEEN = 6
 """Instants read in a step in time."""
 MOST_RATES = 50_000
@@ -118,47 +125,12 @@ class Limits:
     steady: bool = True
 
 
-@dataclass(frozen=True)
-class Instant:
-    """State of a run: s, rad, rad/s, and the work so far of each source, of the brake where there
-    is one, and of the drive, J.
-
-    electric : (3,) current of a direct-current motor, A, and work of its supply and heat so far, J.
-    """
-
-    time: float
-    angle: float
-    speed: float
-    work: Array
-    electric: Array = field(default_factory=lambda: np.zeros(ELECTRIC))
-
-
 CHECKED = 4 * NODES
 """Places of a piece at which it is seen whether a servo motor is at its limit of torque."""
 
-Solution = tuple[Callable[[float], Instant], Callable[[Array], Array]]
-"""The motion in a piece by places from -1 to 1 in it: an instant, and rows of the track."""
 Gained = tuple[Array, Array | None]
 """Kinetic energies (N,), J, gained up to the nodes of a part, and the inverse (N, N) of Newton's
 method there."""
-
-
-@dataclass(frozen=True, eq=False)
-class TableRange:
-    """A piece of the table, or a part of it.
-
-    place : what is the same in every cycle.  ends : crank angles, rad.
-    values : (C, NODES) at its nodes.  coefficients : (NODES,) of the reduced inertia.
-    """
-
-    place: tuple[float, ...]
-    ends: tuple[float, float]
-    values: Array
-    coefficients: Array
-
-    def inertia_at(self, x: Array | float) -> Array:
-        """Reduced inertia (...), kg m2, at places (...) from -1 to 1 in it."""
-        return np.asarray(polynomials(x)[..., :NODES] @ self.coefficients)
 
 
 class Integration:
@@ -226,7 +198,7 @@ class Integration:
                 now = self._piece(now)
             if now is None:
                 return
-            if not np.all(np.isfinite([now.time, now.angle, now.speed])):
+            if not isfinite(now.time + now.angle + now.speed):
                 raise _not_beyond(before.time)
             self.on_turns(abs(now.angle - angle) / (2 * pi))
             if k % LOOKED == 0:
@@ -373,13 +345,13 @@ class Integration:
             edge = ends[self.direction > 0]
             far = 1.0 if self._slows(begin) else SPEEDING_UP
             return self._in_time(begin, begin.angle + far * (edge - begin.angle))
-        ends = part.ends
-        at, within = solution
-        x, kind = self._first_in(begin, ends, solution)
-        nodes = POINTS[:: int(self.direction)]
-        inside = within(nodes[(nodes - x) * self.direction < 0])
-        end = at(x)
-        self.track.append(inside)
+        x, kind = self._first_in(begin, part.ends, solution)
+        if x == self.direction:
+            self.track.append(solution.passed)
+            return self._happens(kind, solution.at(x))
+        before = (STATIONS[self.direction] - x) * self.direction < 0
+        end = solution.at(x)
+        self.track.append(solution.passed[before])
         self._record(end)
         return self._happens(kind, end)
 
@@ -404,17 +376,14 @@ class Integration:
         state = np.array([now.angle, now.speed, *now.electric])
         return self._rates(now.time, state)[1] * self.direction < 0
 
-    def _by_angle(self, begin: Instant, part: TableRange) -> Solution | None:
+    def _by_angle(self, begin: Instant, part: TableRange) -> PieceMotion | None:
         """The motion in a piece; None where the crank is so slow that the angle is no clock."""
-        ends = part.ends
-        half = (ends[1] - ends[0]) / 2
-        start = min(max((begin.angle - ends[0]) / half - 1, -1.0), 1.0)
-        paths = half * (PATHS[start] if start in PATHS else integral_to(POINTS, start))
-        began = float(part.inertia_at(start)) * begin.speed**2 / 2
+        paths = part.half * PATHS[self.direction]
+        began = float(part.coefficients @ AT_ENDS[-self.direction]) * begin.speed**2 / 2
         before = self.cycle_before.get(part.place)
         solution = before and self._iterated((begin, began), part, paths, before)
         if solution is None:
-            anew = np.zeros(len(POINTS)), None
+            anew = np.zeros(NODES), None
             solution = self._iterated((begin, began), part, paths, anew)
         if solution is None:
             return None
@@ -422,10 +391,12 @@ class Integration:
         pace = 1 / speed
         resolved = RESOLVED if self.equation.friction is None else WITH_CORNERS
         for smooth in (pace, current) if self.driver.lags else (pace,):
-            if roughness(smooth) > resolved * np.max(np.abs(smooth)):
+            if roughness(smooth) > resolved * np.abs(smooth).max():
                 return None
-        rates = np.array([pace, *pace * self.driver.electric_rates(current, speed), *torques])
-        return self._dense(begin, part, (start, began, rates))
+        rates = np.concatenate(
+            [pace[None], pace * self.driver.electric_rates(current, speed), torques]
+        )
+        return PieceMotion(begin, part, self.direction, began, rates, self.driver)
 
     def _iterated(
         self, start: tuple[Instant, float], part: TableRange, paths: Array, guess: Gained
@@ -441,7 +412,7 @@ class Integration:
         energy, inverse = began + guess[0], guess[1]
         before = inf
         for _ in range(MOST_ITERATIONS):
-            if not np.all(energy > 0):
+            if not energy.min() > 0:  # nor of what is no number
                 return None
             speed = self.direction * np.sqrt(2 * energy / part.values[0])
             current = self._current(speed, paths, begin)
@@ -449,52 +420,16 @@ class Integration:
             torques = self._torques(
                 part.values, speed, driving, self._times_at(speed, paths, begin)
             )
-            missed = began + paths @ np.sum(torques, axis=0) - energy
-            most = float(np.max(np.abs(missed)))
-            if most <= CLOSE * np.max(energy):
+            missed = began + paths @ torques.sum(axis=0) - energy
+            most = float(np.abs(missed).max())
+            if most <= CLOSE * energy.max():
                 return (energy - began, inverse), speed, current, torques
             if inverse is None or most > QUICK * before:
                 slopes = self._slopes(part.values, speed, torques, (paths, begin)) / energy
-                inverse = np.linalg.inv(np.eye(len(POINTS)) - paths @ slopes)
+                inverse = np.linalg.inv(np.eye(NODES) - paths @ slopes)
             before = most
             energy = energy + inverse @ missed
         return None
-
-    def _dense(
-        self, begin: Instant, part: TableRange, step: tuple[float, float, Array]
-    ) -> Solution:
-        """The motion in a piece anywhere in it, as of `_by_angle`.
-
-        found : place of its begin, kinetic energy there, and rates by crank angle at the nodes of
-            time, of the motor's circuit and of works.
-        """
-        (start, began, rates), ends = step, part.ends
-        half = (ends[1] - ends[0]) / 2
-
-        def rows(x: Array) -> Array:
-            gained = half * integral_to(x, start) @ rates.T
-            angle = ends[0] + half * (x + 1)
-            energy = began + np.sum(gained[:, 1 + ELECTRIC :], axis=1)
-            now = self.direction * np.sqrt(2 * energy / part.inertia_at(x))
-            electric = begin.electric + gained[:, 1 : 1 + ELECTRIC]
-            if not self.driver.lags:
-                electric[:, 0] = self.driver.current(now)
-            work = begin.work + gained[:, 1 + ELECTRIC :]
-            return np.column_stack([begin.time + gained[:, 0], angle, now, electric, work])
-
-        def at(x: float) -> Instant:
-            instant = self._instant(rows(np.array([x]))[0])
-            return replace(
-                instant, angle=ends[0] if x == -1 else ends[1] if x == 1 else instant.angle
-            )
-
-        return at, rows
-
-    @staticmethod
-    def _instant(row: Array) -> Instant:
-        """Of a row of the track."""
-        time, angle, speed = row[:3].tolist()
-        return Instant(time, angle, speed, row[3 + ELECTRIC :], row[3 : 3 + ELECTRIC])
 
     def _current(self, speed: Array, paths: Array, begin: Instant) -> Array:
         """Of the motor (N,), A, at the nodes of a piece that is passed at these speeds (N,)."""
@@ -554,12 +489,12 @@ class Integration:
         return [-self.direction * self.driver.holding()] if self.driver.brake else []
 
     def _first_in(
-        self, begin: Instant, ends: tuple[float, float], solution: Solution
+        self, begin: Instant, ends: tuple[float, float], solution: PieceMotion
     ) -> tuple[float, str]:
         """Place in a piece at which something happens first, and what."""
         from scipy.optimize import brentq
 
-        at = solution[0]
+        at = solution.at
         far, half = self.direction, (ends[1] - ends[0]) / 2
         pairs: list[tuple[float, str]] = []
         for kind, angle in self._angles():
@@ -574,7 +509,7 @@ class Integration:
 
                 pairs.append((brentq(left, start, far, xtol=1e-15), kind))
         start = (begin.angle - ends[0]) / half - 1
-        if self.driver.controlled and (limit := self._limit_in(start, solution[1])) is not None:
+        if self.driver.controlled and (limit := self._limit_in(start, solution.rows)) is not None:
             pairs.append((limit, "limit"))
         # of what happens at the edge itself the others come first
         return min([*pairs, (far, "edge")], key=lambda item: item[0] * far)
@@ -661,7 +596,7 @@ class Integration:
         kind = last if done.t[-1] >= until else "rest"
         for hit, (name, _) in zip(done.t_events, [("halt", 0.0), *marks], strict=True):
             kind = name if hit.size else kind
-        instant = self._instant(end)
+        instant = instant_of(end)
         return self._happens(kind, replace(instant, angle=edge) if kind == "edge" else instant)
 
     def _is_stiff(self, begin: Instant, edge: float) -> bool:

@@ -20,7 +20,8 @@ from equipoise.results.result import Result
 from equipoise.running.drivers import Driver
 from equipoise.running.equation import CrankEquation
 from equipoise.running.flywheel import Flywheel, share_of_mean, size_flywheel
-from equipoise.running.integration import ELECTRIC, Event, Instant, Integration, Limits
+from equipoise.running.integration import Event, Integration, Limits
+from equipoise.running.piece_motion import ELECTRIC, Instant
 from equipoise.running.sources import LOADS
 from equipoise.signals import Array
 

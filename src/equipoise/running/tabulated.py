@@ -18,12 +18,12 @@ from equipoise.errors import ResponseError
 from equipoise.i18n import Note
 from equipoise.signals import Array
 
-NODES = 12
+NODES = 16
 """Of a piece: with Chebyshev's nodes, which lie inside of it, so that a jump at its end is none."""
 FINE = 1e-12
 """Share of a function's largest value below which a coefficient is rounding."""
-HALVINGS = 9
-"""After which a piece is left as it is; 24 pieces in a turn are a fortieth of a degree wide then,
+HALVINGS = 10
+"""After which a piece is left as it is; 12 pieces in a turn are a fortieth of a degree wide then,
 and what is left is a corner, whose share of an integral is nothing.
 """
 MOST_NODES = 200_000
