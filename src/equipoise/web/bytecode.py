@@ -37,6 +37,7 @@ PUBLISHED = {
 """Hashes of the files of the npm package `pyodide`."""
 STDLIB = re.compile(r".*/python\d+\.zip/")
 PACKAGES = re.compile(r".*/site-packages/")
+PACKAGE = re.compile(r".*/site-packages/(\w+)/")
 
 
 def find_node() -> str | None:
@@ -120,7 +121,9 @@ def in_place(
 
 
 def export_bytecode() -> bytes:
-    """Open a machine, and return an archive of the bytecode of all modules imported by then."""
+    """Open a machine, and return an archive of the bytecode of all modules imported by then, and
+    of all others of the packages that lose their docstrings.
+    """
     sys.dont_write_bytecode = True
     from equipoise.web.worker import Foreground
 
@@ -136,9 +139,9 @@ def export_bytecode() -> bytes:
 
 
 def _sources() -> Iterator[tuple[str, bytes, str]]:
-    """Of the modules that are imported: path in its archive, source, and name of its file."""
+    """Of the modules that are compiled: path in its archive, source, and name of its file."""
     names = {str(getattr(module, "__file__", "")) for module in [*sys.modules.values()]}
-    for name in sorted(names):
+    for name in sorted({*names, *_whole_packages(names)}):
         if not name.endswith(".py"):
             continue
         if inside := STDLIB.match(name):
@@ -148,6 +151,13 @@ def _sources() -> Iterator[tuple[str, bytes, str]]:
                     yield place, archive.read(place), name
         elif inside := PACKAGES.match(name):
             yield name[inside.end() :], Path(name).read_bytes(), name
+
+
+def _whole_packages(names: Iterable[str]) -> Iterator[str]:
+    """Names of all files of the packages but this one of which some files are given."""
+    folders = {match[0] for match in map(PACKAGE.match, names) if match and match[1] != OWN}
+    for folder in folders:
+        yield from map(str, Path(folder).rglob("*.py"))
 
 
 def _bytecode_of(source: bytes, name: str) -> bytes:
