@@ -73,7 +73,7 @@ def test_scipy_goes_through_a_cycle_alike(name: str) -> None:
         inertia = equation.at(start, speed)[0]
         torque -= sense * inertia * (end**2 - speed**2) / 2 / equation.period
     assert abs(angle - start) == pytest.approx(table.period, rel=2e-4)  # as its loads may jump
-    assert end == pytest.approx(speed, rel=1e-5)
+    assert end == pytest.approx(speed, rel=1e-4)
     rate = done.sol(np.linspace(0.0, period, 20001))[1]
     assert np.ptp(rate) / abs(machine.drive.speed) == pytest.approx(0.05, rel=1e-3)
 
