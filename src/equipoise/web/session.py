@@ -5,7 +5,7 @@ It knows nothing of how messages travel.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from dataclasses import field
 from threading import Lock
@@ -22,7 +22,7 @@ from equipoise.results.result import words_of
 from equipoise.schema.files import LARGEST
 from equipoise.schema.template import named_parts
 from equipoise.web import file_requests, table_requests
-from equipoise.web.block import Values
+from equipoise.web.block import Array, Values
 from equipoise.web.deferred import deferred_replies, response_of
 from equipoise.web.design import Design
 from equipoise.web.disk import Disk
@@ -46,7 +46,7 @@ from equipoise.web.messages import MOST_LANGUAGES, Message
 from equipoise.web.replies import Reply, refused
 from equipoise.web.sketch import Sketch
 from equipoise.web.sketch_edits import lost, sketch_after
-from equipoise.web.state import first_of, state_of
+from equipoise.web.state import first_of, spectra_of, state_of
 from equipoise.web.view_state import ASKED, ViewState
 
 
@@ -63,9 +63,10 @@ class Session:
     wanted : outputs that the page draws besides those that it always does.
     language : that its reader speaks.  disk : the file that is open, if it can be saved.
     seen : what else the page shows.
-    brief : whether states of a machine have the figures and numbers of the last one that was not
-        brief, as in a drag, where a page draws at every move, and writes more seldom.
+    brief : whether states of a machine have the figures, numbers and spectra of the last one that
+        was not brief, as in a drag, where a page draws at every move, and writes more seldom.
     written : those figures and numbers; None where the machine was unfinished.
+    spectra : amplitudes by order, of the machine that `written` is about.
     lock : held while a design takes the place of another, since balancing has a thread of its own.
     """
 
@@ -82,6 +83,7 @@ class Session:
     seen: ViewState = field(default_factory=ViewState)
     brief: bool = False
     written: Values | None = None
+    spectra: Mapping[str, Array] = field(default_factory=dict)
     lock: Lock = field(default_factory=Lock)
 
     def receive(self, message: Message) -> Iterator[Reply]:
@@ -364,11 +366,10 @@ class Session:
             content, data = state_of_sketch(view, self.scale)
             self.written = None
         else:
+            last = self.written if self.brief else None
+            self.spectra = spectra_of(view.analysis, self.spectra if last else None)
             content, data = self._state_of(view)
-            if self.brief and self.written is not None:
-                content |= self.written
-            else:
-                content |= self._numbers_of(view)
+            content |= last or self._numbers_of(view)
         now = self.found if self.preview is None else None
         file = self.disk and self.disk.kept(
             now.design.machine if isinstance(now, Computed) else None
@@ -393,6 +394,7 @@ class Session:
         view = self.seen
         return state_of(
             computed,
+            self.spectra,
             view.pale or self.before,
             self.wanted,
             against=self._against,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Mapping, Sequence
 from functools import lru_cache
 
 import numpy as np
@@ -31,6 +31,7 @@ MOST_ORDER = 20
 
 def state_of(
     computed: Computed,
+    spectra: Mapping[str, Array],
     before: Computed | None,
     wanted: Sequence[str] = (),
     against: Computed | None = None,
@@ -39,6 +40,7 @@ def state_of(
 ) -> tuple[Values, bytes]:
     """Everything that a page draws of a machine, without its figures and numbers.
 
+    spectra : its amplitudes by order, see `spectra_of`.
     before : whose curves are drawn behind its own, if any's.
     wanted : names of further outputs that it draws, as far as there are such.
     against : whose figures are told beside its own, if any's; `before` where it is not given.
@@ -50,12 +52,12 @@ def state_of(
     scene = computed.scene
     moves_of(scene, block)
     signals = signals_of(analysis)
-    _add_signals(block, signals, analysis)
+    _add_signals(block, signals, analysis, spectra)
     _add_outputs(block, analysis, wanted)
     old = None
     if before is not None:
         old = signals_of(before.analysis)
-        _add_signals(block, old, before.analysis, "before.")
+        _add_signals(block, old, before.analysis, spectra_of(before.analysis), "before.")
         _add_outputs(block, before.analysis, wanted, "before.")
     against = against or before
     length = display("length", [extent_of(machine)])
@@ -166,30 +168,43 @@ def _add_outputs(
 
 
 def _add_signals(
-    block: FloatBlock, signals: dict[str, Array], analysis: Analysis, prefix: str = ""
+    block: FloatBlock,
+    signals: dict[str, Array],
+    analysis: Analysis,
+    spectra: Mapping[str, Array],
+    prefix: str = "",
 ) -> None:
     if prefix and signals:
         block.add(f"{prefix}crank_angle", analysis.crank_angle)
     for name, values in signals.items():
         block.add(f"{prefix}{name}", values)
-    for name, sizes in _spectra(analysis, signals):
+    for name, sizes in spectra.items():
         block.add(f"{prefix}spectrum.{name}", sizes)
 
 
-def _spectra(analysis: Analysis, signals: dict[str, Array]) -> Iterator[tuple[str, Array]]:
-    """Amplitude at each order that is shown, by name."""
+def spectra_of(analysis: Analysis, last: Mapping[str, Array] | None = None) -> Mapping[str, Array]:
+    """Amplitude at each order that is shown, by name.
+
+    last : of a machine that differs by little, which are returned unless names or orders are others.
+    """
     if analysis.solved is None:
-        return
+        return {}
     turns = analysis.motion.turns
     ordered = [item for item in analysis.outputs.ordered if item.declared.compared]
+    whole = signals_of(analysis).get("rows.shaking_force")
+    names = [item.name for item in ordered]
+    names += [] if whole is None else ["rows.shaking_force.x", "rows.shaking_force.y"]
+    shape = (_places(turns) + 1,)
+    if last is not None and [*last] == names and all(old.shape == shape for old in last.values()):
+        return last
     motion = analysis.resolved.motion
     # No more orders than are drawn: where forces jump they are sums over thousands of crank angles.
-    sizes = _sizes(motion.periodic(np.stack([item.resolved for item in ordered]), _places(turns)))
-    yield from zip((item.name for item in ordered), sizes, strict=True)
-    whole = signals.get("rows.shaking_force")
+    sizes = [
+        *_sizes(motion.periodic(np.stack([item.resolved for item in ordered]), _places(turns)))
+    ]
     if whole is not None:
-        yield "rows.shaking_force.x", _sizes(Periodic.of(whole.real, turns))
-        yield "rows.shaking_force.y", _sizes(Periodic.of(whole.imag, turns))
+        sizes += [_sizes(Periodic.of(part, turns)) for part in (whole.real, whole.imag)]
+    return dict(zip(names, sizes, strict=True))
 
 
 def _places(turns: int) -> int:

@@ -11,8 +11,44 @@ from equipoise.web.deferred import responded
 from equipoise.web.design import Design
 from equipoise.web.edits import solved
 from equipoise.web.gallery import opened_example, titles
+from equipoise.web.state import spectra_of
 from surface.running import example_text, massless
 from unit.web.pages import ask, edit, opened
+
+
+@pytest.mark.parametrize("name", ["slider-crank-engine", "four-row-transplanter"])
+def test_spectra_of_a_drag_are_those_of_its_last_whole_state(name: str) -> None:
+    """Forces that jump need thousands of crank angles for them, and a page draws at every move."""
+    session, first = opened(name)
+    spectra = [array for array in first.content["arrays"] if array.startswith("spectrum.")]
+    path = next(one["path"] for one in first.content["fields"] if one["path"].endswith(".mass"))
+    change = {"set": path, "text": "5 kg"}
+    session.brief = True
+    moved = edit(session, change, commit=False)
+    assert np.max(np.abs(moved.array("shaking_force") - first.array("shaking_force"))) > 1
+    session.brief = False
+    whole = edit(session, change, commit=False)
+    key = "spectrum.shaking_force.x"
+    assert np.max(np.abs(whole.array(key) - first.array(key))) > 0.1
+    for array in spectra:
+        np.testing.assert_array_equal(moved.array(array), first.array(array))
+    np.testing.assert_array_equal(whole.array("shaking_force"), moved.array("shaking_force"))
+
+
+def test_spectra_are_computed_anew_where_names_or_orders_are_others() -> None:
+    """Without speed there is no force of all rows; a cycle of several turns has more orders."""
+    session, first = opened("four-row-transplanter")
+    session.brief = True
+    moved = edit(session, {"set": "drive.speed", "text": "0 rpm"}, commit=False)
+    every = {name for name in first.content["arrays"] if name.startswith("spectrum.")}
+    left = {name for name in moved.content["arrays"] if name.startswith("spectrum.")}
+    assert every - left == {f"spectrum.rows.shaking_force.{axis}" for axis in "xy"}
+    analysis = eq.analyze(eq.load("geared-counterweight"))
+    spectra = spectra_of(analysis)
+    assert spectra_of(analysis, spectra) is spectra
+    shorter = {name: sizes[:21] for name, sizes in spectra.items()}
+    for name, sizes in spectra_of(analysis, shorter).items():
+        np.testing.assert_array_equal(sizes, spectra[name])
 
 
 def test_arrays_are_those_of_the_analysis() -> None:
