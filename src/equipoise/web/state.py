@@ -185,7 +185,7 @@ def _add_signals(
 def spectra_of(analysis: Analysis, last: Mapping[str, Array] | None = None) -> Mapping[str, Array]:
     """Amplitude at each order that is shown, by name.
 
-    last : of a machine that differs by little, which are returned unless names or orders are others.
+    last : of a machine that differs by little; returned unless names or orders are others.
     """
     if analysis.solved is None:
         return {}

@@ -31,8 +31,8 @@ from equipoise.web.state_changes import StateChanges
 OF_MACHINE = ("balance", "download")
 """Of the questions that take long, those about the machine that is open."""
 SELDOM = 0.2
-"""s after which all that follows from an edit is computed in a drag that never pauses, and figures
-and numbers are written anew."""
+"""s after which all that follows from an edit is computed in a drag that never pauses, and figures,
+numbers and spectra are written anew."""
 CANCELLED = Note("cancelled; nothing was changed")
 LACKING = to_say("this needs {package}, which this site does not have and could not load")
 
