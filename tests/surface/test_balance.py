@@ -73,6 +73,14 @@ def test_tables_of_the_papers_counterweight() -> None:
     assert not re.search(r"nan|inf|None|(?<!\+)-0 ", text)
 
 
+def test_what_to_look_at_next_is_what_was_not_done(tmp_path: Path) -> None:
+    out = tmp_path / "two words.toml"
+    told = unfolded(succeeded(equipoise("balance", "balance-crank")))
+    written = unfolded(succeeded(equipoise("balance", "balance-crank", "--out", out)))
+    assert "Look at next: balance --out FILE; balance --full." in told
+    assert f"Look at next: report '{out}'; balance --full." in written
+
+
 def test_moved_centre_of_mass() -> None:
     text = run("balance-coupler")
     assert (

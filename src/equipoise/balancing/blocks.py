@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from shlex import quote
 from typing import TYPE_CHECKING
 
 from equipoise.balancing.comparison import FAINT, NOTHING, WORSE, scales_of
@@ -82,10 +83,13 @@ def balanced_blocks(balanced: Balanced) -> Iterator[Block]:
     yield from outcome_blocks(balanced)
 
 
-def balanced_headline(balanced: Balanced, alone: bool = False) -> Iterator[Block]:
+def balanced_headline(
+    balanced: Balanced, alone: bool = False, out: str | None = None
+) -> Iterator[Block]:
     """What is gained; alone also what to change for it, and what gets worse.
 
     alone : whether nothing follows, as on a terminal.
+    out : the file to which the balanced machine is written; None for no file.
     """
     if alone:
         yield from (Text(line, broken_if(True)) for line in broken_capacities(balanced))
@@ -126,7 +130,8 @@ def balanced_headline(balanced: Balanced, alone: bool = False) -> Iterator[Block
     yield from (Text(line, is_detail=balanced.advice is not None) for line in details)
     if balanced.notes:
         yield Notes(balanced.notes[:MOST_NOTES])
-    yield look_at_next("balance --out FILE", "balance --full")
+    first_step = "balance --out FILE" if out is None else f"report {quote(out)}"
+    yield look_at_next(first_step, "balance --full")
 
 
 def _bending(balanced: Balanced) -> Iterator[Block]:

@@ -92,7 +92,8 @@ def balance(
         if drawing is not None and sheets is not None:
             yield from _save_drawing(drawing, *sheets)
 
-    return replace(CommandResult.of(balanced), save=save)
+    headline = partial(balanced.headline, out=out)
+    return replace(CommandResult.of(balanced), headline=headline, save=save)
 
 
 def _refuse(balanced: Balanced, option: str) -> None:

@@ -24,6 +24,7 @@ from equipoise.figures.chart_parts import (
 from equipoise.figures.style import short
 from equipoise.i18n import say
 from equipoise.mechanism.dynamics.reactions import JointForce, SliderForce
+from equipoise.mechanism.outputs.declared import body_named, joint_named
 from equipoise.results.charts import DEGREES, Array, Axis, Chart, Curve, Mark, Panel, quantity
 from equipoise.results.joint_blocks import contact_named, display_of_joints
 
@@ -172,7 +173,8 @@ def joints_of(analysis: Analysis) -> dict[str, JointCurve]:
     for name, joint in every.items():
         joint_curves[name] = JointCurve(named(forces, name, joint), settled(joint.value, force))
         if isinstance(joint, SliderForce):
-            text = say("{name}: couple on {on}", name=short(name), on=short(joint.on))
+            on = short(body_named(joint.on))
+            text = say("{name}: couple on {on}", name=short(joint_named(name)), on=on)
             joint_curves[f"{name}.moment"] = JointCurve(text, settled(joint.moment, moment))
     for name in analysis.machine.bearings:
         value = forces.across.bearings[name].value
@@ -184,13 +186,13 @@ def joints_of(analysis: Analysis) -> dict[str, JointCurve]:
 
 def named(forces: Forces, name: str, joint: JointForce) -> str:
     """Name of a joint, and which body acts on which; names made of these are not said twice."""
-    bodies = {"on": short(joint.on), "by": short(joint.by)}
+    bodies = {"on": short(body_named(joint.on)), "by": short(body_named(joint.by))}
     if name not in forces.joints:
         what = contact_named(forces, name)
         return say("{name}: {by} on {on}", name=what, **bodies)
     if name in (f"{joint.by} on {joint.on}", f"{joint.on} on {joint.by}"):
         return say("slider: {by} on {on}", **bodies)
-    return say("{name}: {by} on {on}", name=short(name), **bodies)
+    return say("{name}: {by} on {on}", name=short(joint_named(name)), **bodies)
 
 
 def joints(analysis: Analysis) -> Iterator[Chart]:

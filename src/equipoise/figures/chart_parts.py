@@ -110,6 +110,8 @@ def continued(names: Sequence[Any], every: Sequence[Any]) -> str:
         return ""
     first = every.index(names[0]) + 1
     last = first + len(names) - 1
+    if first == last:
+        return " " + say("({first} of {count})", first=first, count=len(every))
     return " " + say("({first} to {last} of {count})", first=first, last=last, count=len(every))
 
 

@@ -114,9 +114,16 @@ def plane_axes(scene: Scene) -> tuple[Axis, Axis]:
     return x, y
 
 
-def panel_content(scene: Scene, k: int) -> dict[str, Any]:
-    """A machine at the k-th crank angle, as a panel has it: what curves are drawn on, and signs."""
-    every = pieces(scene)
+SOIL = "field"
+"""Layer of the soil, which is as wide as the paths of the machine."""
+
+
+def panel_content(scene: Scene, k: int, without: str = "") -> dict[str, Any]:
+    """A machine at the k-th crank angle, as a panel has it: what curves are drawn on, and signs.
+
+    without : a layer that is left out.
+    """
+    every = [piece for piece in pieces(scene) if piece.layer != without]
     ground = [piece for piece in every if piece.layer in GROUND]
     signs = [piece for piece in every if piece.layer not in GROUND]
     return {"ground": tuple(placed(scene, ground, k)), "signs": tuple(placed(scene, signs, k))}
@@ -221,14 +228,31 @@ BEYOND = 1.0
 
 
 def rolling(analysis: Analysis) -> list[str]:
-    """Links with centrodes in a whole cycle: those that turn, but about no pin in the frame."""
-    machine = analysis.machine
-    if not analysis.motion.whole_cycle:
+    """Links with centrodes in a whole cycle: those that turn, but about no pin in the frame.
+
+    Those whose instant centres are all too far off to be drawn are not among them.
+    """
+    machine, motion = analysis.machine, analysis.motion
+    if not motion.whole_cycle:
         return []
     pinned_links = {machine.drive.link, *pinned(machine)}
     free = [link for link in machine.links if link not in pinned_links]
-    turning = {name for name in free if np.ptp(analysis.motion.links[name].angle) > STILL}
-    return [name for name in free if name in turning and f"{name}/{FRAME}" in pairs(machine)]
+    turning = {name for name in free if np.ptp(motion.links[name].angle) > STILL}
+    names = [name for name in free if name in turning and f"{name}/{FRAME}" in pairs(machine)]
+    box = Scene.of(motion).box
+    return [name for name in names if np.isfinite(_near(_fixed_centrode(motion, name), box)).any()]
+
+
+def _fixed_centrode(motion: Motion, link: str) -> Array:
+    """Path of the instant centre of a link in the frame, x + iy, m."""
+    return instant_center(motion, f"{link}/{FRAME}")
+
+
+def _near(places: Array, box: tuple[complex, complex]) -> Array:
+    """Places, m, without those that are too far from a box to be drawn with it."""
+    low, high = box
+    far = np.abs(places - (low + high) / 2) >= BEYOND * abs(high - low)
+    return np.where(far, complex(np.nan, np.nan), places)
 
 
 def centrodes(analysis: Analysis, links: Sequence[str] | None = None) -> Chart:
@@ -238,16 +262,13 @@ def centrodes(analysis: Analysis, links: Sequence[str] | None = None) -> Chart:
     """
     motion, scene = analysis.motion, Scene.of(analysis.motion)
     names = rolling(analysis)[:MOST_CENTRODES] if links is None else [*links]
-    k, (low, high) = clear_angle(scene), scene.box
-    middle, reach = (low + high) / 2, BEYOND * abs(high - low)
+    k = clear_angle(scene)
     panels = []
     for name in names:
         link, base = motion.links[name], motion.points[motion.linkage.anchors[name]].place
-        fixed = instant_center(motion, f"{name}/{FRAME}")
-        fixed = np.where(np.abs(fixed - middle) < reach, fixed, complex(np.nan, np.nan))
+        fixed = _near(_fixed_centrode(motion, name), scene.box)
         turn = np.exp(1j * (link.angle[k] - link.angle))
-        moving = base[k] + (fixed - base) * turn
-        moving = np.where(np.abs(moving - middle) < reach, moving, complex(np.nan, np.nan))
+        moving = _near(base[k] + (fixed - base) * turn, scene.box)
         curves = (
             Curve.of(np.append(fixed, fixed[:1]), say("fixed centrode"), "several 1"),
             Curve.of(np.append(moving, moving[:1]), say("moving centrode"), "several 2"),
@@ -263,7 +284,8 @@ def centrodes(analysis: Analysis, links: Sequence[str] | None = None) -> Chart:
             equal=True,
             zero=False,
             sign_size=1.0 if len(names) == 1 else SMALLER,
-            **panel_content(scene, k),
+            held=scene.box,
+            **panel_content(scene, k, without=SOIL),
         )
         panels.append(panel)
     text = {"link": short(analysis.machine.drive.link), "angle": told_pose(scene, k)}

@@ -12,7 +12,7 @@ import numpy as np
 
 from equipoise.dataclass import dataclass
 from equipoise.figures.chart_parts import angle_step
-from equipoise.figures.linkage import panel_content
+from equipoise.figures.linkage import SOIL, panel_content
 from equipoise.figures.style import short
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.kinematics.motion import move
@@ -20,7 +20,7 @@ from equipoise.mechanism.kinematics.tip import TipCurve
 from equipoise.planting.figures import GroundPath
 from equipoise.results.charts import Array, Arrow, Axis, Chart, Curve, Mark, Panel, quantity
 from equipoise.symbols.scene import Scene
-from equipoise.symbols.shapes import soil
+from equipoise.symbols.shapes import Shape, soil
 
 if TYPE_CHECKING:
     from equipoise.planting.summary import PlantingFigures
@@ -235,6 +235,7 @@ def _machine_panel(paths: Paths, corners: tuple[complex, complex]) -> Panel:
         Mark.of(item.place, item.name, "lines", item.away, False, True, near=5.0)
         for item, _ in ticks
     ]
+    content = panel_content(paths.scene, -1, without=SOIL)
     return Panel(
         _axis(say("x in the frame")),
         _axis(say("height y in the frame")),
@@ -249,8 +250,15 @@ def _machine_panel(paths: Paths, corners: tuple[complex, complex]) -> Panel:
         zero=False,
         held=corners,
         sign_size=SMALLER,
-        **panel_content(paths.scene, -1),
+        **{**content, "ground": (*_earth(paths, corners), *content["ground"])},
     )
+
+
+def _earth(paths: Paths, corners: tuple[complex, complex]) -> list[Shape]:
+    """Soil that reaches beyond all sides of a panel but the upper one."""
+    over = corners[1].real - corners[0].real
+    ends = corners[0].real - over, corners[1].real + over
+    return soil(*ends, paths.level, corners[0].imag - over, paths.scene.unit)
 
 
 def _ground_panel(paths: Paths, corners: tuple[complex, complex]) -> Panel:
@@ -264,9 +272,6 @@ def _ground_panel(paths: Paths, corners: tuple[complex, complex]) -> Panel:
         marks.append(Mark.of(place, text, "crossing", 0.0, near=9.0))
     spacing, arrows, lines = _hill_spacing(paths, corners)
     way = say("machine drives")
-    over = corners[1].real - corners[0].real
-    ends = corners[0].real - over, corners[1].real + over
-    bottom = corners[0].imag - over
     return Panel(
         _axis(say("distance over ground")),
         _axis(say("height y in the frame")),
@@ -282,7 +287,7 @@ def _ground_panel(paths: Paths, corners: tuple[complex, complex]) -> Panel:
         equal=True,
         zero=False,
         held=corners,
-        ground=tuple(soil(*ends, paths.level, bottom, paths.scene.unit)),
+        ground=tuple(_earth(paths, corners)),
     )
 
 

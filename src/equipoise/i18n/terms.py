@@ -120,6 +120,9 @@ MEANINGS = {
         "Force of friction in a sliding joint, along its guide."
     ),
     "friction loss in all joints": to_say("Power that friction in all joints turns into heat."),
+    "friction loss at {name}": to_say(
+        "Power that friction between teeth, at a cam, or in a belt or chain turns into heat."
+    ),
     "friction loss in joint {name}": to_say("Power that friction in a joint turns into heat."),
     "friction torque in joint {name}": to_say("Torque of friction in a pin joint."),
     "instant centre of {name}": to_say(
@@ -177,9 +180,6 @@ MEANINGS = {
         "Component of the force in a sliding joint across its guide."
     ),
     "position of {name}": to_say("Coordinates of a point in the frame."),
-    "power lost in passing on the force {name}": to_say(
-        "Power that friction between teeth, or in a belt or chain, turns into heat."
-    ),
     "pressure angle {name}": to_say(
         "Angle between the normal of the contact and the motion of the follower."
     ),

@@ -289,7 +289,10 @@ def kinematic(analysis: Analysis, name: str) -> str:
 
     every = [output for output in analysis.outputs if output.group == "transmission"]
     if every and name == kinematics_named("transmission"):
-        ends = ((item.figures.min, item.figures.max) for item in every)
+        ends = [(item.figures.min, item.figures.max) for item in every]
+        bar = analysis.four_bar
+        if analysis.machine.crank_turns and bar is not None and bar.transmission_min is not None:
+            ends.append((bar.transmission_min, bar.transmission_max))  # at angles between samples
         low, high = (
             angle(f(pair)) for f, pair in zip((min, max), zip(*ends, strict=True), strict=True)
         )

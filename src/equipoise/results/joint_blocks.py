@@ -90,7 +90,7 @@ def _elements_table(
         values = analysis.motion.element_values(table, number)
         figures = (analysis.motion.figures(values[name]) for name in names)
         cells = (cell(figure) for figure in figures for cell in (smallest, largest))
-        rows.append((str(number + 1), " → ".join(element.route), *cells))
+        rows.append((str(number + 1), " → ".join(map(body_named, element.route)), *cells))
     columns: list[str | Column] = ["", say("from → to")]
     for name in names:
         dimension = DECLARED[f"{table}.{{}}.{name}"].dimension

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from math import pi
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -198,6 +198,11 @@ def rows_table(machine: Machine) -> Table:
     )
 
 
+def _worded(value: Any) -> Any:
+    """A value of a sentence, the frame in words."""
+    return body_named(value) if isinstance(value, str) else value
+
+
 def _parts(machine: Machine) -> Iterator[str]:
     for slider in machine.sliders:
         yield say(
@@ -208,8 +213,8 @@ def _parts(machine: Machine) -> Iterator[str]:
             through=slider.through,
             angle=angle(slider.direction),
         )
-    yield from (coupling.sentence().said() for coupling in machine.couplings)
-    yield from (element.sentence().said() for *_, element in machine.elements)
+    parts = (*machine.couplings, *(element for *_, element in machine.elements))
+    yield from (part.sentence().with_values(_worded).said() for part in parts)
     for load in machine.loads:
         if load.point is None:
             yield say("Load: a torque on {link}", link=load.link)
@@ -330,7 +335,7 @@ def driven(machine: Machine, speed: float) -> str:
     """How the drive runs."""
     drive = machine.drive
     law = drive.stroke or drive.motion
-    if machine.drives and all(item.pushes for item in machine.driven):
+    if machine.drives and machine.only_swings:
         return say(
             "{drives}, {rate} cycles a minute",
             drives=say(", ").join(map(drive_told, machine.driven)),

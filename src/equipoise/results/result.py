@@ -125,7 +125,7 @@ OF_CYCLES: Mapping[str, str] = {
     "at crank angles from {low} to {high}": to_say("from {low} to {high} of the cycle"),
 }
 """What is said of a machine whose drive does not turn, for what is said of a crank."""
-PUSHED: Mapping[str, str] = {
+CYCLES_A_MINUTE: Mapping[str, str] = {
     "At {speed} rpm the linkage shakes its frame with a force of up to {peak} ({rms} RMS), largest "
     "at a crank angle of {angle}.": to_say(
         "At {speed} cycles a minute the linkage shakes its frame with a force of up to {peak} "
@@ -134,18 +134,21 @@ PUSHED: Mapping[str, str] = {
     "At {speed} rpm the linkage does not shake its frame by any force.": to_say(
         "At {speed} cycles a minute the linkage does not shake its frame by any force."
     ),
+    "{rpm} rpm ({rate} rad/s)": to_say("{rpm} cycles a minute"),
+    "{rpm} rpm ({rate} rad/s, clockwise)": to_say("{rpm} cycles a minute"),
+    "{aims} at {speed} rpm": to_say("{aims} at {speed} cycles a minute"),
+    "at {speeds} rpm": to_say("at {speeds} cycles a minute"),
+}
+"""What is said of a speed where a cycle is a turn of the phase and nothing turns with it."""
+PUSHED: Mapping[str, str] = {
     "The shaking moment about the drive pivot reaches {peak} ({rms} RMS).": to_say(
         "The shaking moment about the pivot of the driven link reaches {peak} ({rms} RMS)."
     ),
     "There is no shaking moment about the drive pivot.": to_say(
         "There is no shaking moment about the pivot of the driven link."
     ),
-    "{rpm} rpm ({rate} rad/s)": to_say("{rpm} cycles a minute"),
-    "{rpm} rpm ({rate} rad/s, clockwise)": to_say("{rpm} cycles a minute"),
-    "{aims} at {speed} rpm": to_say("{aims} at {speed} cycles a minute"),
-    "at {speeds} rpm": to_say("at {speeds} cycles a minute"),
 }
-"""The same of speeds, where a cycle is a turn of the phase and nothing turns with it."""
+"""What is said of the pivot of the drive, where all drives push."""
 
 
 @contextmanager
@@ -161,8 +164,12 @@ def words_of(model: Any) -> Mapping[str, str]:
     """What is said of a model by what is said of a machine with a crank; empty of one with it."""
     if not isinstance(model, Machine) or model.crank_turns:
         return {}
-    is_pushed = all(item.pushes for item in model.driven) and turns_given(model) == 1
-    return {**OF_CYCLES, **PUSHED} if is_pushed else OF_CYCLES
+    words = dict(OF_CYCLES)
+    if all(item.pushes for item in model.driven):
+        words |= PUSHED
+    if model.only_swings and turns_given(model) == 1:
+        words |= CYCLES_A_MINUTE
+    return words
 
 
 Values = dict[str, Any]
@@ -238,15 +245,16 @@ class Result(Displayed):
     ``results.headline.analysis_headline``; none where its blocks begin with it.
     """
 
-    def headline(self, alone: bool = False) -> Sequence[Block]:
+    def headline(self, alone: bool = False, **options: Any) -> Sequence[Block]:
         """What stands first of it wherever it is shown: a verdict, what is large, where.
 
         alone : whether nothing follows, as on a terminal; else its blocks do.
+        options : of the function that `headline_in` names.
         """
         if not self.headline_in:
             return ()
         with self.in_own_units():
-            return tuple(_function(self.headline_in)(self, alone))
+            return tuple(_function(self.headline_in)(self, alone, **options))
 
     @property
     def summary(self) -> Mapping[str, Any]:

@@ -316,6 +316,8 @@ SECTIONS = {
     "support": to_say("support"),
 }
 """Groups that are no links, and no kinds of parts -> what they are called."""
+CYCLE_SPEED = to_say("speed of the cycle")
+"""The speed of a drive that no crank turns with."""
 COUNTERWEIGHTS = "counterweights"
 """Begins the paths of counterweights, which are of the page and not of the file."""
 WEIGHT = "counterweight on "
@@ -451,7 +453,7 @@ def _numbers(
 
 
 def _drive(machine: Machine) -> Iterator[Field]:
-    label = say("speed") if machine.crank_turns else say("speed of the cycle")
+    label = say("speed") if machine.crank_turns else say(CYCLE_SPEED)
     yield _field(KeyPath(("drive", "speed")), "drive", label, "angular speed", machine.drive.speed)
 
 

@@ -43,10 +43,13 @@ from equipoise.web.block import Array, Values
 from equipoise.web.documents import ALONE, asset, data, document, script, style, wording_of
 from equipoise.web.drawing import stage_of
 from equipoise.web.edits import movable
-from equipoise.web.fields import SECTIONS, measures_of
+from equipoise.web.fields import CYCLE_SPEED, SECTIONS, measures_of
 from equipoise.web.figures import told_signals
 from equipoise.web.following import extent_of
 from equipoise.web.following_signs import ties_of
+
+PER_MINUTE = "1/min"
+"""Unit of cycles a minute, where nothing turns that would have a speed in rpm."""
 
 
 def export_bytes(job: Job) -> str:
@@ -303,13 +306,15 @@ class Interactive:
             number, steps = numbers[path], KeyPath.parse(path)
             unit = _unit(number, template.unit(path))
             key = template.key(path)
+            is_cycle_speed = path == "drive.speed" and not self.machine.crank_turns
+            shown = _per_minute(unit) if is_cycle_speed else unit
             yield {
                 "path": path,
                 "steps": [*steps],
-                "label": said(template.words(path)),
+                "label": say(CYCLE_SPEED) if is_cycle_speed else said(template.words(path)),
                 "heading": str(steps[1]) if steps[0] == "links" else _section(str(steps[0])),
                 "value": float(number.value),
-                **_unit_content(unit),
+                **_unit_content(shown),
                 "written": unit.unit,
                 "units": _factors(number),
                 "least": key and key.at_least,
@@ -364,6 +369,11 @@ def _unit(number: FileNumber, unit: str) -> Display:
     if number.dimension is None:
         return Display("", 1.0)
     return in_unit(unit)
+
+
+def _per_minute(unit: Display) -> Display:
+    """The unit of a speed with which nothing turns, by its cycles and not its turns."""
+    return replace(unit, unit=PER_MINUTE) if unit.unit == "rpm" else unit
 
 
 def _factors(number: FileNumber) -> dict[str, float]:

@@ -233,6 +233,16 @@ def test_centrodes_roll_on_each_other(name: str) -> None:
             assert moving[touching] == pytest.approx(fixed[touching], abs=1e-12)
 
 
+@pytest.mark.parametrize("name", ["class-three", "baler-pickup", "transplanter"])
+def test_a_picture_of_centrodes_has_them_and_the_whole_machine(name: str) -> None:
+    """No link whose instant centres are all too far off, and no soil that ends among the curves."""
+    low, high = Scene.of(analysis_of(name).motion).box
+    for panel in charts_of(name)["centrodes"].panels:
+        assert np.isfinite(places(panel)[0]).any()
+        assert panel.held == (low, high)
+        assert not [shape for shape in panel.ground if shape.role in ("soil", "stubble", "surface")]
+
+
 @pytest.mark.parametrize("name", ["yamashita-1", "quick-return", "planetary-planting-arm"])
 def test_paths_and_hodographs_are_the_motion(name: str) -> None:
     motion = analysis_of(name).motion
@@ -394,3 +404,9 @@ def test_a_jump_at_the_beginning_of_a_cycle_stands_at_both_ends() -> None:
     for panel in charts_of("plunger-pump")["joints"].panels:
         for curve in panel.curves:
             assert np.all(np.diff(curve.x) >= 0) and curve.x[-1] == pytest.approx(tau)
+
+
+def test_the_last_picture_of_several_says_which_joint_it_has() -> None:
+    charts = charts_of("squeezing-mechanism")
+    assert "(1 to 9 of 10)" in charts["joint-polars"].what
+    assert "(10 of 10)" in charts["joint-polars-2"].what

@@ -104,6 +104,15 @@ def test_a_moving_picture_says_whose_force_it_is(of_one: bool) -> None:
 # -- paths of a planting finger --------------------------------------------------------------------
 
 
+def test_soil_reaches_both_sides_of_a_path() -> None:
+    for panel in path(plant(eq.load("rotary-transplanter"))).panels:
+        assert panel.held is not None
+        ends = [corner.real for corner in panel.held]
+        (earth,) = (shape for shape in panel.ground if shape.role == "soil")
+        sides = np.real(earth.places)
+        assert sides.min() < ends[0] and sides.max() > ends[1]
+
+
 def test_both_paths_are_drawn_to_one_scale() -> None:
     for name in BUNDLED:
         machine, ground = views(path(read_off(name)))

@@ -23,7 +23,7 @@ from equipoise.present import pages as composed
 from equipoise.present.checks import machine_blocks
 from equipoise.present.composition import SHORT, build
 from equipoise.present.findings import Findings, ToolFindings, find
-from equipoise.present.headlines import Shaking, caused, longest, ordered, pushed
+from equipoise.present.headlines import Shaking, caused, kinematic, longest, ordered, pushed
 from equipoise.present.pages import ReportDocument, page, paired, pdf
 from equipoise.present.pictures import each
 from equipoise.present.summary import answers, tiles
@@ -31,6 +31,7 @@ from equipoise.quantities import brief
 from equipoise.results.analysis_blocks import orders_table
 from equipoise.results.blocks import SvgPicture, Table, Text, Value
 from equipoise.results.machine_blocks import angles_told
+from equipoise.results.result import in_own_words
 from support.chosen import EXHAUSTIVE, few
 from support.findings import findings_of, report_of
 from support.languages import COMPLETE
@@ -82,6 +83,19 @@ def test_a_turn_is_told_only_where_a_crank_turns(name: str, length: str) -> None
     assert float(size) == pytest.approx(way / turns * 1e3, rel=5e-3)
     lines = [angles_told(analysis), *(str(one) for one in machine_blocks(analysis.machine))]
     assert any(" turn" in line for line in lines) == (length == "in a turn")
+
+
+def test_drives_that_only_swing_have_no_speed_in_rpm() -> None:
+    """Their cranks go to and fro so many times a minute, in sentences and on all pictures."""
+    told = found_of("pick-and-place")
+    assert isinstance(told, Findings)
+    with in_own_words(told.owner):
+        texts = [picture.draw().what for picture in each(told)]
+        blocks = told.analysis.headline(alone=True)
+        texts += [block.text for block in blocks if isinstance(block, Text)]
+    assert not [text for text in texts if "rpm" in text or "rad/s" in text]
+    assert len([text for text in texts if "60 cycles a minute" in text]) > 5
+    assert any("60.00 cycles a minute" in text for text in texts)
 
 
 @pytest.mark.parametrize(
@@ -375,3 +389,20 @@ def test_a_transmission_angle_is_the_same_number_wherever_the_first_page_has_it(
     values = [re.findall(r"Transmission angle at E[^:]*: ([\d.]+)°", line) for line in first]
     assert len([*filter(None, values)]) > 1
     assert len({value for each in values for value in each}) == 1
+
+
+def test_a_transmission_angle_reaches_its_ends_between_the_samples() -> None:
+    """A parallelogram goes through 0 and 180 deg; the picture and the table say so alike."""
+    told = found_of("straw-walker")
+    assert isinstance(told, Findings)
+    line = kinematic(told.analysis, "kinematics-transmission")
+    assert line == "The transmission angle stays between 0.0° and 180.0°"
+
+
+def test_the_frame_is_called_so_in_the_language_of_the_report() -> None:
+    """In tables, in sentences on parts and above the forces of joints, but not in the file."""
+    text = page(document("flap-folder", "de"))
+    text = re.sub(r"<(style|script|pre)\b.*?</\1>", "", text, flags=re.DOTALL)
+    words = re.sub(r"<[^>]+>", "\n", text)
+    assert "A: Gestell auf crank" in words
+    assert not re.findall(r".*\bframe\b.*", words)

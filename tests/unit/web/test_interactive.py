@@ -216,6 +216,17 @@ def test_limits_and_units_of_typed_numbers(tmp_path: Path) -> None:
     assert all("give a number, such as 12.5 g" in one for one in values[4:])
 
 
+def test_a_cycle_of_a_cylinder_has_no_speed_in_rpm() -> None:
+    """It goes on by so many a minute; the file has it as it was written."""
+    told = {}
+    for name in ("hydraulic-loader", "yamashita-1"):
+        fields = Interactive(eq.load(name), 0.0).content["fields"]
+        (speed,) = (one for one in fields if one["path"] == "drive.speed")
+        told[name] = [speed[key] for key in ("label", "unit", "written")]
+    assert told["hydraulic-loader"] == ["speed of the cycle", "1/min", "rpm"]
+    assert told["yamashita-1"] == ["speed of the drive", "rpm", "rpm"]
+
+
 @node
 def test_lengths_between_points(tmp_path: Path) -> None:
     """The second point of a length moves along its line."""

@@ -527,7 +527,7 @@ def of_mesh(table: str) -> None:
             name for name, friction in result.forces.frictions.items() if friction.table == table
         ]
 
-    label = to_say("power lost in passing on the force {name}")
+    label = to_say("friction loss at {name}")
     own = {**_members_of(table), "members": members, "items": items}
     alike(table + ".{}.", _of_friction, **own)("friction_loss", "power", label, had="loss")
 

@@ -286,3 +286,9 @@ class Driven:
     def crank_turns(self) -> bool:
         """Whether the first driven link turns evenly; else the crank angle is a phase alone."""
         return not (self.drive.motion or self.drive.pushes)
+
+    @property
+    def only_swings(self) -> bool:
+        """Whether every drive goes to and fro, so that no link is driven at a speed in rpm."""
+        laws = [item.motion or item.stroke for item in self.driven]
+        return all(law is not None and not law.windings for law in laws)
