@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from operator import attrgetter
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -24,7 +25,7 @@ from equipoise.quantities import Dimension
 from equipoise.results.charts import Array, Arrow, Axis, Chart, Curve, Mark, Panel, shown
 
 if TYPE_CHECKING:
-    from equipoise.mechanism.kinematics.motion import Motion
+    from equipoise.mechanism.kinematics.motion import Motion, PointMotion
     from equipoise.results.analysis import Analysis
     from equipoise.results.outputs import AnalysisOutput
 
@@ -76,12 +77,21 @@ def followed(motion: Motion) -> list[str]:
     return _tips(motion)[:MOST_POINTS] or traced(motion)[:MOST_POINTS]
 
 
-def _coincident(motion: Motion, names: Sequence[str]) -> list[list[str]]:
-    """Points whose paths are one curve, which they may pass at different times, together."""
+def _coincident(
+    motion: Motion, names: Sequence[str], *curves_of: Callable[[PointMotion], Array]
+) -> list[list[str]]:
+    """Points whose curves are one, which they may pass at different times, together.
+
+    curves_of : each curve (N,) of a point, complex, all of which have to be alike.
+    """
     groups: list[list[str]] = []
     for name in names:
-        path = motion.points[name].place
-        alike = (item for item in groups if _coincide(motion.points[item[0]].place, path))
+        point = motion.points[name]
+        alike = (
+            item
+            for item in groups
+            if all(_coincide(of(motion.points[item[0]]), of(point)) for of in curves_of)
+        )
         group = next(alike, None) if motion.whole_cycle else None
         if group is None:
             groups.append([name])
@@ -91,7 +101,7 @@ def _coincident(motion: Motion, names: Sequence[str]) -> list[list[str]]:
 
 
 def _coincide(first: Array, other: Array) -> bool:
-    """Whether two paths (N,) lie on each other but for a thousandth of their size."""
+    """Whether two curves (N,) lie on each other but for a thousandth of their size."""
     size = float(np.ptp(first.real) + np.ptp(first.imag))
     if abs(np.mean(first) - np.mean(other)) > ALIKE * size:  # most differ by that already
         return False
@@ -100,7 +110,7 @@ def _coincide(first: Array, other: Array) -> bool:
 
 
 def _names_of(group: Sequence[str]) -> str:
-    """Names of points on one path."""
+    """Names of points on one curve."""
     return short(group[0], 12) if len(group) == 1 else short(say(", ").join(group), 24)
 
 
@@ -115,7 +125,8 @@ def curves(analysis: Analysis, points: Sequence[str] | None = None) -> Chart:
     frame = {name: complex(*place) for name, place in analysis.machine.frame.items()}
     every = [motion.points[name].place for name in (*names, *others)]
     size = extent(*every, np.array([*frame.values()]))
-    groups, other_groups = _coincident(motion, names), _coincident(motion, others)
+    place = attrgetter("place")
+    groups, other_groups = (_coincident(motion, each, place) for each in (names, others))
     lines = [
         Curve.of(over(analysis, motion.points[group[0]].place)[1], "", "faint")
         for group in other_groups
@@ -184,8 +195,12 @@ def hodograph(analysis: Analysis, points: Sequence[str] | None = None) -> Chart:
 
     points : names; where they are not given, the same as of `curves`.
     """
-    names = traced(analysis.motion)[:MOST_VECTORS] if points is None else [*points]
-    every = [analysis.motion.points[name] for name in names]
+    motion = analysis.motion
+    given = traced(motion) if points is None else [*points]
+    groups = _coincident(motion, given, attrgetter("velocity"), attrgetter("acceleration_vector"))
+    groups = groups[:MOST_VECTORS] if points is None else groups
+    names = [_names_of(group) for group in groups]
+    every = [motion.points[group[0]] for group in groups]
     rates = [item.velocity for item in every]
     changes = [item.acceleration_vector for item in every]
     panels = (
@@ -214,7 +229,7 @@ def _ends(
     lines, marks = [], [Mark(0.0, 0.0, "", "pivot")]
     for number, (name, value) in enumerate(zip(names, values, strict=True), 1):
         role = f"several {number}"
-        lines.append(Curve.of(over(analysis, value)[1], short(name, 14), role))
+        lines.append(Curve.of(over(analysis, value)[1], name, role))
         marks += numbers(counts, value, role, extent(whole))
     message = "" if names else say("no point moves")
     return Panel(x, y, tuple(lines), tuple(marks), title=quantity, message=message, equal=True)

@@ -384,6 +384,13 @@ def test_paths_that_coincide_are_drawn_once_with_all_their_names() -> None:
     assert all("," not in curve.label for curve in apart.curves)
 
 
+def test_hodographs_that_coincide_are_drawn_once_with_all_their_names() -> None:
+    """No walker of the four is left out, and none covers another; both pistons are of one curve."""
+    for name, legend in (("straw-walker", "T1, T2, T3, T4"), ("twin-engine", "C1, C2")):
+        for panel in points.hodograph(eq.analyze(eq.load(name), 360)).panels:
+            assert [curve.label for curve in panel.curves] == [legend]
+
+
 def test_what_swings_by_rounding_alone_is_a_level_line() -> None:
     """A block stands at right angles to its slot; the angle of it was drawn millions of times as
     large.

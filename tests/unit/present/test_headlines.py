@@ -87,7 +87,7 @@ def test_a_turn_is_told_only_where_a_crank_turns(name: str, length: str) -> None
 
 def test_drives_that_only_swing_have_no_speed_in_rpm() -> None:
     """Their cranks go to and fro so many times a minute, in sentences and on all pictures."""
-    told = found_of("pick-and-place")
+    told = findings_of("pick-and-place")
     assert isinstance(told, Findings)
     with in_own_words(told.owner):
         texts = [picture.draw().what for picture in each(told)]
@@ -393,7 +393,7 @@ def test_a_transmission_angle_is_the_same_number_wherever_the_first_page_has_it(
 
 def test_a_transmission_angle_reaches_its_ends_between_the_samples() -> None:
     """A parallelogram goes through 0 and 180 deg; the picture and the table say so alike."""
-    told = found_of("straw-walker")
+    told = findings_of("straw-walker")
     assert isinstance(told, Findings)
     line = kinematic(told.analysis, "kinematics-transmission")
     assert line == "The transmission angle stays between 0.0° and 180.0°"
