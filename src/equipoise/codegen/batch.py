@@ -89,7 +89,9 @@ def jumps_alike(linkage: Linkage, paths: Collection[str]) -> bool:
     trace = Trace(linkage, paths)
     known = known_by_crank(trace).keys() - trace.shifted
     jerking = (coupling for coupling in linkage.machine.couplings if len(coupling.jumps))
-    return all({item.driver, item.carrier} <= known for item in jerking)
+    return all(
+        {item.driver, item.carrier} <= known and item.driven not in trace.late for item in jerking
+    )
 
 
 def _grid(theta: Array, turns: int) -> JumpSampling:

@@ -10,7 +10,7 @@ looked up in tables, without a branch.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 from itertools import pairwise
 from math import ceil, pi, prod, tau
@@ -36,7 +36,9 @@ from equipoise.mechanism.formulas import cam_kernels, kernels
 from equipoise.mechanism.formulas.cam_kernels import piece_value, plane_piece
 from equipoise.mechanism.formulas.curves import MOST_POWERS, ROUNDING, PeriodicCurve, PlaneCurve
 from equipoise.mechanism.formulas.rolling import HalfAngle, PitchCurve, RatioTable, RatioWaves
+from equipoise.mechanism.parts.cams import Cam
 from equipoise.mechanism.parts.couplings import Coupling
+from equipoise.mechanism.parts.laws import Steps
 from equipoise.mechanism.parts.machine import FRAME
 
 Turning = Callable[[Array], tuple[Any, Any, Any]]
@@ -168,36 +170,76 @@ def _start(linkage: Linkage, link: str) -> Any:
 
 def can_trace_followers(linkage: Linkage) -> bool:
     """Whether the pieces of all laws can be looked up."""
-    laws = (step.law for step in linkage.motion if isinstance(step, Displacement))
-    return all(bins(law.curve.knots) <= MOST_BINS for law in laws)
+    cams = (step.cam for step in linkage.motion if isinstance(step, Displacement))
+    return all(bins(cam.law.curve.knots) <= MOST_BINS for cam in cams)
 
 
-def trace_displacement(trace: Trace, step: Displacement) -> None:
-    """What a law says at the angle that its driver has turned against the carrier."""
-    turnings = known_by_crank(trace)
-    if {step.driver, step.carrier} <= turnings.keys() - trace.shifted:
-        driver, carrier = turnings[step.driver], turnings[step.carrier]
-        for place, output in enumerate(step.outputs):
-            of = partial(_displaced, step, driver, carrier, place)
-            trace.state[output] = trace.row(output, of)
-        return
-    driver_angle, carrier_angle = (
-        trace.state[f"phi({body})"] for body in (step.driver, step.carrier)
-    )
-    angle = driver_angle - carrier_angle - float(step.law.origin)
-    trace.put(step.outputs, curve_value(trace, step.law.curve, angle))
+def trace_displacement(trace: Trace, step: Displacement, number: int) -> None:
+    """What the law of a cam says at the angle that this has turned against the carrier: the step
+    of this number of the ``motion``.
+
+    The law is linear in its values: those that designs change are factors of curves that none does.
+    """
+    cam, places = step.cam, trace.amounts[step.cam.driven]
+    rest = cam.law.with_amounts(dict.fromkeys(places, 0.0)).curve
+    value = _displacement(trace, step, number)
+    y, y1, y2 = value(rest, "the others")
+    for place in places:
+        amount = trace.slot(f"{place} of {cam.driven}", partial(_amount, number, place))
+        by, by1, by2 = value(cam.law.unit_curve(place), f"{place}")
+        y, y1, y2 = y + amount * by, y1 + amount * by1, y2 + amount * by2
+    trace.put(step.outputs, (y, y1, y2))
+
+
+def _displacement(
+    trace: Trace, step: Displacement, number: int
+) -> Callable[[PeriodicCurve, str], Sequence[Any]]:
+    """What a curve, which has a name, says of a cam's angle."""
+    cam, turnings = step.cam, known_by_crank(trace)
+    known = {cam.driver, cam.carrier} <= turnings.keys() - trace.shifted
+    if known and cam.driven not in trace.late:
+        turned = turnings[cam.driver], turnings[cam.carrier]
+
+        def row(curve: PeriodicCurve, name: str) -> Sequence[Any]:
+            return [
+                trace.row(f"{output}, {name}", partial(_displaced, curve, cam, turned, place))
+                for place, output in enumerate(step.outputs)
+            ]
+
+        return row
+    driver, carrier = (trace.state[f"phi({body})"] for body in (cam.driver, cam.carrier))
+    origin: Any = float(cam.law.origin)
+    if cam.driven in trace.late:
+        origin = trace.slot(f"origin of {cam.driven}", partial(_origin, number))
+    angle = driver - carrier - origin
+    return lambda curve, _: curve_value(trace, curve, angle)
 
 
 def _displaced(
-    step: Displacement, driver: Turning, carrier: Turning, place: int, theta: Array
+    curve: PeriodicCurve, cam: Cam, turned: tuple[Turning, Turning], place: int, theta: Array
 ) -> Array:
-    return np.asarray(step.law.value(driver(theta)[0] - carrier(theta)[0])[place])
+    driver, carrier = (turning(theta)[0] for turning in turned)
+    return np.asarray(curve.at(driver - carrier - cam.law.origin)[place])
+
+
+def _cam(number: int, linkage: Linkage) -> Cam:
+    step = linkage.motion[number]
+    assert isinstance(step, Displacement)
+    return step.cam
+
+
+def _amount(number: int, place: Steps, linkage: Linkage) -> Any:
+    return _cam(number, linkage).law.amounts[place]
+
+
+def _origin(number: int, linkage: Linkage) -> Any:
+    return _cam(number, linkage).law.origin
 
 
 def curve_value(trace: Trace, curve: PeriodicCurve, angle: Any) -> tuple[Any, Any, Any]:
     """A curve, and its two derivatives, at an angle that is each design's own."""
+    tolerance, length, rise = ROUNDING * curve.length, curve.length, curve.rise
     curve, counted = _from_the_start(_rested(curve))
-    tolerance, length = ROUNDING * curve.length, curve.length
     rounds = floor((angle + tolerance) * (1 / length))
     since = angle - rounds * length
     pieces = Pieces(trace, curve, since + tolerance)
@@ -206,7 +248,7 @@ def curve_value(trace: Trace, curve: PeriodicCurve, angle: Any) -> tuple[Any, An
     amplitude, rate, phase = (pieces.value(values) for values in _waves(curve).T)
     wave = rotation(0.0 if isinstance(amplitude, float) and not amplitude else rate * way + phase)
     value, first, second = piece_value(way, *powers, amplitude, rate, wave.real, wave.imag)  # type: ignore[call-arg]
-    return value + curve.rise * rounds, first, second
+    return value + rise * rounds, first, second
 
 
 def _rested(curve: PeriodicCurve) -> PeriodicCurve:

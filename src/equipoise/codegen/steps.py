@@ -442,7 +442,7 @@ def trace_step(trace: Trace, step: Step, steps: str, number: int) -> None:
         else:
             _trace_call(trace, step, steps, number)
     elif isinstance(step, Displacement):
-        trace_displacement(trace, step)
+        trace_displacement(trace, step, number)
     elif isinstance(step, LoopGroup):
         trace_loops(trace, number)
     elif isinstance(step, LoopForces):

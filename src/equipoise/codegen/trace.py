@@ -15,7 +15,9 @@ from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.assembly.steps import KernelCall, RunningAngle, Step, p, planar, u
 from equipoise.mechanism.formulas import kernels
+from equipoise.mechanism.parts.cams import Cam
 from equipoise.mechanism.parts.couplings import Coupling, coupled
+from equipoise.mechanism.parts.laws import Steps
 from equipoise.mechanism.parts.machine import FRAME, Machine
 
 Array = np.ndarray[Any, Any]
@@ -79,6 +81,8 @@ class Trace:
     fixed : whether no design changes the motion, so that the crank angle alone decides it.
     loose : couplings of varying ratio at angles, or by numbers, that designs change.
     shifted : links that designs start at other angles.
+    amounts : follower of a cam -> places of values of its law that designs change.
+    late : followers whose laws designs begin at angles of their own.
     rotated : those of them whose rotation is known without their angle.
     counted : whether angles of links are counted on from crank angle to crank angle, because a
         coupling follows a link that a dyad moves.
@@ -106,9 +110,11 @@ class Trace:
         self.width = 0
         self.fixed = linkage.shared is not None and paths is not None
         self.shifted, self.loose = _changed(linkage, paths or ())
+        self.amounts, self.late = _changed_laws(self.machine, paths or ())
         self.rotated: set[str] = set()
         steps = any(map(_counts, linkage.motion)) or _drives_on(self.machine)
-        steps |= bool(self.loose) or not self.shifted.isdisjoint(_turning(self.machine))
+        steps |= bool(self.loose or self.late)
+        steps |= not self.shifted.isdisjoint(_turning(self.machine))
         self.counted = steps or not self.machine.has_crank
         self.orders: dict[str, float] = {FRAME: 0.0, self.machine.drive.link: 1.0}
         self.apart: dict[str, Any] = {}
@@ -270,6 +276,24 @@ def _changed(linkage: Linkage, paths: Collection[str]) -> tuple[set[str], set[st
         else:
             loose.add(driven)
     return shifted, loose
+
+
+def _changed_laws(
+    machine: Machine, paths: Collection[str]
+) -> tuple[dict[str, tuple[Steps, ...]], set[str]]:
+    """As of `Trace.amounts` and `Trace.late`."""
+    varied = {*map(KeyPath.parse, paths)}
+    amounts, late = dict[str, tuple[Steps, ...]](), set[str]()
+    for where, item in _numbered(machine):
+        if not isinstance(item, Cam):
+            continue
+        law = where / item.law_key
+        amounts[item.driven] = tuple(
+            place for place in item.law.amounts if KeyPath((*law, *place)) in varied
+        )
+        if law / "phase" in varied:
+            late.add(item.driven)
+    return amounts, late
 
 
 def _numbered(machine: Machine) -> Iterator[tuple[KeyPath, Coupling]]:

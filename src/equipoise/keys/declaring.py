@@ -351,13 +351,22 @@ def _coordinate(step: str) -> int:
 def with_fields(value: Given, **changes: Any) -> Given:
     """A frozen value with fields changed, unchecked; what was kept with it is left behind."""
     result = object.__new__(type(value))
-    values = {k: v for k, v in vars(value).items() if not k.startswith("_") and k != MEMORY}
+    left = kept_by(type(value))
+    values = {k: v for k, v in vars(value).items() if not k.startswith("_") and k not in left}
     _set(result, values | changes)
     if isinstance(value, Frozen) and isinstance(result, Frozen):
         _set(result, result.dependent_fields())
         if shared := value.handed_on & vars(value).get(MEMORY, {}).keys():
             result.memory.update((name, value.memory[name]) for name in shared)
     return result
+
+
+@cache
+def kept_by(cls: type[Any]) -> frozenset[str]:
+    """Names under which the values of a class keep what follows from their fields."""
+    own = (name for base in cls.__mro__ for name, item in vars(base).items()
+           if isinstance(item, cached_property))  # fmt: skip
+    return frozenset(own)
 
 
 def _set(new: Any, values: Mapping[str, Any]) -> None:

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
 from math import degrees, floor, log10, pi, radians
+from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -29,6 +30,7 @@ from equipoise.mechanism.assembly.joints import Structure, place_in_file
 from equipoise.mechanism.assembly.steps import State, planar
 from equipoise.mechanism.formulas.kernels import cross, dot
 from equipoise.mechanism.parts.cams import Cam
+from equipoise.mechanism.parts.laws import Law
 from equipoise.mechanism.parts.machine import Machine
 
 STEEPEST = 1e-6
@@ -71,14 +73,34 @@ class CamFit:
         return self.pin if self.guide is None else self.guide.point
 
     @property
+    def law(self) -> Law:
+        """That of the cam; where designs begin it at angles of their own, which only turn the cam
+        on its shaft, from 0 on.
+        """
+        law = self.cam.law
+        return law if isinstance(law.phase, Real) else with_fields(law, phase=0.0)
+
+    @property
     def knots(self) -> Array:
         """Cam angles (K,), rad, at which the law changes."""
-        law = self.cam.law
-        return law.curve.knots[:-1] + law.origin
+        return self.law.curve.knots[:-1] + self.law.origin
+
+    @property
+    def varies(self) -> bool:
+        """Whether the shape has numbers that are columns of designs."""
+        return bool(self.cam.law.varied) or not isinstance(self.rest, float | complex)
 
     def shape(self, angle: Array) -> CamShape:
         """The cam under its follower at angles (N,), rad, by which it has turned."""
-        return CamShape(angle, self.path, self.cam.law.value, self.cam.roller_radius)
+        return CamShape(angle, self.path, self.law.value, self.cam.roller_radius)
+
+    def of(self, which: Any) -> CamFit:
+        """One design or some, by number, where numbers of this are columns."""
+        path = replace(self.path, **{k: design(v, which) for k, v in vars(self.path).items()})  # type: ignore[type-var]
+        cam, key = self.cam, self.cam.law_key
+        radii = {"roller_radius": design(cam.roller_radius, which)}
+        laws = {key: cam.law.of_designs(which)} if key else {}
+        return replace(self, cam=with_fields(cam, **radii, **laws), path=path)
 
 
 def fitted(machine: Machine, joints: Structure, cam: Cam) -> CamFit:
@@ -288,17 +310,20 @@ def can_be_made(fit: CamFit) -> Array:
     feasible: Array = np.isfinite(fit.rest) & (np.asarray(cam.base_radius) > 0)
     if cam.rides == "roller":
         feasible = feasible & (np.asarray(cam.roller_radius) > 0)
-    count, knots = np.size(fit.rest), fit.knots
-    shape = fit.shape(_spread(knots))
+    amounts = (cam.law.amounts[place] for place in cam.law.varied)
+    feasible = np.array(np.broadcast_arrays(feasible, *amounts)[0])
+    count, knots = len(feasible), fit.knots
+    angles = _spread(knots)
     with np.errstate(all="ignore"):
         for begin in range(0, count, AT_ONCE):
             some = slice(begin, begin + AT_ONCE)
             for demand in _demands(cam):
-                least = np.min(demand.value(shape.of(some)), axis=-1, keepdims=True)
+                least = np.min(demand.value(fit.of(some).shape(angles)), axis=-1, keepdims=True)
                 feasible[some] &= least > 0
                 doubtful = feasible[some] & (least < ZERO_MARGIN * design(demand.size, some))
                 for k in begin + np.flatnonzero(doubtful):
-                    feasible[k] = lowest(shape.of(k), demand.value, knots)[0] > 0
+                    one = fit.of(k)
+                    feasible[k] = lowest(one.shape(knots), demand.value, knots)[0] > 0
     return feasible
 
 

@@ -26,21 +26,19 @@ from equipoise.mechanism.assembly.steps import (
 from equipoise.mechanism.formulas import cam_kernels as kernels
 from equipoise.mechanism.formulas.kernels import travelled
 from equipoise.mechanism.parts.cams import Cam
-from equipoise.mechanism.parts.laws import Law
 
 
 @dataclass(frozen=True)
 class Displacement:
-    """What the law says at the angle that a cam has turned against its carrier."""
+    """What the law of a cam says at the angle that this has turned against its carrier."""
 
-    driver: str
-    carrier: str
-    law: Law
+    cam: Cam
     outputs: tuple[str, str, str]
 
     def run(self, state: State) -> None:
-        angle = np.asarray(state[f"phi({self.driver})"]) - state[f"phi({self.carrier})"]
-        state.update(zip(self.outputs, self.law.value(angle), strict=True))
+        cam = self.cam
+        angle = np.asarray(state[f"phi({cam.driver})"]) - state[f"phi({cam.carrier})"]
+        state.update(zip(self.outputs, cam.law.value(angle), strict=True))
 
 
 def contact(builder: Builder, joints: Structure, cam: Cam) -> CamPush:
@@ -51,7 +49,7 @@ def contact(builder: Builder, joints: Structure, cam: Cam) -> CamPush:
     ModelError : they cannot be joined like this, or the cam cannot be made.
     """
     fit = fitted(builder.machine, joints, cam)
-    if isinstance(fit.rest, float | complex):  # else `refusing` tells which designs can be made
+    if not fit.varies:  # else `can_be_made` tells of which designs
         check_shape(builder.machine, joints, fit)
     return CamPush(fit)
 
@@ -159,7 +157,7 @@ def _displaced(builder: Builder, fit: CamFit) -> list[Step]:
     for body in (cam.driver, cam.carrier):
         steps += builder.running_angle(body)
     steps += builder.reach(cam.driver, fit.cam_pin)
-    steps.append(Displacement(cam.driver, cam.carrier, cam.law, _lift(cam)))
+    steps.append(Displacement(cam, _lift(cam)))
     return steps
 
 

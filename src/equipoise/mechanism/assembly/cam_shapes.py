@@ -192,11 +192,6 @@ class CamShape:
         """Shape of the cam at other angles."""
         return replace(self, angle=angle)
 
-    def of(self, which: Any) -> CamShape:
-        """One design or some, by number, where those of this are columns."""
-        path = replace(self.path, **{k: design(v, which) for k, v in vars(self.path).items()})  # type: ignore[type-var]
-        return replace(self, path=path, radius=design(self.radius, which))
-
 
 def design(value: Any, which: Any) -> Any:
     """What one design has, or some, of a number that may be a column (P, 1)."""

@@ -219,7 +219,7 @@ def _listed_holders(of: type[Frozen]) -> Iterator[tuple[tuple[str | type, ...], 
     """As `HOLDERS`, of the couplings and elements of a class of machines."""
     for table, coupling in coupling_kinds(of).items():
         for inner, keys in coupling.columns.items():
-            yield (table, int, inner) if inner else (table, int), keys
+            yield (table, int, *inner), keys
     for table, kind in element_kinds(of).items():
         known = keys_of(kind).items()
         yield (
@@ -263,7 +263,7 @@ def with_columns(machine: Machine, columns: Columns) -> Machine:
     ------
     UsageError : there is no such number, or it cannot be a column.
     """
-    rows_of_values: dict[KeyPath, dict[Part, Array]] = {}
+    base, rows_of_values = machine, dict[KeyPath, dict[Part, Array]]()
     for path, column in columns.items():
         whole, part = _split(_path(path))
         rows_of_values.setdefault(whole, {})[part] = column
@@ -272,7 +272,7 @@ def with_columns(machine: Machine, columns: Columns) -> Machine:
             _check_holder(whole, parts.keys(), type(machine))
             machine = changed(machine, whole, partial(_filled, parts), with_fields)
             _check_outlines(machine)
-            _check_shapes(machine)
+            _check_shapes(machine, base)
         except (KeyError, IndexError):
             paths = (
                 KeyPath((*whole, *((part,) if isinstance(part, str) else part))) for part in parts
@@ -321,9 +321,10 @@ def _check_outlines(machine: Machine) -> None:
             raise KeyError
 
 
-def _check_shapes(machine: Machine) -> None:
+def _check_shapes(machine: Machine, base: Machine) -> None:
     """Whether the relations of couplings are formulas of their numbers."""
-    if not all(coupling.has_formula for coupling in machine.couplings):
+    pairs = zip(machine.couplings, base.couplings, strict=True)
+    if not all(coupling.varies_like(before) for coupling, before in pairs):
         raise KeyError
 
 
@@ -395,7 +396,7 @@ def _demands(machine: Machine, base: Linkage) -> Iterator[Any]:
     for coupling in machine.couplings:
         yield from coupling.demands(partial(_distance, machine, base, coupling))
     fits = fits_of(machine, joints_of(machine, base)) if _has_surfaces(machine) else ()
-    yield from (can_be_made(fit) for fit in fits if np.ndim(fit.rest))
+    yield from (can_be_made(fit) for fit in fits if fit.varies)
     yield from demands_across(machine)
     for *_, element in machine.elements:
         yield from element.demands()

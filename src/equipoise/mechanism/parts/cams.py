@@ -18,7 +18,7 @@ from equipoise.mechanism.outputs.declared import (
     of_mesh,
     part_in_loops,
 )
-from equipoise.mechanism.parts.couplings import Coupling, Pushed, Relation, coupled
+from equipoise.mechanism.parts.couplings import Coupling, Inner, Pushed, Relation, coupled
 from equipoise.mechanism.parts.laws import CAM, AngleLaw, Law, LengthLaw, wrong_law
 
 RIDES = ("roller", "flat", "knife")
@@ -41,7 +41,11 @@ class Cam(Coupling):
     sign = "equipoise.symbols.cams:cam_sign"
     noun = to_say("cam")
     group = to_say("cams")
-    columns: ClassVar[Mapping[str, Set[str]]] = {"": {"base_radius", "roller_radius", "normal"}}
+    columns: ClassVar[Mapping[Inner, Set[str]]] = {
+        (): {"base_radius", "roller_radius", "normal"},
+        **{(law,): {"between", "values", "phase"} for law in ("lift", "swing")},
+        **{(law, "segments", int): {"to"} for law in ("lift", "swing")},
+    }
     special = "cam"
     contact = "surface"
     touch = to_say("cam")
@@ -139,6 +143,15 @@ class Cam(Coupling):
     def law(self) -> Law:
         """Displacement over the angle that the cam has turned against the carrier."""
         return self.lift or self.swing or ROUND
+
+    @property
+    def law_key(self) -> str:
+        """Of `law` in the file; nothing without one."""
+        return "lift" if self.lift else "swing" if self.swing else ""
+
+    def varies_like(self, base: Coupling) -> bool:
+        assert isinstance(base, Cam)
+        return self.law.varies_like(base.law)
 
     @property
     def relation(self) -> Relation:

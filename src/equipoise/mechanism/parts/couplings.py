@@ -26,6 +26,8 @@ from equipoise.mechanism.parts.element_kinds import PartKind
 from equipoise.quantities import number
 
 Relation = tuple[Callable[..., tuple[Any, ...]], tuple[Any, ...]]
+Inner = tuple[str | type, ...]
+"""Keys that lead into a table, and `int` for a place in a list."""
 """Kernel and its numbers: called with angle, first and second derivative of the driver, then of the
 carrier, then these numbers and an offset, it gives those of the driven body."""
 Law = Callable[[Any], tuple[Any, Any, Any]]
@@ -127,7 +129,7 @@ class Coupling(PartKind):
     loses : whether it may lose a share of what it passes on.
     curves : outputs that have a picture of their own, what this shows, and its caption; None where
         there is none.
-    columns : numbers that columns of designs may have, and of what is inside of it by its key.
+    columns : numbers that columns of designs may have, by what of the table holds them.
     driver, driven, carrier : names of bodies.
     start : angle of the driven body in the frame at crank angle 0, rad.
     switches : whether another flank, or another strand, bears where the force changes its sense, so
@@ -144,7 +146,7 @@ class Coupling(PartKind):
     grows: ClassVar[bool] = False
     loses: ClassVar[bool] = False
     curves: ClassVar[tuple[tuple[str, ...], str, str] | None] = None
-    columns: ClassVar[Mapping[str, Set[str]]] = {}
+    columns: ClassVar[Mapping[Inner, Set[str]]] = {}
 
     if TYPE_CHECKING:  # fields of some kinds, and properties of others
 
@@ -239,6 +241,10 @@ class Coupling(PartKind):
     def has_formula(self) -> bool:
         """Whether its relation has a formula for columns of its numbers."""
         return True
+
+    def varies_like(self, base: Coupling) -> bool:
+        """Whether all designs of columns of its numbers have a formula together with the base."""
+        return self.has_formula
 
     @property
     def slides(self) -> str:

@@ -27,6 +27,7 @@ from equipoise.mechanism.checks import Bodies
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.outputs.declared import of_mesh
 from equipoise.mechanism.parts.couplings import (
+    Inner,
     Law,
     LineOfAction,
     Pushed,
@@ -64,9 +65,9 @@ class Gear(Turning):
     noun = to_say("pair of gears")
     group = to_say("gears")
     loses = True
-    columns: ClassVar[Mapping[str, Set[str]]] = {
-        "": {"start", "pressure_angle"},
-        "shape": {"eccentricity", "phase", "cosines", "sines"},
+    columns: ClassVar[Mapping[Inner, Set[str]]] = {
+        (): {"start", "pressure_angle"},
+        ("shape",): {"eccentricity", "phase", "cosines", "sines"},
     }
     heading = Note("Gears")
     grows = True

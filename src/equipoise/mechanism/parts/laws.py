@@ -8,11 +8,12 @@ evaluates.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import cached_property
 from itertools import pairwise
 from math import degrees, pi
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from numbers import Real
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, key_names, to_say
@@ -27,9 +28,11 @@ from equipoise.keys import (
     Tables,
     TextKind,
     Whole,
+    changed,
     declared,
     inside,
     key,
+    with_fields,
 )
 from equipoise.keys.csv_tables import CsvTable
 from equipoise.quantities import KINDS, Measured
@@ -37,6 +40,8 @@ from equipoise.quantities import KINDS, Measured
 if TYPE_CHECKING:
     from equipoise.mechanism.formulas.curves import Array, PeriodicCurve
 
+Steps = tuple[str | int, ...]
+"""Keys and numbers in lists that lead to a value of a table."""
 LAWS = ("cycloidal", "modified sine", "modified trapezoid", "3-4-5", "4-5-6-7", "harmonic",
         "s-curve", "trapezoid", "linear")  # fmt: skip
 SPLINES = {"cubic": 3, "quintic": 5}
@@ -166,9 +171,66 @@ class Law(Frozen):
             return self.crank_angles, self.values
         return self.table.crank_angle, self.table.values
 
+    @property
+    def amounts(self) -> dict[Steps, Any]:
+        """Values in which the law is linear, by their places in its table; without those that
+        another has to follow.
+        """
+        if self.between is not None:
+            return {("between", k): value for k, value in enumerate(self.between)}
+        if self.segments:
+            return {("segments", k, "to"): s.to for k, s in enumerate(self.segments[:-1])}
+        ends = (0, len(self.values) - 1) if self.values and self.is_closed else ()
+        return {("values", k): v for k, v in enumerate(self.values) if k not in ends}
+
+    @cached_property
+    def varied(self) -> dict[Steps, PeriodicCurve]:
+        """Places of amounts that are columns of designs, each with the curve of 1 there."""
+        places = (place for place, value in self.amounts.items() if not isinstance(value, Real))
+        return {place: self.unit_curve(place) for place in places}
+
+    def unit_curve(self, place: Steps) -> PeriodicCurve:
+        """The curve by which the value grows with an amount."""
+        law = self
+        if self.segments:
+            still = with_fields(self.segments[-1], to=0.0)
+            law = with_fields(self, start=0.0, segments=(*self.segments[:-1], still))
+        elif self.values and self.is_closed:
+            law = with_fields(self, values=(0.0,) * len(self.values))
+        return law.with_amounts({other: float(other == place) for other in self.amounts}).curve
+
+    def with_amounts(self, amounts: Mapping[Steps, Any]) -> Self:
+        """The law with other values in these places; unchecked."""
+        law = self
+        for place, value in amounts.items():
+            law = changed(law, place, lambda _, value=value: value, with_fields)
+        return law
+
+    def of_designs(self, which: Any) -> Self:
+        """One design or some, by number, where amounts are columns of designs (P, 1)."""
+        amounts = self.amounts
+        return self.with_amounts({place: amounts[place][which] for place in self.varied})
+
+    def varies_like(self, base: Law) -> bool:
+        """Whether columns of designs are amounts of the law, and none of the designs jumps where
+        the base does not, in speed or acceleration.
+        """
+        ends = (self.start, *(segment.to for segment in self.segments[-1:]))
+        rest = (v for k, v in enumerate(self.values) if ("values", k) not in self.amounts)
+        return all(isinstance(value, Real) for value in (*ends, *rest)) and all(
+            {*curve.jumps(order)} <= {*base.curve.jumps(order)}
+            for curve in self.varied.values()
+            for order in (1, 2)
+        )
+
     @cached_property
     def curve(self) -> PeriodicCurve:
-        """The value over the crank angle from `origin` on."""
+        """The value over the crank angle from `origin` on; amounts that are columns are 0 in it."""
+        if self.varied:
+            return self.with_amounts(dict.fromkeys(self.varied, 0.0)).curve
+        return self._joined()
+
+    def _joined(self) -> PeriodicCurve:
         import numpy as np
 
         from equipoise.mechanism.formulas.curves import NORMAL, PeriodicCurve, joined, sine, spline
@@ -200,7 +262,12 @@ class Law(Frozen):
 
     def value(self, crank_angle: Any) -> tuple[Array, Array, Array]:
         """The value and its first and second derivative by crank angle, at crank angles (...)."""
-        return self.curve.at(crank_angle - self.origin)
+        at = crank_angle - self.origin
+        y, y1, y2 = self.curve.at(at)
+        for place, curve in self.varied.items():
+            amount, (by, by1, by2) = self.amounts[place], curve.at(at)
+            y, y1, y2 = y + amount * by, y1 + amount * by1, y2 + amount * by2
+        return y, y1, y2
 
     def jumps(self, order: int) -> Array:
         """Crank angles within a cycle (J,), rad, at which the derivative of this order jumps."""

@@ -15,6 +15,7 @@ from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.outputs.declared import of_mesh
 from equipoise.mechanism.parts.couplings import (
     Coupling,
+    Inner,
     LineOfAction,
     Pushed,
     Relation,
@@ -40,7 +41,7 @@ class Rack(Coupling):
     noun = to_say("rack")
     group = to_say("racks")
     loses = True
-    columns: ClassVar[Mapping[str, Set[str]]] = {"": {"angle", "travel", "pressure_angle"}}
+    columns: ClassVar[Mapping[Inner, Set[str]]] = {(): {"angle", "travel", "pressure_angle"}}
     special = "rack"
     counted = to_say("{count} racks")
 
