@@ -107,6 +107,10 @@ def _pin_and_guide(t: Any, exp: Exp) -> tuple[Any, ...]:
     return (*P(t, exp), *G(t, exp), *V(t, exp))
 
 
+def _between(t: Any, exp: Exp) -> tuple[Any, ...]:
+    return tuple(b - a for a, b in zip(P(t, exp), Q(t, exp), strict=True))
+
+
 def _two_guides(t: Any, exp: Exp) -> tuple[Any, ...]:
     return (*G(t, exp), *V(t, exp), *Q(t, exp), *Turning(0.2, 0.0, 0.1)(t, exp))
 
@@ -140,6 +144,7 @@ FORMULAS = {
     "rolled": Formula("rolled", _gear, (0.3, -0.2), ("angle",), False),
     "wound": Formula("wound", _gear, (2.5, 0.4), ("angle",), False),
     "travelled": Formula("travelled", _pin_and_guide, (ALONG,), ("angle",), False),
+    "apart": Formula("apart", _between, (), ("angle",), False),
     "railed": Formula("railed", _rail, (ALONG, ACROSS), ("point", "link"), False),
     "rrr left": Formula("rrr", _two_pins, (*RRR, 1.0), ("link", "link", "point")),
     "rrr right": Formula("rrr", _two_pins, (*RRR, -1.0), ("link", "link", "point")),

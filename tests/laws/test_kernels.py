@@ -63,7 +63,7 @@ def test_kernel_is_arithmetic_only(body: ast.FunctionDef) -> None:
 
 def test_every_motion_kernel_is_tried() -> None:
     dyads = {"rrr", "parallelogram", "pointed", "rrp", "rpr", "prp", "rpp"}
-    motion = {"point", "in_ratio", "rolled", "wound", "travelled", "railed", *dyads}
+    motion = {"point", "in_ratio", "rolled", "wound", "travelled", "apart", "railed", *dyads}
     assert {formula.kernel for formula in FORMULAS.values()} == motion
     assert motion <= FUNCTIONS.keys()
 

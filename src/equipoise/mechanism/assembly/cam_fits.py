@@ -78,7 +78,8 @@ class CamFit:
         on its shaft, from 0 on.
         """
         law = self.cam.law
-        return law if isinstance(law.phase, Real) else with_fields(law, phase=0.0)
+        phase: Any = law.phase
+        return law if isinstance(phase, Real) else with_fields(law, phase=0.0)
 
     @property
     def knots(self) -> Array:

@@ -9,7 +9,7 @@ evaluates.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import pairwise
 from math import degrees, pi
 from numbers import Real
@@ -203,7 +203,7 @@ class Law(Frozen):
         """The law with other values in these places; unchecked."""
         law = self
         for place, value in amounts.items():
-            law = changed(law, place, lambda _, value=value: value, with_fields)
+            law = changed(law, place, partial(_instead, value), with_fields)
         return law
 
     def of_designs(self, which: Any) -> Self:
@@ -285,6 +285,10 @@ class Law(Frozen):
     def extremes(self) -> tuple[float, float]:
         """Smallest and largest value in a cycle."""
         return self.curve.extremes
+
+
+def _instead(value: Any, _: Any) -> Any:
+    return value
 
 
 def _between(dimension: Any, example: list[str]) -> Any:
