@@ -150,6 +150,7 @@ class Cam(Coupling):
         return "lift" if self.lift else "swing" if self.swing else ""
 
     def varies_like(self, base: Coupling) -> bool:
+        """Whether the law of all designs is linear in its columns, and jumps as the base's does."""
         assert isinstance(base, Cam)
         return self.law.varies_like(base.law)
 
