@@ -6,6 +6,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import re
 import sys
@@ -137,7 +138,13 @@ def _in_use() -> int:
 
 
 def out_of_memory(error: MemoryError) -> UsageError:
-    """What to say of an array that found no room."""
+    """What to say of an array that found no room.
+
+    The error loses its traceback: what its frames hold is given back, without which there may be no
+    room for the sentence either.
+    """
+    error.__traceback__ = error.__context__ = None
+    gc.collect()
     shape: Any = getattr(error, "shape", None)
     kind: Any = getattr(error, "dtype", None)
     asked = 0 if shape is None or kind is None else prod(shape) * kind.itemsize

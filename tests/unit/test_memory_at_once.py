@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import tracemalloc
+import weakref
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -136,6 +137,31 @@ def test_a_small_array_that_finds_no_room_is_said_to_come_on_top() -> None:
                         (3 * memory_limit(), "in one piece")):  # fmt: skip
         error.shape = (size // 8,)  # type: ignore[attr-defined]
         assert words in str(out_of_memory(error))
+
+
+def test_what_the_failed_frames_hold_is_given_back_before_the_sentence() -> None:
+    """The traceback kept it, so that saying what happened ran out of memory again."""
+
+    class Large:
+        pass
+
+    def fails() -> None:
+        large = Large()
+        held.append(weakref.ref(large))
+        raise MemoryError
+
+    def failure() -> MemoryError:
+        try:
+            fails()
+        except MemoryError as error:
+            return error
+        raise AssertionError
+
+    held: list[weakref.ref[Large]] = []
+    error = failure()
+    assert held[0]() is not None
+    assert "not enough memory" in str(out_of_memory(error))
+    assert held[0]() is None
 
 
 def test_memory_that_is_used_up_is_a_sentence_of_commands_and_of_agents_calls(

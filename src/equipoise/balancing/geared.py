@@ -370,6 +370,18 @@ class WithShafts:
         return replace(solve_problem(problem, progress, above), meshes=self.gears)
 
 
+@dataclass(frozen=True)
+class TriedGears:
+    """What stays of a choice of gears that was solved: thousands of whole solutions need gigabytes.
+
+    cost : with the best weights.  mass : added in all, kg.  nodes : cone programs solved.
+    """
+
+    cost: float
+    mass: float
+    nodes: int
+
+
 class GearSearch(DesignProblem):
     """The gears of every geared shaft of a plan, around the cone program.
 
@@ -392,7 +404,7 @@ class GearSearch(DesignProblem):
             for k, gearing in enumerate(self.gearings)
             for name, limits in gearing.ranges.items()
         ]
-        self.solutions: list[tuple[Choice, Solution]] = []
+        self.tried: list[tuple[Choice, TriedGears]] = []
         self.costs: dict[Choice, float] = {}
         self.problems: list[UsageError] = []
         self.most = 0
@@ -425,7 +437,7 @@ class GearSearch(DesignProblem):
             (choice,) = product(*self.options)
             return self._with(choice).solved(self.progress)
         solve(self)
-        if not self.solutions:
+        if not self.tried:
             raise self.problems[0]
         options = [set(own) for own in self.options]
         tried = sum(all(map(set.__contains__, options, choice)) for choice in self.costs)
@@ -455,28 +467,25 @@ class GearSearch(DesignProblem):
 
     def cost(self, choice: Choice) -> float:
         """Cost with these gears, not closely where others cost less; infinite where none do."""
-        least = min((item.best.value for _, item in self.solutions), default=LARGE)
+        least = min((item.cost for _, item in self.tried), default=LARGE)
         try:
             solution = self._with(choice).solved(None, least)
         except UsageError as error:
             self.problems.append(error)
             self.costs[choice] = inf
             return inf
-        self.solutions.append((choice, solution))
+        cost, mass = solution.best.value, solution.problem.mass_added(solution.numbers)
+        self.tried.append((choice, TriedGears(cost, mass, solution.best.nodes)))
         if self.progress is not None:
-            self.most = max(self.most, len(self.solutions))
-            self.progress(len(self.solutions), self.most)
-        self.costs[choice] = solution.best.value
-        return solution.best.value
+            self.most = max(self.most, len(self.tried))
+            self.progress(len(self.tried), self.most)
+        self.costs[choice] = cost
+        return cost
 
     def _lightest(self) -> Solution:
         """The lightest of those that cost least."""
-        least = min(item.best.value for _, item in self.solutions)
-        ties = {
-            choice: item.problem.mass_added(item.numbers)
-            for choice, item in self.solutions
-            if item.best.value <= least + TIE
-        }
+        least = min(item.cost for _, item in self.tried)
+        ties = {choice: item.mass for choice, item in self.tried if item.cost <= least + TIE}
         equal = sorted(ties, key=lambda choice: [(item.ratio, item.direction) for item in choice])
         light = sorted(equal, key=ties.__getitem__)[:LIGHT_TIES]
         tried = dict.fromkeys([*equal[:: max(1, len(equal) // MOST_TIES)], *light])
@@ -487,12 +496,12 @@ class GearSearch(DesignProblem):
         method = Note(
             "{method}, for each of {count} choices of gears",
             method=lightest.method,
-            count=len(self.solutions),
+            count=len(self.tried),
         )
         return replace(
             lightest,
             method=method,
-            best=replace(lightest.best, nodes=sum(item.best.nodes for _, item in self.solutions)),
+            best=replace(lightest.best, nodes=sum(item.nodes for _, item in self.tried)),
             ties=len(equal),
             weighed=len(tried),
         )
@@ -512,11 +521,11 @@ class GearGrid:
         problem.most = len(choices) + BEST_CHOICES * MOST_STEPS * ranged
         for choice in choices:
             problem.cost(choice)
-        if problem.solutions and len(choices) < prod(map(len, problem.options)):
+        if problem.tried and len(choices) < prod(map(len, problem.options)):
             problem.most += BEST_CHOICES * sum(map(len, problem.options))
             for choice in _best_choices(problem):
                 _try_by_turns(problem, choice)
-        if problem.solutions and problem.ranges:
+        if problem.tried and problem.ranges:
             for choice in _best_choices(problem):
                 _follow(problem, choice)
         return DesignSolution(np.empty((0, len(problem.spreads))))

@@ -28,6 +28,7 @@ from equipoise.results.blocks import Block, Cell, Column, FileText, Notes, Table
 from equipoise.results.cam_blocks import cams_told
 from equipoise.results.lost_contacts import where_lost
 from equipoise.results.machine_blocks import bodies_tables, driven, place_told
+from equipoise.results.unreached_tables import unreached_tables
 from equipoise.signals import Array
 from equipoise.studies.blocks import Units, in_unit, labelled, spread_told, unit_in
 from equipoise.studies.evaluate import evaluator
@@ -228,6 +229,7 @@ def machine_blocks(machine: Machine) -> Iterator[Block]:
         yield Table.of(say("Loads, and their work in a cycle"), heads, _loads(machine))
     if notes := (
         *remarks(linkage),
+        *unreached_tables(motion),
         *where_lost(machine),
         *idle_parts(machine.support),
         *_uncarried(machine),

@@ -35,6 +35,7 @@ from equipoise.results.lost_contacts import lost_contacts
 from equipoise.results.outputs import AnalysisOutput, AnalysisOutputs, figures_by_name
 from equipoise.results.result import Result
 from equipoise.results.slender_links import slender_links
+from equipoise.results.unreached_tables import unreached_tables
 from equipoise.signals import Array, Figures, Periodic
 
 if TYPE_CHECKING:
@@ -236,7 +237,8 @@ class Analysis(Result):
         """What to look at again, as `check` asks it: what may not be meant, and where it fails."""
         lost = () if self.solved is None else lost_contacts(self.solved)
         bending = slender_links(self.machine.links, self.motion.speed)
-        parts = (*remarks(self.motion.linkage), *lost, *bending)
+        unreached = unreached_tables(self.motion)
+        parts = (*remarks(self.motion.linkage), *unreached, *lost, *bending)
         asked = (*parts, *idle_parts(self.machine.support))
         return tuple(dict.fromkeys(asked))
 

@@ -33,6 +33,7 @@ from equipoise.results.machine_blocks import (
 )
 from equipoise.results.outputs import CAUSES, tops_of
 from equipoise.results.scales import TOTALS, scale_of
+from equipoise.results.unreached_tables import unreached_tables
 from equipoise.signals import EQUAL, Array, Periodic
 
 if TYPE_CHECKING:
@@ -67,8 +68,9 @@ def analysis_blocks(analysis: Analysis) -> Iterator[Block]:
 
 def question_blocks(analysis: Analysis) -> Iterator[Block]:
     """What may not be meant as the file gives it."""
-    linkage, support = analysis.motion.linkage, analysis.machine.support
-    if asked := (*questions(linkage), *idle_parts(support)):
+    motion, support = analysis.motion, analysis.machine.support
+    asked = (*questions(motion.linkage), *unreached_tables(motion), *idle_parts(support))
+    if asked:
         yield Notes(asked)
 
 

@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+import gc
+import weakref
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import product
 from math import radians
+from typing import Any
 
 import pytest
 
 import equipoise as eq
 from equipoise.balancing import geared as gear_search
+from equipoise.balancing.problem import Problem
+from equipoise.balancing.solution import Solution
 from equipoise.errors import UsageError
 from equipoise.mechanism.parts.balance import Balance, GearedWeight, Limit, Objective, Weight
 from support.chosen import EXHAUSTIVE
@@ -113,3 +118,22 @@ def test_limits_that_no_gears_keep() -> None:
     limits = (Limit(Objective("shaking_moment"), ratio=1e-6),)
     with pytest.raises(UsageError, match="at most"):
         eq.balance(MACHINE, replace(plan(TOOTHED, CRANK), limits=limits))
+
+
+def test_solutions_of_gears_are_not_all_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A shaft of 23 by 23 teeth in 24 directions ran out of 2 GiB on its way."""
+    alive: list[weakref.ref[Problem]] = []
+    solved = gear_search.WithShafts.solved
+
+    def recorded(shafts: gear_search.WithShafts, *others: Any) -> Solution:
+        solution = solved(shafts, *others)
+        alive.append(weakref.ref(solution.problem))
+        return solution
+
+    monkeypatch.setattr(gear_search.WithShafts, "solved", recorded)
+    own = plan(TOOTHED)
+    search = gear_search.GearSearch(gear_search.WithShafts(MACHINE, own, MACHINE))
+    solution = search.run()
+    gc.collect()
+    assert len(alive) > len(search.tried) == 9
+    assert [item() for item in alive if item() is not None] == [solution.problem]

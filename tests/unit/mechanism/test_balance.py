@@ -137,7 +137,8 @@ PARTS: list[tuple[Any, str, str]] = [
     (replace(TEETH, pitch_radius=0.05), ".pitch_radius",
      "module and teeth determine it already; leave it out"),
     (replace(DIRECTED, direction=None), ".direction",
-     "missing; 'crank' turns about the drive's own pivot, from which there is no line to it"),
+     "missing; 'crank' turns about the drive's own pivot; give where the shaft is, as "
+     'direction = "90 deg" or axis in [[balance.geared]]'),
     (replace(GEARED, pitch_radius=None, axis=(1.2, 0.0), direction=(0.0, 0.0)), ".direction",
      "the axis determines it already; leave it out"),
     (replace(GEARED, pitch_radius=None, axis=(1.0, 0.0)), ".axis",

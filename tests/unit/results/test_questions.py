@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
+
 import equipoise as eq
+from equipoise.mechanism import Resistance, TorsionSpring
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.support import idle_parts
 from equipoise.present.checks import machine_blocks
@@ -66,3 +69,42 @@ def test_what_a_machine_is_asked_is_said_once() -> None:
         said = [str(n) for one in analysis.blocks() if isinstance(one, Notes) for n in one.notes]
         assert len(said) == len(set(said))
         assert set(analysis.notes) >= {one for one in said if "dead position" in one}
+
+
+def test_a_table_that_the_motion_never_reaches_is_asked_of() -> None:
+    """A cut counted from another point: nothing acted, and no figure showed it."""
+    base = eq.load("spring-balanced-crank")
+    motion = eq.move(base)
+    way = abs(motion.points["F"].place - complex(*base.frame["S"]))
+    along = motion.points["F"].x - base.frame["S"][0]
+    angle = motion.links["rocker"].angle
+    spring, torsion, cut = base.springs[0], TorsionSpring("rocker", stiffness=1.0), Resistance(
+        "rocker", "F", "S", direction=0.0, positions=(0.0, 1.0), forces=(0.0, 9.0), speed=0.01
+    )  # fmt: skip
+
+    def asked(low: float, high: float, values: np.ndarray, table: str) -> set[str]:
+        ends = (float(low), float(high))
+        changes: dict[str, object] = {"springs": (), "torsion_springs": (), "resistances": ()}
+        if table == "springs":
+            own = replace(spring, stiffness=None, free_length=0.0, lengths=ends, forces=(1.0, 2.0))
+            changes[table] = (own,)
+        elif table == "torsion_springs":
+            changes[table] = (replace(torsion, stiffness=None, angles=ends, torques=(1.0, -1.0)),)
+        else:
+            changes[table] = (replace(cut, positions=ends),)
+        machine = replace(base, balance=None, **changes)  # type: ignore[arg-type]
+        alike = [
+            {note.split(":")[0] for note in notes if "so that none is reached" in note}
+            for notes in both(machine)
+        ]
+        assert alike[0] == alike[1] == alike[2] and alike[0] <= {f"{table}[1]"}
+        return alike[0]
+
+    for table, values in (("springs", way), ("resistances", along), ("torsion_springs", angle)):
+        low, high = values.min(), values.max()
+        size = high - low
+        assert not asked(low - size, high + size, values, table)
+        assert not asked(low + 0.3 * size, low + 0.6 * size, values, table)
+        assert not asked(low - size, low + 0.1 * size, values, table)
+        assert asked(high + 0.1 * size, high + 0.2 * size, values, table)
+        assert asked(low - 0.2 * size, low - 0.1 * size, values, table)

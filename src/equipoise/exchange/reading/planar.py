@@ -28,6 +28,7 @@ from equipoise.exchange.reading.spatial import (
 from equipoise.i18n import Note
 from equipoise.mechanism.kinematics.machine_draft import STILL, LinkPlacement, MachineDraft
 from equipoise.mechanism.parts.machine import FRAME, Gear, Link, Slider, Spring, Vector
+from equipoise.quantities import clean_place
 
 SAME = 1e-9
 """Distance over the size of the machine below which two places are one."""
@@ -66,6 +67,10 @@ class Pinning:
         self.wishes[number] = [wish]
         self.size = max(self.size, abs(place))
         return number
+
+    def without_rounding(self, local: complex) -> Vector:
+        """Coordinates in a link, m, that turning and adding may have left at 1e-33 instead of 0."""
+        return clean_place(local, self.size)
 
     def held(self, link: str, place: complex, wish: str) -> int:
         """The point of a link at a place, new where there is none."""
@@ -225,7 +230,8 @@ def planar(space: Space, options: SpatialOptions) -> Read:
     flat = _Flat(space)
     sliders = [*flat.joined()]
     names = flat.pins.named()
-    points = {link: {names[item]: place for item, place in own.items()}
+    points = {link: {names[item]: flat.pins.without_rounding(complex(*place))
+                     for item, place in own.items()}
               for link, own in flat.pins.points.items()}  # fmt: skip
     slides = tuple(Slider(link, names[point], on, names[through], *angles)
                    for link, point, on, through, *angles in sliders)  # fmt: skip
@@ -406,7 +412,8 @@ class _Flat:
             raise ModelError(
                 f"body {link!r}", Note("its mass or its inertia is below 0; give 0 or more")
             )
-        return {"mass": whole.mass, "center_of_mass": (local.real, local.imag), "inertia": inertia}
+        center = self.pins.without_rounding(local)
+        return {"mass": whole.mass, "center_of_mass": center, "inertia": inertia}
 
     def springs(self, names: Mapping[int, str]) -> Iterator[Spring]:
         for pull in self.space.pulls:

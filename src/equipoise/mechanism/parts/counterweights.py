@@ -279,8 +279,8 @@ def _wrong_axis(
             yield ModelError(
                 f"{where}.direction",
                 Note(
-                    "missing; {driver!r} turns about the drive's own pivot, from which there "
-                    "is no line to it",
+                    "missing; {driver!r} turns about the drive's own pivot; give where the "
+                    'shaft is, as direction = "90 deg" or axis in [[balance.geared]]',
                     driver=geared.driver,
                 ),
             )

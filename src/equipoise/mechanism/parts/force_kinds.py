@@ -7,16 +7,30 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
 
-from equipoise.i18n import to_say
+from equipoise.i18n import Note, to_say
 from equipoise.keys import Frozen
 from equipoise.keys.declaring import once
 from equipoise.mechanism.checks import FRAME
 from equipoise.mechanism.parts.element_kinds import Element, Placed, element_kinds
+from equipoise.quantities import Dimension
 
 Action = tuple[str, str | None, Any, Any]
 """A body, its point (None of a torque alone), the force on it (complex, N) and the torque (N m)."""
+
+
+class TableArgument(NamedTuple):
+    """What a table of an element goes by: a position, a length or an angle.
+
+    label : of it, for readers.  dimension : of it.  rows : its values in the table, m or rad.
+    values : those that the motion has, m or rad.
+    """
+
+    label: Note
+    dimension: Dimension
+    rows: Sequence[Any]
+    values: Any
 
 
 class ForceElement(Element):
@@ -41,6 +55,10 @@ class ForceElement(Element):
         to and angle, deg; empty of what does not need one.
         """
         return ""
+
+    def table_argument(self, at: Placed) -> TableArgument | None:
+        """By what the rows of its table go, of one that has rows."""
+        return None
 
     def on_links(self, at: Placed) -> Iterator[Action]:
         """What it exerts on moving links."""

@@ -25,7 +25,7 @@ from equipoise.keys.csv_tables import CsvTable
 from equipoise.mechanism.checks import FRAME, Bodies
 from equipoise.mechanism.formulas.kernels import cross, positive
 from equipoise.mechanism.parts.element_kinds import Placed
-from equipoise.mechanism.parts.force_kinds import Action, RatedElement
+from equipoise.mechanism.parts.force_kinds import Action, RatedElement, TableArgument
 from equipoise.mechanism.parts.ramps import table_value, wrong_rows
 from equipoise.mechanism.parts.two_body_elements import BetweenPoints
 from equipoise.quantities import Dimension, told
@@ -170,6 +170,14 @@ class Resistance(BetweenPoints, RatedElement):
     def ways(self, at: Placed) -> tuple[tuple[Any, Any], ...]:
         """The ways along and across its direction, m, with their speeds, m/s."""
         return self._moving(at)[2]
+
+    def table_argument(self, at: Placed) -> TableArgument | None:
+        """By the position along its direction, where it has rows of one."""
+        positions, _ = self.rows
+        if not positions:
+            return None
+        (position, _), _ = self.ways(at)
+        return TableArgument(Note("position"), "length", positions, position)
 
     def _dry(self, position: Any) -> Any:
         """Size of the dry part at a position along its direction, N."""

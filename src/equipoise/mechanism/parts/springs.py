@@ -25,7 +25,7 @@ from equipoise.keys.csv_tables import CsvTable
 from equipoise.mechanism.checks import FRAME, Bodies, unknown, unknown_body, unknown_link
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.parts.element_kinds import Placed
-from equipoise.mechanism.parts.force_kinds import Action, ForceElement
+from equipoise.mechanism.parts.force_kinds import Action, ForceElement, TableArgument
 from equipoise.mechanism.parts.ramps import Ramps, ramp_value, ramps_of, wrong_rows
 from equipoise.mechanism.parts.two_body_elements import BetweenPoints
 from equipoise.quantities import Dimension, told
@@ -190,6 +190,14 @@ class Spring(BetweenPoints, ForceElement):
             force = kernels.pulled(place, to, self._pull(kernels.length(to - place)))
         yield self.link, self.point, force, 0.0
         yield self.on, self.to, -force, 0.0
+
+    def table_argument(self, at: Placed) -> TableArgument | None:
+        """By its length, where it has rows of one."""
+        lengths, _ = self.rows
+        if not lengths:
+            return None
+        place, to = self.ends(at)
+        return TableArgument(Note("length"), "length", lengths, kernels.length(to - place))
 
     def values(self, at: Placed) -> Mapping[str, Any]:
         """Its length, m, and its pull, N, less than 0 where it pushes."""

@@ -24,7 +24,7 @@ from equipoise.keys import (
 from equipoise.keys.csv_tables import CsvTable
 from equipoise.mechanism.checks import FRAME, Bodies, unknown_body, unknown_link
 from equipoise.mechanism.parts.element_kinds import Placed
-from equipoise.mechanism.parts.force_kinds import Action, ForceElement
+from equipoise.mechanism.parts.force_kinds import Action, ForceElement, TableArgument
 from equipoise.mechanism.parts.ramps import Ramps, ramp_integral, ramp_value, ramps_of, wrong_rows
 from equipoise.mechanism.parts.two_body_elements import BetweenBodies
 from equipoise.quantities import Dimension, told
@@ -135,6 +135,14 @@ class TorsionSpring(BetweenBodies, ForceElement):
         torque = self._torque(at.angle(self.link, self.on, self.middle))
         yield self.link, None, 0j, torque
         yield self.on, None, 0j, -torque
+
+    def table_argument(self, at: Placed) -> TableArgument | None:
+        """By its angle, where it has rows of one."""
+        angles, _ = self.rows
+        if not angles:
+            return None
+        values = at.angle(self.link, self.on, self.middle)
+        return TableArgument(Note("angle"), "angle", angles, values)
 
     def values(self, at: Placed) -> Mapping[str, Any]:
         """Angle of the link, rad, torque on it, N m, and energy, J."""

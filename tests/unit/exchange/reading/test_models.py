@@ -7,6 +7,7 @@ none.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import product
 from math import cos, dist, radians, sin
 from pathlib import Path
@@ -390,3 +391,34 @@ def test_what_export_wrote_as_urdf_comes_back(name: str, tmp_path: Path) -> None
 def _lengths(machine: Machine, link: str) -> list[float]:
     """Between points of a link, m; 0 is among them."""
     return [dist(*pair) for pair in product(machine.links[link].points.values(), repeat=2)]
+
+
+PRESS = """
+schema = 1
+title = "Toggle press"
+assembly = { K = "right", R = "forward" }
+drive = { link = "crank", speed = "60 rpm" }
+frame.points.O = ["-420 mm", "-150 mm"]
+frame.points.G = ["0 mm", "0 mm"]
+links.crank = { points = ["O", "B"], length = "60 mm" }
+links.rod = { points = ["B", "K"], length = "400 mm" }
+links.upper = { points = ["G", "K"], length = "180 mm" }
+links.lower = { points = ["K", "R"], length = "220 mm" }
+links.ram.points.R = ["0 mm", "0 mm"]
+sliders = [{ link = "ram", point = "R", on = "frame", through = "G", direction = "-90 deg" }]
+"""
+
+
+def test_a_centre_of_mass_that_is_rounding_is_read_as_0(tmp_path: Path) -> None:
+    """Turned through space, 0 came out as -3e-33 m, a length that no machine is said to have."""
+    drawn = loads_linkage(PRESS)
+    links = {name: replace(link, mass=85.0, center_of_mass=(0.0, 0.0), inertia=1.0)
+             for name, link in drawn.links.items()}  # fmt: skip
+    press = replace(drawn, links=links)
+    file = tmp_path / "press.xml"
+    export(press, file)
+    back = import_machine(file).machine
+    assert back is not None
+    assert back.links["ram"].center_of_mass == (0.0, 0.0)
+    before, after = (forces(move(item)).drive_torque for item in (press, back))
+    assert np.abs(after - before).max() < 1e-6 * np.abs(before).max()
