@@ -90,7 +90,7 @@ class EquipoiseError(Exception):
         """The sentence, to be said in any language, as it stands above `lines`."""
         return self.note if self.paste is None else self.paste.below(self.note)
 
-    def told(self, language: str = "", lines: bool = False) -> str:
+    def message(self, language: str = "", lines: bool = False) -> str:
         """The sentence in a language, that which is spoken where none is given.
 
         Where the language lacks it, the English sentence, and that it is in English.
@@ -379,8 +379,8 @@ def form_of(name: str) -> str:
 
 def _listed(names: list[str]) -> str:
     shown = ", ".join(repr(name) for name in names[:MOST_SHOWN]) or Note("none")
-    more = len(names) - MOST_SHOWN
-    return Note("{names} and {more} more", names=shown, more=more) if more > 0 else shown
+    omitted = len(names) - MOST_SHOWN
+    return Note("{names} and {more} more", names=shown, more=omitted) if omitted > 0 else shown
 
 
 EXTRAS = {

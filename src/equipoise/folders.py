@@ -136,7 +136,7 @@ class Folder:
             os.mkdir(name, dir_fd=self._descriptor)
         return self.folder(name)
 
-    def made(self, name: str) -> Folder:
+    def subfolder(self, name: str) -> Folder:
         """A folder in it, made where there is none."""
         with suppress(FileExistsError):
             return self.make(name)

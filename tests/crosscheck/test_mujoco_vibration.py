@@ -45,7 +45,7 @@ def test_steady_motion(case: Case) -> None:
     """Gauge, mounts and drive torque; MuJoCo starts to look where the package's solution is."""
     machine = in_package(case.rig)
     exact = solve_exact(machine, case.speed, False)
-    start = exact.found.orbit.starts[: 2 * case.rig.freedoms, 0]
+    start = exact.steady.orbit.starts[: 2 * case.rig.freedoms, 0]
     wanted = rig_mujoco.steady(case.rig, case.speed, SAMPLES, start_state=start)
     found = respond(machine, case.speed, "exact")
     theta = case.speed * wanted.times

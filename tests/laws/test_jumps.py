@@ -214,7 +214,7 @@ def test_rows_are_computed_at_their_own_angles() -> None:
     both, width = END - BEGIN - radians(77.4), END - BEGIN
     square = TORQUE**2 * (2 * width + 2 * both) / (2 * pi)
     assert found.rms == pytest.approx(np.sqrt(square), rel=1e-12)
-    own = analysis.together["drive_torque"]
+    own = analysis.rows_total["drive_torque"]
     theta = analysis.crank_angle
     alone = [forces(move(PULSE, theta + row.phase)).drive_torque for row in rows]
     assert own == pytest.approx(sum(alone), abs=1e-12)
@@ -320,7 +320,7 @@ def test_exact_orders_are_those_of_a_fine_grid(sense: float, drive: bool) -> Non
     load = Load("crank", torque=2.0, start=BEGIN, stop=END)
     machine = replace(eq.load("yamashita-rig"), loads=(load,))
     solution = solve_exact(machine, sense * machine.drive.speed, drive)
-    dense = ExactSolution(solution.system, solution.linear, solution.found)
+    dense = ExactSolution(solution.system, solution.linear, solution.steady)
     dense.__dict__["sampling"] = None
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(exact, "SAMPLES", 720 * 32)
@@ -336,7 +336,7 @@ def test_exact_orders_are_those_of_a_fine_grid(sense: float, drive: bool) -> Non
     # no piece of the mesh has a jump in it, so that none has to be cut again and again
     assert np.all(
         np.min(
-            np.abs(np.subtract.outer(solution.system.jumps, solution.found.orbit.points)), axis=1
+            np.abs(np.subtract.outer(solution.system.jumps, solution.steady.orbit.points)), axis=1
         )
         == 0
     )

@@ -578,5 +578,5 @@ def test_solution_does_not_depend_on_where_it_starts() -> None:
     machine = springs()
     wanted = solve_exact(machine, 17.0, False)
     other = solve_exact(machine, 21.0, False)
-    found = solve_exact(machine, 17.0, False, other.found.orbit.at)
+    found = solve_exact(machine, 17.0, False, other.steady.orbit.at)
     close(found.states, wanted.states, 1e-9)

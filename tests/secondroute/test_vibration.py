@@ -115,7 +115,7 @@ def solved(name: str) -> Pair:
     case = CASES[name]
     machine = in_package(case.rig, case.motor).with_drive(speed=case.speed)
     found = solve_exact(machine, case.speed, case.motor is not None)
-    states = found.found.orbit.at(TRAVEL)
+    states = found.steady.orbit.at(TRAVEL)
     start = states[: rig_reference.difference_steps(case.rig, 1.0).size, 0]
     wanted = rig_reference.steady(case.rig, case.speed, SAMPLES, start_state=start)
     return Pair(case, wanted, found, states)
@@ -222,9 +222,9 @@ def test_multipliers(name: str) -> None:
     case = CASES[name]
     found = solve_exact(in_package(case.rig, case.motor), case.speed, case.motor is not None)
     count = rig_reference.difference_steps(case.rig, 1.0).size
-    start = found.found.orbit.starts[:count, 0]
+    start = found.steady.orbit.starts[:count, 0]
     wanted = rig_reference.multipliers(case.rig, case.speed, start)
-    values = found.found.multipliers(count)
+    values = found.steady.multipliers(count)
     tolerance = 5e-5 if name == "lifting off" else 1e-6
     values, wanted = np.sort_complex(values), np.sort_complex(wanted)
     np.testing.assert_allclose(values, wanted, rtol=0, atol=tolerance)
@@ -297,8 +297,8 @@ def test_motor_with_its_mean_speed_held() -> None:
     found = solve_exact(machine, 193 * RPM, True)
     shift = found.response().drive.shift
     rig = replace(one_row(), drive=line(9.0 + 0.4 * shift, 0.4), flywheel=0.01)
-    start = found.found.orbit.starts[:3, 0]
+    start = found.steady.orbit.starts[:3, 0]
     wanted = rig_reference.steady(rig, 193 * RPM, SAMPLES, start_state=start)
     np.testing.assert_allclose(wanted.state[0], start, rtol=1e-8, atol=1e-10)
-    states = found.found.orbit.at(TRAVEL)
+    states = found.steady.orbit.at(TRAVEL)
     np.testing.assert_allclose(states[3], wanted.times, rtol=0, atol=1e-9)

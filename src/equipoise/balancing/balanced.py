@@ -32,7 +32,7 @@ from equipoise.mechanism.parts.balance import Balance, Objective
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.objectives import GAUGES, ROWS
 from equipoise.planting.names import dimension_of as of_planting
-from equipoise.quantities import Dimension, told
+from equipoise.quantities import Dimension, format_quantity
 from equipoise.results.analysis import Analysis
 from equipoise.results.declaring import (
     NOTES,
@@ -538,7 +538,7 @@ def _over_pins(solution: Solution) -> Iterator[Note]:
                     "take {moment} off {link} on the other side of {at}, if that much is there",
                     link=change.link,
                     pins=all_of(pins),
-                    moment=told(moment, "unbalance", digits=3),
+                    moment=format_quantity(moment, "unbalance", digits=3),
                     at=change.values["at"],
                 )
 

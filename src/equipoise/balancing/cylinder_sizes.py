@@ -24,7 +24,7 @@ from equipoise.balancing.policy import (
 )
 from equipoise.dataclass import dataclass
 from equipoise.i18n import say, to_say
-from equipoise.quantities import display, number, percent, told
+from equipoise.quantities import display, format_quantity, number, percent
 from equipoise.results.analysis import Analysis
 from equipoise.results.declaring import Declarations, ResultOutput
 from equipoise.results.yardsticks import FigureAssessment, pusher_of
@@ -205,9 +205,9 @@ def cylinder_sentences(cylinder: Cylinder) -> Iterator[str]:
     """The bore at a pressure, the rod where it is slender, and a lever that can be built."""
     words = {
         "pressure": number(cylinder.pressure / BAR, digits=3),
-        "bore": told(cylinder.bore, "length", "mm", digits=3),
-        "rod": told(cylinder.rod, "length", "mm", digits=3),
-        "open": told(cylinder.open, "length", digits=3),
+        "bore": format_quantity(cylinder.bore, "length", "mm", digits=3),
+        "rod": format_quantity(cylinder.rod, "length", "mm", digits=3),
+        "open": format_quantity(cylinder.open, "length", digits=3),
     }
     usual = to_say("At {pressure} bar a cylinder of {bore} bore with a rod of {rod} holds that.")
     slender = to_say(
@@ -229,16 +229,16 @@ def cylinder_sentences(cylinder: Cylinder) -> Iterator[str]:
             "With {point} {distance} from {pivot} it needs {share} % less force, and is from "
             "{closed} to {open} long, which can be built.",
             point=lever.point,
-            distance=told(lever.distance, "length", digits=3),
+            distance=format_quantity(lever.distance, "length", digits=3),
             pivot=cylinder.pivot,
             share=percent(1 - lever.force / max(cylinder.push, cylinder.pull)),
-            closed=told(lever.closed, "length", digits=3),
-            open=told(lever.open, "length", digits=3),
+            closed=format_quantity(lever.closed, "length", digits=3),
+            open=format_quantity(lever.open, "length", digits=3),
         )
     elif cylinder.is_lever_stopped and cylinder.is_buildable:
         yield say(
             "A longer lever about {pivot} would need a stroke for which its closed length, "
             "{closed}, has no room.",
             pivot=cylinder.pivot,
-            closed=told(cylinder.closed, "length", digits=3),
+            closed=format_quantity(cylinder.closed, "length", digits=3),
         )

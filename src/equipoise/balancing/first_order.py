@@ -26,7 +26,7 @@ from equipoise.dataclass import dataclass
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.quantities import display, percent, told
+from equipoise.quantities import display, format_quantity, percent
 from equipoise.results.analysis import Analysis
 from equipoise.results.declaring import Declarations, ResultOutput
 from equipoise.results.rotors import unbalances
@@ -226,7 +226,7 @@ def shafts_sentence(
             "With a shaft of {backward} as fast as {crank} against it besides, {gain} % of the "
             "shaking force would go.",
             crank=crank,
-            backward=told(shafts.backward, "unbalance", digits=2),
+            backward=format_quantity(shafts.backward, "unbalance", digits=2),
             gain=percent(shafts.gain, 0),
         )
     as_it_is = to_say(
@@ -240,8 +240,8 @@ def shafts_sentence(
     return say(
         as_changed if changed else as_it_is,
         crank=crank,
-        forward=told(shafts.forward, "unbalance", digits=2),
-        backward=told(shafts.backward, "unbalance", digits=2),
+        forward=format_quantity(shafts.forward, "unbalance", digits=2),
+        backward=format_quantity(shafts.backward, "unbalance", digits=2),
         gain=percent(shafts.gain, 0),
     )
 
@@ -341,8 +341,8 @@ def end_sentences(ends: EndWeights, crank: str) -> Iterator[str]:
     yield say(
         "Two weights of {moment} on {crank} instead, opposite each other and {apart} apart, would "
         "take {gain} % off the couple of the rows.",
-        moment=told(ends.moment, "unbalance", digits=2),
+        moment=format_quantity(ends.moment, "unbalance", digits=2),
         crank=crank,
-        apart=told(ends.apart, "length", digits=3),
+        apart=format_quantity(ends.apart, "length", digits=3),
         gain=percent(ends.gain, 0),
     )

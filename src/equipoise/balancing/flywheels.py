@@ -26,7 +26,7 @@ from equipoise.i18n import say, to_say
 from equipoise.mechanism.assembly.steps import size_of_links
 from equipoise.mechanism.parts.balance import MATERIALS
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.quantities import number, percent, told
+from equipoise.quantities import format_quantity, number, percent
 from equipoise.results.analysis import Analysis
 from equipoise.results.declaring import Declarations, ResultOutput
 from equipoise.results.yardsticks import FigureAssessment
@@ -209,9 +209,9 @@ def flywheel_sentences(flywheels: Flywheels, crank: str, links: float) -> Iterat
             "A motor that permits this fluctuation then has to give {mean} at {crank} ({power}) "
             "instead of up to {most}.",
             crank=crank,
-            mean=told(flywheels.mean_torque, "torque", digits=3),
-            power=told(flywheels.power, "power", digits=3),
-            most=told(flywheels.largest_torque, "torque", digits=3),
+            mean=format_quantity(flywheels.mean_torque, "torque", digits=3),
+            power=format_quantity(flywheels.power, "power", digits=3),
+            most=format_quantity(flywheels.largest_torque, "torque", digits=3),
         )
 
 
@@ -227,10 +227,10 @@ def _disc(flywheel: RequiredFlywheel, links: float) -> str:
     return say(
         "at least {inertia}, as of a steel disc of {diameter} by {thickness} and {mass} ({ratio} "
         "times the moving links), keeps its speed within {share} %",
-        inertia=told(flywheel.inertia, "inertia", digits=2),
-        diameter=told(flywheel.diameter, "length", "mm", digits=3),
-        thickness=told(flywheel.thickness, "length", "mm", digits=2),
-        mass=told(flywheel.mass, "mass", "kg", digits=2),
+        inertia=format_quantity(flywheel.inertia, "inertia", digits=2),
+        diameter=format_quantity(flywheel.diameter, "length", "mm", digits=3),
+        thickness=format_quantity(flywheel.thickness, "length", "mm", digits=2),
+        mass=format_quantity(flywheel.mass, "mass", "kg", digits=2),
         ratio=number(flywheel.mass / links, digits=2),
         share=percent(flywheel.fluctuation),
     )

@@ -35,7 +35,7 @@ from equipoise.balancing.sentences import (
 from equipoise.balancing.workshop import in_its_plane, phases_told, sentences
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.parts.objectives import GAUGES, ROWS
-from equipoise.quantities import change, display, percent, told
+from equipoise.quantities import change, display, format_quantity, percent
 from equipoise.results.analysis import analyze
 from equipoise.results.blocks import Block, Cell, Column, RelativeChange, Table, Text
 from equipoise.results.lost_contacts import preloads_to_hold
@@ -93,8 +93,8 @@ def _heavy(balanced: Balanced) -> Iterator[str]:
         yield say(
             "That is a large mass for this linkage: all its links together have {links}, and "
             "{added} are added.",
-            links=told(links, "mass", "kg", digits=3),
-            added=told(added, "mass", "kg", digits=3),
+            links=format_quantity(links, "mass", "kg", digits=3),
+            added=format_quantity(added, "mass", "kg", digits=3),
         )
 
 
@@ -371,7 +371,7 @@ def _with_more_room(balanced: Balanced) -> Iterator[str]:
             assumed=assumed.with_unit(assumed.text(with_room.assumed, digits=2)),
             wanted=assumed.with_unit(assumed.text(wanted, digits=2)),
             remedy=remedy_named(with_room.remedy),
-            mass=told(with_room.remedy.added_mass, "mass", digits=3),
+            mass=format_quantity(with_room.remedy.added_mass, "mass", digits=3),
             gain=percent(with_room.remedy.gain, 0),
         )
 
@@ -418,7 +418,7 @@ def why_not(balanced: Balanced) -> str:
     elif unbalances(balanced.original):
         reason = say("the unbalance may be what the machine is for")
     else:
-        mass = told(balanced.added_mass, "mass", digits=3)
+        mass = format_quantity(balanced.added_mass, "mass", digits=3)
         reason = say("{mass} would be added, too much for this reduction", mass=mass)
     return reason
 

@@ -28,7 +28,7 @@ from equipoise.mechanism.parts.balance import Objective
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.objectives import OF_ROWS
 from equipoise.mechanism.parts.support import Row
-from equipoise.quantities import display, fixed, in_si, told
+from equipoise.quantities import display, fixed, format_quantity, in_si
 from equipoise.results.blocks import Block, Cell, Column, Table, Text, Value
 from equipoise.results.outputs import output_named
 from equipoise.signals import Array
@@ -208,7 +208,7 @@ def arranged(machine: Machine, pattern: str | Pattern, spacing: float | str) -> 
 
 def pattern_blocks(machine: Machine, rows: int, spacing: float) -> Iterator[Block]:
     """Patterns for a number of rows at a spacing (m): what each leaves, and how it twists."""
-    apart = told(spacing, "length")
+    apart = format_quantity(spacing, "length")
     yield Text(say("{rows} rows, {apart} from row to row", rows=rows, apart=apart))
     patterns, unit = patterns_for(rows), display("angle")
     phases = [

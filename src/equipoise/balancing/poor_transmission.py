@@ -20,7 +20,7 @@ from equipoise.mechanism.checks import bodies_at
 from equipoise.mechanism.kinematics.motion import Motion, move
 from equipoise.mechanism.outputs.declared import joint_named
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.quantities import angle, percent, told
+from equipoise.quantities import angle, format_quantity, percent
 from equipoise.results.analysis import Analysis
 from equipoise.results.declaring import Declarations, ResultOutput
 from equipoise.results.yardsticks import TRANSMISSION, FigureAssessment
@@ -169,7 +169,7 @@ def transmission_sentence(transmission: PoorTransmission, crank_turns: bool) -> 
     return say(
         of_crank if crank_turns else of_cycle,
         joint=joint_named(transmission.joint),
-        value=told(transmission.transmission, "angle", digits=3),
+        value=format_quantity(transmission.transmission, "angle", digits=3),
         angle=angle(transmission.crank_angle),
         limit=angle(transmission.limit, 0),
     )
@@ -179,7 +179,7 @@ def mending_sentences(transmission: PoorTransmission) -> Iterator[str]:
     """Which length mends the angle, and what the joint bears."""
     yield _length_sentence(transmission)
     if transmission.force is not None:
-        force = told(transmission.force, "force", digits=3)
+        force = format_quantity(transmission.force, "force", digits=3)
         yield say(
             "Joint {joint} bears up to {force}.", joint=joint_named(transmission.joint), force=force
         )
@@ -207,6 +207,6 @@ def _length_sentence(transmission: PoorTransmission) -> str:
         share=percent(abs(transmission.share)),
         first=first,
         second=second,
-        length=told(transmission.length, "length", digits=3),
+        length=format_quantity(transmission.length, "length", digits=3),
         mended=angle(transmission.mended),
     )

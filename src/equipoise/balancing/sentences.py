@@ -13,7 +13,7 @@ from equipoise.balancing.objectives import unit_of
 from equipoise.i18n import said, say, spoken, to_say
 from equipoise.mechanism.outputs.declared import GROUPS
 from equipoise.mechanism.parts.balance import CUT, Balance, Objective, Weight, material_of
-from equipoise.quantities import PER_RPM, brief, percent, told
+from equipoise.quantities import PER_RPM, brief, format_quantity, percent
 from equipoise.results.outputs import (
     MEASURES,
     objective_named,
@@ -177,7 +177,11 @@ def freedoms(plan: Balance) -> Iterator[str]:
         room, plane = _room(added.weight), added.weight.plane
         what = say("{weight} on {link} about {point}", weight=room, link=added.link, point=added.at)
         if plane is not None:
-            what = say("{what}, in the plane z = {plane}", what=what, plane=told(plane, "length"))
+            what = say(
+                "{what}, in the plane z = {plane}",
+                what=what,
+                plane=format_quantity(plane, "length"),
+            )
         yield what
     for geared in plan.geared:
         yield say("{weight} geared to {link}", weight=_room(geared.weight), link=geared.driver)
@@ -202,18 +206,18 @@ def _room(weight: Weight) -> str:
     """A weight: its shape, the plate that it is cut from, and its room."""
     shape = say(SHAPES[weight.shape])
     if weight.mass is not None:
-        shape = say("{shape} of {mass}", shape=shape, mass=told(weight.mass, "mass"))
+        shape = say("{shape} of {mass}", shape=shape, mass=format_quantity(weight.mass, "mass"))
     if isinf(weight.radius):
         return shape
-    outer = told(weight.radius, "length", "mm")
+    outer = format_quantity(weight.radius, "length", "mm")
     if weight.shape in CUT:
         density = weight.density or 0.0
         return say(
             "{shape} of {thickness} {stuff} plate from {inner} to {outer}",
             shape=shape,
-            thickness=told(weight.thickness or 0.0, "length", "mm"),
-            stuff=say(material_of(density) or told(density, "density")),
-            inner=told(weight.inner_radius, "length", "mm"),
+            thickness=format_quantity(weight.thickness or 0.0, "length", "mm"),
+            stuff=say(material_of(density) or format_quantity(density, "density")),
+            inner=format_quantity(weight.inner_radius, "length", "mm"),
             outer=outer,
         )
     return (

@@ -27,7 +27,7 @@ from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.parts.links import Link
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.support import Row
-from equipoise.quantities import display, number, percent, told
+from equipoise.quantities import display, format_quantity, number, percent
 from equipoise.results.analysis import Analysis, analyze
 from equipoise.results.declaring import Declarations, ResultOutput
 from equipoise.results.yardsticks import LEAST_MEAN, FigureAssessment, assess
@@ -132,7 +132,7 @@ def centered_arms_sentence(arms: CenteredArms) -> str:
         weight=weight_named(arms.moment, arms.distance),
         links=say(", ").join(arms.links),
         pins=say(", ").join(arms.pins),
-        distance=told(arms.distance, "length", digits=3),
+        distance=format_quantity(arms.distance, "length", digits=3),
         what=arms.label,
         before=shown.with_unit(shown.text(arms.before, digits=3)),
         after=shown.with_unit(shown.text(arms.after, digits=3)),

@@ -36,7 +36,7 @@ WHOLE = 1e-6
 """Of a millimetre or degree, by which a size may be off a whole one."""
 MATTERS = 1e-3
 """Of the value before: a change of the result that is reported, as `Balanced.proved` has it."""
-KEPT = 1e-6
+LIMIT_ROUNDING = 1e-6
 """Of a limit, by which it may be exceeded by rounding of numbers."""
 
 Round = Callable[[float], int]
@@ -144,7 +144,7 @@ def _exceeded(exact: Balanced, rounded: Balanced) -> str:
     """The first limit that rounded sizes do not keep; empty if they keep all."""
     for name, price in rounded.prices.items():
         most = max(price.at_most, exact.prices[name].used)
-        if price.used > most + KEPT * abs(most):
+        if price.used > most + LIMIT_ROUNDING * abs(most):
             return said(name)
     return ""
 

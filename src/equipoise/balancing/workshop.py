@@ -11,7 +11,7 @@ from typing import Any
 from equipoise.dataclass import dataclass
 from equipoise.i18n import say
 from equipoise.mechanism.parts.balance import MATERIALS, Weight, material_of
-from equipoise.quantities import display, fixed, number, told
+from equipoise.quantities import display, fixed, format_quantity, number
 from equipoise.results.machine_blocks import place_told
 
 Piece = dict[str, Any]
@@ -149,7 +149,7 @@ def sentences(change: Change) -> Iterator[str]:
             link=link,
             old=place_told(values["from"]),
             new=place_told(values["to"]),
-            mass=told(values["mass"], "mass"),
+            mass=format_quantity(values["mass"], "mass"),
         )
     elif change.kind == "added mass":
         what = _added(link, values)
@@ -188,7 +188,7 @@ def in_short(change: Change) -> Iterator[str]:
 def in_its_plane(what: str, values: Mapping[str, Any]) -> str:
     """A mass and the plane in which it lies, where it matters."""
     if "plane" in values:
-        plane = told(values["plane"], "length")
+        plane = format_quantity(values["plane"], "length")
         return say("{what}, in the plane z = {plane}", what=what, plane=plane)
     if "beside" in values:
         pins = say(", ").join(values["beside"])
@@ -202,15 +202,15 @@ def in_its_plane(what: str, values: Mapping[str, Any]) -> str:
 def _added(link: str, values: dict[str, Any]) -> str:
     if not values["pieces"]:
         return say("{link}: add nothing", link=link)
-    words = {"link": link, "mass": told(values["mass"], "mass"), "point": values["at"]}
+    words = {"link": link, "mass": format_quantity(values["mass"], "mass"), "point": values["at"]}
     if not values["moment"]:
         return say("{link}: add {mass} about {point}", **words)
     return say(
         "{link}: add a counterweight of {mass}, its centre of mass {radius} from {point} "
         "at {direction} in the axes of the link ({moment})",
-        radius=told(values["radius"], "length"),
+        radius=format_quantity(values["radius"], "length"),
         direction=direction_named(values["direction"]),
-        moment=told(values["moment"], "unbalance", "g mm"),
+        moment=format_quantity(values["moment"], "unbalance", "g mm"),
         **words,
     )
 
@@ -218,8 +218,8 @@ def _added(link: str, values: dict[str, Any]) -> str:
 def _taken_off(link: str, values: dict[str, Any]) -> str:
     words = {
         "link": link,
-        "mass": told(values["mass"], "mass"),
-        "radius": told(values["radius"], "length"),
+        "mass": format_quantity(values["mass"], "mass"),
+        "radius": format_quantity(values["radius"], "length"),
         "point": values["at"],
         "direction": direction_named(values["direction"]),
     }
@@ -227,7 +227,7 @@ def _taken_off(link: str, values: dict[str, Any]) -> str:
         return say(
             "{link}: drill a hole of {diameter} through body {number}, its centre {radius} from "
             "{point} at {direction} in the axes of the link, which takes {mass} off",
-            diameter=told(2 * values["hole_radius"], "length"),
+            diameter=format_quantity(2 * values["hole_radius"], "length"),
             number=values["body"],
             **words,
         )
@@ -235,9 +235,9 @@ def _taken_off(link: str, values: dict[str, Any]) -> str:
     return say(
         "{link}: take {mass} off, {radius} from {point} at {direction} in the axes of the link "
         "({moment}), as much as a hole of {diameter} through {depth} of steel",
-        moment=told(values["moment"], "unbalance", "g mm"),
-        diameter=told(diameter, "length", digits=2),
-        depth=told(depth, "length", digits=3),
+        moment=format_quantity(values["moment"], "unbalance", "g mm"),
+        diameter=format_quantity(diameter, "length", digits=2),
+        depth=format_quantity(depth, "length", digits=3),
         **words,
     )
 
@@ -253,11 +253,11 @@ def _describe(piece: Piece, center: str) -> str:
     """A piece in words; rings and sectors are told about the centre of their room."""
     shape = piece["shape"]
     sizes = ("radius", "outer_radius", "thickness")
-    words = {name: told(piece[name], "length") for name in sizes if name in piece}
-    words |= {"mass": told(piece["mass"], "mass"), "at": place_told(piece["place"])}
+    words = {name: format_quantity(piece[name], "length") for name in sizes if name in piece}
+    words |= {"mass": format_quantity(piece["mass"], "mass"), "at": place_told(piece["place"])}
     if shape != "point":
         density = piece["density"]
-        words["stuff"] = say(material_of(density) or told(density, "density"))
+        words["stuff"] = say(material_of(density) or format_quantity(density, "density"))
     if shape == "point":
         return say("point mass of {mass} at {at}", **words)
     if shape == "disc":
@@ -288,8 +288,8 @@ def _spring(link: str, values: dict[str, Any]) -> str:
     return say(
         "{link}: set a spring of {stiffness} with a free length of {length} from {point} to {to}",
         link=link,
-        stiffness=told(values["stiffness"], "stiffness", "N/m"),
-        length=told(values["free_length"], "length"),
+        stiffness=format_quantity(values["stiffness"], "stiffness", "N/m"),
+        length=format_quantity(values["free_length"], "length"),
         point=values["point"],
         to=values["to"],
     )
@@ -312,10 +312,10 @@ def _gears(link: str, values: dict[str, Any]) -> Iterator[str]:
             "{first} and {second} teeth of module {module}",
             first=first,
             second=second,
-            module=told(values["module"], "length"),
+            module=format_quantity(values["module"], "length"),
         )
     if "masses" in values:
-        first, second = (told(mass, "mass") for mass in values["masses"])
+        first, second = (format_quantity(mass, "mass") for mass in values["masses"])
         yield say(
             "the gears add {first} to {driver} and {second} to the shaft",
             first=first,
@@ -336,9 +336,9 @@ def weight_named(moment: float, radius: float) -> str:
     """A first moment (kg m), and the mass that has it at a radius (m)."""
     return say(
         "{moment} ({mass} at {radius})",
-        moment=told(moment, "unbalance", digits=2),
-        mass=told(moment / radius, "mass", digits=2),
-        radius=told(radius, "length", digits=3),
+        moment=format_quantity(moment, "unbalance", digits=2),
+        mass=format_quantity(moment / radius, "mass", digits=2),
+        radius=format_quantity(radius, "length", digits=3),
     )
 
 

@@ -63,14 +63,14 @@ class ProgressStep:
 
     done, total : parts of it.
     share : how far it is in words; at : of the moment, such as a rate.
-    more : further lines, by what they tell.
+    details : further lines, by what they tell.
     """
 
     done: int
     total: int
     share: str
     at: str = ""
-    more: Mapping[str, str] = field(default_factory=dict)
+    details: Mapping[str, str] = field(default_factory=dict)
 
 
 Show = Callable[[Callable[[], ProgressStep], bool], None]
@@ -125,7 +125,7 @@ class _Log:
             return
         self.wait()
         statement = step()
-        statements = (f"{name}: {text}" for name, text in statement.more.items() if text)
+        statements = (f"{name}: {text}" for name, text in statement.details.items() if text)
         line = "; ".join([", ".join(filter(None, [statement.share, statement.at])), *statements])
         with suppress(OSError):  # who does not want to read it gets the result all the same
             print(line, file=sys.stderr)
@@ -160,7 +160,7 @@ class _Bar:
         step = self.step()
         total = step.total if step.done else None
         self.bar.update(self.task, completed=step.done, total=total, share=step.share, at=step.at)
-        lines = (Text(f"{name}: {text}") for name, text in step.more.items() if text)
+        lines = (Text(f"{name}: {text}") for name, text in step.details.items() if text)
         return Group(self.bar, *lines)
 
 
@@ -226,7 +226,7 @@ class Watched:
     ) -> None:
         from equipoise.studies.outcomes import Tally
 
-        self.study, self.told, self.computers = study, report, computers
+        self.study, self.report, self.computers = study, report, computers
         self.tally = Tally(study.outputs, 0)
         self.compute: PooledEvaluator[Outcome] | None = None
 
@@ -251,7 +251,7 @@ class Watched:
     def tell(self, total: int) -> None:
         """Tell how far it is, of so many designs in all, or the most there can be."""
         self.tally.total = total
-        self.told(self.tally.progress())
+        self.report(self.tally.progress())
 
 
 def _on_the_way(progress: Progress, units: Mapping[str, Unit], ago: float) -> ProgressStep:

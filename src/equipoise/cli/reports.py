@@ -212,7 +212,7 @@ def _swinging(analysis: Analysis, factor: float | None) -> tuple[Scene, list[str
         raise problem
     if problem is None:
         return scene, []
-    return scene, [say("the support is drawn standing still: {problem}", problem=problem.told())]
+    return scene, [say("the support is drawn standing still: {problem}", problem=problem.message())]
 
 
 def _in_mode(machine: Machine, number: int, count: int) -> Scene:

@@ -145,7 +145,7 @@ class TracedGroup:
         for item, value in zip(before, values, strict=True):
             self.trace.carry_on(item, value)
 
-    def told(self) -> tuple[list[float | complex], float]:
+    def known_pose(self) -> tuple[list[float | complex], float]:
         """The base's unknowns, and the determinant of its slopes, where the file tells its pose."""
         assert self.machine.position is not None
         state = self.linkage.solve(np.array([self.machine.position.crank_angle]))
@@ -159,7 +159,7 @@ class TracedGroup:
 
     def go_on(self) -> None:
         """Add poses to the state, and what is carried on."""
-        start, determinant = self.told()
+        start, determinant = self.known_pose()
         nothing = [0.0] * len(start)
         before, first = self.carried(start), self.carried(start)
         rates, bends = self.carried(nothing), self.carried(nothing)
@@ -198,7 +198,7 @@ class TracedGroup:
         minors = Minors(self.slopes(q))
         left = reduce(greatest, map(abs, self.scaled(minors.solve(self.gaps(q)))))
         self.put(q, minors)
-        _, start = self.told()
+        _, start = self.known_pose()
         whole = minors.whole
         same = 2 * start * whole / (whole * whole + start * start)
         names = " and ".join(self.group.shown)
@@ -300,15 +300,15 @@ class Minors:
 
     def __init__(self, rows: list[list[Any]]) -> None:
         self.rows = rows
-        self.found: dict[tuple[int, ...], Any] = {(): 1.0}
-        self.whole = _minor(rows, tuple(range(len(rows))), self.found)
+        self.minors: dict[tuple[int, ...], Any] = {(): 1.0}
+        self.whole = _minor(rows, tuple(range(len(rows))), self.minors)
         self.inverse = 1.0 / self.whole
 
     def solve(self, right: list[Any]) -> list[Any]:
         """What the rows make the right-hand side of."""
         count = len(right)
         rows = [[*row, item] for row, item in zip(self.rows, right, strict=True)]
-        by_name = dict(self.found)
+        by_name = dict(self.minors)
         result = []
         for k in range(count):
             others = (*range(k), *range(k + 1, count), count)

@@ -497,8 +497,8 @@ def trace_demands(trace: Trace) -> None:
     springs += [held for k in range(len(machine.couplings)) for held in trace_preload(trace, k)]
     in_soil = [*trace_soil(trace)]
     if machine.has_planes:
-        held = ([force for _, force, _ in wrenches] for wrenches in (loads, springs))
-        trace_across(trace, next(held), in_soil, next(held))
+        element_forces = ([force for _, force, _ in wrenches] for wrenches in (loads, springs))
+        trace_across(trace, next(element_forces), in_soil, next(element_forces))
     _on_frame(trace, "shaking", moving)
     each = zip(machine.loads, loads, strict=True)
     soil = [wrench for *_, wrench in in_soil]

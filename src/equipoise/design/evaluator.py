@@ -206,11 +206,11 @@ class Runner(Generic[Chunk, Result]):
 
 def _compute(packed: bytes, chunk: Any) -> Any:
     """In another process: a chunk."""
-    return _made(packed)(chunk)
+    return _load_function(packed)(chunk)
 
 
 @lru_cache(maxsize=2)
-def _made(packed: bytes) -> Callable[[Any], Any]:
+def _load_function(packed: bytes) -> Callable[[Any], Any]:
     """What computes, made once in a process."""
     made: Callable[[Any], Any] = pickle.loads(packed)()
     return made
@@ -248,7 +248,7 @@ class Processes(Pool):
 
     def _start(self) -> None:
         context = get_context("spawn")  # others have threads of libraries in them, half alive
-        self.watched, self.held = context.Pipe(duplex=False)
+        self.watched, self.pipe_end = context.Pipe(duplex=False)
         self.executor = ProcessPoolExecutor(self.workers, context, _begin, (self.watched,))
 
     def submit(self, chunk: Any) -> Future[Any]:
@@ -265,7 +265,7 @@ class Processes(Pool):
 
     def close(self) -> None:
         """End the processes."""
-        self.held.close()
+        self.pipe_end.close()
         self.executor.shutdown(cancel_futures=True)
         self.watched.close()
 
@@ -343,7 +343,7 @@ class PooledEvaluator(Generic[Figures]):
     workers : processes; as many as this machine has processors if not given.  With one, designs
         are computed here.
     shared : whether processes help at all; not where loops use all processors.
-    together : designs that are sent together where there are as many for each process: those that
+    batch_size : designs that are sent together where there are as many for each process: those that
         one run of arrays computes take longer in small parts.
     elsewhere : begins a pool of others that compute instead, such as a cluster, once it is known
         how long a design takes.
@@ -361,10 +361,10 @@ class PooledEvaluator(Generic[Figures]):
         workers: int | None = None,
         *,
         shared: bool = True,
-        together: int = 1,
+        batch_size: int = 1,
         elsewhere: Callable[[ChunkTask], Pool] | None = None,
     ) -> None:
-        self.alone, self.join, self.together = alone, join, together
+        self.alone, self.join, self.batch_size = alone, join, batch_size
         self.runner: Runner[DesignSlice, Figures] = Runner(
             lambda part: alone(part.values), partial(_of_parts, make), workers, elsewhere=elsewhere
         )
@@ -418,7 +418,7 @@ class PooledEvaluator(Generic[Figures]):
         workers = self.runner.workers
         share = -(-len(values) // (SHARES * workers))
         size = max(1, min(share, int(PART * self.count / max(self.spent, 1e-9))))
-        size = max(size, min(self.together, -(-len(values) // workers)))
+        size = max(size, min(self.batch_size, -(-len(values) // workers)))
         starts = range(0, len(values), size)
         parts = (DesignSlice(start, values[start : start + size]) for start in starts)
         result, done = {}, 0

@@ -27,7 +27,7 @@ class Requirement(RequiredFigure):
     """What one figure has to be, in SI units and radians.
 
     figure : its dotted name, such as ``soil.hole_length``.
-    more : what is asked, by the key of a `RequirementKind`: `target`, a value to come close to;
+    extra : what is asked, by the key of a `RequirementKind`: `target`, a value to come close to;
         `at_least` and `at_most`, limits, which are kept; `make`, whether it is to become the
         ``smallest`` or ``largest`` that the limits allow.
     tolerance : what counts as one step away; `USUAL_SHARE` of the value where not given.
@@ -47,12 +47,12 @@ class Requirement(RequiredFigure):
         tolerance: float | None = None,
         turning: bool | None = None,
         asks: Asks = (),
-        **more: Any,
+        **extra: Any,
     ) -> None:
         object.__setattr__(self, "figure", figure)
         object.__setattr__(self, "tolerance", tolerance)
         object.__setattr__(self, "turning", turning)
-        object.__setattr__(self, "asks", asks_of(more, asks))
+        object.__setattr__(self, "asks", asks_of(extra, asks))
         self._check()
 
     def _check(self) -> None:
@@ -118,7 +118,7 @@ class Requirement(RequiredFigure):
             values = middle + np.mod(values - middle + pi, 2 * pi) - pi
         return [sign * (values - limit) for sign, limit in signs.items() if limit is not None]
 
-    def kept(self, values: Array) -> Array:
+    def satisfied(self, values: Array) -> Array:
         """Whether values (P,) keep every limit; False where one is NaN."""
         inside = ~np.isnan(values)
         for slack in self.slack(values):
@@ -128,7 +128,7 @@ class Requirement(RequiredFigure):
     def met(self, value: float, step: float) -> bool:
         """Whether a figure keeps the limits and is within one step of the target."""
         values = np.array([value])
-        return bool(self.kept(values)[0] and abs(self.off(values)[0]) <= step)
+        return bool(self.satisfied(values)[0] and abs(self.off(values)[0]) <= step)
 
     def size(self, values: Array) -> Array:
         """What is to become small, 0 unless `make` is given."""

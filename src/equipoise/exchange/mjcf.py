@@ -116,7 +116,7 @@ def _links(base: ET.Element, tree: Tree, job: Job, flywheel: float) -> None:
     size = _size(machine)
     least = LIGHT * machine.mass, LIGHT * machine.mass * size**2
     for link in tree.links:
-        place, turned = tree.beside(link)
+        place, turned = tree.relative_pose(link)
         name = f"{link.name}{tree.suffix}"
         spot = place.real, place.imag, tree.across(link)
         pose = {"pos": _row(spot), "euler": _row((0, 0, turned))}
@@ -210,8 +210,11 @@ def _part(root: ET.Element, name: str) -> ET.Element:
 def _constraints(root: ET.Element, tree: Tree) -> None:
     """Pins that close loops, and gears: sums of angles that stay what they are."""
     for loop in tree.loops:
-        plane = _plane(tree, loop.other, loop.pin)
-        ends = _in_plane(root, tree, loop.one, loop.pin, plane), _place(tree, loop.other, loop.pin)
+        plane = _plane(tree, loop.second, loop.pin)
+        ends = (
+            _in_plane(root, tree, loop.first, loop.pin, plane),
+            _place(tree, loop.second, loop.pin),
+        )
         sites = {f"site{number}": name for number, name in enumerate(ends, 1)}
         ET.SubElement(_part(root, "equality"), "connect", sites)
     for gear, factors in tree.proportions:

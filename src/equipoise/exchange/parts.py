@@ -18,7 +18,7 @@ from equipoise.errors import UsageError
 from equipoise.exchange.formats import Job
 from equipoise.i18n import Note, coordinates, decimals, say, to_say
 from equipoise.mechanism.parts.bodies import Body, Points, outlines, place_of
-from equipoise.quantities import display, fixed, told
+from equipoise.quantities import display, fixed, format_quantity
 from equipoise.results.machine_blocks import SHAPES, stuff_named
 
 Edge = tuple[complex, float]
@@ -147,7 +147,7 @@ class Part:
         """With how thick it is."""
         if self.thickness is None:
             return self.label
-        size = told(self.thickness, "length")
+        size = format_quantity(self.thickness, "length")
         return say("{name}, {size} thick", name=self.label, size=size)
 
     @property
@@ -294,15 +294,17 @@ def _of_links(job: Job) -> Iterator[Part]:
 def _drawn_section(body: Body) -> Note | None:
     """The section of a bar that is cut to length from a tube or rod; None of what is a plate."""
     if body.outer_diameter is not None:
-        outer = told(body.outer_diameter, "length")
+        outer = format_quantity(body.outer_diameter, "length")
         if not body.inner_diameter:
             return Note("a rod of {outer}", outer=outer)
-        bore = told(body.inner_diameter, "length")
+        bore = format_quantity(body.inner_diameter, "length")
         return Note("a tube of {outer} with a bore of {bore}", outer=outer, bore=bore)
     if body.wall is None or body.width is None:
         return None
-    sides = [told(side, "length") for side in (body.width, body.thickness) if side is not None]
-    wall = told(body.wall, "length")
+    sides = [
+        format_quantity(side, "length") for side in (body.width, body.thickness) if side is not None
+    ]
+    wall = format_quantity(body.wall, "length")
     return Note("a tube of {sides} with walls of {wall}", sides=" x ".join(sides), wall=wall)
 
 

@@ -35,8 +35,8 @@ Kind = Literal["hinge", "slide"]
 class TreeJoint:
     """A joint between two bodies: a pin, or a slider."""
 
-    one: str
-    other: str
+    first: str
+    second: str
     pin: str = ""
     slider: Slider | None = None
 
@@ -66,8 +66,8 @@ class LoopClosure:
     """A pin that closes a loop, between two bodies."""
 
     pin: str
-    one: str
-    other: str
+    first: str
+    second: str
 
 
 @dataclass(frozen=True)
@@ -93,7 +93,7 @@ class Tree:
         """Origin (complex, m) and angle of a body's axes in the axes of the frame."""
         return (0j, 0.0) if body == FRAME else (self.hung[body].place, self.hung[body].angle)
 
-    def beside(self, link: Hung) -> tuple[complex, float]:
+    def relative_pose(self, link: Hung) -> tuple[complex, float]:
         """Origin and angle of a link's axes in those of its parent; in the frame's of the file."""
         (place, angle), shift = self.pose(link.parent), 0j
         if link.parent == FRAME:
@@ -263,12 +263,12 @@ def _spanned(machine: Machine) -> tuple[list[TreeJoint], tuple[LoopClosure, ...]
     group = {body: body for body in machine.bodies}
     spanning, loose = [], []
     for edge in _edges(machine):
-        item, other = group[edge.one], group[edge.other]
+        item, other = group[edge.first], group[edge.second]
         if item != other:
             spanning.append(edge)
             group = {body: item if root == other else root for body, root in group.items()}
         elif edge.slider is None:
-            loose.append(LoopClosure(edge.pin, edge.one, edge.other))
+            loose.append(LoopClosure(edge.pin, edge.first, edge.second))
         else:
             raise UsageError(
                 Note(
@@ -284,9 +284,9 @@ def _outwards(joints: list[TreeJoint]) -> Iterator[tuple[str, str, TreeJoint]]:
     """Link, parent and joint, from the frame outwards."""
     left, known = list(joints), [FRAME]
     for parent in known:
-        for edge in [item for item in left if parent in (item.one, item.other)]:
+        for edge in [item for item in left if parent in (item.first, item.second)]:
             left.remove(edge)
-            link = edge.other if edge.one == parent else edge.one
+            link = edge.second if edge.first == parent else edge.first
             known.append(link)
             yield link, parent, edge
 

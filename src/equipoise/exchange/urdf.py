@@ -33,14 +33,14 @@ def export_bytes(job: Job) -> str:
             _joint(root, tree, link)
         _gears(root, tree, job)
         for loop in tree.loops:
-            item, other = (_end(root, tree, body, loop.pin) for body in (loop.one, loop.other))
+            item, other = (_end(root, tree, body, loop.pin) for body in (loop.first, loop.second))
             job.leave_out(
                 Note(
                     "the pin {pin} of {one!r} and {other!r}, which closes a loop; equipoise import "
                     'joins them with --pin "{pair}"',
                     pin=loop.pin,
-                    one=loop.one,
-                    other=loop.other,
+                    one=loop.first,
+                    other=loop.second,
                     pair=f"{item} = {other}",
                 )
             )
@@ -117,7 +117,7 @@ def _joint(root: ET.Element, tree: Tree, link: Hung) -> None:
     hinge = link.kind == "hinge"
     name = f"{link.name}{tree.suffix}"
     joint = ET.SubElement(root, "joint", name=name, type="continuous" if hinge else "prismatic")
-    place, turned = tree.beside(link)
+    place, turned = tree.relative_pose(link)
     spot = place + complex(*link.at) * np.exp(1j * turned)
     if link.parent != FRAME:
         spot -= complex(*tree.hung[link.parent].at)

@@ -130,14 +130,14 @@ def each(analysis: Analysis, output: str) -> Mapping[str, Array]:
         own, least = own.value, force
     else:
         least = force if output == "drive_force" else moment
-    if not analysis.together:
+    if not analysis.rows_total:
         return {ALL: settled(own, least)}
-    return {SINGLE: settled(own, least), ALL: settled(analysis.together[output], least)}
+    return {SINGLE: settled(own, least), ALL: settled(analysis.rows_total[output], least)}
 
 
 def row_keys(analysis: Analysis) -> tuple[tuple[str, str], ...]:
     """What the two lines are, for a legend; nothing where there is one."""
-    if not analysis.together:
+    if not analysis.rows_total:
         return ()
     count = len(analysis.machine.rows)
     return (SINGLE, say("one row")), (ALL, say("all {count} rows", count=count))
@@ -155,7 +155,7 @@ IN_LINE, MOST_SQUARES = 3, 9
 class JointCurve:
     """A force (complex) or a couple (real) in a joint, (N,), SI units, and its name in words."""
 
-    told: str
+    label: str
     values: Array
 
     @property
@@ -222,7 +222,7 @@ def _over_angle(analysis: Analysis, joint: JointCurve, every: Iterable[JointCurv
         y,
         (Curve(*over(analysis, values)),),
         extremes(y, values, places, "main"),
-        title=joint.told,
+        title=joint.label,
         message="" if np.any(values) else say("zero at every crank angle"),
         height=74.0,
     )
@@ -250,4 +250,4 @@ def _square(analysis: Analysis, joint: JointCurve, axis: Axis) -> Panel:
         size = extent(values, np.zeros(1))
         marks = numbers(told_angles(analysis.crank_angle), values, "all", size)
     curve = Curve.of(over(analysis, values)[1], "", "thin")
-    return Panel(axis, axis, (curve,), marks, title=joint.told, equal=True, rings=True)
+    return Panel(axis, axis, (curve,), marks, title=joint.label, equal=True, rings=True)

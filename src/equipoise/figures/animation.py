@@ -364,7 +364,7 @@ def _picture(
     words = [say("The linkage turns through its whole cycle.")] * turning
     words += [say("Links: {names}.", names=names)]
     words += [say("Path of {names}.", names=", ".join(traced))] if traced else []
-    words += [text for text, _ in moving.stage.told]
+    words += [text for text, _ in moving.stage.captions]
     style = "\n".join(
         [*_colors(mark, moving), *_motions(mark, moves, lasting, moving.stage.closed)]
     )

@@ -113,7 +113,7 @@ class Aim:
         angles = np.arange(len(self.pair["after"])) * (2 * np.pi / turn)
         ends = {"unit": unit, "low": 0.0 if self.output.is_vector else None}
         over = compare(self.machine.drive, angles, self.pair, label, dimension, **ends)
-        text = say(", ").join(self._told(item, most) for item, most in self.asked)
+        text = say(", ").join(self._row(item, most) for item, most in self.asked)
         orders = order_panel(text, dimension, self.read, last, unit=unit)
         return replace(over, title=title, lines=tuple(self._limits)), orders
 
@@ -125,7 +125,7 @@ class Aim:
                 for sign in (1.0,) if self.output.is_vector else (1.0, -1.0):
                     yield Line(sign * most, "limit", say("limit"), axis="y")
 
-    def _told(self, objective: Objective, most: float | None) -> str:
+    def _row(self, objective: Objective, most: float | None) -> str:
         """A measure before and after, and its limit."""
         pair = [measured(self.pair[when], objective.measure) for when in ("before", "after")]
         axis = Axis("", shown_in(unit_of(objective, self.machine), pair))

@@ -199,7 +199,7 @@ def numbers(labelled: Mapping[int, int], values: Array, role: str, size: float) 
         place = complex(values[k])
         if all(abs(place - other) > ALIKE * size for other in marks):
             wish = float(np.degrees(np.angle(place - middle)))
-            marks[place] = Mark.of(place, f"{angle}", role, wish, optional=True, near=5.0)
+            marks[place] = Mark.of(place, f"{angle}", role, wish, optional=True, distance=5.0)
     return tuple(marks.values())
 
 

@@ -116,7 +116,10 @@ def moment(analysis: Analysis) -> Chart:
     signals = each(analysis, "shaking_moment")
     panels: list[Signals] = [(say("shaking moment"), "torque", signals)]
     if analysis.machine.has_planes:
-        rocking, role = analysis.forces.across.rocking_moment, SINGLE if analysis.together else ALL
+        rocking, role = (
+            analysis.forces.across.rocking_moment,
+            SINGLE if analysis.rows_total else ALL,
+        )
         parts = {f"rocking_moment.{axis}": getattr(rocking, axis) for axis in "xy"}
         least = rounding(analysis)[1]
         panels += [
@@ -140,7 +143,7 @@ def torque(analysis: Analysis, number: int = 1) -> Chart:
         output, signals = machine.drive.effort, each(analysis, machine.drive.effort)
     else:  # of one row
         output = f"drives.{drive.link}.{drive.effort_in}"
-        signals = {ALL: analysis.outputs[output].drawn}
+        signals = {ALL: analysis.outputs[output].values_to_draw}
     link = short(drive.link, 16)
     of_torque = say("Torque of the drive on {link}", link=link)
     of_force = say("Force of the drive on {link}", link=link)
@@ -179,7 +182,7 @@ def _causes(analysis: Analysis, output: str, kind: Dimension) -> Panel:
     every = np.concatenate([curve.y for curve in curves])
     unit = display_of_totals(analysis, kind).unit
     y = Axis.of(say("by cause"), kind, every, unit, room=ROOM / 2)
-    remark = say("of one row") if analysis.together else ""
+    remark = say("of one row") if analysis.rows_total else ""
     return Panel(angle_axis(analysis), y, tuple(curves), title=remark, keyed=True)
 
 
@@ -275,7 +278,7 @@ def spectrum(analysis: Analysis) -> Chart:
         for _, _, by in signals
     ]
     last = max(FEWEST, *(last_order(bars) for bars in read))
-    most = MOST_NUMBERED[bool(analysis.together)]
+    most = MOST_NUMBERED[bool(analysis.rows_total)]
     panels = tuple(
         order_panel(text, dimension, bars, last, most)
         for (text, dimension, _), bars in zip(signals, read, strict=True)
@@ -330,7 +333,7 @@ def order_panel(
         visible = (orders <= last) & np.isclose(np.mod(orders / finest + 0.5, 1), 0.5)
         at = orders[visible] + (number - (len(read) - 1) / 2) * wide
         told_too = last / finest <= most_told
-        bars.append(Bars(at, sizes[visible], wide, role, told=told_too))
+        bars.append(Bars(at, sizes[visible], wide, role, labelled=told_too))
     ticks = tuple((float(k), f"{k}" if k else say("mean")) for k in range(last + 1))
     label, room = say("order: events in one turn of the crank"), 0.7 * finest
     x = Axis(label, low=-room, high=last + room, ticks=ticks)

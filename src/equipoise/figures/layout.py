@@ -144,7 +144,7 @@ class Cell:
     above: float = 0.0
     below: float = 0.0
     keys: tuple[LegendKey, ...] = ()
-    beside: bool = False
+    legend_in_title: bool = False
     """Whether its legend stands on the line of its title."""
     titles: tuple[str, ...] = ()
     remarks: tuple[str, ...] = ()
@@ -173,7 +173,7 @@ def cell_of(panel: Panel, height: float) -> Cell:
     y += [[mark.y] for mark in panel.marks]
     places = [np.array([arrow.tail, arrow.head]) for arrow in panel.arrows]
     places += [outline.places for outline in panel.outlines]
-    places += [np.array(panel.held)] if panel.held is not None else []
+    places += [np.array(panel.always_shown)] if panel.always_shown is not None else []
     places += [np.zeros(1)] if panel.rings or (panel.equal and panel.zero) else []
     x += [place.real for place in places]
     y += [place.imag for place in places]
@@ -286,7 +286,7 @@ def make_room(cell: Cell, over: float) -> None:
         return
     low, high = cell.y_ends
     rate = (high - low) / cell.height
-    matching_bars = [bars for bars in panel.bars if bars.told and bars.across == "x"]
+    matching_bars = [bars for bars in panel.bars if bars.labelled and bars.across == "x"]
     top = factor * max(
         (float(np.max(bars.size, initial=0.0)) for bars in matching_bars), default=0.0
     )
@@ -446,7 +446,7 @@ def _settle(cell: Cell, width: float, most: float, small: bool) -> None:
         side = min(width, most)
         room = SMALL_ROOM * side
         point = max(np.ptp(x), np.ptp(y), cell.least_span) / (side - 2 * room) or 1.0
-        cell.height = side if cell.panel.held is None else np.ptp(y) / point + 2 * room
+        cell.height = side if cell.panel.always_shown is None else np.ptp(y) / point + 2 * room
     else:
         high, room = fixed or most, 0.0 if cell.panel.bare else ROOM
         point = max(np.ptp(x) / (width - 2 * room), np.ptp(y) / (high - 2 * room)) or 1.0
@@ -463,16 +463,16 @@ def _above(cell: Cell, width: float) -> None:
     cell.above = flag_height(panel, width)
     head = width_of(panel.title, NORMAL) + width_of(panel.remark, SMALL) + 24
     rows = rows_of([*cell.keys], width)
-    cell.beside = len(rows) == 1 and sum(k.width + APART for k in cell.keys) + head < width
+    cell.legend_in_title = len(rows) == 1 and sum(k.width + APART for k in cell.keys) + head < width
     cell.titles = tuple(lines_of(panel.title, width, NORMAL))
     cell.remarks = tuple(lines_of(panel.remark, width, SMALL))
     last = width_of(cell.titles[-1], NORMAL) + 8 if cell.titles else 0.0
     cell.apart = bool(last) and last + width_of(panel.remark, SMALL) > width
     lines = len(cell.titles) + len(cell.remarks)
     lines -= bool(cell.titles and cell.remarks and not cell.apart)
-    if cell.titles or cell.remarks or cell.beside:
+    if cell.titles or cell.remarks or cell.legend_in_title:
         cell.above += LINE * max(lines, 1) + 1
-    if cell.keys and not cell.beside:
+    if cell.keys and not cell.legend_in_title:
         cell.above += KEY * len(rows) + 2
     if cell.numbered and panel.x.label and not panel.bare:
         cell.x_label = _name_of(panel.x, width + 2 * OVER)
@@ -488,7 +488,7 @@ def _draw(sheet: Canvas, cell: Cell, left: float, top: float, inner: float) -> N
     view = View(panel, x, y, sheet)
     draw(view)
     above = top - flag_height(panel, end - start)
-    if cell.keys and cell.beside:
+    if cell.keys and cell.legend_in_title:
         wide = sum(key.width + APART for key in cell.keys) - APART
         draw_legend(sheet, [*cell.keys], end - wide, end + 1, above - KEY - 0.5)
         above -= LINE + 1
@@ -496,7 +496,7 @@ def _draw(sheet: Canvas, cell: Cell, left: float, top: float, inner: float) -> N
         rows = rows_of([*cell.keys], end - start)
         draw_legend(sheet, [*cell.keys], start, end, above - KEY * len(rows) - 2)
         above -= KEY * len(rows) + 2
-    _titles(sheet, cell, start, end, above + (LINE + 1 if cell.beside else 0.0))
+    _titles(sheet, cell, start, end, above + (LINE + 1 if cell.legend_in_title else 0.0))
     if panel.bare:
         for number, text in enumerate(panel.x.label.split("\n") if panel.x.label else ()):
             y_foot = top + cell.height + 10 + LINE * number

@@ -155,7 +155,7 @@ def _panel(scene: Scene, k: int, paths: tuple[Curve, ...], title: str, whole: Sc
         title=title,
         equal=True,
         zero=False,
-        held=whole.box,
+        always_shown=whole.box,
         **{**parts, "ground": (*parts["ground"], *_at_ends(scene))},
     )
 
@@ -180,7 +180,7 @@ def joint_names(scene: Scene, k: int, optional: bool = False) -> Iterator[Mark]:
             ways += [complex(scene.places[to][k]) - z for to in ends if name in ends and to != name]
         out = -sum(way / abs(way) for way in ways if way)
         wish = float(np.degrees(np.angle(out))) if abs(out) > 0.1 else 45.0
-        yield Mark.of(z, short(name), "strong", wish, False, optional, near=5.0, bold=True)
+        yield Mark.of(z, short(name), "strong", wish, False, optional, distance=5.0, bold=True)
 
 
 def _other_names(scene: Scene, k: int) -> Iterator[Mark]:
@@ -189,7 +189,7 @@ def _other_names(scene: Scene, k: int) -> Iterator[Mark]:
     for row in scene.rows.shown:
         away = {name: abs(place[k] - scene.places[name][k]) for name, place in row.places.items()}
         at = complex(row.places[max(away, key=lambda name: away[name])][k])
-        yield Mark.of(at, rows_named(row.numbers), "lines", 45.0, sign=False, near=4.0)
+        yield Mark.of(at, rows_named(row.numbers), "lines", 45.0, sign=False, distance=4.0)
     if scene.carrier is None:
         return
     carrier, support = scene.carrier, scene.carrier.support
@@ -200,7 +200,7 @@ def _other_names(scene: Scene, k: int) -> Iterator[Mark]:
                 way = carrier.way(items[names[0]])
                 at = place + SIGN_DISTANCE * scene.unit * way  # not where joints have their names
                 optional = items is support.mounts
-                yield Mark.of(at, text, color, 20.0, False, optional, near=10.0)
+                yield Mark.of(at, text, color, 20.0, False, optional, distance=10.0)
 
 
 def _link_names(scene: Scene, k: int) -> Iterator[Mark]:
@@ -214,7 +214,7 @@ def _link_names(scene: Scene, k: int) -> Iterator[Mark]:
         else:
             wish = float(np.degrees(np.angle(1j * (around[1] - around[0]))))
             wish = wish if wish >= 0 else wish + 180
-        yield Mark.of(z, short(body.name), "lines", wish, sign=False, near=5.0)
+        yield Mark.of(z, short(body.name), "lines", wish, sign=False, distance=5.0)
 
 
 def _outline(scene: Scene, names: tuple[str, ...], k: int) -> Array:
@@ -284,7 +284,7 @@ def centrodes(analysis: Analysis, links: Sequence[str] | None = None) -> Chart:
             equal=True,
             zero=False,
             sign_size=1.0 if len(names) == 1 else SMALLER,
-            held=scene.box,
+            always_shown=scene.box,
             **panel_content(scene, k, without=SOIL),
         )
         panels.append(panel)

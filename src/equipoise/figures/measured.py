@@ -100,7 +100,7 @@ def exposure(tools: Sequence[tuple[str, float]], day: Exposure | None) -> Chart:
     marks = []
     for value, name in ((ACTION, say("action value")), (LIMIT, say("limit value"))):
         text = f"{name} {decimals(f'{value:g}')} m/s²"
-        marks.append(Mark(float(reach[0]), value, text, "lines", 60.0, sign=False, near=3.0))
+        marks.append(Mark(float(reach[0]), value, text, "lines", 60.0, sign=False, distance=3.0))
     if day is None:
         for name, a_hv in lines[:MOST_NAMES]:
             hours = float(np.clip(8 * least * ACTION / a_hv**2, SHORTEST * 1.5, LONGEST / 1.5))

@@ -38,7 +38,7 @@ class Sight:
     axis : that it looks along.  names : of its own axes.
     """
 
-    told: str
+    sentence: str
     right: int
     up: int
     sense: int
@@ -227,10 +227,10 @@ def _panel(shape: ModeShape, view: View, views: list[View]) -> Panel:
         y,
         tuple(_curves(shape, view)),
         tuple(_names(shape, view, named, size)),
-        title="" if alone else say(VIEWS[view].told),
+        title="" if alone else say(VIEWS[view].sentence),
         equal=True,
         zero=False,
-        held=(low, high),
+        always_shown=(low, high),
         sign_size=size,
         ground=(shapes.line("rest", *shape.outline(view)[:-1], closed=True),),
         signs=tuple(_signs(shape, view)),
@@ -325,7 +325,7 @@ def _names(shape: ModeShape, view: View, named: Collection[str], size: float) ->
         way = middle / abs(middle) if abs(middle) > ASIDE else np.exp(0.25j * np.pi)
         end = UNIT * size * float(np.max(np.abs(offsets))) * complex(way)
         wish = float(np.degrees(np.angle(way)))
-        yield Mark.of(place, short(name, 20), "ink", wish, False, near=NAME_GAP, off=end)
+        yield Mark.of(place, short(name, 20), "ink", wish, False, distance=NAME_GAP, off=end)
 
 
 def _keys(shape: ModeShape) -> Iterator[tuple[str, str]]:

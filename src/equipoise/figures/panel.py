@@ -356,13 +356,13 @@ def _marks(view: View) -> None:
     for mark, (x, y) in apart:
         if mark.text:
             ink = look_of(mark.role).ink
-            text = CanvasText(mark.text, ink, mark.wish, mark.near, mark.optional, mark.bold)
+            text = CanvasText(mark.text, ink, mark.wish, mark.distance, mark.optional, mark.bold)
             view.labels.put(float(x) + mark.off.real, float(y) - mark.off.imag, text)
 
 
 def _bar_numbers(view: View) -> None:
     """Sizes of bars that can be seen, at their ends, with as many digits as all have room for."""
-    matching_bars = [bars for bars in view.panel.bars if bars.told]
+    matching_bars = [bars for bars in view.panel.bars if bars.labelled]
     if not matching_bars:
         return
     scale = view.y if matching_bars[0].across == "x" else view.x

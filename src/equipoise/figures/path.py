@@ -224,7 +224,7 @@ def _machine_panel(paths: Paths, corners: tuple[complex, complex]) -> Panel:
     across = [np.array([item.place + out, item.place - out, np.nan]) for item, out in ticks]
     marks = [Mark.of(instant.place, "", f"instant {instant.name}") for instant in instants]
     marks += [
-        Mark.of(complex(place[-1]), short(name), "ink", 45.0, False, near=5.0, bold=True)
+        Mark.of(complex(place[-1]), short(name), "ink", 45.0, False, distance=5.0, bold=True)
         for name, place in paths.scene.places.items()
     ]
     # a little lower than they are, so that a point at the same place keeps its own name
@@ -232,7 +232,7 @@ def _machine_panel(paths: Paths, corners: tuple[complex, complex]) -> Panel:
     if paths.tray.size:
         marks.append(Mark.of(complex(np.mean(paths.tray)), say("tray"), "ink", 0.0, False))
     marks += [
-        Mark.of(item.place, item.name, "lines", item.away, False, True, near=5.0)
+        Mark.of(item.place, item.name, "lines", item.away, False, True, distance=5.0)
         for item, _ in ticks
     ]
     content = panel_content(paths.scene, -1, without=SOIL)
@@ -248,7 +248,7 @@ def _machine_panel(paths: Paths, corners: tuple[complex, complex]) -> Panel:
         arrows=tuple(_senses(paths, over_ground=False)),
         equal=True,
         zero=False,
-        held=corners,
+        always_shown=corners,
         sign_size=SMALLER,
         **{**content, "ground": (*_earth(paths, corners), *content["ground"])},
     )
@@ -269,7 +269,7 @@ def _ground_panel(paths: Paths, corners: tuple[complex, complex]) -> Panel:
     marks += _names(_outside(instants, ahead))
     for number, place in enumerate(paths.crossings()):
         text = say("crossing of the loop") if number == 0 else ""
-        marks.append(Mark.of(place, text, "crossing", 0.0, near=9.0))
+        marks.append(Mark.of(place, text, "crossing", 0.0, distance=9.0))
     spacing, arrows, lines = _hill_spacing(paths, corners)
     way = say("machine drives")
     return Panel(
@@ -286,7 +286,7 @@ def _ground_panel(paths: Paths, corners: tuple[complex, complex]) -> Panel:
         title=f"{way} →" if ahead else f"← {way}",
         equal=True,
         zero=False,
-        held=corners,
+        always_shown=corners,
         ground=tuple(_earth(paths, corners)),
     )
 
@@ -362,7 +362,7 @@ def _hill_spacing(
     text = say("hill spacing {spacing}", spacing=quantity(abs(spacing), "length", "cm"))
     whole = corners[0].real < spacing < corners[1].real and paths.curve.turns == 1
     x = spacing / 2 if whole else (corners[0].real + corners[1].real) / 2
-    mark = Mark(x, y, text, "ink", -90.0, sign=False, near=3.0)
+    mark = Mark(x, y, text, "ink", -90.0, sign=False, distance=3.0)
     if not whole:
         return mark, [], []
     ends = complex(0, y), complex(spacing, y)

@@ -132,7 +132,7 @@ def curves(analysis: Analysis, points: Sequence[str] | None = None) -> Chart:
         for group in other_groups
     ]
     marks = [
-        Mark.of(z, short(name), "stand", 45.0, near=5.0, bold=True) for name, z in frame.items()
+        Mark.of(z, short(name), "stand", 45.0, distance=5.0, bold=True) for name, z in frame.items()
     ]
     arrows: list[Arrow] = []
     dots: list[Mark] = []
@@ -153,7 +153,7 @@ def curves(analysis: Analysis, points: Sequence[str] | None = None) -> Chart:
         path = motion.points[group[0]].place
         farthest = path[np.argmax((path * np.exp(-0.7j)).real)]
         text = _names_of(group)
-        marks.append(Mark.of(farthest, text, role, 40.0, sign=False, near=4.0, bold=True))
+        marks.append(Mark.of(farthest, text, role, 40.0, sign=False, distance=4.0, bold=True))
     x, y = (Axis.of(say("{axis} in the frame", axis=a), "length", every and size) for a in "xy")
     panel = Panel(
         x,
@@ -262,11 +262,11 @@ def outputs_chart(
     x = angle_axis(analysis)
     panels = []
     for entry in ones:
-        theta, values = over(analysis, _steady(entry.drawn))
+        theta, values = over(analysis, _steady(entry.values_to_draw))
         if entry.dimension == "angle" and analysis.motion.whole_cycle:
             values = _turned_on(values)
         same_dimension = np.ravel(
-            [other.drawn for other in ones if other.dimension == entry.dimension]
+            [other.values_to_draw for other in ones if other.dimension == entry.dimension]
         )
         lines = {ALL: (theta, values)}
         panel = compared(x, "", entry.dimension, lines, extent=same_dimension)

@@ -215,14 +215,14 @@ ON_TOP, LEAD = 8.0, 4.0
 class CanvasText:
     """A text to be put beside a point, in lines.
 
-    wish : direction (deg, against the clock) in which it stands best.  near : least distance.
+    wish : direction (deg, against the clock) in which it stands best.  distance : least distance.
     optional : leave it out where there is no room.
     """
 
     text: str
     color: str
     wish: float = 90.0
-    near: float = 7.0
+    distance: float = 7.0
     optional: bool = False
     bold: bool = False
     size: float = SMALL
@@ -284,7 +284,7 @@ class Labels:
         lines = text.text.split("\n")
         wide = max(width_of(line, text.size, text.bold) for line in lines)
         size = np.array([wide, text.size * (1 + LINE * (len(lines) - 1))])
-        offsets, costs = self._choices(np.array([x, y]), size, text.wish, text.near)
+        offsets, costs = self._choices(np.array([x, y]), size, text.wish, text.distance)
         best = int(np.argmin(costs))
         most = TEXT_ON_TEXT / 8 if text.optional else TEXT_ON_TEXT if self.sparse else np.inf
         if costs[best] >= most:
@@ -297,7 +297,7 @@ class Labels:
             self.sheet.add(replace(style, y=base, text=line, backed=True), ON_TOP)
         low, high = middle - size / 2, middle + size / 2
         self.occupy((low[0], low[1], high[0], high[1]))
-        if np.hypot(*np.maximum(np.abs(offsets[best]) - size / 2, 0)) > 2.5 * text.near:
+        if np.hypot(*np.maximum(np.abs(offsets[best]) - size / 2, 0)) > 2.5 * text.distance:
             self._lead(np.array([x, y]), offsets[best], size)
         return True
 

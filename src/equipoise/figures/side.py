@@ -93,7 +93,7 @@ class _View:
     def height(self, point: str) -> float:
         return float(self._part(self.motion.points[point].place, self.axis)[self.k])
 
-    def _seen(self, link: str, places: Array) -> Array:
+    def _heights(self, link: str, places: Array) -> Array:
         """Heights of places (n,) in a link's axes, complex, m."""
         first, own = next(iter(self.machine.links[link].points.items()))
         base, turned = (
@@ -107,7 +107,7 @@ class _View:
         for name, link in self.machine.links.items():
             for body in link.bodies:
                 for corners, radius in outlines(body, link.points)[:1]:
-                    heights = self._seen(name, np.array(corners))
+                    heights = self._heights(name, np.array(corners))
                     low, high = float(heights.min()) - radius, float(heights.max()) + radius
                     z = link.plane if body.plane is None else body.plane
                     yield _box("solid", z, body.thickness, low, high)
@@ -144,7 +144,7 @@ class _View:
             has_outline = [bool(outlines(body, link.points)) for body in link.bodies] or [False]
             for (own, center, z), outlined in zip(masses_of(link), has_outline, strict=False):
                 if own and not outlined:
-                    yield complex(z, self._seen(name, np.array([center]))[0])
+                    yield complex(z, self._heights(name, np.array([center]))[0])
 
     def _bars(self, name: str, role: str) -> Iterator[Shape]:
         """A link: upright in its plane, and along z through what it holds beside it, and to its
@@ -171,14 +171,14 @@ class _View:
             for role in ("edge", "body"):
                 yield from self._bars(name, role)
         yield from self.pushing
-        yield from self._held()
+        yield from self._supports()
         for body, point, plane in self.pins:
             if body != FRAME:
                 yield circle("pin", complex(plane, self.height(point)), grown=PIN)
         for center in self.loose:
             yield from mass(center)
 
-    def _held(self) -> Iterator[Shape]:
+    def _supports(self) -> Iterator[Shape]:
         """Blocks in guides, bearings, and pins in the frame where no bearings are told."""
         for slider in self.machine.sliders:
             place = self.nodes[slider.link][slider.point]
@@ -196,11 +196,11 @@ class _View:
         for name, nodes in self.nodes.items():
             heights = [node.imag for node in nodes.values()]
             at = complex(self.machine.links[name].plane, (min(heights) + max(heights)) / 2)
-            yield Mark.of(at, short(name), "lines", 20.0, sign=False, near=8.0)
+            yield Mark.of(at, short(name), "lines", 20.0, sign=False, distance=8.0)
         for name, bearing in self.machine.bearings.items():
             (pin,) = self.nodes[bearing.link].keys() & self.machine.frame.keys()
             at = complex(bearing.plane, self.nodes[bearing.link][pin].imag)
-            yield Mark.of(at, short(name), "ink", -60.0, sign=False, near=8.0)
+            yield Mark.of(at, short(name), "ink", -60.0, sign=False, distance=8.0)
 
     def panel(self) -> Panel:
         """The view with its axes and names."""
@@ -224,7 +224,7 @@ class _View:
             equal=True,
             zero=False,
             signs=tuple(self.signs()),
-            held=(low - room, high + room),
+            always_shown=(low - room, high + room),
         )
 
 

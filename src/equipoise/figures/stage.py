@@ -171,10 +171,14 @@ class Stage:
         return max(self.size_of_type, SHRUNK * self.width)
 
     @cached_property
-    def told(self) -> list[tuple[str, str]]:
+    def captions(self) -> list[tuple[str, str]]:
         """What is to be said of the support, its movement and the force, and its colour."""
         swing = self.scene.swing
-        said = (*rows_told(self.scene), *beyond(self.scene), *(() if swing is None else swing.told))
+        said = (
+            *rows_told(self.scene),
+            *beyond(self.scene),
+            *(() if swing is None else swing.captions),
+        )
         pairs = [(words, "ink") for words in said]
         if self.arrow is not None:
             peak = quantity(float(abs(self.arrow.force).max()), "force")
@@ -188,7 +192,7 @@ class Stage:
     def lines(self) -> list[tuple[str, str]]:
         """Remarks in lines from below; the first is empty where none fits beside the ruler."""
         result = []
-        for words, color in self.told:
+        for words, color in self.captions:
             size = width_of(words, self.size_of_type) / len(words)
             parts = wrap(words, max(1, int((self.width - 24 * self.unit) / size)))
             result += [(part, color) for part in parts]

@@ -112,7 +112,7 @@ def _limits(scatter: Scatter) -> list[float]:
 def tighten(tolerances: Tolerances, units: Units) -> Chart:
     """By how much the scatter falls where one tolerance is halved."""
     gains = np.array([max(cause.gain, 0.0) for cause in tolerances.causes])
-    bars = Bars(np.arange(len(gains)), gains, TALL, across="y", told=True)
+    bars = Bars(np.arange(len(gains)), gains, TALL, across="y", labelled=True)
     most = 1.12 * float(np.max(gains)) or 1.0
     x = Axis(say("variance less"), PERCENT, low=0.0, high=most)
     panel = _bars_of(tolerances.causes, units, (bars,), x)

@@ -78,14 +78,14 @@ class ModeSwing:
     """How a support swings in a mode, as large as it is drawn.
 
     amplitudes : (6,) complex, m and rad, in the order of `FREEDOMS`.
-    across : names of what moves across the drawing.  seen : whether anything moves in it.
-    told : what is to be said of it.
+    across : names of what moves across the drawing.  visible : whether anything moves in it.
+    captions : what is to be said of it.
     """
 
     amplitudes: Array
     across: tuple[str, ...]
-    seen: bool
-    told: tuple[str, ...]
+    visible: bool
+    captions: tuple[str, ...]
 
     @classmethod
     def of(cls, scene: Scene, number: int, mode: Mode, coordinates: Sequence[str]) -> ModeSwing:
@@ -133,7 +133,7 @@ def in_mode(free: FreeVibration, number: int, instants: int = INSTANTS) -> Scene
     drive = DriveSign(scene.drive.link, scene.drive.pivot, 0)
     scene = replace(scene, crank_angle=_phases(instants), drives=(drive,))
     mode = ModeSwing.of(scene, number, free.modes[number - 1], free.coordinates)
-    if not mode.seen:
+    if not mode.visible:
         across = " and ".join(mode.across)
         raise UsageError(
             Note(
@@ -144,7 +144,7 @@ def in_mode(free: FreeVibration, number: int, instants: int = INSTANTS) -> Scene
             )
         )
     values = (mode.amplitudes[:, None] * np.exp(1j * scene.crank_angle)).real
-    return _with(scene, values, [*mode.told])
+    return _with(scene, values, [*mode.captions])
 
 
 def _with(scene: Scene, values: Array, remarks: list[str]) -> Scene:

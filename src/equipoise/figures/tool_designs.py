@@ -205,7 +205,7 @@ def _numbers(variation: Variation, x: Axis) -> Iterator[Mark]:
     order = np.argsort(variation.values)
     for number, row in enumerate(variation.parameter[0].T, 1):
         y = float(np.interp(at, variation.values[order], row[order]))
-        yield Mark(at, y, str(number), "main", near=3.0, optional=True, sign=False)
+        yield Mark(at, y, str(number), "main", distance=3.0, optional=True, sign=False)
 
 
 # -- a design --------------------------------------------------------------------------------------

@@ -157,7 +157,7 @@ def _shape(modes: ToolModes, result: PlaneModes, number: int) -> Panel:
         for station in modes.tool.stations
     ]
     marks += [
-        Mark(float(node), 0.0, f"{MM * node:.0f}", "node", optional=True, near=5.0)
+        Mark(float(node), 0.0, f"{MM * node:.0f}", "node", optional=True, distance=5.0)
         for node in result.nodes[number]
     ]
     hertz = float(result.cycles_per_second[number])
@@ -330,7 +330,7 @@ def work_mark(lines: Sequence[Line], y: Axis, above: bool = True) -> tuple[Mark,
     place = low * (high / low) ** (0.95 if above else 0.05)
     names = {line.at: say("work, {speed} rpm", speed=turns_told(line.at)) for line in lines}
     return tuple(
-        Mark(at, place, name, "work", 0.0, sign=False, near=3.0) for at, name in names.items()
+        Mark(at, place, name, "work", 0.0, sign=False, distance=3.0) for at, name in names.items()
     )
 
 

@@ -192,7 +192,7 @@ def _panel(
         zero=False,
         bare=True,
         signs=tuple(scene.at(0)),
-        held=(low, high),
+        always_shown=(low, high),
     )
 
 

@@ -194,7 +194,7 @@ def _bars(signals: GaugeSignals, name: str, last: float) -> Panel:
     if not largest:
         return Panel(x, y, title=title, message=say("does not move"), height=SMALL)
     significant, loudest = sizes > largest * MATTERS, int(np.argmax(sizes))
-    mark = Mark(float(orders[loudest]), largest, y.format_value(largest), sign=False, near=3.0)
+    mark = Mark(float(orders[loudest]), largest, y.format_value(largest), sign=False, distance=3.0)
     bars = Bars(orders[significant], sizes[significant], 0.62 / signal.turns)
     return Panel(x, y, marks=(mark,), bars=(bars,), title=title, height=SMALL)
 

@@ -10,7 +10,7 @@ import numpy as np
 from equipoise.handheld.model import PLANES
 from equipoise.handheld.response import rms_over_time
 from equipoise.i18n import Note, said, say, to_say
-from equipoise.quantities import PER_RPM, Dimension, number, told
+from equipoise.quantities import PER_RPM, Dimension, format_quantity, number
 from equipoise.results.blocks import (
     Block,
     Cell,
@@ -82,11 +82,11 @@ def summary_blocks(tool: Tool) -> Iterator[Block]:
         say(
             "Shaft of {length} and {mass}, bending stiffness {stiffness} ({theory}); "
             "the whole tool has {whole}.",
-            length=told(shaft.length, "length"),
-            mass=told(shaft.mass, "mass", "kg"),
-            stiffness=told(section.bending_stiffness, "bending stiffness"),
+            length=format_quantity(shaft.length, "length"),
+            mass=format_quantity(shaft.mass, "mass", "kg"),
+            stiffness=format_quantity(section.bending_stiffness, "bending stiffness"),
             theory=shaft.theory.title(),
-            whole=told(tool.mass, "mass", "kg"),
+            whole=format_quantity(tool.mass, "mass", "kg"),
         )
     )
 
@@ -219,8 +219,8 @@ def sweep_blocks(sweep: ToolSweep) -> Iterator[Block]:
     yield Text(
         say(
             "Largest bending moment: {moment} RMS at {place} of the shaft, engine at {speed} rpm",
-            moment=told(float(moment[k]), "torque"),
-            place=told(float(place[k]), "length"),
+            moment=format_quantity(float(moment[k]), "torque"),
+            place=format_quantity(float(place[k]), "length"),
             speed=rpm(float(sweep.speed[k])),
         )
     )

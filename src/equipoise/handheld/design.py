@@ -75,23 +75,23 @@ class Search(DesignProblem):
         forces = (
             limit.station for limit in design.limits if limit.output == "force" and limit.station
         )
-        self.held = tuple(dict.fromkeys(forces))
+        self.force_stations = tuple(dict.fromkeys(forces))
         self.start = values_of(tool, self.numbers)
-        self._seen: tuple[bytes, Any] = (b"", None)
+        self._last: tuple[bytes, Any] = (b"", None)
 
     def at(self, place: Array, slopes: bool = True) -> tuple[Dual, Dual]:
         """Measures (M,), of which the largest counts, and limits (C,), each at most 1."""
         key = np.ascontiguousarray(place).tobytes()
-        if self._seen[0] != key:
+        if self._last[0] != key:
             pair = self._at(self.low + self.wide * place, slopes)
             if not slopes:
                 return pair
-            self._seen = (key, pair)
-        pair_at: tuple[Dual, Dual] = self._seen[1]
+            self._last = (key, pair)
+        pair_at: tuple[Dual, Dual] = self._last[1]
         return pair_at
 
     def _at(self, values: Array, slopes: bool) -> tuple[Dual, Dual]:
-        felt = self.band.felt(self.numbers, values, self.held, slopes)
+        felt = self.band.felt(self.numbers, values, self.force_stations, slopes)
         squares = [felt.hands[name] for name in self.hands]
         if self.design.measure == "rms":
             squares = [mean_over_band(square) for square in squares]
@@ -136,11 +136,11 @@ class Search(DesignProblem):
 class QuadraticPrograms:
     """Designs spread over the room are tried, and the best of them followed downhill.
 
-    told : is called with how many are followed, and how many there are.
+    progress : is called with how many are followed, and how many there are.
     starts : places (K, d) that are followed instead.
     """
 
-    told: SearchProgress
+    progress: SearchProgress
     starts: Array | None = None
     name: ClassVar[str] = "sequential quadratic programs"
 
@@ -157,7 +157,7 @@ class QuadraticPrograms:
         places = _promising(problem) if self.starts is None else self.starts
         result = []
         for done, place in enumerate(places):
-            self.told(done, len(places))
+            self.progress(done, len(places))
             result.append(_downhill(problem, place))
         ends = np.array(result)
         values, beyond = (item[:, 0] for item in problem.evaluate(ends))
@@ -311,7 +311,7 @@ def design_tool(tool: Tool, progress: SearchProgress | None = None) -> ToolDesig
     Designs spread over the whole room are tried, and the best of them followed downhill with exact
     derivatives; `arrived` of `searches` tells how sure one may be that nothing better is there.
 
-    told : is called with how many searches are done, and how many there are.
+    progress : is called with how many searches are done, and how many there are.
 
     Raises
     ------
@@ -402,7 +402,7 @@ def _figures(search: Search, better: Tool) -> Iterable[Before]:
         for measure, result in ((rms, means), (top, tops)):
             said = Note(both, what=what, measure=Note(measure))
             yield _before(said, "acceleration", *(item[name] for item in result))
-    for name in search.held:
+    for name in search.force_stations:
         responses = (respond_tool(item, search.band.speed) for item in (search.tool, better))
         forces = (float(np.max(rms_over_time(item.whole_force(name)))) for item in responses)
         what = Note(to_say("force at {station}"), station=name)

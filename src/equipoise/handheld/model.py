@@ -90,7 +90,7 @@ class Excitation(Frozen):
     """
 
     called = to_say("{what} of excitation {number}")
-    beside: ClassVar[Keys] = {
+    extra_keys: ClassVar[Keys] = {
         "name": Key(
             "name", TextKind(), "if left out, that of the station and what it is", default=None
         ),
@@ -187,7 +187,7 @@ class ShaftTable(Frozen):
     """The shaft with what sits on it and holds it; a tool has both apart."""
 
     called = to_say("{what} of the shaft")
-    beside: ClassVar[Keys] = {
+    extra_keys: ClassVar[Keys] = {
         **keys_of(Shaft),
         "stations": Key(
             "stations", Tables(KeyTable(Station)), "what sits on it and holds it", default=()
@@ -210,7 +210,7 @@ class ShaftTable(Frozen):
 class Tool(Displayed, Frozen):
     """A hand-held tool: a shaft in bending, what sits on it and what shakes it."""
 
-    beside: ClassVar[Keys] = {"schema": VERSION}
+    extra_keys: ClassVar[Keys] = {"schema": VERSION}
     file_order = ("schema", "title", "description", "units")
 
     title: str = key(Wording(), "shown in reports", example="Brush cutter")

@@ -266,7 +266,7 @@ class Segment(Profiled):
     """A part of the shaft with another section, from one place to another."""
 
     called = to_say("{what} of segment {number}")
-    beside: ClassVar[Keys] = PROFILE
+    extra_keys: ClassVar[Keys] = PROFILE
     conditions: ClassVar[Conditions] = profile_conditions("mass_per_length")
 
     start: float = key("length", "where it begins", name="from", example="1.2 m")
@@ -281,7 +281,7 @@ class Shaft(Profiled):
     profile : its section, but where `segments` say otherwise.
     """
 
-    beside: ClassVar[Keys] = {
+    extra_keys: ClassVar[Keys] = {
         **PROFILE,
         "mass": Key(
             "mass",

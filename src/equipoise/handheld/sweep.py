@@ -282,17 +282,17 @@ class ToolSweep(Result):
 
     def places(self, places: Sequence[float] | Array) -> Places:
         """What places (X), m, do at every speed; a `ModelError` where nothing shakes the tool."""
-        frequency, parts = self.shaken.frequency, []
+        frequency, parts = self.required_response.frequency, []
         block = max(1, LARGEST // frequency.size)  # a few at once, so that memory lasts
         for k in range(0, max(1, len(places)), block):
-            line = self.shaken.line(places[k : k + block])
+            line = self.required_response.line(places[k : k + block])
             moved = line.displacement
             pair = (moved, moved * frequency, moved * frequency**2, line.moment)
             parts.append(list(map(rms_over_time, pair)))
         return Places(*map(np.concatenate, zip(*parts, strict=True)))
 
     @property
-    def shaken(self) -> ToolResponse:
+    def required_response(self) -> ToolResponse:
         """The response; a `ModelError` where nothing shakes the tool."""
         if self.response is None:
             raise ModelError("excitations", NOTHING)
@@ -311,11 +311,17 @@ class ToolSweep(Result):
 
     def force(self, station: str) -> dict[str, Array]:
         """Force (S,) on hand, harness and ground at a station, N, RMS over time and planes."""
-        return {part: rms_over_time(force) for part, force in self.shaken.forces(station).items()}
+        return {
+            part: rms_over_time(force)
+            for part, force in self.required_response.forces(station).items()
+        }
 
     def power(self, station: str) -> dict[str, Array]:
         """Mean power (S,), W, that goes into hand, harness, ground and absorber at a station."""
-        return {part: np.sum(each, axis=0) for part, each in self.shaken.power(station).items()}
+        return {
+            part: np.sum(each, axis=0)
+            for part, each in self.required_response.power(station).items()
+        }
 
     def to_dict(self, wanted: Collection[str] | None = None) -> dict[str, Any]:
         """As plain values in SI units.

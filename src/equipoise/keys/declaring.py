@@ -149,7 +149,7 @@ class Frozen(TableRecord):
     read-only, each checked by its kind when the object is made.  A quantity may be given as the
     text that a file has, such as ``"300 rpm"``.
 
-    beside : keys of the file that are no fields, by name; `from_table` and `to_table` translate.
+    extra_keys : keys of the file without a field, by name; `from_table` and `to_table` translate.
     handed_on : names in `memory` that hold for copies with other numbers too.
     file_order : names of keys in the order of the file, where it is not that of the fields.
     conditions : what the JSON Schema says of keys that go together.
@@ -157,7 +157,7 @@ class Frozen(TableRecord):
         with ``{name}`` or ``{number}`` of the object, or one of its texts.
     """
 
-    beside: ClassVar[Keys] = {}
+    extra_keys: ClassVar[Keys] = {}
     handed_on: ClassVar[frozenset[str]] = frozenset()
     file_order: ClassVar[tuple[str, ...]] = ()
     conditions: ClassVar[Conditions] = {}
@@ -251,8 +251,8 @@ VERSION = Key(
 def keys_of(cls: type[Frozen]) -> Mapping[str, Key]:
     """Keys of a class in the order of the file, by name; a flat table is one of them."""
     own = {declaration.name: declaration for declaration in declarations(cls) if declaration.name}
-    value = {name: replace(item, name=name) for name, item in cls.beside.items()} | own
-    return {name: value[name] for name in dict.fromkeys((*cls.file_order, *own, *cls.beside))}
+    value = {name: replace(item, name=name) for name, item in cls.extra_keys.items()} | own
+    return {name: value[name] for name in dict.fromkeys((*cls.file_order, *own, *cls.extra_keys))}
 
 
 @once

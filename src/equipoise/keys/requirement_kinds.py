@@ -101,11 +101,11 @@ class RequirementKeys(Mapping[str, Key]):
 
     table : see `RequirementKind.tables`.  value : how a value of the figure is given.
     needed : whether the key is required where there is one kind only.
-    more : of each key, as of `Key`.
+    options : of each key, as of `Key`.
     """
 
     def __init__(self, table: str, value: Kind, needed: bool = False, **options: Any) -> None:
-        self.table, self.value, self.needed, self.more = table, value, needed, options
+        self.table, self.value, self.needed, self.options = table, value, needed, options
 
     def __iter__(self) -> Iterator[str]:
         return (key for key, kind in REQUIREMENT_KINDS.items() if self.table in kind.tables)
@@ -118,7 +118,7 @@ class RequirementKeys(Mapping[str, Key]):
         if self.table not in kind.tables:
             raise KeyError(key)
         default = REQUIRED if self.needed and len(self) == 1 else None
-        given: dict[str, Any] = {"text": kind.description, "default": default, **self.more}
+        given: dict[str, Any] = {"text": kind.description, "default": default, **self.options}
         return Key(key, TextKind(kind.choices) if kind.choices else self.value, **given)
 
 

@@ -28,7 +28,7 @@ from equipoise.planting.names import (
     figure_named,
 )
 from equipoise.planting.stroke import finger_base
-from equipoise.quantities import PER_RPM, Dimension, angle, number, told
+from equipoise.quantities import PER_RPM, Dimension, angle, format_quantity, number
 from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Text, Value, broken_if
 
 if TYPE_CHECKING:
@@ -123,14 +123,14 @@ def _heading(pages: Sequence[FigureCells]) -> Iterator[str]:
         link=drive.link,
         speed=number(abs(speed) / PER_RPM),
         travel=figures.planting.travel,
-        forward=told(abs(figures["forward_speed"]), "speed"),
+        forward=format_quantity(abs(figures["forward_speed"]), "speed"),
     )
     for arm in figures.arms:
         base = finger_base(arm.curve)
         parts = [say("tip {tip} on {link}", tip=arm.tip, link=arm.curve.link)]
         parts += [] if base is None else [say("finger from {base}", base=base)]
         if arm is figures:
-            surface = told(figures["surface"], "length")
+            surface = format_quantity(figures["surface"], "length")
             parts.append(say("surface of the soil at y = {y}", y=surface))
         yield say(", ").join(parts)
     if pages[0].zero:

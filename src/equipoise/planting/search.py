@@ -166,7 +166,7 @@ class GoalOutcome:
         return cls(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
 
     @property
-    def kept(self) -> Array:
+    def feasible(self) -> Array:
         """Whether a design can turn and keeps every limit (P,)."""
         met: Array = (self.worst > OPEN) & np.all(self.slack >= 0, axis=1)
         return met & np.isfinite(self.cost)
@@ -212,7 +212,7 @@ class PlantingProblem(DesignProblem):
         ]
         make = partial(_judging, *designs.given, self.goals)
         self.pooled = PooledEvaluator(
-            self.judge_here, make, GoalOutcome.joined, workers, together=BATCH
+            self.judge_here, make, GoalOutcome.joined, workers, batch_size=BATCH
         )
 
     def __enter__(self) -> Self:
@@ -228,7 +228,7 @@ class PlantingProblem(DesignProblem):
     def evaluate(self, places: Array) -> tuple[Array, Array]:
         """Costs (P, 1), in squared steps, and whether a limit is not kept (P, 1)."""
         outcome = self.judge(self.values_of(places))
-        return outcome.cost[:, None], np.where(outcome.kept, 0.0, 1.0)[:, None]
+        return outcome.cost[:, None], np.where(outcome.feasible, 0.0, 1.0)[:, None]
 
     @property
     def makes(self) -> bool:
@@ -386,12 +386,12 @@ class Fit(Result):
             "solver": self.solver,
             "proved": self.proved,
             "values": dict(self.values),
-            "goals": [self._told(goal) for goal in self.goals],
+            "goals": [self._goal_to_dict(goal) for goal in self.goals],
             "before": None if self.before is None else self.before.to_dict(),
             "after": self.after.to_dict(),
         }
 
-    def _told(self, goal: Requirement) -> dict[str, Any]:
+    def _goal_to_dict(self, goal: Requirement) -> dict[str, Any]:
         """A goal, whether it is met, and its figure before and after."""
         figures = {"before": self.before, "after": self.after}
         values = {when: figure and figure.get(goal.figure) for when, figure in figures.items()}
@@ -459,7 +459,7 @@ class EvolutionAndPolish:
         evolution = _Evolution(problem, problem.seed, problem.generations, self.progress)
         best = evolution.rounds(population)
         if problem.makes:
-            polished = [evolution.near(best[0], max(SMALLEST_POPULATION, population // 3))]
+            polished = [evolution.polished(best[0], max(SMALLEST_POPULATION, population // 3))]
         else:
             polished = list(_polished(problem, best))
         values = np.vstack([best, *polished])
@@ -472,7 +472,7 @@ def _fit(problem: PlantingProblem) -> Fit:
     candidates = problem.values_of(solution.places) if solution.values is None else solution.values
     values, after = _best(problem, candidates)
     best_outcome = problem.judge_here(values[None])
-    met = bool(best_outcome.kept[0] and best_outcome.cost[0] < MET)
+    met = bool(best_outcome.feasible[0] and best_outcome.cost[0] < MET)
     names = [variable.path for variable in problem.designs.variables]
     return Fit(
         machine=after.machine,
@@ -533,7 +533,7 @@ class _Evolution:
         best: Array = values[order[:POLISHED]]
         return best
 
-    def near(self, start: Array, population: int) -> Array:
+    def polished(self, start: Array, population: int) -> Array:
         """The best design (1, n) in a small box about another."""
         low, high = self.problem.designs.bounds
         reach = BOX * (high - low)
@@ -563,7 +563,7 @@ class _Evolution:
             vectorized=True,
             updating="deferred",
             polish=False,
-            callback=self._told,
+            callback=self._on_generation,
             tol=0.0,
             mutation=(0.4, 0.9),
             recombination=0.9,
@@ -571,7 +571,7 @@ class _Evolution:
         order = np.argsort(result.population_energies)
         return np.asarray(result.population)[order]
 
-    def _told(self, intermediate_result: Any) -> bool:
+    def _on_generation(self, intermediate_result: Any) -> bool:
         self.done += 1
         self.costs.append(float(intermediate_result.fun))
         if self.progress is not None:
@@ -635,7 +635,7 @@ def _nearest(problem: PlantingProblem, start: Array) -> Array:
 def _best(problem: PlantingProblem, candidates: Array) -> tuple[Array, PlantingFigures]:
     """The best design (n,) that turns fully and keeps the limits, looked at closely."""
     outcome = problem.judge(candidates)
-    for k in np.lexsort([outcome.cost, ~outcome.kept]):
+    for k in np.lexsort([outcome.cost, ~outcome.feasible]):
         after = _planting_figures(problem.designs.build(candidates[k]))
         if after is not None and all(after.get(goal.figure) is not None for goal in problem.goals):
             return candidates[k], after

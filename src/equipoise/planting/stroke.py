@@ -399,7 +399,7 @@ class Edge:
         self.start, stop = (complex(*point) for point in curve.planting.tray)
         self.along = stop - self.start
 
-    def beside(self, theta: Array) -> Any:
+    def side(self, theta: Array) -> Any:
         """A signal with the sign of the side on which the tip is, (P, K)."""
         return kernels.cross(self.along, self.curve.at(theta).place - self.start)
 
@@ -438,12 +438,12 @@ def pick_up(curve: TipCurve, entry: Array) -> Array:
     edge = Edge(curve)
     back = np.linspace(0.0, curve.period, len(curve.theta) + 1)
     nodes = entry[:, None] - np.sign(curve.speed) * back
-    sides = np.signbit(edge.beside(nodes))
+    sides = np.signbit(edge.side(nodes))
     passed = sides[:, 1:] != sides[:, :-1]
     most = max(1, int(np.max(np.sum(passed, axis=1))))
     first = np.argsort(~passed, axis=1, kind="stable")[:, :most]
     ends = (np.take_along_axis(nodes, first + step, axis=1) for step in (0, 1))
-    crossing = roots(edge.beside, *ends)
+    crossing = roots(edge.side, *ends)
     meant = np.take_along_axis(passed, first, axis=1) & edge.reached(crossing)
     last = np.take_along_axis(crossing, np.argmax(meant, axis=1)[:, None], axis=1)[:, 0]
     return np.where(np.any(meant, axis=1), last, np.nan)
@@ -456,7 +456,7 @@ def tray_crossings(curve: TipCurve) -> tuple[float, ...]:
     edge = Edge(curve)
     ends = np.append(curve.theta, curve.period)
     nodes = np.unique(np.concatenate([ends, crossings(edge.slope, ends)]))
-    angles = crossings(edge.beside, nodes)
+    angles = crossings(edge.side, nodes)
     if not angles.size:
         return ()
     return tuple(float(angle) for angle in angles[edge.reached(angles[None])[0]])

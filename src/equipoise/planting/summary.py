@@ -155,10 +155,10 @@ class PlantingFigures(Result):
 
     def get(self, name: str) -> float | None:
         """A figure of the tips, or of what shakes the machine; None where there is none."""
-        return self.figures.get(name, self.shaken.get(name))
+        return self.figures.get(name, self.shaking_figures.get(name))
 
     @cached_property
-    def shaken(self) -> Mapping[str, float]:
+    def shaking_figures(self) -> Mapping[str, float]:
         """What inertia does to frame and drive, which goals may ask for, by dotted name."""
         return {name: float(value[0]) for name, value in shaking(self.curve).items()}
 

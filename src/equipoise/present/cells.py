@@ -50,7 +50,7 @@ class CellText:
     limit: str = ""
 
     @property
-    def told(self) -> str:
+    def text_with_note(self) -> str:
         """As print has it: the value, and behind it where it holds, or the limit that it breaks."""
         if self.limit:
             over = say("over the limit of {limit}", limit=self.limit)
@@ -221,8 +221,8 @@ def _text(
         return CellText(text, "", True, cell.emphasis)
     if isinstance(cell, Many):
         values = [_text(value, column, shown, sizes, faint) for value in cell.values]
-        labels = [say("and {count} more", count=cell.more)] if cell.more else []
-        words = say(", ").join([*(item.told for item in values), *labels])
+        labels = [say("and {count} more", count=cell.omitted)] if cell.omitted else []
+        words = say(", ").join([*(item.text_with_note for item in values), *labels])
         return CellText(
             words, emphasis=next((item.emphasis for item in values if item.emphasis), None)
         )

@@ -22,7 +22,7 @@ from equipoise.mechanism.dynamics.loads import work_in_cycle
 from equipoise.mechanism.kinematics.motion import move
 from equipoise.mechanism.outputs.declared import body_named
 from equipoise.mechanism.parts.support import idle_parts
-from equipoise.quantities import PER_RPM, SI, Dimension, angle, display, number, told
+from equipoise.quantities import PER_RPM, SI, Dimension, angle, display, format_quantity, number
 from equipoise.quantities.numbers import rate_told, time_told
 from equipoise.results.blocks import Block, Cell, Column, FileText, Notes, Table, Text, Value
 from equipoise.results.cam_blocks import cams_told
@@ -306,7 +306,7 @@ def _loads(machine: Machine) -> Iterator[tuple[Cell, ...]]:
         ends, beyond = (load.start, load.stop), "zero"
         if (table := load.rows) is not None:
             if load.gas is not None:
-                what = say("gas on {bore}", bore=told(load.bore or 0.0, "length"))
+                what = say("gas on {bore}", bore=format_quantity(load.bore or 0.0, "length"))
             what = listed(what, table.file or say("table"))
             if load.start is None:
                 ends = (table.crank_angle[0], table.crank_angle[-1])
@@ -331,7 +331,7 @@ def _joints(machine: Machine) -> Iterator[str]:
             parts.append(say("radius {radius}", radius=_length(joint.radius)))
         parts += _bearing(joint)
         if joint.stiffness is not None:
-            parts.append(told(joint.stiffness, "stiffness", "N/m"))
+            parts.append(format_quantity(joint.stiffness, "stiffness", "N/m"))
         yield said(series([*parts, *_friction(joint)]))
 
 
@@ -340,10 +340,10 @@ def _bearing(properties: JointProperties) -> Iterator[str]:
     if properties.width is not None:
         yield say("width {width}", width=_length(properties.width))
     if (rolling := properties.bearing) is not None:
-        rating = told(rolling.dynamic_rating, "force")
+        rating = format_quantity(rolling.dynamic_rating, "force")
         yield say("{kind} bearing of {rating}", kind=rolling.kind, rating=rating)
         if rolling.life is not None:
-            yield say("for {time}", time=told(rolling.life, "time", "h"))
+            yield say("for {time}", time=format_quantity(rolling.life, "time", "h"))
 
 
 def _friction(properties: JointProperties) -> Iterator[str]:
@@ -357,7 +357,7 @@ def _friction(properties: JointProperties) -> Iterator[str]:
         yield say(
             "{coefficient} at rest (Stribeck speed {speed})",
             coefficient=number(properties.static_friction),
-            speed=told(properties.stribeck_speed, "speed", "m/s"),
+            speed=format_quantity(properties.stribeck_speed, "speed", "m/s"),
         )
     if properties.guide_length is not None:
         yield say("guide of {length}", length=_length(properties.guide_length))
@@ -367,20 +367,24 @@ def _friction(properties: JointProperties) -> Iterator[str]:
         (to_say("drag {size}"), properties.drag_force, "force"),
         (to_say("drag {size}"), properties.drag_torque, "torque"),
     ]
-    yield from (say(template, size=told(size, kind)) for template, size, kind in sizes if size)
+    yield from (
+        say(template, size=format_quantity(size, kind)) for template, size, kind in sizes if size
+    )
 
 
 def _drive_train(machine: Machine) -> Iterator[str]:
     drive = machine.drive
     if drive.flywheel:
-        yield say("flywheel: {inertia}", inertia=told(drive.flywheel, "inertia", "kg m^2"))
+        yield say(
+            "flywheel: {inertia}", inertia=format_quantity(drive.flywheel, "inertia", "kg m^2")
+        )
     if drive.brake:
-        torque = told(drive.brake, "torque", "N m")
+        torque = format_quantity(drive.brake, "torque", "N m")
         yield say("brake: {torque}, where no motor is on", torque=torque)
     if (motor := drive.motor) is not None:
         parts = [_curve(motor), say("ratio {ratio}", ratio=number(motor.ratio))]
         if motor.inertia:
-            inertia = told(motor.inertia, "inertia", "kg m^2")
+            inertia = format_quantity(motor.inertia, "inertia", "kg m^2")
             parts.append(say("rotor {inertia}", inertia=inertia))
         template = to_say("motor: {parts}; mean speed follows from it")
         if motor.mean_speed == "held":
@@ -410,25 +414,27 @@ def _curve(motor: Motor) -> str:
         low, high = _rpm(speeds[0]), _rpm(speeds[-1])
         return say("{count} rows from {low} to {high} rpm", count=len(speeds), low=low, high=high)
     if motor.torque is not None:
-        return say("{torque} at every speed", torque=told(motor.torque, "torque", "N m"))
+        return say("{torque} at every speed", torque=format_quantity(motor.torque, "torque", "N m"))
     if (net := motor.induction) is not None:
         return say(
             "induction, {speed} rpm without slip, {torque} at most",
             speed=_rpm(net.synchronous_speed),
-            torque=told(net.breakdown_torque, "torque", "N m"),
+            torque=format_quantity(net.breakdown_torque, "torque", "N m"),
         )
     if (servo := motor.servo) is not None:
-        most = told(servo.torque_limit, "torque", "N m")
+        most = format_quantity(servo.torque_limit, "torque", "N m")
         return say("servo, {speed} rpm, {torque} at most", speed=_rpm(servo.speed), torque=most)
     (_, fastest), (stall, _) = motor.rows
     line = say(
         "{speed} rpm without load, {torque} at standstill",
         speed=_rpm(fastest),
-        torque=told(stall, "torque", "N m"),
+        torque=format_quantity(stall, "torque", "N m"),
     )
     if motor.dc is None:
         return line
-    return listed(say("{voltage} direct current", voltage=told(motor.dc.voltage, "voltage")), line)
+    return listed(
+        say("{voltage} direct current", voltage=format_quantity(motor.dc.voltage, "voltage")), line
+    )
 
 
 def _rpm(speed: float) -> str:
@@ -444,7 +450,7 @@ def _support(machine: Machine) -> Iterator[str]:
         template = to_say("support: {mass}; it can {motions} about the pivot at {pivot}")
     yield say(
         template,
-        mass=told(support.mass, "mass", "kg"),
+        mass=format_quantity(support.mass, "mass", "kg"),
         motions=said(all_of(support.coordinates, commas=True)),
         pivot="" if support.pivot is None else place_told(support.pivot),
     )
@@ -470,9 +476,9 @@ def _mount(mount: Mount) -> Iterator[str]:
     yield reading if mount.point is None else say("pushes {way}", way=reading)
     for key, dimension in MOUNT_RATES.items():
         if value := getattr(mount, key):
-            yield told(value, dimension, SI[dimension])
+            yield format_quantity(value, dimension, SI[dimension])
     if mount.preload is not None:
-        preload = told(mount.preload, "force" if mount.axis is None else "torque")
+        preload = format_quantity(mount.preload, "force" if mount.axis is None else "torque")
         yield say("{preload} as drawn", preload=preload)
     if mount.one_sided:
         yield say("one-sided")
@@ -484,7 +490,7 @@ def _reading(item: Mount | Gauge) -> str:
     if isinstance(item.direction, tuple):
         way = f"({coordinates(map(number, item.direction))})"
     else:
-        way = told(item.direction, "angle")
+        way = format_quantity(item.direction, "angle")
     return say("along {way} at {place}", way=way, place=place_told(item.point))
 
 
@@ -526,15 +532,15 @@ def tool_blocks(tool: Tool, file: str) -> Iterator[Block]:
 
 
 def _length(value: float) -> str:
-    return told(value, "length")
+    return format_quantity(value, "length")
 
 
 def _mass(value: float) -> str:
-    return told(value, "mass", "kg")
+    return format_quantity(value, "mass", "kg")
 
 
 def _bending(section: Section) -> str:
-    stiffness = told(section.bending_stiffness, "bending stiffness")
+    stiffness = format_quantity(section.bending_stiffness, "bending stiffness")
     return say("bending stiffness {stiffness}", stiffness=stiffness)
 
 
@@ -542,8 +548,8 @@ def _material(tube: Tube) -> tuple[str, ...]:
     name, values = tube.material
     return (
         name,
-        told(values.density, "density", "kg/m^3"),
-        told(values.youngs_modulus, "modulus", "GPa"),
+        format_quantity(values.density, "density", "kg/m^3"),
+        format_quantity(values.youngs_modulus, "modulus", "GPa"),
     )
 
 
@@ -556,7 +562,7 @@ def _shaft(shaft: Shaft) -> Iterator[str]:
         parts.append(say("loss factor {factor}", factor=number(shaft.loss_factor)))
     yield say("shaft: {parts}", parts=said(series([*filter(None, parts)])))
     for start, stop, section in pieces if len(pieces) > 1 else ():
-        linear = told(section.mass_per_length, "mass per length", "kg/m")
+        linear = format_quantity(section.mass_per_length, "mass per length", "kg/m")
         yield INDENT + say(
             "from {start} to {stop}: {parts}",
             start=_length(start),
@@ -601,16 +607,16 @@ def _hand(hand: Hand) -> Iterator[str]:
 
 def _excitation(excitation: Excitation) -> Iterator[str]:
     if excitation.force is not None:
-        yield listed(told(excitation.force, "force"), say(excitation.direction))
+        yield listed(format_quantity(excitation.force, "force"), say(excitation.direction))
     elif excitation.unbalance is not None:
-        yield say("unbalance {size}", size=told(excitation.unbalance, "unbalance"))
+        yield say("unbalance {size}", size=format_quantity(excitation.unbalance, "unbalance"))
     elif excitation.linkage is not None:
         yield say("linkage {title}", title=said(excitation.linkage.title))
     yield say("at {station}", station=excitation.station)
     if excitation.ratio != 1:
         yield say("{ratio} times the engine's speed", ratio=number(excitation.ratio))
     if excitation.phase:
-        yield say("ahead by {angle}", angle=told(excitation.phase, "angle"))
+        yield say("ahead by {angle}", angle=format_quantity(excitation.phase, "angle"))
 
 
 def _operation(operation: Operation) -> Iterator[str]:
@@ -643,5 +649,5 @@ def _design(design: DesignPlan) -> Iterator[str]:
     names = [varied_named(variable.name) for variable in design.variables]
     yield INDENT + say("may change: {names}", names=said(series(names)))
     for limit in design.limits:
-        most = told(limit.at_most, OUTPUTS[limit.output])
+        most = format_quantity(limit.at_most, OUTPUTS[limit.output])
         yield INDENT + say(LIMITED[limit.output], station=limit.station, limit=most)

@@ -37,7 +37,7 @@ Part = TypeVar("Part")
 class _ComputedParts:
     """Parts that cannot be computed are None, and `failed` keeps why."""
 
-    told: ClassVar[tuple[str, ...]]
+    dependents: ClassVar[tuple[str, ...]]
     """Parts that ask for all others."""
 
     failed: dict[str, Note] = field(default_factory=dict, init=False, repr=False)
@@ -51,7 +51,7 @@ class _ComputedParts:
     @property
     def notes(self) -> tuple[Note | str, ...]:
         """A sentence on each part that could not be computed, and why; computes all of them."""
-        for part in self.told:
+        for part in self.dependents:
             getattr(self, part)
         return tuple(at_place(Note(part), why) for part, why in self.failed.items())
 
@@ -83,7 +83,7 @@ class Findings(_ComputedParts):
     swings : that its crank cannot turn, and how far it is let swing; None where it can.
     """
 
-    told = ("planting", "sweep", "modes", "balanced")
+    dependents = ("planting", "sweep", "modes", "balanced")
 
     machine: Machine
     text: str
@@ -163,7 +163,7 @@ class ToolFindings(_ComputedParts):
     text : of its file.  file : its name.
     """
 
-    told = ("modes", "sweep", "exposure", "design")
+    dependents = ("modes", "sweep", "exposure", "design")
 
     tool: Tool
     text: str

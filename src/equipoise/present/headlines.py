@@ -27,8 +27,8 @@ from equipoise.quantities import (
     brief,
     change,
     display,
+    format_quantity,
     percent,
-    told,
 )
 from equipoise.results.analysis_blocks import display_of_totals, shares
 from equipoise.results.joint_blocks import display_of_joints
@@ -67,7 +67,7 @@ class Shaking:
     def of(cls, findings: Findings) -> Shaking:
         """From the analysis; what is rounding is 0."""
         analysis = findings.analysis.resolved
-        force = analysis.together.get("shaking_force", analysis.forces.shaking_force.value)
+        force = analysis.rows_total.get("shaking_force", analysis.forces.shaking_force.value)
         parts = analysis.forces.split.by_link("shaking_force").values()
         scale = max(float(np.max(np.abs(part))) for part in parts)
         scale = max(scale, analysis.summary["frame_force"].peak)
@@ -179,7 +179,7 @@ def mounted(response: Response) -> str:
         if not mount.torsional
     }
     name, peak = largest_of(forces)
-    size = told(peak, "force", digits=3)
+    size = format_quantity(peak, "force", digits=3)
     return (
         say("Mount {name} carries most: up to {peak}", name=named(name), peak=size) if name else ""
     )
@@ -188,7 +188,7 @@ def mounted(response: Response) -> str:
 def driven(response: Response) -> str:
     """Between which torques the drive swings."""
     torque = response.drive.torque_figures
-    low, high = (told(end, "torque", digits=3) for end in (torque.min, torque.max))
+    low, high = (format_quantity(end, "torque", digits=3) for end in (torque.min, torque.max))
     return say("The drive torque swings between {low} and {high}", low=low, high=high)
 
 
@@ -233,7 +233,7 @@ def counted(analysis: Analysis) -> str:
     links = analysis.machine.links
     if any(link.mass is None for link in links.values()):
         return said(moving_links(len(links)))
-    mass = told(analysis.machine.mass, "mass", "kg", digits=3)
+    mass = format_quantity(analysis.machine.mass, "mass", "kg", digits=3)
     return say("{links} of {mass} together", links=moving_links(len(links)), mass=mass)
 
 
@@ -255,7 +255,7 @@ def longest(analysis: Analysis) -> str:
         for name, point in analysis.motion.points.items()
     }
     name, length = largest_of(lengths)
-    size = told(length, "length", digits=3)
+    size = format_quantity(length, "length", digits=3)
     in_turn = to_say("{point} goes farthest: {length} in a turn of the crank")
     in_cycle = to_say("{point} goes farthest: {length} in a cycle")
     template = in_turn if analysis.machine.crank_turns else in_cycle
@@ -266,7 +266,7 @@ def fastest(analysis: Analysis) -> str:
     """Which point moves fastest."""
     points = analysis.motion.points.items()
     name, speed = largest_of({name: float(np.max(np.abs(p.velocity))) for name, p in points})
-    size = told(speed, "speed", digits=3)
+    size = format_quantity(speed, "speed", digits=3)
     return say("{point} is the fastest point, at up to {speed}", point=named(name), speed=size)
 
 
@@ -277,7 +277,9 @@ def stroked(analysis: Analysis) -> str:
             "slider": to_say("{name} has a stroke of {size}, with a time ratio of {ratio}"),
             "rocker": to_say("{name} swings by {size}, with a time ratio of {ratio}"),
         }
-        size = told(stroke.stroke, stroke.dimension, "deg" if stroke.dimension == "angle" else None)
+        size = format_quantity(
+            stroke.stroke, stroke.dimension, "deg" if stroke.dimension == "angle" else None
+        )
         values = {"name": named(joint_named(name)), "size": size, "ratio": brief(stroke.time_ratio)}
         return say(templates["slider" if stroke.kind == "slider" else "rocker"], **values)
     return fastest(analysis)
@@ -311,7 +313,7 @@ def planted(figures: PlantingFigures | None) -> str:
     """How deep the finger goes; of several arms the deepest."""
     if figures is None:
         return ""
-    depth = told(max(arm["soil.depth"] for arm in figures.arms), "length", digits=3)
+    depth = format_quantity(max(arm["soil.depth"] for arm in figures.arms), "length", digits=3)
     if figures.further:
         return say("The tips go up to {depth} into the soil", depth=depth)
     return say("The tip goes {depth} into the soil", depth=depth)
@@ -330,7 +332,7 @@ def resisted(figures: PlantingFigures) -> str:
     """What the soil adds to the drive torque."""
     assert figures.forces is not None
     air, soil = figures.forces.compared()["drive_torque"]
-    before, after = (told(item.peak, "torque", digits=3) for item in (air, soil))
+    before, after = (format_quantity(item.peak, "torque", digits=3) for item in (air, soil))
     text = to_say("Drive torque: up to {before} in the air, {after} in the soil")
     return say(text, before=before, after=after)
 
@@ -446,7 +448,7 @@ def added(findings: Findings) -> str:
     """What the changes do to the mass of the links."""
     balanced = findings.balanced
     assert balanced is not None
-    mass = told(balanced.added_mass, "mass", digits=3)
+    mass = format_quantity(balanced.added_mass, "mass", digits=3)
     return say("{mass} of mass is added", mass=mass) if balanced.added_mass > 0 else ""
 
 

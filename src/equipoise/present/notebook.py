@@ -62,7 +62,7 @@ def _pose(machine: Machine) -> tuple[str, tuple[Block, ...]]:
             Analysis(move(machine if swinging is None else swinging.machine, ANGLES), None)
         ), ()
     except EquipoiseError as error:
-        return "", (Text(error.told(lines=True)), *map(Text, error.lines))
+        return "", (Text(error.message(lines=True)), *map(Text, error.lines))
 
 
 def _picture(analysis: Analysis) -> str:

@@ -175,7 +175,7 @@ class ReportDocument:
     units: Units = field(default_factory=dict)
     drawing: SvgPicture | None = None
 
-    def more(self, section: str) -> str:
+    def appendix_contents(self, section: str) -> str:
         """How much of a section stands in the appendix, in words; empty where nothing does."""
         own = [
             block
@@ -198,7 +198,7 @@ class ReportDocument:
         return [block for block in blocks if block is not self.drawing]
 
     @property
-    def together(self) -> tuple[Block | ReportSection, ...]:
+    def appendix_blocks(self) -> tuple[Block | ReportSection, ...]:
         """The appendix without its headings."""
         return tuple(block for section in self.appendix for block in section.blocks)
 

@@ -33,7 +33,7 @@ class PictureEntry(NamedTuple):
     name: str
     caption: str
     draw: Callable[[], Drawing]
-    seen: Callable[[], str] = str
+    headline: Callable[[], str] = str
     detail: bool = False
 
 
@@ -125,7 +125,7 @@ class LazyPicture:
 
     name : which also does for a file.  section : one of `SECTIONS`.
     caption : an English sentence on what it is, to be said when it is shown.
-    seen : says what is seen in it, in a line as of `headlines`; empty where nothing is told.
+    headline : says what is seen in it, in a line as of `headlines`; empty where nothing is told.
     detail : whether a report has it in its appendix.
     """
 
@@ -133,7 +133,7 @@ class LazyPicture:
     section: str
     caption: str
     draw: Callable[[], Drawing]
-    seen: Callable[[], str] = str
+    headline: Callable[[], str] = str
     detail: bool = False
 
 
@@ -509,7 +509,7 @@ def _draw(findings: Findings | ToolFindings, sections: Collection[str]) -> Drawi
         chart = picture.draw()
         text = say("; ").join((chart.what, *chart.words))
         svg, wide = svg_of(chart)
-        headline, caption = picture.seen(), say(picture.caption)
+        headline, caption = picture.headline(), say(picture.caption)
         block = SvgPicture(picture.name, text, svg, headline, caption, wide, picture.detail)
         pictures.setdefault(picture.section, []).append(block)
     return pictures

@@ -22,8 +22,8 @@ from equipoise.quantities import (
     angle,
     brief,
     change,
+    format_quantity,
     percent,
-    told,
 )
 from equipoise.results.analysis_blocks import CANCELLING, display_of_totals, shares
 from equipoise.results.blocks import worse_if
@@ -310,13 +310,13 @@ def planting_told(findings: Findings) -> Iterator[str]:
         yield say(
             of_several if several else of_one,
             tip=arm.tip,
-            depth=told(arm["soil.depth"], "length", digits=3),
+            depth=format_quantity(arm["soil.depth"], "length", digits=3),
             entry=angle(arm["entry.crank_angle"]),
             exit=angle(arm["exit.crank_angle"]),
         )
     if findings.planting["hill_spacing"]:
         yield from _hills(findings.planting)
-    fastest = told(max(arm["max_speed.value"] for arm in arms), "speed", digits=3)
+    fastest = format_quantity(max(arm["max_speed.value"] for arm in arms), "speed", digits=3)
     of_one = to_say("The tip moves at up to {speed} relative to the machine.")
     of_several = to_say("The tips move at up to {speed} relative to the machine.")
     yield say(of_several if several else of_one, speed=fastest)
@@ -325,7 +325,9 @@ def planting_told(findings: Findings) -> Iterator[str]:
 def _hills(planting: PlantingFigures) -> Iterator[str]:
     """How far apart they are, and how long their holes."""
     ends = [planting.get(f"hills.{end}_distance") for end in ("smallest", "largest")]
-    low, high = (told(end or planting["hill_spacing"], "length", digits=3) for end in ends)
+    low, high = (
+        format_quantity(end or planting["hill_spacing"], "length", digits=3) for end in ends
+    )
     spacing = low if low == high else say("{low} to {high}", low=low, high=high)
     holes = [hole for arm in planting.arms if (hole := arm.get("soil.hole_length")) is not None]
     if not holes:
@@ -336,4 +338,4 @@ def _hills(planting: PlantingFigures) -> Iterator[str]:
         "Hills are {spacing} apart; the holes at the surface are up to {hole} long."
     )
     template = of_several if len(planting.arms) > 1 else of_one
-    yield say(template, spacing=spacing, hole=told(max(holes), "length", digits=3))
+    yield say(template, spacing=spacing, hole=format_quantity(max(holes), "length", digits=3))

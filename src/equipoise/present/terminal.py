@@ -357,9 +357,9 @@ def _shortened(blocks: list[Block | ReportSection]) -> list[Block | ReportSectio
             block = blocks[k]
             rest: Block
             if isinstance(block, Facts) and len(block.items) > 1 and not block.is_whole:
-                rest = replace(block, items=block.items[:-1], more=block.more + 1)
+                rest = replace(block, items=block.items[:-1], omitted=block.omitted + 1)
             elif isinstance(block, Notes) and len(block.notes) > least:
-                rest = replace(block, notes=block.notes[:-1], more=block.more + 1)
+                rest = replace(block, notes=block.notes[:-1], omitted=block.omitted + 1)
             else:
                 continue
             return [*blocks[:k], rest, *blocks[k + 1 :]]
@@ -419,16 +419,16 @@ class _Printer:
         elif isinstance(block, Facts):
             if block.title:
                 self.space()
-                self.words(_with_omitted(block.title, block.more), "title")
+                self.words(_with_omitted(block.title, block.omitted), "title")
             for item in block.items:
                 self.words(f"  {item}")
         elif isinstance(block, Notes):
             self.space()
             for place, note in enumerate(block.notes, 1):
-                omitted = block.more if place == len(block.notes) else 0
+                omitted = block.omitted if place == len(block.notes) else 0
                 self.words(_with_omitted(f"note: {said(note)}", omitted))
-            if not block.notes and block.more:
-                self.words(say("notes left out here: {count}", count=block.more))
+            if not block.notes and block.omitted:
+                self.words(say("notes left out here: {count}", count=block.omitted))
         elif isinstance(block, FileText):
             self.space()
             if block.title:

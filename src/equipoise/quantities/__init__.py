@@ -22,13 +22,13 @@ from equipoise.quantities.numbers import column_heading as column_heading
 from equipoise.quantities.numbers import display as display
 from equipoise.quantities.numbers import display_rules as display_rules
 from equipoise.quantities.numbers import fixed as fixed
+from equipoise.quantities.numbers import format_quantity as format_quantity
 from equipoise.quantities.numbers import in_unit as in_unit
 from equipoise.quantities.numbers import number as number
 from equipoise.quantities.numbers import percent as percent
 from equipoise.quantities.numbers import showing as showing
 from equipoise.quantities.numbers import showing_by_default as showing_by_default
 from equipoise.quantities.numbers import span as span
-from equipoise.quantities.numbers import told as told
 from equipoise.quantities.numbers import typeset as typeset
 from equipoise.quantities.reading import DIGITS as DIGITS
 from equipoise.quantities.reading import NUMBER as NUMBER

@@ -301,7 +301,7 @@ def _fitting(first: Display, largest: float, most: float) -> Display:
     return result
 
 
-def told(
+def format_quantity(
     value: float,
     dimension: Dimension,
     unit: str | None = None,

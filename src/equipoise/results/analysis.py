@@ -182,7 +182,7 @@ class Analysis(Result):
         return several and self.motion.whole_cycle and self.solved is not None
 
     @cached_property
-    def together(self) -> Mapping[str, Array]:
+    def rows_total(self) -> Mapping[str, Array]:
         """Shaking force (complex), shaking, roll and yaw moment, and what drives (N,) of all rows.
 
         Each row's crank is ahead by its phase.  Moments are about the drive's pivot of the first,

@@ -9,7 +9,7 @@ import numpy as np
 
 from equipoise.i18n import Note, say
 from equipoise.mechanism.outputs.declared import body_named
-from equipoise.quantities import angle, told
+from equipoise.quantities import angle, format_quantity
 from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Value
 from equipoise.results.machine_blocks import largest, smallest
 from equipoise.signals import highest_at
@@ -49,6 +49,6 @@ def slack(forces: Forces) -> Iterator[Note]:
                 "to push with {push}; give it a tension of more than {tension}",
                 name=belt.name,
                 angle=angle(float(theta[at])),
-                push=told(float(-least[at]), "force"),
-                tension=told(float(np.max(np.abs(result.pull))) / 2, "force"),
+                push=format_quantity(float(-least[at]), "force"),
+                tension=format_quantity(float(np.max(np.abs(result.pull))) / 2, "force"),
             )

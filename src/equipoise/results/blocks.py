@@ -79,10 +79,10 @@ class RelativeChange:
 
 @dataclass(frozen=True)
 class Many:
-    """Several values in one cell.  more : how many further ones there are, which are not told."""
+    """Several values in one cell.  omitted : number of further values, which are not shown."""
 
     values: tuple[Value, ...]
-    more: int = 0
+    omitted: int = 0
 
 
 Cell = str | Value | Span | RelativeChange | Many | None
@@ -129,14 +129,14 @@ class Text:
 class Facts:
     """Sentences of a kind; `title` stands above them where there is one.
 
-    more : how many further ones there are, which are left out.
+    omitted : how many further ones there are, which are left out.
     is_whole : whether none may be left out, such as of what has to be changed.
     """
 
     kind: ClassVar[str] = "facts"
     title: str
     items: tuple[str, ...]
-    more: int = 0
+    omitted: int = 0
     is_whole: bool = False
 
 
@@ -164,12 +164,12 @@ class Table:
 class Notes:
     """What a reader has to know of the result.
 
-    more : how many further notes there are, which are left out.
+    omitted : how many further notes there are, which are left out.
     """
 
     kind: ClassVar[str] = "notes"
     notes: tuple[Note | str, ...]
-    more: int = 0
+    omitted: int = 0
 
 
 @dataclass(frozen=True)
@@ -190,7 +190,7 @@ class Picture:
 class SvgPicture:
     """A picture as SVG, as it has been drawn, without its heading.
 
-    caption : what is drawn.  seen : what is seen in it.  instead : for those who cannot see it.
+    caption : what is drawn.  headline : what is seen in it.  instead : for those who cannot see it.
     wide : whether it takes the width of a page, not half of it.
     detail : whether it stands in the appendix of a report.
     """
@@ -199,7 +199,7 @@ class SvgPicture:
     name: str
     caption: str
     svg: str
-    seen: str = ""
+    headline: str = ""
     instead: str = ""
     wide: bool = True
     detail: bool = False
@@ -221,14 +221,14 @@ Block = Text | Facts | Table | Notes | Picture | SvgPicture | FileText
 class ReportSection:
     """A heading and what stands below it; `name` is its anchor.
 
-    seen : what is seen in it, in one line.
+    headline : what is seen in it, in one line.
     """
 
     kind: ClassVar[str] = "section"
     name: str
     title: str
     blocks: tuple[Block | ReportSection, ...]
-    seen: str = ""
+    headline: str = ""
 
 
 # -- before and after ------------------------------------------------------------------------------

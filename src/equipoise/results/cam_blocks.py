@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from equipoise.i18n import say
 from equipoise.mechanism.assembly.cam_fits import fits_of, sharpest
-from equipoise.quantities import told
+from equipoise.quantities import format_quantity
 from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Value
 from equipoise.results.lost_contacts import lost_contacts
 from equipoise.results.machine_blocks import largest, smallest
@@ -56,7 +56,9 @@ def cams_told(machine: Machine, joints: Structure) -> Iterator[str]:
     """What each cam is, a sentence each."""
     for fit in fits_of(machine, joints):
         cam, (radius, where) = fit.cam, sharpest(fit)
-        low, high = (told(extreme, cam.law.dimension) for extreme in cam.law.curve.extremes)
+        low, high = (
+            format_quantity(extreme, cam.law.dimension) for extreme in cam.law.curve.extremes
+        )
         yield say(
             "cam: {driver} moves {driven} from {low} to {high}, {rides}, closed by {closed_by}; "
             "least radius of curvature {radius}, at cam angle {angle} deg",
@@ -66,6 +68,6 @@ def cams_told(machine: Machine, joints: Structure) -> Iterator[str]:
             high=high,
             rides=cam.rides,
             closed_by=cam.closed_by,
-            radius=told(radius, "length", "mm"),
+            radius=format_quantity(radius, "length", "mm"),
             angle=f"{degrees(where):.4g}",
         )

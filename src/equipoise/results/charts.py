@@ -117,7 +117,7 @@ class Bars:
     """Bars of some sizes (N,) at places (N,), SI units.
 
     width : in units of the places.  across : the axis on which they stand.
-    told : whether their sizes are written at their ends.
+    labelled : whether their sizes are written at their ends.
     roles : of each bar, where they differ.
     interval : least and largest sizes (N,) that each may have.
     """
@@ -128,7 +128,7 @@ class Bars:
     role: str = "main"
     label: str = ""
     across: Across = "x"
-    told: bool = False
+    labelled: bool = False
     roles: Sequence[str] = ()
     interval: tuple[Array, Array] | None = None
 
@@ -160,7 +160,7 @@ class Mark:
 
     wish : direction in which its text stands best, deg.  sign : whether a sign stands at the place.
     optional : whether the text may be left out where there is no room.
-    near : least distance of the text from the place, points; or from as far from it as `off`.
+    distance : least distance of the text from the place, points; or from as far from it as `off`.
     """
 
     x: float
@@ -170,15 +170,15 @@ class Mark:
     wish: float = 90.0
     sign: bool = True
     optional: bool = False
-    near: float = 7.0
+    distance: float = 7.0
     off: complex = 0j
     bold: bool = False
     label: str = ""
 
     @classmethod
-    def of(cls, place: complex, *told: Any, **more: Any) -> Mark:
+    def of(cls, place: complex, *fields: Any, **options: Any) -> Mark:
         """A mark at x + iy; what else is given is as of any mark."""
-        return cls(float(place.real), float(place.imag), *told, **more)
+        return cls(float(place.real), float(place.imag), *fields, **options)
 
 
 @dataclass(frozen=True)
@@ -225,7 +225,6 @@ class Outline:
 class Surface:
     """Values (J, K) over places x (K,) and y (J,), SI units; NaN where there are none.
 
-    told : what is written at lines of equal value, by a function of the value in SI units.
     lacking : what it is called where there are no values.
     """
 
@@ -270,7 +269,8 @@ class Panel:
     flag_words : what the rows of flags are.  left, right : lines of words beside the axes.
     right_axis : places on the y axis, and what is written at the right end; its label.
     ground, signs : shapes of a machine, at x + iy in SI units, behind curves and before them.
-    sign_size : over the usual one.  held : lower left and upper right of what is shown in any case.
+    sign_size : over the usual one.
+    always_shown : lower left and upper right of what is shown in any case.
     zero : whether a thin line at 0 is drawn.
     """
 
@@ -306,7 +306,7 @@ class Panel:
     ground: tuple[Shape, ...] = ()
     signs: tuple[Shape, ...] = ()
     sign_size: float = 1.0
-    held: tuple[complex, complex] | None = None
+    always_shown: tuple[complex, complex] | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from equipoise.i18n import say
 from equipoise.mechanism.outputs.declared import joint_named
-from equipoise.quantities import Dimension, percent, told
+from equipoise.quantities import Dimension, format_quantity, percent
 from equipoise.results.blocks import Block, Cell, Column, Facts, Table, Value
 from equipoise.results.machine_blocks import largest
 
@@ -42,9 +42,9 @@ def friction_blocks(analysis: Analysis) -> Iterator[Block]:
     lines = [
         say(
             "drive gives {drive}, loads give {loads}, joints lose {loss} in the mean",
-            drive=told(losses.drive, "power", "W"),
-            loads=told(losses.loads, "power", "W"),
-            loss=told(total, "power", "W"),
+            drive=format_quantity(losses.drive, "power", "W"),
+            loads=format_quantity(losses.loads, "power", "W"),
+            loss=format_quantity(total, "power", "W"),
         )
     ]
     if losses.efficiency is not None:

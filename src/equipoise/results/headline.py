@@ -13,7 +13,7 @@ from equipoise.i18n import say, to_say
 from equipoise.mechanism.assembly.joints import moving_links
 from equipoise.mechanism.dynamics.forces import massless
 from equipoise.mechanism.parts.objectives import GAUGES
-from equipoise.quantities import told
+from equipoise.quantities import format_quantity
 from equipoise.results.blocks import Block, Facts, Notes, Text, broken_if
 from equipoise.results.machine_blocks import driven
 from equipoise.results.rotors import rotor_sentence
@@ -100,7 +100,7 @@ def what_it_is(analysis: Analysis) -> str:
     values = {
         "links": moving_links(len(machine.links)),
         "driven": driven(machine, analysis.motion.speed),
-        "mass": "" if massless(machine) else told(machine.mass, "mass", "kg", digits=3),
+        "mass": "" if massless(machine) else format_quantity(machine.mass, "mass", "kg", digits=3),
     }
     without = to_say("{links}; {driven}")
     with_mass = to_say("{links} of {mass} together; {driven}")

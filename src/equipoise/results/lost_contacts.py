@@ -15,7 +15,7 @@ from equipoise.mechanism.kinematics.motion import move
 from equipoise.mechanism.outputs.declared import body_named
 from equipoise.mechanism.parts.cams import Cam
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.quantities import PER_RPM, angle, told
+from equipoise.quantities import PER_RPM, angle, format_quantity
 
 LEAST_EFFECT = 1e-6
 """Contact force over the preload of a spring: one that acts less on a follower does not hold it."""
@@ -38,7 +38,7 @@ def lost_told(let_go: LetGo, sprung: bool) -> Note:
         follower=let_go.cam.driven,
         cam=body_named(let_go.cam.driver),
         ranges=all_of(ranges),
-        force=told(-let_go.least[0], "force"),
+        force=format_quantity(-let_go.least[0], "force"),
         limit=_limit(let_go.speed, sprung),
     )
 
@@ -85,8 +85,8 @@ def preloads_to_hold(machine: Machine) -> Iterator[Note]:
                 yield Note(
                     "a preload of {preload} instead of {given} of the spring from {point} to {to} "
                     "just holds {follower} on {cam} at {speed:.4g} rpm",
-                    preload=told(preload, "force", "N"),
-                    given=told(spring.preload or 0.0, "force", "N"),
+                    preload=format_quantity(preload, "force", "N"),
+                    given=format_quantity(spring.preload or 0.0, "force", "N"),
                     point=spring.point,
                     to=spring.to,
                     follower=item.cam.driven,

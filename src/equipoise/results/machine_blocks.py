@@ -14,7 +14,15 @@ from equipoise.mechanism.outputs.declared import body_named, joint_named
 from equipoise.mechanism.parts.bodies import combined, inertia_of, material_of
 from equipoise.mechanism.parts.drives import Drive, FurtherDrive
 from equipoise.mechanism.parts.laws import Law
-from equipoise.quantities import PER_RPM, Dimension, Display, angle, display, number, told
+from equipoise.quantities import (
+    PER_RPM,
+    Dimension,
+    Display,
+    angle,
+    display,
+    format_quantity,
+    number,
+)
 from equipoise.results.blocks import Block, Cell, Column, Facts, Span, Table, Value
 from equipoise.signals import Array, Figures
 
@@ -179,7 +187,7 @@ def _stuff(body: Body) -> str:
 
 def stuff_named(density: float) -> str:
     """A material by its density, kg/m3, with that; the density alone where none is known."""
-    value = told(density, "density", "kg/m^3")
+    value = format_quantity(density, "density", "kg/m^3")
     name = material_of(density)
     return f"{say(name)}, {value}" if name else value
 
@@ -223,7 +231,7 @@ def _parts(machine: Machine) -> Iterator[str]:
                 "Load: gas on {point} of {link}, bore {bore}",
                 point=load.point,
                 link=load.link,
-                bore=told(load.bore, "length"),
+                bore=format_quantity(load.bore, "length"),
             )
         elif load.axes is None:
             yield say("Load: a force at {point} of {link}", point=load.point, link=load.link)
@@ -245,7 +253,7 @@ def _support(machine: Machine) -> Iterator[str]:
     support = machine.support
     assert support is not None
     if support.mass is not None:
-        yield say("Mass: {mass}", mass=told(support.mass, "mass", "kg"))
+        yield say("Mass: {mass}", mass=format_quantity(support.mass, "mass", "kg"))
     yield say("Mounts: {names}", names=say(", ").join(support.mounts))
     yield say("Gauges: {names}", names=say(", ").join(support.gauges))
 

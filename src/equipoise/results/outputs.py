@@ -85,7 +85,7 @@ class AnalysisOutput:
         return self.values if whole is self.analysis else self.declared.values(whole, self.item)
 
     @property
-    def drawn(self) -> Array:
+    def values_to_draw(self) -> Array:
         """The values (N,) without those that are far beyond the others, where it has no bound."""
         if not self.declared.unbounded or not np.any(np.isfinite(self.values)):
             return self.values
@@ -126,7 +126,7 @@ class AnalysisOutputs:
         # with friction that is solved already, and names are the same
         named = analysis.resolved if analysis.machine.rubs else analysis
         self._linkage = analysis.motion.linkage
-        self._found: dict[str, AnalysisOutput] = {}
+        self._outputs: dict[str, AnalysisOutput] = {}
         for _, group in groupby(had, key=lambda declaration: declaration.group):
             own = []
             for one in group:
@@ -137,22 +137,22 @@ class AnalysisOutputs:
             for item in dict.fromkeys(item for _, items in own for item in items):
                 for one, items in own:
                     if item in items:
-                        self._found[one.named(item)] = AnalysisOutput(one, item, analysis)
+                        self._outputs[one.named(item)] = AnalysisOutput(one, item, analysis)
 
     def __iter__(self) -> Iterator[AnalysisOutput]:
-        return iter(self._found.values())
+        return iter(self._outputs.values())
 
     def __len__(self) -> int:
-        return len(self._found)
+        return len(self._outputs)
 
     def __contains__(self, name: object) -> bool:
-        return name in self._found
+        return name in self._outputs
 
     def __getitem__(self, name: str) -> AnalysisOutput:
-        if name not in self._found:
+        if name not in self._outputs:
             refuse_unbounded(self._linkage, name)
-            raise UsageError(unknown(name, self._found, "output"))
-        return self._found[name]
+            raise UsageError(unknown(name, self._outputs, "output"))
+        return self._outputs[name]
 
     def chosen(self, names: Iterable[str]) -> list[AnalysisOutput]:
         """Those of some names, both components of what is a vector without a size.
@@ -171,7 +171,7 @@ class AnalysisOutputs:
     @property
     def names(self) -> list[str]:
         """Of all of them."""
-        return list(self._found)
+        return list(self._outputs)
 
     @property
     def arrays(self) -> list[AnalysisOutput]:

@@ -11,7 +11,7 @@ from cmath import phase
 from equipoise.i18n import say
 from equipoise.mechanism.dynamics.forces import massless
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.quantities import angle, told
+from equipoise.quantities import angle, format_quantity
 
 BALANCED = 6.3e-3
 """Distance of a centre of mass from its pivot times the speed, m/s, up to which a rotor counts as
@@ -47,7 +47,7 @@ def rotor_sentence(machine: Machine) -> str:
     each = [
         say(
             "{unbalance} of {link} at {angle} in its axes",
-            unbalance=told(abs(moment), "unbalance", "kg mm", digits=3),
+            unbalance=format_quantity(abs(moment), "unbalance", "kg mm", digits=3),
             link=name,
             angle=angle(phase(moment), 0),
         )

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from equipoise.i18n import Note, say, to_say
-from equipoise.quantities import told
+from equipoise.quantities import format_quantity
 from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Value
 from equipoise.results.scales import scale_of
 from equipoise.results.slender_links import slender_links
@@ -34,7 +34,7 @@ def section_blocks(analysis: Analysis) -> Iterator[Block]:
         life = None if section.life is None else Value(section.life)
         place = say(
             "{distance} from {point}, {side}",
-            distance=told(section.place, "length", "mm"),
+            distance=format_quantity(section.place, "length", "mm"),
             point=_first(analysis, name),
             side=say("left fibre") if section.fibre == "left" else say("right fibre"),
         )

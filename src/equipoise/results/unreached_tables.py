@@ -8,7 +8,7 @@ import numpy as np
 
 from equipoise.i18n import Note
 from equipoise.mechanism.kinematics.motion import Motion, PlacedBodies
-from equipoise.quantities import told
+from equipoise.quantities import format_quantity
 
 
 def unreached_tables(motion: Motion) -> Iterator[Note]:
@@ -30,7 +30,7 @@ def unreached_tables(motion: Motion) -> Iterator[Note]:
             continue
         ends = (low, high, first, last)
         names = ("low", "high", "first", "last")
-        shown = {name: told(end, argument.dimension) for name, end in zip(names, ends, strict=True)}
+        shown = {name: format_quantity(end, argument.dimension) for name, end in zip(names, ends, strict=True)}
         yield Note(
             "{where}: the {label} goes from {low} to {high}, and the rows from {first} to {last}, "
             "so that none is reached; check the rows, and from where they count",

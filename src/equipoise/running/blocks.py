@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from equipoise.i18n import said, say, to_say
-from equipoise.quantities import PER_RPM, number, told
+from equipoise.quantities import PER_RPM, format_quantity, number
 from equipoise.results.blocks import Block, Column, Facts, Table, Text, Value, broken_if
 from equipoise.running.run import BRAKE, DRIVE
 from equipoise.vibration.coupled import stall_note
@@ -169,15 +169,15 @@ def _flywheel(flywheel: Flywheel) -> str:
         wanted=wanted,
         present=present,
         speed=number(abs(flywheel.speed) / PER_RPM),
-        inertia=told(flywheel.inertia, "inertia", "kg m^2"),
-        estimate=told(flywheel.estimate, "inertia", "kg m^2"),
+        inertia=format_quantity(flywheel.inertia, "inertia", "kg m^2"),
+        estimate=format_quantity(flywheel.estimate, "inertia", "kg m^2"),
     )
     if not flywheel.inertia or not flywheel.existing:
         return sentence
     together = say(
         "That is in addition to the flywheel of {existing} in the file: {total} in all.",
-        existing=told(flywheel.existing, "inertia", "kg m^2"),
-        total=told(flywheel.total, "inertia", "kg m^2"),
+        existing=format_quantity(flywheel.existing, "inertia", "kg m^2"),
+        total=format_quantity(flywheel.total, "inertia", "kg m^2"),
     )
     return f"{sentence} {together}"
 
@@ -199,14 +199,14 @@ def _figures(run: Run) -> Iterator[str]:
     else:
         yield say(
             "drive: {energy} in a turn, {power} in the mean",
-            energy=told(cycle.energy_per_turn if gives else 0.0, "energy", "J"),
-            power=told(cycle.power if gives else 0.0, "power", "W"),
+            energy=format_quantity(cycle.energy_per_turn if gives else 0.0, "energy", "J"),
+            power=format_quantity(cycle.power if gives else 0.0, "power", "W"),
         )
     if run.electric is not None:
         yield say(
             "current of the motor: up to {most}, {last} at the end",
-            most=told(float(np.max(np.abs(run.electric.current))), "current", "A"),
-            last=told(float(run.electric.current[-1]), "current", "A"),
+            most=format_quantity(float(np.max(np.abs(run.electric.current))), "current", "A"),
+            last=format_quantity(float(run.electric.current[-1]), "current", "A"),
         )
 
 

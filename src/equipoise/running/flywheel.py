@@ -453,7 +453,7 @@ class MotorCycles:
             CrankEquation(replace(self.machine, drive=drive)), float(self.machine.drive.speed)
         )
         assert steady.speed is not None
-        track = self._near(shooting, self.first)
+        track = self._steady_track(shooting, self.first)
         if track is None:
             track = self._followed(shooting, float(np.sign(drive.speed) * steady.speed[0, 0]))
         if track is None:
@@ -462,7 +462,7 @@ class MotorCycles:
         self.slower = float(drive.speed / mean)
         return _fluctuation_of(track)
 
-    def _near(self, shooting: Shooting, state: Array | None) -> Array | None:
+    def _steady_track(self, shooting: Shooting, state: Array | None) -> Array | None:
         """Rows of the track of a steady cycle, met from a state near by; None where none is."""
         before, shooting.cycles = shooting.cycles, 0
         met = shooting.steady(state)
@@ -493,7 +493,7 @@ class MotorCycles:
             if run.events[-1].kind != "turns":
                 return None
             state = shooting.end_of(run)
-            track = self._near(shooting, state) if state[0] > 0 else None
+            track = self._steady_track(shooting, state) if state[0] > 0 else None
             if track is not None:
                 return track
             start, count = shooting.start_of(state), 4 * count

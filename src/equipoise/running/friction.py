@@ -196,15 +196,15 @@ class Friction(Source):
         speed: Array,
         sense: float,
         factors: Factors,
-        beside: tuple[Array, Array],
+        others: tuple[Array, Array],
     ) -> Array:
         """Torque (...) of friction on the crank, N m.
 
         columns : (C, ...).  speed : rad/s.  sense : 1 or -1, in which the crank turns, or would.
-        factors : of loads over time.  beside : reduced inertia, kg m2, and torque of all else, N m.
+        factors : of loads over time.  others : reduced inertia, kg m2, and torque of the rest, N m.
         """
         shape = np.shape(speed)
-        inertia, acting, speed = (np.ravel(item) for item in (*beside, speed))
+        inertia, acting, speed = (np.ravel(item) for item in (*others, speed))
         slope, rates, parts = self._split(columns, speed, sense, factors)
         free = (acting - slope * speed**2 / 2) / inertia
         of_acceleration = parts[:, :, 2]

@@ -31,12 +31,12 @@ Content = dict[str, Any]
 class Document:
     """The file of a linkage as plain values, and what lies in files beside it.
 
-    of : class of the whole.  beside : by sort and the name of its file.
+    of : class of the whole.  side_files : by sort and the name of its file.
     """
 
     of: type[Frozen]
     content: Content
-    beside: Mapping[tuple[str, str], Any] = field(default_factory=dict)
+    side_files: Mapping[tuple[str, str], Any] = field(default_factory=dict)
 
     @classmethod
     def of_machine(cls, machine: Machine) -> Document:
@@ -53,7 +53,7 @@ class Document:
         ------
         ModelError : there is none.
         """
-        return machine_of(self.content, HeldFiles(self.beside, texts or {}))
+        return machine_of(self.content, HeldFiles(self.side_files, texts or {}))
 
     def put(self, place: KeyPath, values: Content, name: str | None = None) -> Document:
         """With other values of the plain keys of an entry, or with a new entry.
@@ -93,7 +93,7 @@ class Document:
         return self._with(content)
 
     def _with(self, content: Content) -> Document:
-        return Document(self.of, content, self.beside)
+        return Document(self.of, content, self.side_files)
 
 
 def entry_of(kind: Any) -> KeyTable | None:

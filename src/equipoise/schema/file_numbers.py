@@ -336,24 +336,24 @@ NAMED: Mapping[type[KeyKind], str] = {
 class Layer:
     """A key on the way to a number.
 
-    held : kind of what stands there.  names : for placeholders: ``name``, or ``number`` and the
+    kind : kind of what stands there.  names : for placeholders: ``name``, or ``number`` and the
     texts of the entry of a list.
     """
 
     key: Key
-    held: KeyKind
+    kind: KeyKind
     names: Mapping[str, str]
 
     @property
     def word(self) -> str:
         """Of a number that stands here."""
-        named = NAMED.get(type(self.held)) if isinstance(self.key.kind, Named) else None
+        named = NAMED.get(type(self.kind)) if isinstance(self.key.kind, Named) else None
         return self.key.word or named or plain_word(self.key)
 
     @property
     def called(self) -> str:
         """Around a number in what stands here; nothing where that is no table."""
-        return self.held.type.called if isinstance(self.held, KeyTable) else ""
+        return self.kind.type.called if isinstance(self.kind, KeyTable) else ""
 
 
 def plain_word(key: Key) -> str:

@@ -270,7 +270,7 @@ def dumped(model: Machine | Tool) -> str:
                 if of_tool
                 else Note("the table has no file; save the machine instead"),
             )
-        if not part.kept and part.sort == "linkage" and part.file in bundled():
+        if not part.bundled_name and part.sort == "linkage" and part.file in bundled():
             raise ModelError(
                 part.where,
                 Note(
@@ -346,7 +346,7 @@ class ModelPart:
     number: int = 0
 
     @cached_property
-    def kept(self) -> str:
+    def bundled_name(self) -> str:
         """Name of the bundled example that it is, or nothing."""
         if self.sort != "linkage" or self.file not in bundled():
             return ""
@@ -354,8 +354,8 @@ class ModelPart:
 
     def name_beside(self, path: Path) -> str:
         """Name of its file for a model that is saved at a path."""
-        if self.kept and not os.path.lexists(path.with_name(self.kept)):
-            return self.kept
+        if self.bundled_name and not os.path.lexists(path.with_name(self.bundled_name)):
+            return self.bundled_name
         suffix = "toml" if self.sort == "linkage" else "csv"
         number = f"-{self.number}" if self.number else ""
         return f"{path.stem}.{self.sort}{number}.{suffix}"
@@ -377,4 +377,4 @@ def parts_of(model: Machine | Tool) -> list[ModelPart]:
 def _written(parts: list[ModelPart], path: Path) -> list[tuple[ModelPart, Path]]:
     """The parts that are written beside a model, each with its path."""
     named = ((part, part.name_beside(path)) for part in parts)
-    return [(part, path.with_name(name)) for part, name in named if name != part.kept]
+    return [(part, path.with_name(name)) for part, name in named if name != part.bundled_name]

@@ -45,7 +45,7 @@ WRONG = object()
 class Context:
     """What reading needs besides the content.
 
-    beside : reads what lies in a file of its own, by its sort and the file's name.
+    read_side_file : reads what lies in a file of its own, by its sort and the file's name.
     makers : make the objects of some classes otherwise than by `Frozen.from_table`.
     names : what names in expressions stand for.
     problems : what has been found wrong, with its place.
@@ -53,7 +53,7 @@ class Context:
     written : texts of quantities that have been read, each with its place.
     """
 
-    beside: Callable[[str, str], Any] | None = None
+    read_side_file: Callable[[str, str], Any] | None = None
     makers: Mapping[type[keys.Frozen], Callable[[dict[str, Any]], Any]] = field(
         default_factory=dict
     )
@@ -228,8 +228,8 @@ def constructed(value: Any, context: Context) -> Any:
         return tuple(constructed(item, context) for item in value)
     if isinstance(value, Values):
         make = partial(context.makers.get(value.of, value.of.from_table), _given(value, context))
-    elif isinstance(value, NamedFile) and context.beside is not None:
-        make = partial(context.beside, value.sort, value.file)
+    elif isinstance(value, NamedFile) and context.read_side_file is not None:
+        make = partial(context.read_side_file, value.sort, value.file)
     else:
         return value
     try:

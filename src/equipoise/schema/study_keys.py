@@ -101,7 +101,7 @@ class SamplingTable(Frozen):
 class OutputTable(Frozen):
     """A figure that is computed of every design."""
 
-    beside: ClassVar[Keys] = RequirementKeys("outputs", VALUE)
+    extra_keys: ClassVar[Keys] = RequirementKeys("outputs", VALUE)
 
     value: str = key(
         TextKind(), "place in the JSON object of the command", example="shaking_force.y.rms"
@@ -112,7 +112,7 @@ class OutputTable(Frozen):
 
     @classmethod
     def from_table(cls, given: dict[str, Any]) -> OutputTable:
-        return cls(**split_asks(given, cls.beside))
+        return cls(**split_asks(given, cls.extra_keys))
 
     @classmethod
     def to_table(cls, value: OutputTable) -> dict[str, Any]:
@@ -133,7 +133,7 @@ class AccuracyTable(Frozen):
 class StudyTable(Frozen):
     """Many designs of one model."""
 
-    beside: ClassVar[Keys] = {"schema": VERSION}
+    extra_keys: ClassVar[Keys] = {"schema": VERSION}
     file_order = ("schema", "title", "model", "vary", "correlations")
 
     model: str = key(

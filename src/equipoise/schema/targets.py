@@ -56,7 +56,7 @@ class SearchTable(Frozen):
 class GoalTable(Frozen):
     """What one figure has to be."""
 
-    beside: ClassVar[Keys] = RequirementKeys("goals", VALUE)
+    extra_keys: ClassVar[Keys] = RequirementKeys("goals", VALUE)
 
     figure: str = key(TextKind(), "that `equipoise plant` tells", example="curve.height")
     tolerance: Quantity | None = key(VALUE, "of the target", default=None)
@@ -64,14 +64,14 @@ class GoalTable(Frozen):
 
     @classmethod
     def from_table(cls, given: dict[str, Any]) -> GoalTable:
-        return cls(**split_asks(given, cls.beside))
+        return cls(**split_asks(given, cls.extra_keys))
 
 
 @declared
 class TargetTable(Frozen):
     """A target file."""
 
-    beside: ClassVar[Keys] = {"schema": VERSION}
+    extra_keys: ClassVar[Keys] = {"schema": VERSION}
 
     goals: tuple[GoalTable, ...] = key(
         Tables(KeyTable(GoalTable)), "what figures have to be", example=[]

@@ -77,7 +77,7 @@ class Template:
     ) -> None:
         self.text, self.source = text, source
         self._known: Known = dict(known or {})
-        self._found: dict[str, NumberLocation] = {}
+        self._locations: dict[str, NumberLocation] = {}
         self._lifts: dict[str, Lift | None] = {}
         with in_file(source):
             self._content = model_content(text)
@@ -263,9 +263,9 @@ class Template:
     # -- inside ------------------------------------------------------------------------------------
 
     def _find(self, path: str) -> NumberLocation:
-        if path not in self._found:
-            self._found[path] = find(self._content, self.kind, path)
-        return self._found[path]
+        if path not in self._locations:
+            self._locations[path] = find(self._content, self.kind, path)
+        return self._locations[path]
 
     def _lift(self, path: str) -> Lift | None:
         """The lift of that name, where no number of the file has such a path."""

@@ -41,7 +41,7 @@ class Cluster(Pool):
     def __init__(self, task: ChunkTask, address: str) -> None:
         self.task, self.address = task, address
         self.rpc = needed("distributed.core", "a cluster").rpc
-        self.seen = monotonic()
+        self.last_contact = monotonic()
         with ExitStack() as exitstack:
             exitstack.enter_context(_quiet())
             while not self._counted():
@@ -52,7 +52,7 @@ class Cluster(Pool):
                 client = distributed.Client(address, timeout=ANSWER, set_as_default=False)
             exitstack.callback(client.close)
             self.executor = client.get_executor(pure=False)
-            self.held = exitstack.pop_all()
+            self.open_contexts = exitstack.pop_all()
 
     def submit(self, chunk: Any) -> Future[Any]:
         call = Call(_compute, (versions(), self.task.function, self.task.study, chunk))
@@ -80,8 +80,8 @@ class Cluster(Pool):
         threads: int = result["total_threads"]
         self.room = max(1, 2 * threads)
         if threads:
-            self.seen = monotonic()
-        elif monotonic() - self.seen > JOIN:
+            self.last_contact = monotonic()
+        elif monotonic() - self.last_contact > JOIN:
             raise StoppedError(
                 Note(
                     "the Dask scheduler at {address} has no workers; start some by: dask "
@@ -100,7 +100,7 @@ class Cluster(Pool):
     def close(self) -> None:
         """Leave what is not finished, and the cluster to others."""
         self.executor.shutdown(wait=False)
-        self.held.close()
+        self.open_contexts.close()
 
     def explained(self, error: Exception) -> StoppedError | None:
         if isinstance(error, ModuleNotFoundError):

@@ -106,7 +106,7 @@ def pooled(
         Outcome.joined,
         workers,
         shared=shared,
-        together=batch,
+        batch_size=batch,
         elsewhere=elsewhere(cluster, workers),
     )
 
@@ -196,7 +196,7 @@ class OneByOne:
         """Fill figures (P, m) and reasons (P,) of a few designs, one command after the other."""
         models: dict[int, Machine | Tool] = {}
         for k, row in enumerate(values.tolist()):
-            model = self.made(row)
+            model = self.model_or_reason(row)
             if isinstance(model, int):
                 reason[k] = model
             else:
@@ -210,7 +210,7 @@ class OneByOne:
             for k, why in failed.items():
                 reason[k] = reason[k] or why
 
-    def made(self, row: Sequence[float]) -> Machine | Tool | int:
+    def model_or_reason(self, row: Sequence[float]) -> Machine | Tool | int:
         """One design, or why it is none."""
         try:
             model = self.study.model.machine(dict(zip(self.study.paths, row, strict=True)))

@@ -82,7 +82,7 @@ def feasible(outputs: Sequence[Output], figures: Array) -> Array:
     """Whether each design keeps each limit, (P, m); `figures` are (P, m)."""
     return np.stack(
         [
-            output.requirement.kept(column)
+            output.requirement.satisfied(column)
             for output, column in zip(outputs, figures.T, strict=True)
         ],
         axis=1,

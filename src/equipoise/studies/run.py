@@ -291,10 +291,10 @@ def _write_empty(folder: Folder, study: Study, chunk: int, engine: str) -> None:
         *array, file = name.split("/")
         below = folder
         for part in array:
-            below = below.made(part)
+            below = below.subfolder(part)
         below.put(file, data)
         if array:
-            below.made("c")
+            below.subfolder("c")
 
 
 def _described(study: Study, chunk: int, engine: str) -> dict[str, bytes]:

@@ -206,19 +206,19 @@ class _StudyProblem(DesignProblem):
         seed: int,
         progress: OnGeneration,
     ) -> None:
-        self.seen, self.progress, self.volumes = archive, progress, Hypervolumes()
+        self.archive, self.progress, self.volumes = archive, progress, Hypervolumes()
         self.population, self.generations, self.seed = population, generations, seed
         self.objectives, self.limits = len(archive.makes), 1 + len(archive.limits)
 
     @property
     def spreads(self) -> list[Range | Choices]:
-        spreads = (item.spread for item in self.seen.study.vary)
+        spreads = (item.spread for item in self.archive.study.vary)
         return [spread for spread in spreads if isinstance(spread, Range | Choices)]
 
     @property
     def first(self) -> Array:
         """Evenly spread, with the model's own among them."""
-        places, own = super().first, self.seen.study.own.tolist()
+        places, own = super().first, self.archive.study.own.tolist()
         at = [spread.place(number) for spread, number in zip(self.spreads, own, strict=True)]
         if all(place is not None for place in at):
             places[0] = at
@@ -229,16 +229,16 @@ class _StudyProblem(DesignProblem):
         return self.volumes.still
 
     def canonical(self, places: Array) -> Array:
-        return canonical(self.seen.study, places)
+        return canonical(self.archive.study, places)
 
     def values_of(self, places: Array) -> Array:
-        return values_at(self.seen.study, self.canonical(places))
+        return values_at(self.archive.study, self.canonical(places))
 
     def known(self, values: Array) -> Array:
-        return self.seen.known(values)
+        return self.archive.known(values)
 
     def evaluate(self, places: Array) -> tuple[Array, Array]:
-        archive, volumes = self.seen, self.volumes
+        archive, volumes = self.archive, self.volumes
         rows = archive.rows(self.values_of(places))
         volumes.add(archive.costs[archive.front])
         done = len(volumes.fronts)

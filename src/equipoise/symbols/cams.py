@@ -27,14 +27,16 @@ def cam_sign(cam: Cam, around: Surroundings) -> Iterator[BodyMark]:
     shape = fit.shape(np.linspace(0.0, 2 * np.pi, CORNERS, endpoint=False))
     flanks = {"cam": shape.surface}
     if cam.closed_by == "groove":
-        flanks = {"groove": shape.beside(2 * shape.radius), **flanks}
+        flanks = {"groove": shape.offset_curve(2 * shape.radius), **flanks}
     for role, flank in flanks.items():
         yield BodyMark(
             cam.driver, fit.cam_pin, line(role, *flank, closed=True), (cam.table, cam.name)
         )
     if cam.closed_by == "ribs":
         inside = -min(RIB * cam.base_radius, sharpest(fit)[0] / 2)
-        yield BodyMark(cam.driver, fit.cam_pin, line("rib", *shape.beside(inside), closed=True))
+        yield BodyMark(
+            cam.driver, fit.cam_pin, line("rib", *shape.offset_curve(inside), closed=True)
+        )
     if cam.rides == "roller":
         yield BodyMark(cam.driven, cam.point, circle("rider", 0j, cam.roller_radius))
     elif cam.rides == "flat":

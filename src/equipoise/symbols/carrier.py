@@ -39,12 +39,12 @@ class SupportSwing:
     """How a support moves in the plane of the drawing at N crank angles, larger than true.
 
     place : displacement of its reference, (N,) complex, m.  angle : (N,) rad.
-    told : what is to be said of it.
+    captions : what is to be said of it.
     """
 
     place: Array
     angle: Array
-    told: tuple[str, ...]
+    captions: tuple[str, ...]
 
 
 @dataclass(frozen=True)

@@ -38,7 +38,7 @@ class SeatSign:
 
     mass : of a rigid body, absorber : of one on a spring, kg.  hands : that hold on there.
     harness : whether a belt, grounded, clamped : whether a spring or damper holds it.
-    shaken : by a ``force``, by what ``turns``, or by nothing.
+    excitation : by a ``force``, by what ``turns``, or by nothing.
     part : ``motor`` and whether it has a cylinder (``engine``), ``blade``, or nothing of these.
     """
 
@@ -50,7 +50,7 @@ class SeatSign:
     harness: bool = False
     grounded: bool = False
     clamped: bool = False
-    shaken: str = ""
+    excitation: str = ""
     part: str = ""
 
     @property
@@ -207,10 +207,10 @@ def _hands(seat: SeatSign) -> Iterator[Shape]:
             x = off + FINGER * (number - 1.5)
             top, bottom = 3.2 * ROUND + 8j, -3.2 * ROUND - 8j
             yield sign("stand", 0, x + np.concatenate([top, bottom]), closed=True)
-    if seat.shaken == "force":
+    if seat.excitation == "force":
         yield sign("force", 0, [0, 40j])
         yield sign("force-head", 0, [52j, 39j + 5, 39j - 5], closed=True)
-    elif seat.shaken:
+    elif seat.excitation:
         arc = 15 * np.exp(1j * np.radians(np.linspace(-50, 170, 24)))
         yield sign("force-arc", 0, arc)
         head = arc[-1] + 9 * arc[-1] / abs(arc[-1]) * np.array([1j, 0.4, -0.4])

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from equipoise.i18n import Note, coordinates, say, to_say
-from equipoise.quantities import PER_RPM, Dimension, display, number, told
+from equipoise.quantities import PER_RPM, Dimension, display, format_quantity, number
 from equipoise.results.analysis_blocks import loud
 from equipoise.results.blocks import (
     Block,
@@ -224,7 +224,9 @@ def disagreement(others: Mapping[str, Response | None], used: str | None = None)
             "the models differ: at {gauge}, {model} gives {reading} and {reference}, the most "
             "complete model, {right}; {used}, which is used here, agrees with {reference}"
         )
-    values = (told(readings[key], dimension, unit) for key in (worst, (reference, gauge)))
+    values = (
+        format_quantity(readings[key], dimension, unit) for key in (worst, (reference, gauge))
+    )
     reading, right = values
     yield Note(
         template,

@@ -119,7 +119,7 @@ def check_stall(system: Coupled, setting: tuple[float, float], error: ResponseEr
 
 def _at_constant_speed(machine: Machine, setting: tuple[float, float], s: Array) -> Array:
     """States of a machine with a motor, from those at constant speed."""
-    states = solve_exact(machine, setting[0], False).found.orbit.at(s)
+    states = solve_exact(machine, setting[0], False).steady.orbit.at(s)
     return with_motor(states, setting, s)
 
 
@@ -129,7 +129,7 @@ class ExactSolution:
 
     system: Coupled
     linear: Linear | None
-    found: Steady
+    steady: Steady
 
     @property
     def machine(self) -> Machine:
@@ -143,7 +143,7 @@ class ExactSolution:
     def multipliers(self) -> Array:
         """Of displacements, velocities and the crank's speed; the largest first."""
         count = 2 * len(self.system.free) + (self.system.torque is not None)
-        return self.found.multipliers(count)
+        return self.steady.multipliers(count)
 
     @property
     def lean(self) -> float:
@@ -166,7 +166,7 @@ class ExactSolution:
         if not len(jumps):
             return None
         if self.system.torque is not None:
-            orbit, time = self.found.orbit, self.system.count - 2
+            orbit, time = self.steady.orbit, self.system.count - 2
             jumps = orbit.at(jumps)[time] * (2 * pi * self.turns / orbit.starts[time, -1])
         # every order counts: curves are drawn by them, and their derivatives taken
         return JumpSampling.of(self._steps, self.turns, jumps, steps=GAUSS_POINTS // 2)
@@ -189,7 +189,7 @@ class ExactSolution:
         if self.system.torque is None:
             return s
         time = self.system.count - 2
-        orbit = self.found.orbit
+        orbit = self.steady.orbit
         wanted = s * (orbit.starts[time, -1] / (2 * pi * self.turns))
         s = np.interp(wanted, orbit.starts[time], orbit.points)
         for _ in range(8):
@@ -205,7 +205,7 @@ class ExactSolution:
     @cached_property
     def states(self) -> Array:
         """(n, N) at those instants."""
-        return np.asarray(self.found.orbit.at(self.turned))
+        return np.asarray(self.steady.orbit.at(self.turned))
 
     @cached_property
     def sums(self) -> ReducedInertia:
@@ -236,7 +236,7 @@ class ExactSolution:
         """Mean speed of the crank, rad/s."""
         if self.system.torque is None:
             return self.system.speed
-        period = self.found.orbit.starts[self.system.count - 2, -1]
+        period = self.steady.orbit.starts[self.system.count - 2, -1]
         return float(self.system.sense * 2 * pi * self.turns / period)
 
     def signal(self, samples: Array) -> Periodic:
@@ -260,7 +260,7 @@ class ExactSolution:
             () if self.linear is None else self.linear.modes,
             self._drive(),
             {} if brief else self._joints(),
-            self.found.residual,
+            self.steady.residual,
             self.multipliers,
             self.energy(),
             tuple(self._notes()),
@@ -337,7 +337,7 @@ class ExactSolution:
 
     def energy(self) -> Energy:
         """Work over a period, by the quadrature of the solution itself."""
-        system, orbit = self.system, self.found.orbit
+        system, orbit = self.system, self.steady.orbit
         states = orbit.states.reshape(system.count, -1)
         table = system.sums(system.sense * orbit.nodes.ravel())
         place, rate = system.place_and_rate(states)

@@ -254,7 +254,7 @@ def _along(
             guess = None
             answers.append(None)
         else:
-            guess = exact_solution.found.orbit.at
+            guess = exact_solution.steady.orbit.at
             answers.append(exact_solution.response(brief))
         progress(len(answers))
     return answers

@@ -273,6 +273,6 @@ def _shift(machine: Machine, speed: float) -> float:
     if motor.mean_speed == "free":
         return 0.0
     try:
-        return float(solve_exact(machine, speed, True).found.orbit.starts[-1, 0])
+        return float(solve_exact(machine, speed, True).steady.orbit.starts[-1, 0])
     except ResponseError:  # then as if the speed were constant
         return motor_setting(machine, speed)[1]

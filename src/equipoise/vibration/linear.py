@@ -33,7 +33,7 @@ from equipoise.mechanism.kinematics.motion import Motion, move
 from equipoise.mechanism.parts.links import moments_across
 from equipoise.mechanism.parts.machine import Drive, Machine
 from equipoise.mechanism.parts.support import AXES, FREEDOMS, Gauge, Row
-from equipoise.quantities import PER_RPM, Dimension, brief, number, told
+from equipoise.quantities import PER_RPM, Dimension, brief, format_quantity, number
 from equipoise.results.declaring import Declarations, ResultOutput
 from equipoise.signals import Array, Periodic, highest_at
 from equipoise.vibration.body import (
@@ -384,7 +384,11 @@ class Linear:
         reach = max(float(np.linalg.norm(at - self.body.reference)) for at in self._places)
         scale = loads * np.array([1.0, 1.0, 1.0, reach, reach, reach])
         parts = [
-            Note(to_say("{size} in {coordinate}"), coordinate=Note(name), size=told(over, kind))
+            Note(
+                to_say("{size} in {coordinate}"),
+                coordinate=Note(name),
+                size=format_quantity(over, kind),
+            )
             for name, over, kind, least in zip(
                 FREEDOMS, self.rest.unbalance, OF_FREEDOMS, LEFT_OVER * scale, strict=True
             )

@@ -34,7 +34,7 @@ from equipoise.mechanism.parts.balance import Balance, Limit, Objective
 from equipoise.mechanism.parts.bodies import Body
 from equipoise.mechanism.parts.couplings import coupling_kinds
 from equipoise.mechanism.parts.machine import Link, Machine
-from equipoise.quantities import clean, clean_place, display, told
+from equipoise.quantities import clean, clean_place, display, format_quantity
 from equipoise.results.outputs import objective_named, shown_in
 from equipoise.web.design import Counterweight, Design, joined, pin_of, place_of_pin
 from equipoise.web.edits import Computed, solved
@@ -284,7 +284,7 @@ def balanced_told(base: Computed, after: Computed, balanced: Balanced) -> Values
 
 
 def _taken_off(link: str, weight: Counterweight) -> str:
-    mass = told(weight.mass, "mass")
+    mass = format_quantity(weight.mass, "mass")
     return say("{link}: take off the counterweight of {mass}", link=link, mass=mass)
 
 
@@ -334,7 +334,7 @@ def _figure(balanced: Balanced, name: str, before: float, after: float) -> Value
 class BalanceSession(Protocol):
     """What answers need of a session."""
 
-    found: Computed | Incomplete | None
+    current_state: Computed | Incomplete | None
     before: Computed | None
     lock: Lock
 
@@ -398,7 +398,7 @@ def adopted(
         return
     after = solved(balancing.design)
     with session.lock:
-        if session.found is not base:
+        if session.current_state is not base:
             raise UsageError(
                 Note("the machine was changed while it was balanced; balance it again")
             )

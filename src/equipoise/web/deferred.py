@@ -86,7 +86,7 @@ def response_of(shown: Computed) -> tuple[Values, bytes] | None:
         return {
             "charts": [],
             "arrays": {},
-            "notes": [error.told()],
+            "notes": [error.message()],
             "swing": None,
             "modes": [],
         }, b""
@@ -152,7 +152,7 @@ def _swing(scene: Scene, block: FloatBlock) -> list[str] | None:
         return None
     block.add("support.place", scene.swing.place)
     block.add("support.angle", scene.swing.angle)
-    return list(scene.swing.told)
+    return list(scene.swing.captions)
 
 
 def _modes(scene: Scene, response: Response) -> Iterator[Values]:
@@ -168,7 +168,7 @@ def _modes(scene: Scene, response: Response) -> Iterator[Values]:
         item = ModeSwing.of(scene, number, mode, support.coordinates)
         parts = (complex(item.amplitudes[FREEDOMS.index(name)]) for name in PLANAR)
         shape = [number for part in parts for number in (part.real, part.imag)]
-        yield {"told": list(item.told), "seen": item.seen, "shape": shape}
+        yield {"told": list(item.captions), "seen": item.visible, "shape": shape}
 
 
 def _spoken(name: str) -> str:
@@ -239,7 +239,7 @@ def _told_against(
     try:
         figures = of(computed)
     except EquipoiseError as error:
-        return {"type": kind, "figures": [], "compared": False, "notes": [error.told()]}
+        return {"type": kind, "figures": [], "compared": False, "notes": [error.message()]}
     try:
         others = {} if against is None else of(against)
     except EquipoiseError:

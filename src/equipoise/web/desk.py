@@ -66,7 +66,7 @@ class PageBackend:
             return "" if self.store is None else self.store.name
         if self.tool is not None:
             return self.tool.name
-        return "" if self.session.found is None else self.session.found.design.name
+        return "" if self.session.current_state is None else self.session.current_state.design.name
 
     def receive(self, message: Message) -> Iterator[Reply]:
         """Answer a message; what takes long comes last, and may be left unasked."""

@@ -59,7 +59,7 @@ class Disk:
         """Whether saving would lose comments, which a model does not hold."""
         return COMMENT.search(self.text) is not None
 
-    def kept(self, model: Machine | Tool | None) -> dict[str, Any]:
+    def status(self, model: Machine | Tool | None) -> dict[str, Any]:
         """Name of the file, and whether it tells just this model; none is unfinished."""
         return {"name": self.name, "saved": self.model == model, "comments": self.has_comments}
 

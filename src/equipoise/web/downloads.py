@@ -83,7 +83,7 @@ def _over_crank(computed: Computed, output: str) -> Chart:
     outputs = computed.analysis.outputs
     item = outputs[f"{ROWS}{output}" if f"{ROWS}{output}" in outputs else output]
     label = item.label()
-    what = [(label, item.dimension, {ALL: item.drawn})]
+    what = [(label, item.dimension, {ALL: item.values_to_draw})]
     return replace(over_crank(computed.analysis, "output", capital(label), what), keys=())
 
 

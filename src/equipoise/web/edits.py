@@ -48,7 +48,7 @@ class Computed:
     stand : crank angle at which it was drawn, rad; None where it has not just been made.
     swings : that its crank cannot turn, and how far it is let swing; None where it can.
     along : which points went along with what was changed, so that joints agree, if any did.
-    held : why a point did not come to where it was dragged, if a drive holds it.
+    limit_note : why a point did not come to where it was dragged, if a drive holds it.
     """
 
     design: Design
@@ -56,7 +56,7 @@ class Computed:
     stand: float | None = None
     swings: Note | None = None
     along: Note | None = None
-    held: Note | None = None
+    limit_note: Note | None = None
 
     @property
     def motion(self) -> Motion:
@@ -312,5 +312,5 @@ def _with_limit_note(computed: Computed, goals: Goals) -> Computed:
         for name in {*(drive.between or ()), points.get(drive.slider)} & {
             *_missed(computed, goals)
         }:
-            return replace(computed, held=Note(STROKE_LIMITED, name=name))
+            return replace(computed, limit_note=Note(STROKE_LIMITED, name=name))
     return computed

@@ -114,7 +114,7 @@ def _of_all_rows(analysis: Analysis) -> Signals:
     """Signals of all rows together, where there are several and they turn."""
     if analysis.motion.speed == 0:
         return {}
-    return {f"rows.{name}": values for name, values in analysis.together.items()}
+    return {f"rows.{name}": values for name, values in analysis.rows_total.items()}
 
 
 def _rms(motion: Motion, values: Array) -> float:

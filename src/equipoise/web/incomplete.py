@@ -52,7 +52,7 @@ class Incomplete:
         return UsageError(Note("the machine is not finished: {lacks}", lacks=self.lacks))
 
 
-def drawn(sketch: Sketch) -> Computed | Incomplete:
+def computed_or_incomplete(sketch: Sketch) -> Computed | Incomplete:
     """The machine that a sketch is, computed, or what it lacks."""
     text = lacking(sketch)
     if not text:
@@ -60,7 +60,7 @@ def drawn(sketch: Sketch) -> Computed | Incomplete:
             result = sketch.finished()
             return replace(result, stand=_stand(result, sketch))
         except EquipoiseError as error:
-            text = error.told()
+            text = error.message()
     return Incomplete(sketch, text)
 
 
@@ -77,7 +77,7 @@ def _stand(computed: Computed, sketch: Sketch) -> float:
 
 def tried(sketch: Sketch) -> Incomplete:
     """What is dragged: it stands where it is drawn until it is let go."""
-    result = drawn(sketch)
+    result = computed_or_incomplete(sketch)
     return (
         result
         if isinstance(result, Incomplete)
@@ -87,7 +87,7 @@ def tried(sketch: Sketch) -> Incomplete:
 
 def computed(design: Design | Sketch) -> Computed | Incomplete:
     """A step of what was done, computed."""
-    return solved(design) if isinstance(design, Design) else drawn(design)
+    return solved(design) if isinstance(design, Design) else computed_or_incomplete(design)
 
 
 def sketch_of(computed: Computed | Incomplete, at: int) -> Sketch:
@@ -127,7 +127,7 @@ def changed(
     if isinstance(base, Computed):
         return edited(base, changes, previous if isinstance(previous, Computed) else None)
     sketch = redrawn(base.design, changes)
-    return drawn(sketch) if commit else tried(sketch)
+    return computed_or_incomplete(sketch) if commit else tried(sketch)
 
 
 def with_entry(base: Computed | Incomplete, entry: Entry) -> Computed | Incomplete:
@@ -137,9 +137,9 @@ def with_entry(base: Computed | Incomplete, entry: Entry) -> Computed | Incomple
         try:
             return settled(solved(design, None, base.swings is not None))
         except MobilityError:
-            return drawn(sketch_of(base, 0).taking(design.machine))
+            return computed_or_incomplete(sketch_of(base, 0).taking(design.machine))
     own = entered(Design(base.design.name, plain_of(base)), entry).own
-    return drawn(base.design.taking(own))
+    return computed_or_incomplete(base.design.taking(own))
 
 
 def plain_of(computed: Computed | Incomplete) -> Machine:

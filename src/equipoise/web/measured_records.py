@@ -21,7 +21,7 @@ from equipoise.dataclass import dataclass
 from equipoise.errors import ModelError, UsageError, at_place
 from equipoise.i18n import Note, say
 from equipoise.mechanism.outputs.declared import DECLARED
-from equipoise.quantities import FACTORS, KINDS, Dimension, plain_unit, told, typeset
+from equipoise.quantities import FACTORS, KINDS, Dimension, format_quantity, plain_unit, typeset
 from equipoise.quantities.units import OF_UNIT
 from equipoise.results.analysis import Analysis
 from equipoise.schema.files import printable
@@ -144,11 +144,11 @@ class Compared:
     """A record beside a machine.
 
     signals : (N,) by name of an output, SI units, at the machine's crank angles; NaN in gaps.
-    told : how large they are beside the model's own.  left_out : columns that are no output.
+    sentences : how large they are beside the model's own.  left_out : columns that are no output.
     """
 
     signals: Mapping[str, Array]
-    told: tuple[str, ...]
+    sentences: tuple[str, ...]
     left_out: tuple[str, ...]
 
 
@@ -279,7 +279,7 @@ def _sizes(signals: Mapping[str, Array], analysis: Analysis) -> Iterator[str]:
             float(np.sqrt(np.mean(np.square(x[there])))) for x in (values, np.real(output.values))
         )
         measured, model = (
-            told(x, output.dimension) if output.dimension else f"{x:.4g}" for x in rms
+            format_quantity(x, output.dimension) if output.dimension else f"{x:.4g}" for x in rms
         )
         yield say(
             "{output}: RMS measured {measured}, model {model}",

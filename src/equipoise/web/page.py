@@ -50,10 +50,10 @@ class Page:
         self.come = asyncio.Event()
         self.closed = False
         self.last: Message | None = None
-        self.answered = self.told = 0
+        self.answered = self.completed_seq = 0
         self.whole = 0.0
         self.questions: asyncio.Queue[Message] = asyncio.Queue(MOST_QUESTIONS)
-        self.more: asyncio.Task[None] | None = None
+        self.deferred_task: asyncio.Task[None] | None = None
 
     async def run(self) -> None:
         """Answer until the page is closed."""
@@ -65,7 +65,7 @@ class Page:
         finally:
             self.closed = True
             self.work.end()
-            tasks += [self.more] if self.more is not None else []
+            tasks += [self.deferred_task] if self.deferred_task is not None else []
             for task in tasks:
                 task.cancel()
             await asyncio.gather(*tasks, return_exceptions=True)
@@ -127,8 +127,8 @@ class Page:
 
     def _go_on(self, message: Message) -> None:
         self.answered = max(self.answered, message.seq or 0)
-        if _done(self.more):
-            self.more = asyncio.create_task(self._tell_more())
+        if _done(self.deferred_task):
+            self.deferred_task = asyncio.create_task(self._tell_more())
 
     async def _tell_more(self) -> None:
         """What takes too long to be told at every move of a drag; then, that all is told."""
@@ -138,9 +138,9 @@ class Page:
                 await asyncio.sleep(PAUSE)
                 if not self.waiting and self.last is last:
                     await self._answer(self.desk.tell_more(), None, self.lanes.long)
-            elif self.told < self.answered:
-                self.told = self.answered
-                await self._send(completed(self.told))
+            elif self.completed_seq < self.answered:
+                self.completed_seq = self.answered
+                await self._send(completed(self.completed_seq))
             else:
                 break
 

@@ -29,7 +29,7 @@ class Reply:
 
 def refused(seq: int | None, error: EquipoiseError, language: str = "en") -> Reply:
     """Say why something cannot be done, in a language."""
-    shortened = _shortened(error.told(language, lines=True), error.lines)
+    shortened = _shortened(error.message(language, lines=True), error.lines)
     content: dict[str, Any] = {"type": "refused", "seq": seq, "message": shortened}
     what = error
     if isinstance(error, ModelError):
@@ -39,7 +39,7 @@ def refused(seq: int | None, error: EquipoiseError, language: str = "en") -> Rep
         content["topic"] = topic
         content |= {"cure": plain_page(topic)} if topic in errors() else {}
     with key_words(word_in_forms):
-        content["what"] = _shortened(what.told(language))
+        content["what"] = _shortened(what.message(language))
     return Reply(content)
 
 

@@ -36,7 +36,7 @@ from equipoise.web.incomplete import (
     Incomplete,
     changed,
     computed,
-    drawn,
+    computed_or_incomplete,
     finished,
     sketch_of,
     state_of_sketch,
@@ -54,15 +54,16 @@ from equipoise.web.view_state import ASKED, ViewState
 class Session:
     """The state of one page.
 
-    history : of its designs.  found : the one that is, computed, or drawn while it is unfinished.
-    preview : what it is while something is dragged; each one starts from `found`.
+    history : of its designs.
+    current_state : the present design, computed, or drawn while it is unfinished.
+    preview : what it is while something is dragged; each one starts from `current_state`.
     before : with which it is compared, if with any.
     scale : of the sliders.
     more_told : the design of which `tell_more` has told, and that which it was told against.
     response_told : the design whose response the page has, and the record drawn beside it.
     wanted : outputs that the page draws besides those that it always does.
     language : that its reader speaks.  disk : the file that is open, if it can be saved.
-    seen : what else the page shows.
+    view_state : what else the page shows.
     brief : whether states of a machine have the figures, numbers and spectra of the last one that
         was not brief, as in a drag, where a page draws at every move, and writes more seldom.
     written : those figures and numbers; None where the machine was unfinished.
@@ -71,7 +72,7 @@ class Session:
     """
 
     history: History | None = None
-    found: Computed | Incomplete | None = None
+    current_state: Computed | Incomplete | None = None
     preview: Computed | Incomplete | None = None
     before: Computed | None = None
     scale: Scale | None = None
@@ -80,7 +81,7 @@ class Session:
     wanted: tuple[str, ...] = ()
     language: str = "en"
     disk: Disk | None = None
-    seen: ViewState = field(default_factory=ViewState)
+    view_state: ViewState = field(default_factory=ViewState)
     brief: bool = False
     written: Values | None = None
     spectra: Mapping[str, Array] = field(default_factory=dict)
@@ -88,7 +89,7 @@ class Session:
 
     def receive(self, message: Message) -> Iterator[Reply]:
         """Answer a message; what takes long comes last, and may be left unasked."""
-        good = self.history, self.found, self.preview
+        good = self.history, self.current_state, self.preview
         try:
             for asked in (file_requests.ASKED, table_requests.ASKED, ASKED):
                 if message.kind in asked:
@@ -99,7 +100,7 @@ class Session:
             yield refused(message.seq, error, self.language)
         except Exception:  # a mistake of the program; what cannot be told must not stay
             if message.kind != "balance":  # beside which other steps are made
-                self.history, self.found, self.preview = good
+                self.history, self.current_state, self.preview = good
             raise
 
     # -- what a page may ask -----------------------------------------------------------------------
@@ -107,7 +108,7 @@ class Session:
     def _ready(self, message: Message) -> Iterator[Reply]:
         yield self.hello()
         self.response_told = None, None  # a page that begins has nothing
-        if self.found is not None:
+        if self.current_state is not None:
             yield from self.state_replies(message.seq)
 
     def _balance(self, message: Message) -> Iterator[Reply]:
@@ -163,7 +164,7 @@ class Session:
         with self.lock, self.telling():
             base = sketch_of(self.base(), message.whole("at", 0))
             sketch, label = sketch_after(base, message)
-            result = drawn(sketch)
+            result = computed_or_incomplete(sketch)
             self._go(self._past.then(result.design, label), result)
             self._measure(result, False)
             named = message.text("do") == "delete" and message.text("what") in ("point", "link")
@@ -205,7 +206,7 @@ class Session:
                 "tools": self._titled(tool_titles()),
                 "largest": LARGEST,
                 "numbers": display_rules(),
-                "machine": self.found is not None,
+                "machine": self.current_state is not None,
                 "base": "" if self.disk is None else self.disk.base,
             }
         )
@@ -233,7 +234,7 @@ class Session:
         self.before = None
         self.scale = Scale({}, USUAL_SIZE, 1.0) if machine is None else Scale.of(machine.design)
         if new:
-            self.seen = self.seen.opening(machine)
+            self.view_state = self.view_state.opening(machine)
         if machine is not None and (new or not self.wanted):
             self.wanted = first_of(machine.design.machine)[1]
 
@@ -245,7 +246,7 @@ class Session:
     def has_more(self) -> bool:
         """Whether there is more to tell of the design, which takes longer."""
         text, against = self.more_told
-        if not isinstance(self.found, Computed):
+        if not isinstance(self.current_state, Computed):
             return False
         return self.view is not text or self._against is not against
 
@@ -283,7 +284,7 @@ class Session:
     def telling(self) -> Iterator[None]:
         """Inside, the reader's language is spoken, in the units of the file that is open."""
         with speaking(self.language), ExitStack() as units:
-            if self.found is not None:
+            if self.current_state is not None:
                 units.enter_context(showing_by_default(units_of(self.view.design)))
                 units.enter_context(wording(words_of(self._machine)))
             yield
@@ -311,9 +312,9 @@ class Session:
 
     def base(self) -> Computed | Incomplete:
         """What is, finished or not; a `UsageError` where there is nothing."""
-        if self.found is None:
+        if self.current_state is None:
             raise UsageError(Note("no machine is open; pick an example, or drop a model file"))
-        return self.found
+        return self.current_state
 
     def current(self) -> Computed:
         """The design that is, or a `UsageError` where it is not finished."""
@@ -322,10 +323,12 @@ class Session:
     def _go(self, history: History, result: Computed | Incomplete | None = None) -> None:
         """Show where a history has come to; nothing has changed where that cannot be computed."""
         result = result or computed(history.now.design)
-        self.seen.last = last = self.found if isinstance(self.found, Computed) else None
+        self.view_state.last = last = (
+            self.current_state if isinstance(self.current_state, Computed) else None
+        )
         if last is not None and last.design is not result.design:
             last.design.forget()
-        self.found = result
+        self.current_state = result
         self.history, self.preview = history, None
         if self.before is not None and self.before.design is history.now.design:
             self.before = None  # nothing differs from itself
@@ -339,7 +342,7 @@ class Session:
         if isinstance(self.view, Incomplete):
             return
         with self.telling():
-            compared = [*self.seen.compared(None if self.preview else self.current())]
+            compared = [*self.view_state.compared(None if self.preview else self.current())]
         yield from compared
         yield from self._response(seq)
 
@@ -349,7 +352,7 @@ class Session:
         It has no response over speed, which takes longer; the page loses the one that it has, so
         that `tell_more` has to tell it again.
         """
-        now, before = (self.shown, self.seen.record), self.response_told
+        now, before = (self.shown, self.view_state.record), self.response_told
         if now[0] is before[0] and now[1] is before[1]:
             return
         with self.telling():
@@ -370,8 +373,8 @@ class Session:
             self.spectra = spectra_of(view.analysis, self.spectra if last else None)
             content, data = self._state_of(view)
             content |= last or self._numbers_of(view)
-        now = self.found if self.preview is None else None
-        file = self.disk and self.disk.kept(
+        now = self.current_state if self.preview is None else None
+        file = self.disk and self.disk.status(
             now.design.machine if isinstance(now, Computed) else None
         )
         steps = [len(history.past), len(history.future)]
@@ -382,7 +385,7 @@ class Session:
     def _numbers_of(self, computed: Computed) -> Values:
         """The part of a state that a page writes: figures, and the numbers of the machine."""
         assert self.scale is not None
-        against = self._against or self.seen.pale or self.before
+        against = self._against or self.view_state.pale or self.before
         fields = fields_of(computed.design).values()
         self.written = {
             "figures": figures_of(computed.analysis, against.analysis if against else None),
@@ -391,7 +394,7 @@ class Session:
         return self.written
 
     def _state_of(self, computed: Computed) -> tuple[Values, bytes]:
-        view = self.seen
+        view = self.view_state
         return state_of(
             computed,
             self.spectra,
@@ -405,8 +408,9 @@ class Session:
     @property
     def _against(self) -> Computed | None:
         """The design that figures are told against, if any."""
-        shown = self.found if self.preview is not None else None
-        return self.seen.against(shown if isinstance(shown, Computed) else None) or self.before
+        state = self.current_state if self.preview is not None else None
+        shown = state if isinstance(state, Computed) else None
+        return self.view_state.against(shown) or self.before
 
 
 def _in_file(error: EquipoiseError, name: str) -> EquipoiseError:

@@ -84,7 +84,7 @@ def state_of(
             *(said(note) for note in (assumed_masses(machine),) if note),
             *([lacking] if lacking else []),
         ],
-        "held": said(computed.held) if computed.held else None,
+        "held": said(computed.limit_note) if computed.limit_note else None,
         "before": before is not None,
         "status": status_of(computed),
         "compared": against is not None,
@@ -164,7 +164,7 @@ def _add_outputs(
     """Outputs that the page has asked for, in the unit in which it reads them."""
     for name in names:
         if name in analysis.outputs:
-            block.add(f"{prefix}output.{name}", analysis.outputs[name].drawn)
+            block.add(f"{prefix}output.{name}", analysis.outputs[name].values_to_draw)
 
 
 def _add_signals(

@@ -103,7 +103,7 @@ class StoreDesk:
         return np.hstack([study.own, outcome.figures[0]])
 
     @cached_property
-    def _drawn(self) -> tuple[Array, Array, Array]:
+    def _designs_to_draw(self) -> tuple[Array, Array, Array]:
         """Numbers of the designs that are drawn (P,), their rows (P, d + m), their reasons (P,)."""
         size = self.store.size
         chosen = np.arange(size)
@@ -135,7 +135,7 @@ class StoreDesk:
         design has figures), ``kept`` (1 where it keeps every limit), then those of `columns`.
         """
         block = FloatBlock()
-        numbers, rows, reasons = self._drawn
+        numbers, rows, reasons = self._designs_to_draw
         figures = rows[:, len(self.store.numbers) :]
         inside = (reasons == COMPUTED) & np.all(feasible(self.store.wishes, figures), axis=1)
         block.add("number", numbers)

@@ -16,7 +16,7 @@ from equipoise.mechanism.outputs.declaring import declared
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.objectives import balanced_names
 from equipoise.mechanism.parts.shown_units import SIGN, amounts_of
-from equipoise.quantities import clean, format_exact, parse_expression, pattern, told
+from equipoise.quantities import clean, format_exact, format_quantity, parse_expression, pattern
 from equipoise.quantities.expressions import Names, names_in
 from equipoise.schema.entries import Document, entry_of, kind_at, own_keys, tables_below
 from equipoise.schema.writing import value_text
@@ -201,8 +201,8 @@ def _mass_of(machine: Machine, name: str) -> str:
     link = machine.links[name]
     if link.mass is None or link.center_of_mass is None or link.inertia is None:
         return ""
-    x, y = (told(value, "length") for value in link.center_of_mass)
-    mass, inertia = told(link.mass, "mass"), told(link.inertia, "inertia")
+    x, y = (format_quantity(value, "length") for value in link.center_of_mass)
+    mass, inertia = format_quantity(link.mass, "mass"), format_quantity(link.inertia, "inertia")
     return say(
         "together {mass}; centre of mass at {x}, {y}; moment of inertia {inertia}",
         mass=mass,

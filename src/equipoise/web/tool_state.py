@@ -19,7 +19,7 @@ from equipoise.handheld.response import respond_tool
 from equipoise.handheld.side import side_of
 from equipoise.handheld.sweep import default_answers, default_speeds, speeds_between
 from equipoise.i18n import said, say
-from equipoise.quantities import Dimension, display, told
+from equipoise.quantities import Dimension, display, format_quantity
 from equipoise.symbols.looks import LOOKS
 from equipoise.symbols.tool import ToolScene
 from equipoise.web.block import Array, FloatBlock, Values
@@ -117,7 +117,11 @@ def _scene(scene: ToolScene) -> Values:
     return {
         "tubes": [[item.start, item.stop, item.diameter] for item in scene.shaft],
         "stations": [
-            {"name": seat.name, "place": seat.place, "told": told(seat.place, "length", "mm")}
+            {
+                "name": seat.name,
+                "place": seat.place,
+                "told": format_quantity(seat.place, "length", "mm"),
+            }
             for seat in scene.seats
         ],
         "pieces": [

@@ -211,7 +211,7 @@ class ToolDesk:
             "undo": self.now.label if self.past else None,
             "redo": self.future[0].label if self.future else None,
             "steps": [len(self.past), len(self.future)],
-            "file": self.disk and self.disk.kept(None if self.preview else self.now.tool),
+            "file": self.disk and self.disk.status(None if self.preview else self.now.tool),
         }
         fields = [*self._fields()]
         text = {"type": "tool", "seq": seq, "name": self.name, "fields": fields, **history}

@@ -32,7 +32,7 @@ VARIANT = "variant:"
 class Variants:
     """Designs that are kept, by name, and what the one that is shown is told against."""
 
-    kept: Mapping[str, Computed] = field(default_factory=dict)
+    pinned_designs: Mapping[str, Computed] = field(default_factory=dict)
     against: str = STEP
 
     def pinned(self, computed: Computed) -> Variants:
@@ -42,19 +42,19 @@ class Variants:
         ------
         UsageError : there are too many.
         """
-        if len(self.kept) >= MOST:
+        if len(self.pinned_designs) >= MOST:
             raise UsageError(
                 Note("{most} variants are kept already; delete one of them", most=MOST)
             )
         letters = (a + b for b in ("", *"23456789") for a in ascii_uppercase)
-        name = next(letter for letter in letters if letter not in self.kept)
-        return Variants(MappingProxyType({**self.kept, name: computed}), VARIANT + name)
+        name = next(letter for letter in letters if letter not in self.pinned_designs)
+        return Variants(MappingProxyType({**self.pinned_designs, name: computed}), VARIANT + name)
 
     def of(self, name: str) -> Computed:
         """One of them, by its name; a `UsageError` where there is none of it."""
-        if name not in self.kept:
-            raise UsageError(unknown(name, self.kept, "variant"))
-        return self.kept[name]
+        if name not in self.pinned_designs:
+            raise UsageError(unknown(name, self.pinned_designs, "variant"))
+        return self.pinned_designs[name]
 
     def renamed(self, name: str, to: str) -> Variants:
         """Variants with one of another name; a `UsageError` where that is none or is taken."""
@@ -68,18 +68,20 @@ class Variants:
                     longest=LONGEST,
                 )
             )
-        if to != name and to in self.kept:
+        if to != name and to in self.pinned_designs:
             raise UsageError(
                 Note("there is a variant of the name {to!r} already; give another", to=to)
             )
-        by_name = {to if item == name else item: result for item, result in self.kept.items()}
+        by_name = {
+            to if item == name else item: result for item, result in self.pinned_designs.items()
+        }
         against = VARIANT + to if self.against == VARIANT + name else self.against
         return Variants(MappingProxyType(by_name), against)
 
     def without(self, name: str) -> Variants:
         """Variants without one of them."""
         self.of(name)
-        by_name = {item: result for item, result in self.kept.items() if item != name}
+        by_name = {item: result for item, result in self.pinned_designs.items() if item != name}
         against = STEP if self.against == VARIANT + name else self.against
         return Variants(MappingProxyType(by_name), against)
 
@@ -102,11 +104,11 @@ class Variants:
 
         Of every figure the smallest is best; none is where all are the same.
         """
-        every = [item.analysis for item in (*self.kept.values(), now)]
+        every = [item.analysis for item in (*self.pinned_designs.values(), now)]
         figures = [_named(figures_of(item)) for item in every]
         names = [name for name in figures[-1] if all(name in figure for figure in figures)]
         rows = [_row([figure[name] for figure in figures]) for name in names]
-        rows += _gauges((*self.kept.values(), now))
+        rows += _gauges((*self.pinned_designs.values(), now))
         masses = [item.machine.mass for item in every]
         if all(masses):
             unit = display("mass", masses)
@@ -115,7 +117,7 @@ class Variants:
             rows.append(
                 _row([{**words, "value": value, "text": text_of(value)} for value in values])
             )
-        return {"kept": [*self.kept], "against": self.against, "rows": rows}
+        return {"kept": [*self.pinned_designs], "against": self.against, "rows": rows}
 
 
 def _named(figures: list[Values]) -> dict[str, Values]:

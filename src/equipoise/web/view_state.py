@@ -104,14 +104,14 @@ def measured_told(
     try:
         compared = compared_with(record, computed.analysis, gauges_of(computed))
     except EquipoiseError as error:  # of a machine that has been changed meanwhile
-        return {"name": record.name, "told": [error.told()], "left_out": []}
+        return {"name": record.name, "told": [error.message()], "left_out": []}
     for name, values in compared.signals.items():
         count, own = len(values), len(values)
         if name.startswith(GAUGES):
             count = SAMPLES * computed.motion.turns
         at = np.arange(count) * own / count
         block.add(f"measured.{name}", np.interp(at, np.arange(own), values, period=own))
-    text = {"told": [*compared.told], "left_out": [*compared.left_out]}
+    text = {"told": [*compared.sentences], "left_out": [*compared.left_out]}
     return {"name": record.name, **text}
 
 
@@ -189,7 +189,7 @@ def _ghost(pale: Computed | None) -> Reply:
 class ViewSession(Protocol):
     """What answers need of a session."""
 
-    seen: ViewState
+    view_state: ViewState
     lock: Lock
     wanted: tuple[str, ...]
 
@@ -213,7 +213,7 @@ def _arrows(session: ViewSession, message: Message) -> Iterator[Reply]:
     points = points_of(session.shown.analysis)
     if point is not None and point not in points:
         raise UsageError(unknown(point, points, "point"))
-    session.seen.arrows_at = point
+    session.view_state.arrows_at = point
     yield from session.state_replies(message.seq)
 
 
@@ -228,26 +228,26 @@ def _variant(session: ViewSession, message: Message) -> Iterator[Reply]:
 
 
 def _pin(session: ViewSession, _: Message) -> None:
-    session.seen.variants = session.seen.variants.pinned(session.current())
+    session.view_state.variants = session.view_state.variants.pinned(session.current())
 
 
 def _rename(session: ViewSession, message: Message) -> None:
-    view = session.seen
+    view = session.view_state
     view.variants = view.variants.renamed(message.text("name"), message.text("to"))
 
 
 def _drop(session: ViewSession, message: Message) -> None:
-    session.seen.variants = session.seen.variants.without(message.text("name"))
+    session.view_state.variants = session.view_state.variants.without(message.text("name"))
 
 
 def _go(session: ViewSession, message: Message) -> None:
     name = message.text("name")
-    result = session.seen.variants.of(name)
+    result = session.view_state.variants.of(name)
     session.go_to(result, say("go to {name}", name=name))
 
 
 def _against(session: ViewSession, message: Message) -> None:
-    session.seen.variants = session.seen.variants.told_against(message.text("to"))
+    session.view_state.variants = session.view_state.variants.told_against(message.text("to"))
 
 
 def _record(session: ViewSession, message: Message) -> Iterator[Reply]:
@@ -261,7 +261,7 @@ def _record(session: ViewSession, message: Message) -> Iterator[Reply]:
             name for name in compared.signals if name in analysis.outputs and not charted(name)
         ]
         session.wanted = tuple(dict.fromkeys((*session.wanted, *matching_signals)))[-MOST_OUTPUTS:]
-    session.seen.record = record
+    session.view_state.record = record
     yield from session.state_replies(message.seq)
 
 

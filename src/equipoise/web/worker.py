@@ -211,7 +211,7 @@ class Foreground:
     def _is_for_background(self, message: Message) -> bool:
         """Whether a question is about a finished machine, or about nothing that is open."""
         desk = self.desk
-        of_machine = desk.tool is None and isinstance(desk.session.found, Computed)
+        of_machine = desk.tool is None and isinstance(desk.session.current_state, Computed)
         return of_machine or message.kind not in OF_MACHINE
 
     def _begin(

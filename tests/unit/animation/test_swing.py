@@ -36,7 +36,7 @@ def scene_of(name: str, factor: float | None = None) -> Scene:
 
 def told_factor(scene: Scene) -> float:
     """The factor that the picture tells."""
-    found = re.search(r"([\d.e+]+) times", scene.swing.told[0])
+    found = re.search(r"([\d.e+]+) times", scene.swing.captions[0])
     return float(found[1]) if found else 1.0
 
 
@@ -129,13 +129,13 @@ def test_the_tip_runs_along_its_path() -> None:
 
 
 def test_what_moves_across_the_drawing_is_told() -> None:
-    told = scene_of("riding-transplanter").swing.told
+    told = scene_of("riding-transplanter").swing.captions
     motion = response("riding-transplanter").motion
     roll = motion.values(np.linspace(0, 2 * np.pi, 721))[3]
     assert len(told) == 2 and told[1].startswith("across the drawing, not shown: sway ")
     assert f"roll {np.degrees(np.ptp(roll) / 2):.4g} deg" in told[1]
-    assert len(scene_of("sieve").swing.told) == 1
-    assert scene_of("sieve", 1.0).swing.told == ("movement of the support to scale",)
+    assert len(scene_of("sieve").swing.captions) == 1
+    assert scene_of("sieve", 1.0).swing.captions == ("movement of the support to scale",)
 
 
 def test_a_mode_swings_the_support_and_leaves_the_crank() -> None:
@@ -146,7 +146,7 @@ def test_a_mode_swings_the_support_and_leaves_the_crank() -> None:
         assert scene.drive.sense == 0
         surge = np.fft.fft(scene.swing.place.real)[1] / np.fft.fft(scene.swing.angle)[1]
         assert surge == pytest.approx(mode.shape[0] / mode.shape[2], rel=1e-6, abs=1e-9)
-        assert f"{mode.cycles_per_second:.4g} Hz" in scene.swing.told[0]
+        assert f"{mode.cycles_per_second:.4g} Hz" in scene.swing.captions[0]
         assert laid_out(scene).stage.closed
     for wrong in (0, 4):
         with pytest.raises(UsageError, match="the modes 1 to 3"):
@@ -186,5 +186,5 @@ def test_what_is_told_is_told_whole_in_pictures_of_any_width(width: int) -> None
     scene = scene_of("riding-transplanter")
     drawn = laid_out(scene, ["P"], width=width)
     lines = [line for line, _ in drawn.stage.lines if line]
-    assert " ".join(lines[::-1]) == " ".join((*beyond(scene), *scene.swing.told))
+    assert " ".join(lines[::-1]) == " ".join((*beyond(scene), *scene.swing.captions))
     assert set(lines) <= {label.text for label in drawn.labels}

@@ -150,14 +150,16 @@ def test_what_is_no_number_is_refused_as_before() -> None:
 def test_limits_of_outputs_and_of_goals_are_the_same() -> None:
     values = np.array([0.9, 1.0, 1.5, 2.0, 2.1, np.nan])
     wanted = [False, True, True, True, False, False]
-    assert Requirement("curve.height", at_least=1.0, at_most=2.0).kept(values).tolist() == wanted
+    assert (
+        Requirement("curve.height", at_least=1.0, at_most=2.0).satisfied(values).tolist() == wanted
+    )
     output = eq.studies.Output("shaking_force.y.rms", at_least=1.0, at_most=2.0)
-    assert output.requirement.kept(values).tolist() == wanted
+    assert output.requirement.satisfied(values).tolist() == wanted
     assert Requirement("curve.height").is_fact
     assert not output.requirement.is_fact
 
 
 def test_an_angle_of_a_cycle_of_several_turns_does_not_come_round() -> None:
     late = np.array([0.5 + 2 * np.pi])
-    assert Requirement("entry.crank_angle", at_most=1.0).kept(late)[0]
-    assert not eq.studies.Output("drive_torque.max_at", at_most=1.0).requirement.kept(late)[0]
+    assert Requirement("entry.crank_angle", at_most=1.0).satisfied(late)[0]
+    assert not eq.studies.Output("drive_torque.max_at", at_most=1.0).requirement.satisfied(late)[0]

@@ -143,7 +143,7 @@ def test_a_target_file_asks_a_search_of_geometry_for_it(added: None, tmp_path: P
     path.write_text(goal_text, encoding="utf-8")
     (goal,) = read_targets(path, ["curve.height"]).goals
     assert goal == Requirement("curve.height", within=0.2)
-    assert goal.kept(np.array([-0.3, -0.1, 0.2, 0.21])).tolist() == [False, True, True, False]
+    assert goal.satisfied(np.array([-0.3, -0.1, 0.2, 0.21])).tolist() == [False, True, True, False]
 
 
 def test_without_it_there_is_no_such_key() -> None:

@@ -124,7 +124,7 @@ def test_what_arrays_compute_is_sent_in_large_parts(
 ) -> None:
     """But so that each process has some; the first design is computed here."""
     make = partial(partial, np.square)
-    with PooledEvaluator(np.square, make, np.concatenate, 2, together=32) as evaluate:
+    with PooledEvaluator(np.square, make, np.concatenate, 2, batch_size=32) as evaluate:
         np.testing.assert_array_equal(evaluate(np.arange(count)), np.arange(count) ** 2)
     assert {len(part.values) for part in at_once[:-1]} <= sizes | {(count - 1) % 32}
     assert max(len(part.values) for part in at_once) in sizes

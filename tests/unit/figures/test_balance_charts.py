@@ -71,7 +71,7 @@ def test_numbers_at_bars_keep_apart(factor: float) -> None:
     sizes = factor * np.array([0.0, 1.0, 0.99, 0.98, 0.5, 0.02])
     read = {role: (np.arange(6.0), sizes) for role in ("bar before", "bar after")}
     panel = order_panel("", "force", read, 5)
-    assert all(bars.told for bars in panel.bars)
+    assert all(bars.labelled for bars in panel.bars)
     sheet = lay_out(Chart("", "", "", (panel,)))
     numbers = [w for w in sheet.words if w.color in ("#0060a8", "#595959") and w.text[:1].isdigit()]
     assert numbers

@@ -163,6 +163,6 @@ def test_links_that_cover_each_other_are_shown_in_turn() -> None:
         texts = {mark.text for mark in panel.marks}
         assert {text for text in texts if text.startswith("walker")} == {f"walker-{number}"}
         assert {"front", "rear", f"T{number}", "F1", "F4"} <= texts
-    assert len({panel.held for panel in panels}) == 1  # at one scale
+    assert len({panel.always_shown for panel in panels}) == 1  # at one scale
     for name in ("stephenson-six-bar", "cam-pusher", "twin-engine"):
         assert len(linkage(eq.analyze(eq.load(name), 72)).panels) == 1

@@ -202,7 +202,7 @@ def test_root_mean_squares() -> None:
     """
     tool = random_tool(2, "timoshenko")
     swept = sweep_tool(tool, np.array([400.0, 650.0]))
-    response = swept.shaken
+    response = swept.required_response
     places = [0.2, 0.9]
     found, line = swept.places(places), response.line(places)
     for k, speed in enumerate(swept.speed):
@@ -242,7 +242,7 @@ def test_largest_moment() -> None:
 
 def test_power_over_a_range() -> None:
     swept = sweep_tool(random_tool(4), np.array([200.0, 500.0]))
-    whole = swept.shaken.power("rear")
+    whole = swept.required_response.power("rear")
     for part, power in swept.power("rear").items():
         np.testing.assert_allclose(power, np.sum(whole[part], axis=0))
 

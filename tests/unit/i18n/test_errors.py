@@ -47,34 +47,36 @@ def test_a_refusal_is_told_in_each_language(case):
     old, new, *parts = FAILS[case]
     assert old in FOUR_BAR
     error = error_of(FOUR_BAR.replace(old, new, 1))
-    assert error.told() == error.told("en") == error.note
+    assert error.message() == error.message("en") == error.note
     for language, part in zip(("ja", "ko"), parts, strict=True):
-        assert part in error.told(language)
+        assert part in error.message(language)
         with speaking(language):
-            assert error.told() == error.told(language)
-        assert not any(word in error.told(language) for word in (" the ", "give ", "got "))
+            assert error.message() == error.message(language)
+        assert not any(word in error.message(language) for word in (" the ", "give ", "got "))
         again = pickle.loads(pickle.dumps(error))
-        assert (str(again), again.told(language)) == (str(error), error.told(language))
+        assert (str(again), again.message(language)) == (str(error), error.message(language))
 
 
 def test_the_place_of_an_error_stands_before_its_sentence():
     error = ModelError("links.crank.mass", Note("a mass cannot be negative"), "a.toml")
     assert str(error) == "a.toml: links.crank.mass: a mass cannot be negative"
-    assert error.told("ja") == "a.toml: links.crank.mass：質量は負にできません"
-    assert error.within("row").told("ko").endswith("links.crank.mass: 질량은 음수일 수 없습니다")
+    assert error.message("ja") == "a.toml: links.crank.mass：質量は負にできません"
+    assert error.within("row").message("ko").endswith("links.crank.mass: 질량은 음수일 수 없습니다")
     outer = UsageError(at_place("--set", error.note))
-    assert outer.told("ja") == "--set：a.toml: links.crank.mass：質量は負にできません"
+    assert outer.message("ja") == "--set：a.toml: links.crank.mass：質量は負にできません"
 
 
 def test_what_no_catalogue_has_is_told_in_english_and_says_so():
     error = MotionError("it does not turn")
-    assert error.told("en") == "it does not turn"
-    assert error.told("ja") == "英語のまま：it does not turn"
+    assert error.message("en") == "it does not turn"
+    assert error.message("ja") == "英語のまま：it does not turn"
     placed = ModelError("drive", "it does {not} turn", "a.toml")
-    assert placed.told("ja") == "英語のまま：a.toml: drive: it does {not} turn"
-    assert UsageError(at_place("--set", placed.note)).told("ko").startswith("영어 원문: --set: a.t")
+    assert placed.message("ja") == "英語のまま：a.toml: drive: it does {not} turn"
+    assert (
+        UsageError(at_place("--set", placed.note)).message("ko").startswith("영어 원문: --set: a.t")
+    )
     part = UsageError(Note("give {what}", what=Note("a wheel that nobody has")))
-    assert part.told("ko") == "영어 원문: give a wheel that nobody has"
+    assert part.message("ko") == "영어 원문: give a wheel that nobody has"
 
 
 def test_a_typed_number_stands_in_every_language():
@@ -83,7 +85,7 @@ def test_a_typed_number_stands_in_every_language():
         machine.with_link("crank", mass=-0.001)
     told = ModelError("mass", as_written(caught.value.what, ["-1 g"]))
     assert str(told) == "mass: got -1 g; a mass cannot be negative"
-    assert told.told("ja") == "mass：-1 g が与えられました。質量は負にできません"
+    assert told.message("ja") == "mass：-1 g が与えられました。質量は負にできません"
 
 
 def test_lines_for_the_file_stand_below_the_sentence_and_not_in_it():
@@ -93,8 +95,8 @@ def test_lines_for_the_file_stand_below_the_sentence_and_not_in_it():
     assert line.startswith("motion = {") and line.endswith("}")
     assert str(error) == f"{error.sentence}\n\n{line}"
     assert str(error.sentence).startswith(f"{error.note}; the motion below ")
-    assert "below" not in error.note and "motion =" not in error.told(lines=True)
-    assert error.told("ja", lines=True).startswith(error.told("ja"))
+    assert "below" not in error.note and "motion =" not in error.message(lines=True)
+    assert error.message("ja", lines=True).startswith(error.message("ja"))
     placed = ModelError("drive", error.note).with_paste(error.paste).in_file("a.toml")
     assert placed.lines == error.lines
     assert str(placed) == f"a.toml: drive: {error}"
@@ -105,7 +107,7 @@ def test_keys_in_a_sentence_are_said_as_in_files_or_by_words():
     error = ModelError("x", Note("give {inertia}", **key_names("inertia")))
     assert str(error) == "x: give inertia"
     with key_words(str.upper):
-        assert error.told() == "x: give INERTIA"
+        assert error.message() == "x: give INERTIA"
         assert str(ModelError("x", error.what)) == "x: give inertia"
 
 
@@ -113,7 +115,7 @@ def test_a_range_keeps_its_crank_angles_beside_its_sentence():
     error = error_of(FOUR_BAR.replace('["33.5 mm", "0 mm"]', '["133.5 mm", "0 mm"]', 1))
     assert isinstance(error, RangeError) and error.ranges
     assert str(error).startswith("the crank cannot turn fully: it stops at -166.61 deg and")
-    assert "'coupler' と 'rocker'" in error.told("ja")
+    assert "'coupler' と 'rocker'" in error.message("ja")
 
 
 @pytest.mark.parametrize("dimension", KINDS)
@@ -121,7 +123,7 @@ def test_each_dimension_has_a_name_in_each_language(dimension):
     with pytest.raises(UsageError) as caught:
         parse("3", dimension)
     for language in ("ja", "ko"):
-        assert KINDS[dimension].noun not in caught.value.told(language)
+        assert KINDS[dimension].noun not in caught.value.message(language)
 
 
 def test_names_are_joined_as_each_language_does():
@@ -147,4 +149,4 @@ def test_a_page_and_a_report_are_told_in_their_language():
     machine = eq.load("yamashita-rig").with_drive(speed=0.0)
     with pytest.raises(ModelError) as caught:
         eq.respond(machine)
-    assert "静止したクランクは何も加振しません" in caught.value.told("ja")
+    assert "静止したクランクは何も加振しません" in caught.value.message("ja")

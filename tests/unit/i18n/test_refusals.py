@@ -278,4 +278,4 @@ def test_errors_take_no_plain_text() -> None:
 def test_what_is_wrong_with_a_call_is_told_as_other_refusals_are() -> None:
     error = CallError("balance: got 3 for machine")
     assert isinstance(error, UsageError)
-    assert error.told("ja") == "英語のまま：balance: got 3 for machine"
+    assert error.message("ja") == "英語のまま：balance: got 3 for machine"

@@ -62,7 +62,7 @@ def test_a_roller_on_a_round_cam_is_a_slider_crank(radius: float) -> None:
     shape = CamShape(TURN, Sliding(1.0, 1j * offset), law, radius)
     on_circle(shape.pitch, RADIUS + radius)
     on_circle(shape.surface, RADIUS)
-    on_circle(shape.beside(2 * radius), RADIUS + 2 * radius)
+    on_circle(shape.offset_curve(2 * radius), RADIUS + 2 * radius)
     np.testing.assert_allclose(1 / shape.curvature, RADIUS + radius, rtol=1e-11)
     np.testing.assert_allclose(shape.radius_of_curvature, RADIUS, rtol=1e-11)
     # the rod's own angle to the line

@@ -203,7 +203,7 @@ def test_a_flywheel_counts_as_inertia_of_the_crank(name: str) -> None:
 def test_rows_share_one_flywheel() -> None:
     machine = eq.load("four-row-transplanter").with_drive(acceleration=20.0)
     found, without = (
-        eq.analyze(one, 90).together for one in (machine.with_drive(flywheel=WHEEL), machine)
+        eq.analyze(one, 90).rows_total for one in (machine.with_drive(flywheel=WHEEL), machine)
     )
     assert found["drive_torque"] - without["drive_torque"] == pytest.approx(20.0 * WHEEL)
     assert found["shaking_moment"] - without["shaking_moment"] == pytest.approx(-20.0 * WHEEL)

@@ -14,7 +14,7 @@ import equipoise as eq
 from equipoise.errors import UsageError
 from equipoise.mechanism.assembly.family import (
     Family,
-    _beside,
+    _stacked_values,
     can_vary,
     invalid_designs,
     linkage_of,
@@ -408,7 +408,7 @@ def test_laws_of_gears_side_by_side(kind: str) -> None:
         for given in (*SHAPES[kind], SHAPES[kind][0])
     ]
     theta = rows(len(laws)) * 3 - 9
-    found = _beside(tuple(laws))(theta)
+    found = _stacked_values(tuple(laws))(theta)
     alone = [law(row) for law, row in zip(laws, theta, strict=True)]
     for values, want in zip(found, zip(*alone, strict=True), strict=True):
         np.testing.assert_allclose(values, np.array(want), atol=1e-13)

@@ -118,4 +118,4 @@ def test_towards_dead_positions_it_has_no_bound() -> None:
     assert all(value is None or np.isfinite(value) for value in told.tolist())
     least = found.strokes["piston on frame"].least_advantage
     assert np.nanmin(np.abs(one.values)) == pytest.approx(least, rel=1e-4)
-    assert np.nanmax(np.abs(one.drawn)) < 20 * least
+    assert np.nanmax(np.abs(one.values_to_draw)) < 20 * least

@@ -485,6 +485,6 @@ def test_where_a_crank_stops_is_computed_for_who_reads_the_sentence(monkeypatch)
     again = pickle.loads(pickle.dumps(error))
     assert "motion = { between = [" in sentence
     assert sentence == str(error) == str(again)
-    assert error.told("en") == again.note
+    assert error.message("en") == again.note
     assert (again.ranges, str(again.reason)) == (error.ranges, str(error.reason))
     assert len(calls) == 1

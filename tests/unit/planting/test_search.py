@@ -396,7 +396,7 @@ def test_gears_of_any_shape_can_be_judged(kind: str) -> None:
     goals = [Requirement("curve.height", target=heights[0], tolerance=1.0)]
     outcome = PlantingProblem(designs, goals).judge(values)
     np.testing.assert_allclose(outcome.off[:, 0], np.array(heights) - heights[0], atol=1e-6)
-    assert np.all(outcome.kept) and len({round(height, 4) for height in heights}) == 3
+    assert np.all(outcome.feasible) and len({round(height, 4) for height in heights}) == 3
 
 
 @pytest.mark.parametrize(

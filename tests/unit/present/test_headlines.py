@@ -53,20 +53,23 @@ def test_the_share_of_an_order_is_that_of_the_force() -> None:
     parts = (analysis.by_order[f"shaking_force.{axis}"] for axis in "xy")
     squares = np.sum([one.sizes**2 for one in parts], axis=0)
     share = squares[1] / np.sum(squares[1:])
-    seen = drawn_of(document("yamashita-1"))["spectrum"].seen
+    seen = drawn_of(document("yamashita-1"))["spectrum"].headline
     assert seen == f"{100 * share:.0f} % of the shaking force is order 1"
 
 
 def test_lines_are_of_this_machine_at_this_speed() -> None:
     slow, fast = (
-        {section.name: section.seen for section in document("yamashita-1", "en", speed).sections}
+        {
+            section.name: section.headline
+            for section in document("yamashita-1", "en", speed).sections
+        }
         for speed in (None, 40.0)
     )
     assert slow["forces"] == "Up to 23.2 N shakes the frame"
     assert slow["forces"] != fast["forces"] and slow["motion"] == fast["motion"]
     assert "70.9 N" in slow["joints"]
     assert slow["balance"] == "Shaking force, RMS: -41.0 %"
-    (still,) = (one.seen for one in document("class-three").sections if one.name == "balance")
+    (still,) = (one.headline for one in document("class-three").sections if one.name == "balance")
     assert still == "Shaking force, RMS: leave the masses as they are"
 
 
@@ -110,10 +113,10 @@ def test_a_caption_does_not_repeat_its_title(name: str, language: str) -> None:
     drawn = drawn_of(told)
     assert drawn
     for block in drawn.values():
-        assert block.caption and not (block.seen and block.seen in block.caption)
-        assert not block.seen.endswith((".", "。", ":", "："))
-    seen = [block.seen for block in drawn.values() if block.seen]
-    seen += [section.seen for section in told.sections if section.seen]
+        assert block.caption and not (block.headline and block.headline in block.caption)
+        assert not block.headline.endswith((".", "。", ":", "："))
+    seen = [block.headline for block in drawn.values() if block.headline]
+    seen += [section.headline for section in told.sections if section.headline]
     assert len(seen) > len(drawn) / 2
 
 
@@ -139,7 +142,7 @@ def test_pictures_stand_in_pairs() -> None:
 def test_long_tables_stand_in_the_appendix_and_none_is_lost(name: str) -> None:
     found, told = findings_of(name), document(name)
     in_sections = [b for s in told.sections for b in s.blocks if isinstance(b, Table)]
-    behind = [b for b in told.together if isinstance(b, Table)]
+    behind = [b for b in told.appendix_blocks if isinstance(b, Table)]
     assert all(len(table.rows) <= SHORT for table in in_sections)
     assert behind and all(len(table.rows) > SHORT or table.detail for table in behind)
     html = page(told)
@@ -179,7 +182,9 @@ def test_a_report_is_read_on_a_few_pictures(name: str, most: int) -> None:
         *("model", "motion", "forces", "joints"),
     ]
     (joints,) = (s for s in told.sections if s.name == "joints")
-    assert joints.seen and told.more("joints").startswith("Pictures in the appendix: ")
+    assert joints.headline and told.appendix_contents("joints").startswith(
+        "Pictures in the appendix: "
+    )
 
 
 @pytest.mark.parametrize("name", ["yamashita-1", "brush-cutter"])
@@ -328,7 +333,7 @@ def test_eastern_letters_are_of_a_font_that_has_them(language: str) -> None:
 
 @pytest.mark.parametrize("language", COMPLETE)
 def test_names_of_the_file_are_told_from_words(language: str) -> None:
-    seen = drawn_of(document("yamashita-rig", language))["gauge-gauge"].seen
+    seen = drawn_of(document("yamashita-rig", language))["gauge-gauge"].headline
     assert {"en": "“gauge”", "de": "„gauge“", "ja": "「gauge」", "ko": "‘gauge’"}[language] in seen
 
 

@@ -112,7 +112,7 @@ def test_no_number_is_cut_and_page_and_terminal_tell_the_same(name: str) -> None
                 if cell.number and cell.text:
                     assert plain(cell.text) in text
                     assert other.text == printed(cell.text)
-                    assert other.told in page
+                    assert other.text_with_note in page
 
 
 @pytest.mark.parametrize("name", RESULTS)
@@ -247,7 +247,8 @@ def test_units_and_digits() -> None:
     assert [row[0].text for row in grid(mixed).rows] == ["row 0,\xa0N", "row 1,\xa0N m"]
     turned = grid(table_of(Value(1.0, at=np.pi / 2), Value(np.nan)))
     assert (
-        turned.rows[0][1].told == "1000\xa0(90.0)" and turned.heads[1].heading == "value, mm (deg)"
+        turned.rows[0][1].text_with_note == "1000\xa0(90.0)"
+        and turned.heads[1].heading == "value, mm (deg)"
     )
     assert turned.rows[1][1].text == "none"
 

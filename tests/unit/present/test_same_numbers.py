@@ -150,7 +150,7 @@ def test_every_number_of_cards_and_titles_is_in_the_json(name: str) -> None:
     texts = [f"{one.value} {one.unit}, {one.note}" for one in made.tiles]
     texts += [f"{one.after} {one.unit}" for one in made.tiles if one.after]
     blocks = [*shown_blocks(made.sections)]
-    texts += [one.seen for one in blocks if isinstance(one, ReportSection | SvgPicture)]
+    texts += [one.headline for one in blocks if isinstance(one, ReportSection | SvgPicture)]
     missing = {
         text
         for text in texts
@@ -316,7 +316,7 @@ def test_cards_and_titles_speak_of_all_rows() -> None:
         assert values[label] == pytest.approx(figure, rel=5e-3)
         assert abs(figure) > 1.1 * summary[what].peak
     seen = {
-        one.name: one.seen for one in shown_blocks(made.sections) if isinstance(one, SvgPicture)
+        one.name: one.headline for one in shown_blocks(made.sections) if isinstance(one, SvgPicture)
     }
     assert f"{summary['rows.shaking_force'].peak:.1f} N" in seen["force"]
     assert f"{summary['rows.shaking_moment'].peak:.2f} N m" in seen["moment"]

@@ -17,12 +17,12 @@ from equipoise.quantities import (
     chosen_unit,
     display,
     format_exact,
+    format_quantity,
     in_unit,
     number,
     parse,
     showing,
     showing_by_default,
-    told,
 )
 from equipoise.quantities.numbers import _SCALES, LARGE, SMALL
 
@@ -46,7 +46,7 @@ def test_what_follows_from_chosen_units_is_shown_in_them() -> None:
     }  # fmt: skip
     with showing(INCHES):
         assert {kind: display(kind).unit for kind in wanted} == wanted
-        assert told(1.3558179483314004, "torque") == "12.00 lbf in"
+        assert format_quantity(1.3558179483314004, "torque") == "12.00 lbf in"
     with showing({"length": "cm", "force": "kN"}):  # metric units leave the others as they are
         assert [display(kind).unit for kind in wanted] == [
             "m/s", "m/s^2", "N m", "kg mm^2", "N/m", "N s/m", "g mm", "N m/rad", "N m^2",
@@ -76,7 +76,7 @@ def test_what_follows_from_chosen_units_is_shown_in_them() -> None:
 def test_the_unit_suits_the_size_of_any_machine(
     dimension: Dimension, value: float, unit: str | None, text: str
 ) -> None:
-    assert told(value, dimension, unit) == text
+    assert format_quantity(value, dimension, unit) == text
 
 
 @given(st.sampled_from([*KINDS]), st.floats(1e-6, 1e6))

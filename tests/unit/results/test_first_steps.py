@@ -77,7 +77,7 @@ def test_a_notebook_shows_a_machine_that_cannot_turn() -> None:
     assert "<img" not in html and "Links; places in the axes" in html
     with pytest.raises(eq.EquipoiseError) as caught:
         eq.move(apart)
-    assert caught.value.told().partition(";")[0][:40] in unescape(html)
+    assert caught.value.message().partition(";")[0][:40] in unescape(html)
 
 
 def test_a_notebook_shows_a_tool() -> None:

@@ -9,10 +9,10 @@ from equipoise.symbols.looks import LOOKS
 from equipoise.symbols.tool import SeatSign, ToolScene, TubeSign
 
 SEATS = (
-    SeatSign("engine", 0.0, mass=8.0, shaken="turns", part="engine"),
+    SeatSign("engine", 0.0, mass=8.0, excitation="turns", part="engine"),
     SeatSign("belt", 0.4, harness=True),
     SeatSign("grip", 0.6, absorber=1.0, hands=2),
-    SeatSign("bench", 1.0, grounded=True, clamped=True, shaken="force"),
+    SeatSign("bench", 1.0, grounded=True, clamped=True, excitation="force"),
     SeatSign("head", 2.0, mass=1.0, part="blade"),
 )
 ALONG = np.linspace(0.0, 2.0, 201)
@@ -38,8 +38,8 @@ def test_each_kind_of_seat_has_its_signs() -> None:
 
     assert count("stand", hands=2) == 2 * 5
     assert count("spring", absorber=0.1) == count("tie", harness=True) == 1
-    assert count("mount", grounded=True) == count("force-arc", shaken="turns") == 1
-    assert count("force", shaken="force") == count("tray", mass=1.0, part="blade") == 1
+    assert count("mount", grounded=True) == count("force-arc", excitation="turns") == 1
+    assert count("force", excitation="force") == count("tray", mass=1.0, part="blade") == 1
     assert count("rest", mass=1.0, part="engine") == 2 and count("rest", mass=1.0) == 1
 
 

@@ -50,7 +50,7 @@ def test_on_a_support_that_stands_still_the_crank_obeys_the_equation_of_a_run(la
     solution = solve_exact(machine, machine.drive.speed, True)
     system = solution.system
     theta = np.linspace(0.0, 2 * np.pi, SAMPLES + 1)[:-1]
-    states = np.asarray(solution.found.orbit.at(theta))
+    states = np.asarray(solution.steady.orbit.at(theta))
     speed = system.crank_speed(states)
     orders = np.fft.rfftfreq(SAMPLES, 1 / SAMPLES)
     slope = np.fft.irfft(1j * orders * np.fft.rfft(speed), SAMPLES)
@@ -84,7 +84,7 @@ def test_drive_and_force_elements_close_over_a_period(law: str) -> None:
 def test_a_table_of_one_line_is_a_linear_damper() -> None:
     line = TorsionDamper("crank", speeds=(-1.0, 0.0, 1.0), torques=(-0.05, 0.0, 0.05))
     tabled, linear = (
-        solve_exact(machine, machine.drive.speed, True).found.orbit.starts
+        solve_exact(machine, machine.drive.speed, True).steady.orbit.starts
         for machine in (rig(1.0, torsion_dampers=(item,)) for item in (line, DAMPERS[0]))
     )
     np.testing.assert_allclose(tabled[:-2], linear[:-2], rtol=1e-9, atol=1e-12)

@@ -13,7 +13,7 @@ from equipoise.web.design import Design
 from equipoise.web.edits import solved
 from equipoise.web.fields import Scale, fields_of
 from equipoise.web.gallery import opened_example
-from equipoise.web.incomplete import drawn, sketch_of
+from equipoise.web.incomplete import computed_or_incomplete, sketch_of
 from equipoise.web.session import Session
 from equipoise.web.structure_edits import renamed, without_link
 from unit.web.pages import edit, opened
@@ -123,7 +123,9 @@ def test_a_sketch_keeps_planes_and_bearings() -> None:
     """Also under other names; what is gone takes its own with it."""
     machine = eq.load("twin-engine").with_link("crank", planes={"B1": -0.04})
     sketch = sketch_of(solved(Design("twin", machine)), 0)
-    found = drawn(renamed(renamed(sketch, "point", "B1", "P"), "link", "crank", "shaft"))
+    found = computed_or_incomplete(
+        renamed(renamed(sketch, "point", "B1", "P"), "link", "crank", "shaft")
+    )
     made = found.design.machine
     assert made.links["shaft"].planes == {"P": -0.04}
     assert {one.link for one in made.bearings.values()} == {"shaft"}

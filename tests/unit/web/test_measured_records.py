@@ -106,4 +106,4 @@ def test_what_is_no_record_is_told_in_one_sentence(text, said) -> None:
     session, _ = opened("yamashita-1")
     replies = ask(session, "record", name="run.csv", text=text)
     assert said is None or said in refusal(replies)
-    assert session.seen.record is None
+    assert session.view_state.record is None

@@ -354,8 +354,10 @@ def test_steps_of_undo_keep_no_motion() -> None:
     """Hundreds of designs would keep hundreds of motions, and the answers of large machines."""
     session, _ = opened("yamashita-rig")
     before = edit(session, MASS)
-    assert isinstance(session.found, Computed)
-    kept = [weakref.ref(one) for one in (session.found, session.found.motion.linkage)]
+    assert isinstance(session.current_state, Computed)
+    kept = [
+        weakref.ref(one) for one in (session.current_state, session.current_state.motion.linkage)
+    ]
     for mass in ("31 g", "32 g"):
         edit(session, {"set": "links.crank.mass", "text": mass})
     gc.collect()

@@ -537,12 +537,12 @@ def test_couplings_have_teeth() -> None:
 def test_a_step_that_the_program_cannot_draw_is_no_step(monkeypatch: pytest.MonkeyPatch) -> None:
     """The page is told of the mistake, and goes on with the last machine that it showed."""
     maker = Maker(opened("knife-drive")[0])
-    good = maker.session.found, maker.session.history
+    good = maker.session.current_state, maker.session.history
     with monkeypatch.context() as broken:
         broken.setattr("equipoise.web.session.state_of_sketch", lambda *_: 1 / 0)
         with pytest.raises(ZeroDivisionError):
             ask(maker.session, "make", do="delete", what="link", name="rod")
-    assert (maker.session.found, maker.session.history) == good
+    assert (maker.session.current_state, maker.session.history) == good
     assert "turns fully" in str(state(ask(maker.session, "ready")[1]).content["status"]["text"])
 
 

@@ -229,7 +229,7 @@ def test_a_page_follows_the_units_of_its_file() -> None:
 def test_numbers_are_written_as_everywhere() -> None:
     """Texts and units come from the product's one formatter, whatever the page shows."""
     session, _ = opened("yamashita-1")
-    session.before = session.found
+    session.before = session.current_state
     shown = edit(session, {"set": "drive.speed", "text": "150 rpm"})
     for one in shown.content["figures"]:
         assert one["text"].lstrip("\N{MINUS SIGN}") == typeset(number(one["value"]))
@@ -296,7 +296,7 @@ def test_what_a_machine_is_for_comes_first(name: str, first: str, point: str) ->
 def test_a_cam_comes_with_the_motion_of_its_follower() -> None:
     _, shown = opened("cam-pusher")
     assert shown.content["first"] == "output"
-    lift = eq.analyze(eq.load("cam-pusher")).outputs["sliders.pusher on arm.travel"].drawn
+    lift = eq.analyze(eq.load("cam-pusher")).outputs["sliders.pusher on arm.travel"].values_to_draw
     assert shown.array("output.sliders.pusher on arm.travel") == pytest.approx(lift, rel=1e-6)
 
 
@@ -314,7 +314,7 @@ def test_the_first_path_is_no_circle_of_the_crank(name: str) -> None:
 def test_a_six_bar_shows_what_its_output_does() -> None:
     """Without being asked; and no more of it where another machine is opened."""
     session, shown = opened("stephenson-six-bar")
-    angle = eq.analyze(eq.load("stephenson-six-bar")).outputs["links.output.angle"].drawn
+    angle = eq.analyze(eq.load("stephenson-six-bar")).outputs["links.output.angle"].values_to_draw
     assert shown.array("output.links.output.angle") == pytest.approx(angle, rel=1e-6)
     session.open(opened_example("quick-return"))
     (state_of_it, *_) = ask(session, "compare", on=False)

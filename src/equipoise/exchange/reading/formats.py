@@ -194,7 +194,7 @@ def _check(kind: ImportFormat, options: ImportOptions) -> None:
     """Refuse what would do nothing."""
     marks = options.marks
     given = {"frame": marks.frame, "guide": marks.guide, "link": marks.link,
-             "pin": options.bodies.pins, "tolerance": marks.together,
+             "pin": options.bodies.pins, "tolerance": marks.tolerance,
              "unit": options.unit}  # fmt: skip
     for option, value in given.items():
         if value and option not in kind.takes:

@@ -72,7 +72,7 @@ class Pinning:
         """Coordinates in a link, m, that turning and adding may have left at 1e-33 instead of 0."""
         return clean_place(local, self.size)
 
-    def held(self, link: str, place: complex, wish: str) -> int:
+    def point_at(self, link: str, place: complex, wish: str) -> int:
         """The point of a link at a place, new where there is none."""
         there = self.at(link, place)
         return self.put(link, place, wish) if there is None else there
@@ -84,7 +84,7 @@ class Pinning:
         ------
         ModelError : the links are pinned elsewhere already.
         """
-        remaining, gone = (self.held(*end, name) for end in (first, other))
+        remaining, gone = (self.point_at(*end, name) for end in (first, other))
         if remaining == gone:
             return
         if any({remaining, gone} <= points.keys() for points in self.points.values()):
@@ -350,7 +350,7 @@ class _Flat:
             for point, place in solid.points.items():
                 link, spot = self.link_of[name], self.flat(place)
                 self.points[name, point] = link, spot
-                self.pins.held(link, spot, _short(point, name, link))
+                self.pins.point_at(link, spot, _short(point, name, link))
 
     def flat(self, place: Array) -> complex:
         """A place in space, projected."""
@@ -386,7 +386,7 @@ class _Flat:
     def _slider(self, joint: Joint3) -> tuple[Any, ...]:
         on, link = self.link_of[joint.parent], self.link_of[joint.child]
         place, way, pins = self.flat(joint.place), phase(self.flat(joint.axis)), self.pins
-        point = pins.held(link, place, joint.name)
+        point = pins.point_at(link, place, joint.name)
         through = pins.at(on, place)
         if through is None or through == point:
             through = pins.put(on, place, f"{joint.name} guide")
@@ -424,7 +424,7 @@ class _Flat:
                     Note("springs that are not between a link and the frame are left out")
                 )
                 continue
-            point, to = (names[self.pins.held(*end, "")] for end in ends)
+            point, to = (names[self.pins.point_at(*end, "")] for end in ends)
             yield Spring(link, point, to, pull.stiffness, pull.free_length)
 
     def drive(self) -> tuple[str, float | None]:

@@ -92,13 +92,13 @@ class Marks:
 
     frame, guide : names of what stands still and of lines to slide on; the usual ones if empty.
     link : names, what is drawn under each of which is one link.
-    together : distance below which ends meet, m; 0 for a millionth of the drawing.
+    tolerance : distance below which ends meet, m; 0 for a millionth of the drawing.
     """
 
     frame: tuple[str, ...] = ()
     guide: tuple[str, ...] = ()
     link: tuple[str, ...] = ()
-    together: float = 0.0
+    tolerance: float = 0.0
 
 
 def skeleton(drawing: Drawing, marks: Marks) -> Read:
@@ -178,7 +178,7 @@ class _Skeleton:
         places = [place for stroke in drawing.strokes for place in stroke.places]
         xs, ys = zip(*((place.real, place.imag) for place in places), strict=True)
         self.size = max(max(xs) - min(xs), max(ys) - min(ys))
-        self.near = marks.together or COINCIDENT * self.size
+        self.tolerance = marks.tolerance or COINCIDENT * self.size
         self.pivots = self._pivots(rings, lines)
         self.joints: list[complex] = [pivot.center for pivot in self.pivots]
         self.bodies = [*self._bodies(lines)]
@@ -200,7 +200,7 @@ class _Skeleton:
             own = frame if on == FRAME else links[on]
             start, end = guide.places[0], guide.places[-1]
             on_guide = (
-                point for point in points if guide.distance(self.joints[point]) <= self.near
+                point for point in points if guide.distance(self.joints[point]) <= self.tolerance
             )
             sliding = [points[item] for item in on_guide if points[item] not in own]
             if sliding:
@@ -217,7 +217,7 @@ class _Skeleton:
         """Ends that nearly meet, and links that are joined to nothing."""
         ends = sorted({number for _, corners in self.bodies for number in corners})
         gaps = (abs(self.joints[end] - self.joints[other]) for end, other in combinations(ends, 2))
-        gap = min((gap for gap in gaps if self.near < gap < NEARLY * self.size), default=0.0)
+        gap = min((gap for gap in gaps if self.tolerance < gap < NEARLY * self.size), default=0.0)
         if gap:
             wide = float(f"{2e3 * gap:.1g}")
             yield Note(
@@ -261,14 +261,14 @@ class _Skeleton:
             if not 0 < ring.radius < PIVOT * self.size:
                 continue
             inside = [item for item in items if abs(item.center - ring.center) <= ring.radius]
-            apart = any(abs(item.center - ring.center) > self.near for item in inside)
+            apart = any(abs(item.center - ring.center) > self.tolerance for item in inside)
             if not apart and not any(self._swallows(ring, line) for line in lines):
                 items = [*(item for item in items if item not in inside), ring]
         return items
 
     def _swallows(self, ring: Ring, line: DrawnLine) -> bool:
         off = [abs(place - ring.center) for place in line.places]
-        return min(off) <= self.near and max(off) <= max(1.01 * ring.radius, self.near)
+        return min(off) <= self.tolerance and max(off) <= max(1.01 * ring.radius, self.tolerance)
 
     def _bodies(self, lines: Sequence[DrawnLine]) -> Iterator[tuple[list[DrawnLine], list[int]]]:
         """Strokes of each link, and the numbers of its corners; a line drawn twice is one."""
@@ -278,8 +278,11 @@ class _Skeleton:
         used = set()
         for group in groups:
             corners = [*dict.fromkeys(self._joint(z) for item in group for z in item.places)]
-            on = (number for number, ring in enumerate(self.pivots)
-                  if any(item.distance(ring.center) <= self.near for item in group))  # fmt: skip
+            on = (
+                number
+                for number, ring in enumerate(self.pivots)
+                if any(item.distance(ring.center) <= self.tolerance for item in group)
+            )
             corners = [*dict.fromkeys((*corners, *on))]
             if len(corners) < 2:
                 self.drawing.note(Note("lines that lie wholly in a circle of a pivot are left out"))
@@ -290,9 +293,9 @@ class _Skeleton:
     def _joint(self, place: complex) -> int:
         """The number of a corner; ends in a circle go to its centre."""
         for number, ring in enumerate(self.pivots):
-            if abs(place - ring.center) <= max(1.01 * ring.radius, self.near):
+            if abs(place - ring.center) <= max(1.01 * ring.radius, self.tolerance):
                 return number
-        known = (n for n, other in enumerate(self.joints) if abs(place - other) <= self.near)
+        known = (n for n, other in enumerate(self.joints) if abs(place - other) <= self.tolerance)
         count = next(known, None)
         if count is None:
             self.joints.append(place)
@@ -306,7 +309,7 @@ class _Skeleton:
         used = dict.fromkeys(number for _, corners in self.bodies for number in corners)
         texts: dict[int, str] = {}
         for place, word in self.drawing.words:
-            close = (item for item in used if abs(self.joints[item] - place) <= self.near)
+            close = (item for item in used if abs(self.joints[item] - place) <= self.tolerance)
             if (at := next(close, None)) is not None and word not in texts.values():
                 texts.setdefault(at, word)
         names = (*ascii_uppercase, *(f"P{number}" for number in range(1, len(used) + 1)))
@@ -338,10 +341,11 @@ class _Skeleton:
                 if isinstance(ground, Ring)
                 else ground.distance(place)
             )
-            if off <= self.near:
+            if off <= self.tolerance:
                 return True
         if any(
-            area.holds(place) or area.distance(place) <= self.near for area in self.drawing.areas
+            area.holds(place) or area.distance(place) <= self.tolerance
+            for area in self.drawing.areas
         ):
             return True
         links = sum(number in corners for _, corners in self.bodies)

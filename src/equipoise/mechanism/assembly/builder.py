@@ -122,7 +122,7 @@ class Builder:
     rank : body -> position in the order of solution.  anchors : body -> the point from which its
     other points are reached and about which its moments are taken.  sides : entries of the table
     of sides that were asked for.  missing : joints whose side the file does not give -> words of
-    the two sides, what they mean, what the file has.  motion : steps so far.  told :
+    the two sides, what they mean, what the file has.  motion : steps so far.  given_state :
     references at crank angle 0, of a machine of the same build, whose branch is taken over.
     mode : of four-bars of equal opposite sides whose own entry is missing, one of `MODES`.
     tried : joint -> side that is taken, whatever the file has.  pinned : inner pins of dyads.
@@ -136,7 +136,7 @@ class Builder:
     sides: set[str] = field(default_factory=set)
     missing: dict[str, tuple[tuple[str, str], str, str | None]] = field(default_factory=dict)
     running: set[str] = field(default_factory=set)
-    told: State = field(default_factory=dict)
+    given_state: State = field(default_factory=dict)
     mode: str | None = None
     tried: Mapping[str, str] = field(default_factory=dict)
     pinned: set[str] = field(default_factory=set)
@@ -144,7 +144,7 @@ class Builder:
     _ran: int = field(init=False, default=0)
 
     def __post_init__(self) -> None:
-        self._now = initial_state(self.machine, np.zeros(1)) | self.told
+        self._now = initial_state(self.machine, np.zeros(1)) | self.given_state
 
     @property
     def now(self) -> State:
@@ -191,7 +191,7 @@ class Builder:
         them, also where it was solved from one that stands for such a point in a joint.
         """
         for rider in joints.riders.values():
-            for link, points in rider.held.items():
+            for link, points in rider.constraints.items():
                 own = points.get(self.anchors.get(link, "")) if link in group.links else None
                 if own is not None:
                     steps = (*group.motion, *self.reach(link, own))

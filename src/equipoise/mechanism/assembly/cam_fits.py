@@ -240,12 +240,12 @@ def sharpest(fit: CamFit) -> tuple[float, float]:
 class RequiredWrench:
     """Something (N,) that has to be above 0 all over a cam.
 
-    told : what is said where it is not, of its least value and the cam angle of that, deg.
+    violation : what is said where it is not, of its least value and the cam angle of that, deg.
     size : that it has far from 0.  mended : whether another base radius can do something about it.
     """
 
     value: Callable[[CamShape], Array]
-    told: Callable[[float, float], Note]
+    violation: Callable[[float, float], Note]
     size: Any = 1.0
     mended: bool = True
 
@@ -255,7 +255,7 @@ def check_shape(machine: Machine, joints: Structure, fit: CamFit) -> None:
     for demand in _demands(fit.cam):
         least, angle = lowest(fit.shape(fit.knots), demand.value, fit.knots)
         if least <= 0:
-            note = demand.told(least, degrees(angle))
+            note = demand.violation(least, degrees(angle))
             if demand.mended:
                 note = _with_radius(note, machine, joints, fit.cam)
             raise ModelError(place_in_file(joints, fit.cam), note)

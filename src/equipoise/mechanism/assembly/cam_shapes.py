@@ -136,7 +136,7 @@ class CamShape:
         """The cam's surface in the cam's own axes, from its axis; complex, m."""
         return self.contact[0] * self._back
 
-    def beside(self, away: float) -> Array:
+    def offset_curve(self, away: float) -> Array:
         """The curve that keeps this distance, m, from `surface`; less than 0 inside of it.
 
         That of twice the roller's radius is the far flank of a groove.

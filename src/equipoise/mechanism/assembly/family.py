@@ -162,11 +162,13 @@ class Family:
 def _stacked(calls: Sequence[Any]) -> KernelCall:
     """One call for all machines, with columns (P, 1) for parameters."""
     first = calls[0]
-    columns = (_beside(values) for values in zip(*(c.parameters for c in calls), strict=True))
+    columns = (
+        _stacked_values(values) for values in zip(*(c.parameters for c in calls), strict=True)
+    )
     return KernelCall(first.kernel, first.inputs, tuple(columns), first.outputs)
 
 
-def _beside(values: tuple[Any, ...]) -> Any:
+def _stacked_values(values: tuple[Any, ...]) -> Any:
     """Numbers as a column (P, 1); laws as one that takes angles (P, K), a row for each machine."""
     if not callable(values[0]):
         return column(values)

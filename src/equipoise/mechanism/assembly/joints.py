@@ -93,7 +93,7 @@ class Structure:
     @property
     def pinned_points(self) -> frozenset[str]:
         """Points at which bodies are pinned to each other or have a pin in a slot."""
-        riding = (rider.held[rider.link][name] for name, rider in self.riders.items())
+        riding = (rider.constraints[rider.link][name] for name, rider in self.riders.items())
         return frozenset((*self.pins, *riding))
 
     def pins_between(self, a: str, b: str) -> list[str]:
@@ -380,7 +380,7 @@ def pin_radii(joints: Structure, given: Iterable[JointProperties]) -> dict[str, 
         if item.radius is not None and (point := by_name.get(item.joint)) is not None:
             if point in joints.riders:
                 rider = joints.riders[point]
-                point = rider.held[rider.link][point]
+                point = rider.constraints[rider.link][point]
             radii[point] = max(item.radius, radii.get(point, 0.0))
     return radii
 

@@ -77,7 +77,7 @@ class Linkage(Brief):
     pivot : the drive link's point in the frame.
     anchors : body -> point about which its moments are taken.
     groups : what is solved after the drive, in order.
-    near : motion of a machine that differs by little, from which loops are followed sooner.
+    reference_cycle : of a machine that differs by little; loops are followed sooner from there.
     shared : all joints at once, where groups cannot tell their forces one after the other.
     memory : what was computed of it elsewhere and takes time, by name, such as its cycle.
     """
@@ -87,7 +87,7 @@ class Linkage(Brief):
     pivot: str
     anchors: Mapping[str, str]
     groups: tuple[Group, ...]
-    near: Cycle | None = None
+    reference_cycle: Cycle | None = None
     shared: RedundantReactions | None = None
     memory: dict[str, Any] = field(default_factory=dict, init=False, repr=False, compare=False)
 
@@ -164,7 +164,7 @@ class Linkage(Brief):
         """The closed motion, which is kept; its errors say only where the turn ends."""
         if "cycle" not in self.memory:
             check = None if self.shared is None else self.shared.check
-            self.memory["cycle"] = close(self.machine, self.groups, self.near, check)
+            self.memory["cycle"] = close(self.machine, self.groups, self.reference_cycle, check)
         cycle: Cycle = self.memory["cycle"]
         return cycle
 
@@ -190,7 +190,7 @@ class Linkage(Brief):
 def assemble(machine: Machine, guess: Cycle | None = None) -> Linkage:
     """Order the links of a machine into steps.  The result is kept with the machine.
 
-    near : motion of a machine of the same build that differs by little, if one is known.
+    guess : motion of a machine of the same build that differs by little, if one is known.
 
     Raises
     ------
@@ -200,7 +200,7 @@ def assemble(machine: Machine, guess: Cycle | None = None) -> Linkage:
     """
     linkage: Linkage | None = machine.memory.get(LINKAGE)
     if linkage is None:
-        linkage = replace(ordered(machine, structure(machine)), near=guess)
+        linkage = replace(ordered(machine, structure(machine)), reference_cycle=guess)
         names = [name for name, _ in linkage.named_reactions]
         for name in names:
             if names.count(name) > 1:  # outputs go by the names of joints
@@ -362,7 +362,7 @@ def _grouped(
         else:
             drives[drive.link] = drive_pivot(joints, drive.link, f"drives[{number}].link")
     points, running = set(machine.frame), {FRAME, *drives}
-    builder = Builder(machine, points=points, running=running, told=dict(start), mode=mode,
+    builder = Builder(machine, points=points, running=running, given_state=dict(start), mode=mode,
                       tried=tried)  # fmt: skip
     surplus: frozenset[str] = frozenset()
     if joints.surplus:

@@ -166,7 +166,7 @@ def loop_group(
         builder.size(),
         tuple(link for link in links if link not in joints.riders),
     )
-    text = builder.told.get(f"reference({unsolved.reference})")
+    text = builder.given_state.get(f"reference({unsolved.reference})")
     if text is not None:
         solved = replace(unsolved, start=text[:, 0])
     else:

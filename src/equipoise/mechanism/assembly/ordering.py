@@ -80,10 +80,10 @@ def _agreeing(builder: Builder, joints: Structure, links: tuple[str, ...]) -> Gr
     from equipoise.mechanism.assembly.loopgroup import loop_group
 
     named = LoopGroup(links, (), (), (), (), (), 1.0).reference
-    if builder.told and f"reference({named})" not in builder.told:
+    if builder.given_state and f"reference({named})" not in builder.given_state:
         return None
     drives = [drive.link for drive in builder.machine.driven]
-    position = None if builder.told else _guided(builder, joints, links)
+    position = None if builder.given_state else _guided(builder, joints, links)
     if joints.freedom(links, builder.rank) < 0 and not (position or builder.machine.position):
         raise held_fast(joints, drives)
     before = replace(builder, rank=dict(builder.rank), anchors=dict(builder.anchors),
@@ -93,7 +93,7 @@ def _agreeing(builder: Builder, joints: Structure, links: tuple[str, ...]) -> Gr
     except MotionError:
         raise held_fast(joints, drives) from None
     solved = next(step for step in group.motion if isinstance(step, LoopGroup))
-    if builder.told or solved.rigid(builder.now):
+    if builder.given_state or solved.rigid(builder.now):
         return group
     for attribute in ("rank", "anchors", "points", "running"):
         setattr(builder, attribute, getattr(before, attribute))

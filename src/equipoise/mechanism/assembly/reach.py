@@ -32,7 +32,7 @@ from equipoise.mechanism.checks import MODES
 from equipoise.mechanism.parts.joint_kinds import BEYOND
 from equipoise.mechanism.parts.laws import AngleLaw
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.quantities import told
+from equipoise.quantities import format_quantity
 from equipoise.signals import EQUAL, highest_at
 
 MOST_DIPS = 6
@@ -267,7 +267,7 @@ def jam(angle: float, dead: Note | str) -> Note:
 
 def _length(size: float) -> str:
     """A length, m, as readers see it; 99.99999999999999 mm, which is rounding, as 100.0 mm."""
-    return told(float(f"{size:.9g}"), "length")
+    return format_quantity(float(f"{size:.9g}"), "length")
 
 
 def _in_degrees(angle: float) -> str:

@@ -18,7 +18,7 @@ from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.kinematics.motion import crossings
 from equipoise.mechanism.parts.constraints import HOLDS
 from equipoise.mechanism.parts.machine import FRAME, Machine, size_of
-from equipoise.quantities import told
+from equipoise.quantities import format_quantity
 
 BARS = (kernels.rrr, kernels.parallelogram)
 """Kernels of two links and three pins."""
@@ -266,8 +266,8 @@ def _odd_masses(machine: Machine) -> Iterator[Note]:
                 "links.{link}.inertia gives a radius of gyration of {gyration}, for a link of "
                 "{size}; check its unit",
                 link=name,
-                gyration=told(gyration, "length"),
-                size=told(size, "length"),
+                gyration=format_quantity(gyration, "length"),
+                size=format_quantity(size, "length"),
             )
         x, y = link.center_of_mass
         px, py = next(iter(link.points.values()))
@@ -294,8 +294,8 @@ def _odd_lengths(linkage: Linkage) -> Iterator[Note]:
                 "their units",
                 long=long,
                 short=short,
-                far=told(sizes[long], "length"),
-                near=told(sizes[short], "length"),
+                far=format_quantity(sizes[long], "length"),
+                near=format_quantity(sizes[short], "length"),
             )
 
 

@@ -82,7 +82,7 @@ def contacts(linkage: Any) -> tuple[BodyContact, ...]:
         by, on = sorted(ends[name], key=order)
         points = {entry.on: entry.at, entry.by: entry.at}
         if rider := linkage.joints.riders.get(entry.name):
-            points = {body: next(iter(own.values())) for body, own in rider.held.items()}
+            points = {body: next(iter(own.values())) for body, own in rider.constraints.items()}
             by, on = rider.on, rider.link
         elif entry.kind == "slider":
             slider = next(s for s in machine.sliders if s.name == entry.name)

@@ -175,11 +175,11 @@ class PeriodicCurve:
 class Curves:
     """Curves of the same knots, one for each row of what they are asked at, (..., P, N).
 
-    one : tells the knots.  every : pieces of all, one curve after the other.
+    first : tells the knots.  every : pieces of all, one curve after the other.
     begins, rises : (P, 1) first piece of each in `every`, and its rise.
     """
 
-    one: PeriodicCurve
+    first: PeriodicCurve
     every: PeriodicCurve
     begins: Array
     rises: Array
@@ -201,7 +201,7 @@ class Curves:
 
     def at(self, x: Any) -> tuple[Array, Array, Array]:
         """y and its two derivatives by x, each as `x`."""
-        rounds, piece, way = self.one.place(x)
+        rounds, piece, way = self.first.place(x)
         y, y1, y2 = (self.every.value(piece + self.begins, way, order) for order in range(3))
         return y + self.rises * rounds, y1, y2
 

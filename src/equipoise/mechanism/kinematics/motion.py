@@ -412,7 +412,7 @@ class Motion(Displayed):
                 name for name in links if point in links[name].points and u(name)[0] in self.state
             )
             values = self._attached(link, links[link].points[point])
-            self.state.update(zip(names, self._kept(*values), strict=True))
+            self.state.update(zip(names, self._read_only(*values), strict=True))
         return self._moving(*(self.state[name] for name in names))
 
     def _attached(self, link: str, place: Vector) -> tuple[Array, ...]:
@@ -423,7 +423,7 @@ class Motion(Displayed):
         values = kernels.point(*known, arm)  # type: ignore[call-arg]
         return tuple(self._full(value, complex) for value in values)
 
-    def _kept(self, *values: Array) -> tuple[Array, ...]:
+    def _read_only(self, *values: Array) -> tuple[Array, ...]:
         """Values to be kept with the state, to which nobody writes where others reuse it."""
         for value in values:
             value.setflags(write=self.crank_angle.flags.writeable)

@@ -100,7 +100,7 @@ class MultiStrokeInverse:
         laws = [pusher.stroke.value(theta) for pusher in self.pushers if pusher.stroke is not None]
         return np.swapaxes(np.array(laws), 0, 1)
 
-    def near(self, theta: Array, q: Array) -> tuple[Array, Array]:
+    def newton_angles(self, theta: Array, q: Array) -> tuple[Array, Array]:
         """Angles (P, N) of lengths as commanded, near others, and the last change (N,)."""
         wanted = self.commanded(theta)[0]
         for _ in range(ITERATIONS):
@@ -145,7 +145,7 @@ class FollowedLinks:
         """Angle of each link, and its two derivatives by crank angle, at crank angles (...)."""
         theta = np.asarray(crank_angle, dtype=float)
         at = np.ravel(theta) % self.of.period
-        q, _ = self.of.near(at, self._between(at))
+        q, _ = self.of.newton_angles(at, self._between(at))
         rows = zip(q, *self.of.rates(at, q), strict=True)
         return {
             pusher.link: tuple(part.reshape(theta.shape) for part in row)
@@ -187,7 +187,7 @@ def commanded(machine: Machine) -> FollowedLinks:
 def _followed(of: MultiStrokeInverse, start: Array, count: int) -> FollowedLinks:
     theta = np.linspace(0.0, of.period, count + 1)
     step = theta[1]
-    q, change = of.near(theta[:1], start)
+    q, change = of.newton_angles(theta[:1], start)
     if not np.all(change < SETTLED * 1e3) or np.max(np.abs(q - start)) > FAR:
         raise _not_had(of, start)
     items, rates, sense = [q], [], 0.0
@@ -200,7 +200,7 @@ def _followed(of: MultiStrokeInverse, start: Array, count: int) -> FollowedLinks
         rates.append(rate)
         if k == count:
             break
-        new, change = of.near(theta[k + 1 : k + 2], guess)
+        new, change = of.newton_angles(theta[k + 1 : k + 2], guess)
         if not (lever * sense > 0 and change < SETTLED * 1e3 and np.max(np.abs(new - q)) < FAR):
             raise _lost(of, float(at))
         items.append(new)

@@ -572,7 +572,7 @@ def of_element(table: str, name: str, dimension: Dimension, label: str) -> None:
 
 # -- rows and support ------------------------------------------------------------------------------
 
-of_rows = alike("rows.", lambda name, result: result.together[name], needs="rows", linear=True)
+of_rows = alike("rows.", lambda name, result: result.rows_total[name], needs="rows", linear=True)
 of_rows("shaking_force", "force", to_say("shaking force"), XY, summed=(True, False), compared=FORCE,
         yardstick="weight")  # fmt: skip
 of_rows("shaking_moment", "torque", to_say("shaking moment"), compared=FORCE, yardstick="span")

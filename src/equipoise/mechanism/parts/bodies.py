@@ -146,7 +146,7 @@ class Body(Frozen):
     """
 
     called = to_say("{what} of body {number}")
-    beside: ClassVar[Keys] = material_key("", "of the body")
+    extra_keys: ClassVar[Keys] = material_key("", "of the body")
     file_order = ("shape", "between", "overhang", "width", "wall", "outer_diameter",
                   "inner_diameter", "corners", "at", "radius", "inner_radius", "thickness",
                   "material", "density", "mass", "mass_per_length", "inertia")  # fmt: skip

@@ -13,7 +13,7 @@ from equipoise.mechanism.formulas.kernels import cross
 from equipoise.mechanism.parts.element_kinds import Placed
 from equipoise.mechanism.parts.force_kinds import Action, RatedElement
 from equipoise.mechanism.parts.two_body_elements import BetweenPoints
-from equipoise.quantities import Dimension, told
+from equipoise.quantities import Dimension, format_quantity
 
 Pair = tuple[float, float]
 LAWS = ("stiffness", "damping", "torsional_stiffness", "torsional_damping")
@@ -202,14 +202,14 @@ class Bushing(BetweenPoints, RatedElement):
             (self.damping, "damping", "N s/m"),
         )
         pair, dimension, unit = next(law for law in laws if any(law[0]))
-        ends |= {name: told(number, dimension, unit)
+        ends |= {name: format_quantity(number, dimension, unit)
                  for name, number in zip(("along", "across"), pair, strict=True)}  # fmt: skip
         if not any(self.preload):
             return Note(
                 "Bushing: {along} along and {across} across, {point} of {link} at {to} of {on}",
                 **ends,
             )
-        first, second = (told(number, "force") for number in self.preload)
+        first, second = (format_quantity(number, "force") for number in self.preload)
         return Note(
             "Bushing: {along} along and {across} across, with preloads of {first} and {second}, "
             "{point} of {link} at {to} of {on}",
@@ -221,9 +221,9 @@ class Bushing(BetweenPoints, RatedElement):
     def _turning(self) -> str:
         """Its stiffness about the pin, or damping where it has none."""
         if self.torsional_stiffness is not None:
-            return told(self.torsional_stiffness, "torsional stiffness", "N m/rad")
+            return format_quantity(self.torsional_stiffness, "torsional stiffness", "N m/rad")
         assert self.torsional_damping is not None
-        return told(self.torsional_damping, "torsional damping", "N m s/rad")
+        return format_quantity(self.torsional_damping, "torsional damping", "N m s/rad")
 
     def summary(self) -> str:
         """All its numbers, in a line of `check`."""
@@ -243,12 +243,16 @@ class Bushing(BetweenPoints, RatedElement):
         )
         for pair, dimension, unit in pairs:
             if any(pair):
-                parts.append(said(all_of([told(number, dimension, unit) for number in pair])))
+                parts.append(
+                    said(all_of([format_quantity(number, dimension, unit) for number in pair]))
+                )
         if self.torsional_stiffness is not None:
-            rate = told(self.torsional_stiffness, "torsional stiffness", "N m/rad")
-            parts.append(say("{rate} from {angle}", rate=rate, angle=told(self.angle, "angle")))
+            rate = format_quantity(self.torsional_stiffness, "torsional stiffness", "N m/rad")
+            parts.append(
+                say("{rate} from {angle}", rate=rate, angle=format_quantity(self.angle, "angle"))
+            )
         if self.torsional_damping is not None:
-            parts.append(told(self.torsional_damping, "torsional damping", "N m s/rad"))
+            parts.append(format_quantity(self.torsional_damping, "torsional damping", "N m s/rad"))
         if self.torque:
-            parts.append(told(self.torque, "torque"))
+            parts.append(format_quantity(self.torque, "torque"))
         return said(series(parts))

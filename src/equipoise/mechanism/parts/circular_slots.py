@@ -16,7 +16,7 @@ from equipoise.keys import Listing, Quantity, TextKind, declared, key
 from equipoise.mechanism.checks import Bodies
 from equipoise.mechanism.parts.element_kinds import Placed
 from equipoise.mechanism.parts.joint_kinds import BEYOND, JointKind, Rider
-from equipoise.quantities import Dimension, Measured, told
+from equipoise.quantities import Dimension, Measured, format_quantity
 
 
 @declared
@@ -99,7 +99,7 @@ class CircularSlot(JointKind):
 
     def sentence(self) -> Note:
         """Its radius, its pin and its bodies, for a report."""
-        radius = told(self.radius, "length")
+        radius = format_quantity(self.radius, "length")
         return Note("Circular slot: {point} of {link} at {radius} from {center} of {on}",
                     point=self.point, link=self.link, radius=radius, center=self.center,
                     on=self.on)  # fmt: skip
@@ -110,14 +110,14 @@ class CircularSlot(JointKind):
             "circular slot: {point} of {link} about {center} of {on}, radius {radius}"
         )
         values = {"point": self.point, "link": self.link, "center": self.center, "on": self.on,
-                  "radius": told(self.radius, "length")}  # fmt: skip
+                  "radius": format_quantity(self.radius, "length")}  # fmt: skip
         if self.arc:
             template = to_say(
                 "circular slot: {point} of {link} about {center} of {on}, radius {radius}, from "
                 "{start} to {stop}"
             )
             values |= {
-                key: told(value, "angle")
+                key: format_quantity(value, "angle")
                 for key, value in zip(("start", "stop"), self.arc, strict=True)
             }
         return say(template, **values)

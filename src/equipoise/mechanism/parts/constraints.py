@@ -15,7 +15,7 @@ from equipoise.errors import ModelError
 from equipoise.i18n import Note, to_say
 from equipoise.keys import Frozen, Listing, TextKind, declared, key
 from equipoise.mechanism.checks import FRAME, Bodies, unknown
-from equipoise.quantities import told
+from equipoise.quantities import format_quantity
 
 Point = tuple[str, str]
 """A body and its point."""
@@ -151,7 +151,7 @@ class Constraint(Frozen):
         """A sentence on lines that miss it."""
         ends = [[complex(*bodies[body][point]) for body, point in line]
                 for line in self.lines(bodies)]  # fmt: skip
-        lengths = [told(abs(end - start), "length") for start, end in ends]
+        lengths = [format_quantity(abs(end - start), "length") for start, end in ends]
         return Note(
             "{line} ({length}) and {other} ({other_length}) are not {kind}, as a constraint asks; "
             "give other places, or take the constraint away",

@@ -73,7 +73,7 @@ class GearedWeight(Frozen):
     """
 
     called = to_say("{what} of geared counterweight {number}")
-    beside: ClassVar[Keys] = material_key("gear_", "of both gears; goes with `gear_thickness`")
+    extra_keys: ClassVar[Keys] = material_key("gear_", "of both gears; goes with `gear_thickness`")
     file_order = ("driver", "ratio", "teeth", "module", "pitch_radius", "axis", "direction",
                   "gear_thickness", "gear_material", "gear_density", "clear_of", "weight",
                   "name")  # fmt: skip

@@ -336,7 +336,7 @@ class Turning(Coupling):
     heading : of its sentence in a report.
     """
 
-    beside: ClassVar[Keys] = {
+    extra_keys: ClassVar[Keys] = {
         "between": Key(
             "between",
             Listing(TextKind(of="body"), (2,)),

@@ -28,7 +28,7 @@ from equipoise.keys.csv_tables import CsvTable
 from equipoise.mechanism.checks import Bodies
 from equipoise.mechanism.parts.element_kinds import Placed
 from equipoise.mechanism.parts.joint_kinds import BEYOND, JointKind, Rider, Track
-from equipoise.quantities import Dimension, told
+from equipoise.quantities import Dimension, format_quantity
 
 if TYPE_CHECKING:
     from equipoise.mechanism.formulas.curves import PlaneCurve
@@ -186,29 +186,31 @@ class CurvedSlot(JointKind):
         return Note(
             "its radius of curvature is {least} at {at} from the first point, and the pin has a "
             "radius of {radius}; give points of a curve that bends less sharply, or a thinner pin",
-            least=told(least, "length"), at=told(at, "length"), radius=told(radius, "length"),
-        )  # fmt: skip
+            least=format_quantity(least, "length"),
+            at=format_quantity(at, "length"),
+            radius=format_quantity(radius, "length"),
+        )
 
     def sentence(self) -> Note:
         """Its length, its pin and its bodies, for a report."""
         return Note("Curved slot: {point} of {link} on a curve of {length} in {on}",
                     point=self.point, link=self.link, on=self.on,
-                    length=told(self.curve.length, "length"))  # fmt: skip
+                    length=format_quantity(self.curve.length, "length"))  # fmt: skip
 
     def summary(self) -> str:
         """All its numbers, in a line of `check`."""
         template = to_say("curve through {count} points, {length} long")
         if self.closed:
             template = to_say("closed curve through {count} points, {length} long")
-        length = told(self.curve.length, "length")
+        length = format_quantity(self.curve.length, "length")
         parts = [say(template, count=len(self.places), length=length)]
         radius, at = self.curve.sharpest
         if radius < float("inf"):
             parts.append(
                 say(
                     "smallest radius of curvature {radius} at {place}",
-                    radius=told(radius, "length"),
-                    place=told(at, "length"),
+                    radius=format_quantity(radius, "length"),
+                    place=format_quantity(at, "length"),
                 )
             )
         return say(

@@ -16,7 +16,7 @@ from equipoise.mechanism.parts.element_kinds import Placed
 from equipoise.mechanism.parts.force_kinds import Action
 from equipoise.mechanism.parts.springs import wrong_ends
 from equipoise.mechanism.parts.two_body_elements import BetweenPoints
-from equipoise.quantities import Dimension, told
+from equipoise.quantities import Dimension, format_quantity
 
 
 @declared
@@ -165,7 +165,7 @@ class Damper(BetweenPoints, Damping):
             return Note("Damper: by a table, from {point} of {link} to {to}", **ends)
         return Note(
             "Damper: {damping} from {point} of {link} to {to}",
-            damping=told(self.damping, "damping", "N s/m"),
+            damping=format_quantity(self.damping, "damping", "N s/m"),
             **ends,
         )
 
@@ -178,5 +178,5 @@ class Damper(BetweenPoints, Damping):
             to=self.to,
             size=say("{count} rows", count=len(self.rows[0]))
             if self.damping is None
-            else told(self.damping, "damping", "N s/m"),
+            else format_quantity(self.damping, "damping", "N s/m"),
         )

@@ -51,8 +51,8 @@ class Gear(Turning):
     """A pair of gears, both pinned to the same carrier; either ratio or teeth."""
 
     called = to_say("{what} of gear {number}")
-    beside: ClassVar[Keys] = {
-        **Turning.beside,
+    extra_keys: ClassVar[Keys] = {
+        **Turning.extra_keys,
         "mesh": Key("mesh", TextKind(MESHES), "goes with `teeth`", default=None, shown="external"),
     }
     file_order = ("between", "ratio", "teeth", "mesh")

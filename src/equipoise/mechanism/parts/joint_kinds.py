@@ -43,7 +43,7 @@ class Rider:
 
     link, on : the bodies that the joint holds together.
     points : of the rider in its own axes, m; the one that goes by the joint's name is its pin.
-    held : body -> points of its own at which it holds the rider, by what the rider calls them.
+    constraints : body -> its points at which it holds the rider, by what the rider calls them.
     slides : guides of the rider; those whose numbers may be columns are made by `with_fields`.
     normal : across the path, complex of size 1, in the rider's axes.
     track : of the rider's pin, on the body `on`; it holds the rider as a guide would.
@@ -52,7 +52,7 @@ class Rider:
     link: str
     on: str
     points: Mapping[str, Vector]
-    held: Mapping[str, Mapping[str, str]]
+    constraints: Mapping[str, Mapping[str, str]]
     slides: tuple[Slider, ...] = ()
     normal: complex = 1j
     track: Track | None = None
@@ -151,7 +151,7 @@ def with_riders(bodies: Bodies, riders: Mapping[str, Rider]) -> Bodies:
     """
     dicts = {body: dict(points) for body, points in bodies.items()}
     for rider in riders.values():
-        for body, points_on_body in rider.held.items():
+        for body, points_on_body in rider.constraints.items():
             dicts[body] |= {new: bodies[body][old] for new, old in points_on_body.items()}
     (first, points), *others = dicts.items()
     return {first: points, **{name: rider.points for name, rider in riders.items()}, **dict(others)}

@@ -215,7 +215,7 @@ STANDARD_GRAVITY: Vector = (0.0, -9.80665)
 class Machine(Driven, Displayed, Frozen):
     """A planar linkage with its drive, loads, springs and gravity."""
 
-    beside: ClassVar[Keys] = {"schema": VERSION}
+    extra_keys: ClassVar[Keys] = {"schema": VERSION}
     handed_on = frozenset({TURNING})
     file_order = ("schema", "title", "description", "units", "parameters", "gravity", "drive",
                   "drives", "frame", "links", "constraints", "bearings", "assembly", "sliders",

@@ -132,7 +132,7 @@ class Limit(Frozen, RequiredFigure):
     """
 
     called = to_say("{what} of limit {number}")
-    beside: ClassVar[Keys] = RequirementKeys(
+    extra_keys: ClassVar[Keys] = RequirementKeys(
         "limits",
         DependentQuantity(
             right=Note(

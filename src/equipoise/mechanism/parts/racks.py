@@ -24,7 +24,7 @@ from equipoise.mechanism.parts.couplings import (
     is_pressure_angle,
     pressure_angle,
 )
-from equipoise.quantities import told
+from equipoise.quantities import format_quantity
 
 HANDS = ("left", "right")
 ENDS = ("pinion", "rack")
@@ -184,7 +184,7 @@ class Rack(Coupling):
             driver=self.driver,
             driven=self.driven,
             carrier=Note("frame") if self.carrier == FRAME else self.carrier,
-            radius=told(self.radius, "length"),
+            radius=format_quantity(self.radius, "length"),
         )
 
     def circles(self, distance: Callable[[], Any]) -> Iterator[tuple[str, Any]]:

@@ -28,7 +28,7 @@ from equipoise.mechanism.parts.element_kinds import Placed
 from equipoise.mechanism.parts.force_kinds import Action, RatedElement, TableArgument
 from equipoise.mechanism.parts.ramps import table_value, wrong_rows
 from equipoise.mechanism.parts.two_body_elements import BetweenPoints
-from equipoise.quantities import Dimension, told
+from equipoise.quantities import Dimension, format_quantity
 
 TINY = 1e-300
 """Of a speed, so that nothing is divided by 0."""
@@ -293,9 +293,9 @@ class Resistance(BetweenPoints, RatedElement):
         template = to_say("resistance: to {point} of {link} over {on}")
         parts = [say(template, point=self.point, link=self.link, on=self.on)]
         if self.force is not None:
-            parts.append(told(self.force, "force", "N"))
+            parts.append(format_quantity(self.force, "force", "N"))
         if self.damping is not None:
-            parts.append(told(self.damping, "damping", "N s/m"))
+            parts.append(format_quantity(self.damping, "damping", "N s/m"))
         if rows := len(self.rows[0]):
             parts.append(say("{count} rows", count=rows))
         return said(series(parts))

@@ -28,7 +28,7 @@ from equipoise.mechanism.parts.element_kinds import Placed
 from equipoise.mechanism.parts.force_kinds import Action, ForceElement, TableArgument
 from equipoise.mechanism.parts.ramps import Ramps, ramp_value, ramps_of, wrong_rows
 from equipoise.mechanism.parts.two_body_elements import BetweenPoints
-from equipoise.quantities import Dimension, told
+from equipoise.quantities import Dimension, format_quantity
 
 MEETING = to_say(
     "{point!r} of {link!r} meets {to!r} at crank angle {angle:.6g} deg, where a spring with a free "
@@ -244,13 +244,13 @@ class Spring(BetweenPoints, ForceElement):
         ends = {"point": self.point, "link": self.link, "to": self.to}
         if self.stiffness is None:
             return Note("Spring: by a table, from {point} of {link} to {to}", **ends)
-        ends["stiffness"] = told(self.stiffness, "stiffness", "N/m")
+        ends["stiffness"] = format_quantity(self.stiffness, "stiffness", "N/m")
         if self.preload is None:
             return Note("Spring: {stiffness} from {point} of {link} to {to}", **ends)
         return Note(
             "Spring: {stiffness} from {point} of {link} to {to}, with {preload} at {length}",
-            preload=told(self.preload, "force"),
-            length=told(self.free_length, "length"),
+            preload=format_quantity(self.preload, "force"),
+            length=format_quantity(self.free_length, "length"),
             **ends,
         )
 
@@ -267,15 +267,17 @@ class Spring(BetweenPoints, ForceElement):
     def _rates(self) -> Iterator[str]:
         if self.stiffness is None:
             lengths, _ = self.rows
-            first, last = (told(lengths[end], "length") for end in (0, -1))
+            first, last = (format_quantity(lengths[end], "length") for end in (0, -1))
             yield say(
                 "{count} rows from {first} to {last}", count=len(lengths), first=first, last=last
             )
             return
-        yield told(self.stiffness, "stiffness", "N/m")
-        length = told(self.free_length, "length")
+        yield format_quantity(self.stiffness, "stiffness", "N/m")
+        length = format_quantity(self.free_length, "length")
         if self.preload is not None:
-            yield say("{size} at {place}", size=told(self.preload, "force"), place=length)
+            yield say(
+                "{size} at {place}", size=format_quantity(self.preload, "force"), place=length
+            )
         elif self.free_length:
             yield say("free at {length}", length=length)
 

@@ -14,7 +14,7 @@ from equipoise.mechanism.formulas.kernels import cross, positive
 from equipoise.mechanism.parts.element_kinds import Placed
 from equipoise.mechanism.parts.force_kinds import Action, RatedElement
 from equipoise.mechanism.parts.two_body_elements import BetweenPoints
-from equipoise.quantities import Dimension, told
+from equipoise.quantities import Dimension, format_quantity
 
 LEAST_RESTITUTION = 0.01
 """Below which the loss per speed grows beyond all bounds."""
@@ -168,7 +168,7 @@ class Stop(BetweenPoints, RatedElement):
         """Its stiffness and its ends, for a report."""
         return Note(
             "Stop: {stiffness}, {point} of {link} on {to}",
-            stiffness=told(self.stiffness, "stiffness", "N/m"),
+            stiffness=format_quantity(self.stiffness, "stiffness", "N/m"),
             point=self.point,
             link=self.link,
             to=self.to,
@@ -176,9 +176,9 @@ class Stop(BetweenPoints, RatedElement):
 
     def summary(self) -> str:
         """All its numbers, in a line of `check`."""
-        parts = [told(self.stiffness, "stiffness", "N/m")]
+        parts = [format_quantity(self.stiffness, "stiffness", "N/m")]
         if self.speed is not None:
-            factor, speed = f"{self.restitution:g}", told(self.speed, "speed")
+            factor, speed = f"{self.restitution:g}", format_quantity(self.speed, "speed")
             parts.append(say("restitution {factor} at {speed}", factor=factor, speed=speed))
         return say(
             "stop: {point} of {link} on {to}, {parts}",

@@ -90,7 +90,7 @@ class Mount(Frozen):
     """
 
     called = to_say("{what} of mount {name}")
-    beside: ClassVar[Keys] = {
+    extra_keys: ClassVar[Keys] = {
         "torsional_preload": Key(
             "torsional_preload",
             Quantity("torque"),

@@ -14,7 +14,7 @@ from equipoise.mechanism.parts.damping import Damping, one_law
 from equipoise.mechanism.parts.element_kinds import Placed
 from equipoise.mechanism.parts.force_kinds import Action
 from equipoise.mechanism.parts.two_body_elements import BetweenBodies
-from equipoise.quantities import Dimension, told
+from equipoise.quantities import Dimension, format_quantity
 
 
 @declared
@@ -140,7 +140,7 @@ class TorsionDamper(BetweenBodies, Damping):
             return Note("Torsion damper: by a table, {link} on {on}", link=self.link, on=self.on)
         return Note(
             "Torsion damper: {damping}, {link} on {on}",
-            damping=told(self.damping, "torsional damping", "N m s/rad"),
+            damping=format_quantity(self.damping, "torsional damping", "N m s/rad"),
             link=self.link,
             on=self.on,
         )
@@ -153,5 +153,5 @@ class TorsionDamper(BetweenBodies, Damping):
             on=self.on,
             size=say("{count} rows", count=len(self.rows[0]))
             if self.damping is None
-            else told(self.damping, "torsional damping", "N m s/rad"),
+            else format_quantity(self.damping, "torsional damping", "N m s/rad"),
         )

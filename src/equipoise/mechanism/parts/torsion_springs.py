@@ -27,7 +27,7 @@ from equipoise.mechanism.parts.element_kinds import Placed
 from equipoise.mechanism.parts.force_kinds import Action, ForceElement, TableArgument
 from equipoise.mechanism.parts.ramps import Ramps, ramp_integral, ramp_value, ramps_of, wrong_rows
 from equipoise.mechanism.parts.two_body_elements import BetweenBodies
-from equipoise.quantities import Dimension, told
+from equipoise.quantities import Dimension, format_quantity
 
 
 @declared
@@ -206,7 +206,7 @@ class TorsionSpring(BetweenBodies, ForceElement):
         if self.stiffness is None:
             return Note("Torsion spring: by a table, {link} on {on}", link=self.link, on=self.on)
         numbers = {
-            "stiffness": told(self.stiffness, "torsional stiffness", "N m/rad"),
+            "stiffness": format_quantity(self.stiffness, "torsional stiffness", "N m/rad"),
             "link": self.link,
             "on": self.on,
         }
@@ -214,8 +214,8 @@ class TorsionSpring(BetweenBodies, ForceElement):
             return Note("Torsion spring: {stiffness}, {link} on {on}", **numbers)
         return Note(
             "Torsion spring: {stiffness}, {link} on {on}, with {preload} at {angle}",
-            preload=told(self.preload, "torque"),
-            angle=told(self.angle, "angle"),
+            preload=format_quantity(self.preload, "torque"),
+            angle=format_quantity(self.angle, "angle"),
             **numbers,
         )
 
@@ -228,11 +228,14 @@ class TorsionSpring(BetweenBodies, ForceElement):
     def _rates(self) -> Iterator[str]:
         if self.stiffness is None:
             angles = self.rows[0]
-            first, last = (told(angles[end], "angle") for end in (0, -1))
+            first, last = (format_quantity(angles[end], "angle") for end in (0, -1))
             yield say(
                 "{count} rows from {first} to {last}", count=len(angles), first=first, last=last
             )
             return
-        yield told(self.stiffness, "torsional stiffness", "N m/rad")
-        preload, angle = told(self.preload, "torque"), told(self.angle, "angle")
+        yield format_quantity(self.stiffness, "torsional stiffness", "N m/rad")
+        preload, angle = (
+            format_quantity(self.preload, "torque"),
+            format_quantity(self.angle, "angle"),
+        )
         yield say("{size} at {place}", size=preload, place=angle)

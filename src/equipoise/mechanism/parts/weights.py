@@ -75,7 +75,7 @@ class Weight(Frozen):
         centre, from the inner radius to the room's edge.
     """
 
-    beside: ClassVar[Keys] = material_key("", "of that plate")
+    extra_keys: ClassVar[Keys] = material_key("", "of that plate")
     file_order = ("shape", "radius", "inner_radius", "thickness", "material", "density")
 
     shape: Shape = key(
