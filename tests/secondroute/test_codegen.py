@@ -23,7 +23,7 @@ from equipoise.mechanism.parts.laws import LengthLaw
 from equipoise.mechanism.parts.machine import Gear, Machine
 from support import free_bodies, machines_cams
 from support.batches import by_numpy, every_dyad, known_of, same_figures, signals_of, wanted_of
-from support.chosen import DISTINCT, few
+from support.chosen import DISTINCT, few, model_of
 from support.designs import design, drawn, named, numbers_of, paths_of, reason_of
 from support.machines import KINDS, make
 from support.machines_planes import set_apart
@@ -36,7 +36,7 @@ TOLERANCE = 1e-10
 
 EXAMPLES = sorted(
     name for name in eq.examples("linkage")
-    if can_emit(linkage := assemble(eq.load(name))) and linkage.shared is None
+    if can_emit(linkage := assemble(model_of(name))) and linkage.shared is None
 )  # fmt: skip
 RANDOM = [
     pytest.param(kind, seed, id=f"{kind}-{seed}")

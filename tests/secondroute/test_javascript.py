@@ -6,6 +6,7 @@ import json
 import shutil
 import subprocess
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +19,7 @@ from equipoise.codegen.javascript import MOST_LINES, Script, javascript
 from equipoise.codegen.trace import FAR
 from equipoise.mechanism.assembly.linkage import assemble
 from support.batches import signals_of
-from support.chosen import DISTINCT, few
+from support.chosen import DISTINCT, few, model_of
 from support.designs import design, drawn, numbers_of
 from support.machines import make
 
@@ -34,14 +35,16 @@ process.stdout.write(Buffer.from(out.buffer));
 """
 
 
-def written() -> list[str]:
+@cache
+def written() -> tuple[str, ...]:
     """Examples that a script can be written of."""
-    return [name for name in eq.examples("linkage") if can_emit(assemble(eq.load(name)))]
+    names = eq.examples("linkage")
+    return tuple(name for name in names if can_emit(assemble(model_of(name))))
 
 
 def has_forces(name: str) -> bool:
     """Whether it has all masses, and lengths of which each can be changed alone."""
-    machine = eq.load(name)
+    machine = model_of(name)
     has_masses = all(link.has_mass for link in machine.links.values())
     return has_masses and assemble(machine).shared is None
 

@@ -8,6 +8,7 @@ import pytest
 import equipoise as eq
 from support import newton
 from support.analyses import EXAMPLES, RANDOM, Subject, agree, subject_of
+from support.chosen import model_of
 from support.conformance import compared
 from support.machines import make
 from support.poses import Array, Poses, from_motion
@@ -74,7 +75,7 @@ def test_gears_over_several_turns(kind: str) -> None:
 
 
 @compared(NEWTON, "motion of all links and points", TOLERANCE)
-@pytest.mark.parametrize("name", [name for name in EXAMPLES if not eq.load(name).cams])
+@pytest.mark.parametrize("name", [name for name in EXAMPLES if not model_of(name).cams])
 def test_example(name: str) -> None:
     """Only the branch at crank angle 0 is taken from the motion itself."""
     subject = subject_of(name)

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Container, Iterable
+from functools import cache
 from typing import Any
 
 import pytest
+
+import equipoise as eq
 
 EXHAUSTIVE = pytest.mark.exhaustive
 DISTINCT = (
@@ -32,6 +35,12 @@ DISTINCT = (
     "riding-transplanter",  # on mounts, with rows
 )
 """Bundled linkages of which each can do what no other of them can."""
+
+
+@cache
+def model_of(name: str) -> eq.Machine:
+    """A bundled linkage, read once while tests are collected, by which its tests are chosen."""
+    return eq.load(name)
 
 
 def drawn(examples: int) -> int:

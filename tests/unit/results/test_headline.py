@@ -18,7 +18,7 @@ from equipoise.present.pages import page
 from equipoise.quantities import parse
 from equipoise.results.blocks import Facts, Text
 from equipoise.results.yardsticks import assess, verdict
-from support.chosen import EXHAUSTIVE
+from support.chosen import EXHAUSTIVE, model_of
 from support.findings import findings_of, report_of
 from support.languages import COMPLETE
 
@@ -69,7 +69,7 @@ SLOW = {
 """Half of what all commands take; others show the same on every change."""
 COMMANDS = [
     *(("analyze", one) for one in (*LINKAGES, *ADVISED)),
-    *(("respond", name) for name in LINKAGES if eq.load(name).support is not None),
+    *(("respond", name) for name in LINKAGES if model_of(name).support is not None),
     *(("balance", one) for one in ADVISED),
     *(("balance", name) for name in ("balance-geared-a", "balance-shafts", "cam-pusher",
                                      "exudyn-slider-crank", "hydraulic-loader", "sieve",
