@@ -35,10 +35,12 @@ else:
     ) -> Any:
         """As `dataclasses.dataclass`; those that are not frozen are left to it."""
 
-        def made(cls: type) -> type:
+        def decorate(cls: type) -> type:
             if not frozen:
                 return dataclasses.dataclass(cls, init=init, repr=repr, eq=eq, **others)
-            cls.__doc__ = cls.__doc__ or cls.__name__  # where it lacks, a signature is made of it
+            cls.__doc__ = (
+                cls.__doc__ or cls.__name__
+            )  # where it lacks, a signature is decorate of it
             cls = dataclasses.dataclass(cls, init=False, repr=False, eq=False, **others)
             own = fields(cls)
             methods: dict[str, Any] = _protected(cls, frozenset(item.name for item in own))
@@ -55,7 +57,7 @@ else:
                     setattr(cls, name, method)
             return cls
 
-        return made if cls is None else made(cls)
+        return decorate if cls is None else decorate(cls)
 
     class remembered(property):
         """A property that is computed once, and kept by its name in the object's ``memory``: a dict
@@ -113,11 +115,11 @@ def _constructor(cls: type) -> Callable[..., None]:
     for item in fields(cls):
         known |= {f"_default_{item.name}": item.default, f"_make_{item.name}": item.default_factory}
     inner = f" def __init__({', '.join(['self', *parameters])}):\n" + "\n".join(lines or ["  pass"])
-    text = f"def made({', '.join(known)}):\n{inner}\n return __init__"
-    made: dict[str, Any] = {}
+    text = f"def factory({', '.join(known)}):\n{inner}\n return __init__"
+    factory: dict[str, Any] = {}
     module = sys.modules.get(cls.__module__)  # where names of types are looked up
-    exec(text, {} if module is None else vars(module), made)
-    function = made["made"](**known)
+    exec(text, {} if module is None else vars(module), factory)
+    function = factory["factory"](**known)
     function.__qualname__ = f"{cls.__qualname__}.__init__"
     function.__module__ = cls.__module__
     function.__annotations__ = {item.name: item.type for item in own} | {"return": None}
@@ -133,8 +135,8 @@ def _parameter(item: Field[Any]) -> str:
 def _value(item: Field[Any]) -> str:
     if item.default_factory is MISSING:
         return item.name
-    made = f"_make_{item.name}()"
-    return f"{made} if {item.name} is _factory else {item.name}" if item.init else made
+    factory = f"_make_{item.name}()"
+    return f"{factory} if {item.name} is _factory else {item.name}" if item.init else factory
 
 
 def _protected(cls: Any, names: frozenset[str]) -> dict[str, Any]:

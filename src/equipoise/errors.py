@@ -354,7 +354,7 @@ def _is_misspelt(given: str, name: str) -> bool:
     return _edits(given, name) <= max(few, len(name) // LETTERS_RIGHT)
 
 
-def _edits(one: str, other: str) -> int:
+def _edits(first: str, other: str) -> int:
     """Letters to insert, delete, replace or swap with the next to make one text of another: the
     restricted distance of Damerau, "A technique for computer detection and correction of spelling
     errors", 1964.
@@ -362,11 +362,11 @@ def _edits(one: str, other: str) -> int:
     earlier: list[int] = []
     before: list[int] = []
     row: list[int] = [*range(len(other) + 1)]
-    for i, letter in enumerate(one, 1):
+    for i, letter in enumerate(first, 1):
         earlier, before, row = before, row, [i]
         for j, wanted in enumerate(other, 1):
             cost = min(before[j] + 1, row[-1] + 1, before[j - 1] + (letter != wanted))
-            if i > 1 and j > 1 and one[i - 2 : i] == wanted + other[j - 2]:
+            if i > 1 and j > 1 and first[i - 2 : i] == wanted + other[j - 2]:
                 cost = min(cost, earlier[j - 2] + 1)
             row.append(cost)
     return row[-1]

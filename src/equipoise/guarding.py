@@ -147,7 +147,7 @@ def _wrong(value: Any, parameter: Parameter, function: Callable[..., Any]) -> st
         if kind.startswith(NUMBERS):
             accepts, words = _may_be_numbers, "numbers"
         elif accepts is None and (choices := _choices(kind, function)):
-            accepts, words = (lambda one: isinstance(one, str)), f"one of {', '.join(choices)}"
+            accepts, words = (lambda text: isinstance(text, str)), f"one of {', '.join(choices)}"
         if kind in classes or (accepts is not None and accepts(value)):
             return ""
         if accepts is None:

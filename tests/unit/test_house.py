@@ -122,6 +122,40 @@ def test_a_class_name_means_one_thing() -> None:
     assert {name for name, count in Counter(names).items() if count > 1} == set()
 
 
+VAGUE = frozenset(
+    [
+        "beside",
+        "drawn",
+        "found",
+        "heard",
+        "held",
+        "kept",
+        "made",
+        "more",
+        "near",
+        "one",
+        "seen",
+        "shaken",
+        "together",
+        "told",
+    ]
+)
+"""Words that say what was done to a thing, or where it is, and not what it is."""
+
+
+def test_names_say_what_a_thing_is() -> None:
+    """Of modules, and of classes, functions and methods in them."""
+    named_by = ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef
+    places = [(file.stem, named(file)) for file in FILES]
+    places += [
+        (node.name, f"{named(file)}.{node.name}")
+        for file in FILES
+        for node in nodes(file)
+        if isinstance(node, named_by)
+    ]
+    assert [place for name, place in places if name.strip("_").lower() in VAGUE] == []
+
+
 def test_the_documentation_tells_these_sizes() -> None:
     told = (TOP / "CONTRIBUTING.md").read_text(encoding="utf-8")
     assert f"at most {FILE} lines; a function at most {FUNCTION} without its docstring" in told

@@ -494,7 +494,7 @@ def trace_demands(trace: Trace) -> None:
         for table, number, _ in machine.force_elements
         for wrench in trace_element(trace, table, number)
     ]
-    springs += [held for k in range(len(machine.couplings)) for held in trace_preload(trace, k)]
+    springs += [wrench for k in range(len(machine.couplings)) for wrench in trace_preload(trace, k)]
     in_soil = [*trace_soil(trace)]
     if machine.has_planes:
         element_forces = ([force for _, force, _ in wrenches] for wrenches in (loads, springs))
@@ -502,10 +502,12 @@ def trace_demands(trace: Trace) -> None:
     _on_frame(trace, "shaking", moving)
     each = zip(machine.loads, loads, strict=True)
     soil = [wrench for *_, wrench in in_soil]
-    outer = [held for load, held in each if load.reaction is None] + soil
+    outer = [wrench for load, wrench in each if load.reaction is None] + soil
     _on_frame(trace, "frame", [*moving, *weights, *outer])
     for link in trace.linkage.joints.bodies[1:]:
-        parts = [held for held in (*moving, *weights, *loads, *soil, *springs) if held[0] == link]
+        parts = [
+            wrench for wrench in (*moving, *weights, *loads, *soil, *springs) if wrench[0] == link
+        ]
         force, moment = demand_names(link)
         state[force] = sum(force for _, force, _ in parts)
         state[moment] = sum(moment for _, _, moment in parts)

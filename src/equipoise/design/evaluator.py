@@ -212,8 +212,8 @@ def _compute(packed: bytes, chunk: Any) -> Any:
 @lru_cache(maxsize=2)
 def _load_function(packed: bytes) -> Callable[[Any], Any]:
     """What computes, made once in a process."""
-    made: Callable[[Any], Any] = pickle.loads(packed)()
-    return made
+    compute: Callable[[Any], Any] = pickle.loads(packed)()
+    return compute
 
 
 # -- on this machine -------------------------------------------------------------------------------

@@ -171,8 +171,8 @@ def with_lifts(machine: Machine, values: Sequence[tuple[Lift, float]], **changes
         closed(gear, points) if number in touched else gear
         for number, gear in enumerate(draft.gears)
     )
-    made = {"frame": points[FRAME], "links": links, "gears": gears}
-    return replace(machine, **{**made, **changes})
+    fields_of_draft = {"frame": points[FRAME], "links": links, "gears": gears}
+    return replace(machine, **{**fields_of_draft, **changes})
 
 
 def joined(machine: Machine, name: str) -> Lift | None:

@@ -164,8 +164,8 @@ def _in_a_cycle(moving: Moving) -> int:
 
 
 def _cycle(pieces: Sequence[Moving], colors: Colors) -> Iterator[Array]:
-    together = zip(*(draw_frames(piece, colors) for piece in pieces), strict=True)
-    frames = (parts[0] if len(parts) == 1 else np.vstack(parts) for parts in together)
+    frame_parts = zip(*(draw_frames(piece, colors) for piece in pieces), strict=True)
+    frames = (parts[0] if len(parts) == 1 else np.vstack(parts) for parts in frame_parts)
     if pieces[0].stage.closed:
         return frames
     there = list(frames)

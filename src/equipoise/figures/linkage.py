@@ -240,7 +240,9 @@ def rolling(analysis: Analysis) -> list[str]:
     turning = {name for name in free if np.ptp(motion.links[name].angle) > STILL}
     names = [name for name in free if name in turning and f"{name}/{FRAME}" in pairs(machine)]
     box = Scene.of(motion).box
-    return [name for name in names if np.isfinite(_near(_fixed_centrode(motion, name), box)).any()]
+    return [
+        name for name in names if np.isfinite(_closest(_fixed_centrode(motion, name), box)).any()
+    ]
 
 
 def _fixed_centrode(motion: Motion, link: str) -> Array:
@@ -248,7 +250,7 @@ def _fixed_centrode(motion: Motion, link: str) -> Array:
     return instant_center(motion, f"{link}/{FRAME}")
 
 
-def _near(places: Array, box: tuple[complex, complex]) -> Array:
+def _closest(places: Array, box: tuple[complex, complex]) -> Array:
     """Places, m, without those that are too far from a box to be drawn with it."""
     low, high = box
     far = np.abs(places - (low + high) / 2) >= BEYOND * abs(high - low)
@@ -266,9 +268,9 @@ def centrodes(analysis: Analysis, links: Sequence[str] | None = None) -> Chart:
     panels = []
     for name in names:
         link, base = motion.links[name], motion.points[motion.linkage.anchors[name]].place
-        fixed = _near(_fixed_centrode(motion, name), scene.box)
+        fixed = _closest(_fixed_centrode(motion, name), scene.box)
         turn = np.exp(1j * (link.angle[k] - link.angle))
-        moving = _near(base[k] + (fixed - base) * turn, scene.box)
+        moving = _closest(base[k] + (fixed - base) * turn, scene.box)
         curves = (
             Curve.of(np.append(fixed, fixed[:1]), say("fixed centrode"), "several 1"),
             Curve.of(np.append(moving, moving[:1]), say("moving centrode"), "several 2"),

@@ -73,14 +73,14 @@ def preloads_to_hold(machine: Machine) -> Iterator[Note]:
         return
     present = forces(move(machine, PER_TURN))
     speed = abs(machine.drive.speed)
-    held = {item.cam.name for item in let_go(present) if item.speed >= speed}
+    at_speed = {item.cam.name for item in let_go(present) if item.speed >= speed}
     for item in let_go(present):
         changes = []
         for number, spring in enumerate(machine.springs if item.ranges else ()):
             if spring.stiffness is not None and (added := _needed(present, item.cam, number)):
                 changes.append((abs(added), (spring.preload or 0.0) + added, number))
         for _, preload, number in sorted(changes):
-            if _holds(_with_preload(machine, number, preload), held | {item.cam.name}):
+            if _holds(_with_preload(machine, number, preload), at_speed | {item.cam.name}):
                 spring = machine.springs[number]
                 yield Note(
                     "a preload of {preload} instead of {given} of the spring from {point} to {to} "
@@ -115,9 +115,9 @@ def _needed(present: Forces, cam: Cam, number: int) -> float:
     It is rounded away from 0 to two digits: between samples the force is a little lower.
     """
     machine = present.motion.machine
-    more = _with_preload(machine, number, (machine.springs[number].preload or 0.0) + 1.0)
+    preloaded = _with_preload(machine, number, (machine.springs[number].preload or 0.0) + 1.0)
     normal = present.cams[cam.name].normal
-    per_newton = forces(move(more, PER_TURN)).cams[cam.name].normal - normal
+    per_newton = forces(move(preloaded, PER_TURN)).cams[cam.name].normal - normal
     acts = np.abs(per_newton) > LEAST_EFFECT
     if np.any(normal[~acts] < 0):
         return 0.0

@@ -129,15 +129,17 @@ class AnalysisOutputs:
         self._outputs: dict[str, AnalysisOutput] = {}
         for _, group in groupby(had, key=lambda declaration: declaration.group):
             own = []
-            for one in group:
-                who = one.items or one.members
+            for declaration in group:
+                who = declaration.items or declaration.members
                 if who not in members:
-                    members[who] = dict.fromkeys(one.items_of(named))
-                own.append((one, members[who]))
+                    members[who] = dict.fromkeys(declaration.items_of(named))
+                own.append((declaration, members[who]))
             for item in dict.fromkeys(item for _, items in own for item in items):
-                for one, items in own:
+                for declaration, items in own:
                     if item in items:
-                        self._outputs[one.named(item)] = AnalysisOutput(one, item, analysis)
+                        self._outputs[declaration.named(item)] = AnalysisOutput(
+                            declaration, item, analysis
+                        )
 
     def __iter__(self) -> Iterator[AnalysisOutput]:
         return iter(self._outputs.values())

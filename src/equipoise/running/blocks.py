@@ -174,12 +174,12 @@ def _flywheel(flywheel: Flywheel) -> str:
     )
     if not flywheel.inertia or not flywheel.existing:
         return sentence
-    together = say(
+    addition = say(
         "That is in addition to the flywheel of {existing} in the file: {total} in all.",
         existing=format_quantity(flywheel.existing, "inertia", "kg m^2"),
         total=format_quantity(flywheel.total, "inertia", "kg m^2"),
     )
-    return f"{sentence} {together}"
+    return f"{sentence} {addition}"
 
 
 def _figures(run: Run) -> Iterator[str]:

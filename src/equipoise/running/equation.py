@@ -174,9 +174,9 @@ class CrankEquation:
         values = [source.sliding_torque(columns[part], speed, sense, factors)
                   for source, part in each if source is not self.friction]  # fmt: skip
         if self.friction is not None:
-            beside = columns[0], np.asarray(sum(values, start=driving))
+            others = columns[0], np.asarray(sum(values, start=driving))
             values.append(
-                self.friction.torque_beside(columns[self.slices[-1]], speed, sense, factors, beside)
+                self.friction.torque_beside(columns[self.slices[-1]], speed, sense, factors, others)
             )
         return np.array(values) if values else np.zeros((0, *np.shape(speed)))
 

@@ -317,12 +317,12 @@ class Integration:
             return "stall" if pushes else "standstill", sense
         return "stall" if self.driver.on and net * self.driver.sense < 0 else "", sense
 
-    def _let_go(self, held: Instant, free: Instant) -> Instant:
+    def _let_go(self, at_rest: Instant, free: Instant) -> Instant:
         """The instant between two from which a crank at rest is held no longer."""
-        while free.time - held.time > RESTING * free.time:
-            middle = replace(held, time=(held.time + free.time) / 2)
+        while free.time - at_rest.time > RESTING * free.time:
+            middle = replace(at_rest, time=(at_rest.time + free.time) / 2)
             if self._held_by(middle)[0]:
-                held = middle
+                at_rest = middle
             else:
                 free = middle
         return free

@@ -28,8 +28,8 @@ class StateChanges:
         if reply.content["type"] != "state":
             return reply
         last, self._last = self._last, reply.content
-        kept = {key: reply.content[key] for key in ALWAYS}
-        return Reply(kept | changes(last, reply.content), reply.buffer)
+        always = {key: reply.content[key] for key in ALWAYS}
+        return Reply(always | changes(last, reply.content), reply.buffer)
 
 
 def changes(before: Values, now: Values) -> Values:

@@ -227,7 +227,9 @@ def _opened(path: str | os.PathLike[str]) -> tuple[ImportFormat, Any]:
     root: Element = tree_of(text)
     kind = next((item for item in FORMATS.values() if item.root and item.root == root.tag), None)
     if kind is None:
-        known = ", ".join(f"<{one.root}>" for one in FORMATS.values() if one.root)
+        known = ", ".join(
+            f"<{kind_of_file.root}>" for kind_of_file in FORMATS.values() if kind_of_file.root
+        )
         raise ModelError(
             "",
             Note(

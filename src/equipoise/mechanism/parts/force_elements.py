@@ -440,8 +440,8 @@ def _wrong_table(where: str, load: Load, forces: bool) -> Iterator[ModelError]:
 def _wrong_gas(where: str, load: Load) -> Iterator[ModelError]:
     """What is wrong with the keys of the pressure of a gas, in a load by it or in others."""
     if load.gas is None:
-        beside = load.bore is not None, bool(load.back_pressure), load.side != "ahead"
-        for name, given in zip(OF_GAS, beside, strict=True):
+        given_keys = load.bore is not None, bool(load.back_pressure), load.side != "ahead"
+        for name, given in zip(OF_GAS, given_keys, strict=True):
             if given:
                 yield ModelError(f"{where}.{name}", Note("goes with gas; leave it out"))
         return
