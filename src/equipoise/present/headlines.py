@@ -293,8 +293,10 @@ def kinematic(analysis: Analysis, name: str) -> str:
     if every and name == kinematics_named("transmission"):
         ends = [(item.figures.min, item.figures.max) for item in every]
         bar = analysis.four_bar
-        if analysis.machine.crank_turns and bar is not None and bar.transmission_min is not None:
-            ends.append((bar.transmission_min, bar.transmission_max))  # at angles between samples
+        if analysis.machine.crank_turns and bar is not None:
+            low_end, high_end = bar.transmission_min, bar.transmission_max
+            if low_end is not None and high_end is not None:
+                ends.append((low_end, high_end))  # at angles between samples
         low, high = (
             angle(f(pair)) for f, pair in zip((min, max), zip(*ends, strict=True), strict=True)
         )
