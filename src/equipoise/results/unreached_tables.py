@@ -30,7 +30,10 @@ def unreached_tables(motion: Motion) -> Iterator[Note]:
             continue
         ends = (low, high, first, last)
         names = ("low", "high", "first", "last")
-        shown = {name: format_quantity(end, argument.dimension) for name, end in zip(names, ends, strict=True)}
+        shown = {
+            name: format_quantity(end, argument.dimension)
+            for name, end in zip(names, ends, strict=True)
+        }
         yield Note(
             "{where}: the {label} goes from {low} to {high}, and the rows from {first} to {last}, "
             "so that none is reached; check the rows, and from where they count",

@@ -239,7 +239,7 @@ def test_a_picture_of_centrodes_has_them_and_the_whole_machine(name: str) -> Non
     low, high = Scene.of(analysis_of(name).motion).box
     for panel in charts_of(name)["centrodes"].panels:
         assert np.isfinite(places(panel)[0]).any()
-        assert panel.held == (low, high)
+        assert panel.always_shown == (low, high)
         assert not [shape for shape in panel.ground if shape.role in ("soil", "stubble", "surface")]
 
 
