@@ -264,6 +264,8 @@ def test_topics_are_listed_and_unknown_ones_refused() -> None:
         ("fluctuation", "Largest less smallest speed"),
         ("A8", "A(8): the weighted vibration"),
         ("A(8)", "A(8): the weighted vibration"),
+        ("transmission angle", "Angle between the two links that meet in a joint"),
+        ("throw", "Distance of the pin of a crank"),
     ):
         assert f"\n\n{meaning}" in succeeded(equipoise_runs("explain", term))
     assert known_topic("links.crank.section.width") == "links.NAME.section"

@@ -10,6 +10,11 @@ from equipoise.i18n import to_say
 
 _EXPOSURE = to_say("A(8): the weighted vibration of a day's work, as if it lasted eight hours.")
 
+_TRANSMISSION = to_say(
+    "Angle between the two links that meet in a joint; near 0° or 180° forces grow and the linkage "
+    "may jam."
+)
+
 TERMS = {
     to_say("A(8)"): _EXPOSURE,
     to_say("assembly mode"): to_say(
@@ -64,6 +69,11 @@ TERMS = {
     to_say("rocker"): to_say("Link that swings to and fro about a joint with the frame."),
     to_say("root mean square"): to_say("RMS: the root of the mean of the square over a cycle."),
     to_say("support"): to_say("Body on mounts that carries the machine and vibrates with it."),
+    to_say("throw"): to_say(
+        "Distance of the pin of a crank from its pivot; a force times the throw is the torque that "
+        "this force needs at most."
+    ),
+    to_say("transmission angle"): _TRANSMISSION,
 }
 """Terms of mechanisms, vibration and balancing."""
 
@@ -233,10 +243,7 @@ MEANINGS = {
     "torque of torsion spring {name}": to_say(
         "Torque with which a torsion spring turns its bodies towards its free angle."
     ),
-    "transmission angle at {name}": to_say(
-        "Angle between the two links that meet in a joint; near 0° or 180° forces grow and the "
-        "linkage may jam."
-    ),
+    "transmission angle at {name}": _TRANSMISSION,
     "travel of {name}": to_say(
         "Distance of a slider along its guide from the reference point of the guide."
     ),

@@ -307,6 +307,9 @@ def open_store(path: str | os.PathLike[str]) -> Store:
             return _opened(path, folder, group)
     except OutsideError as error:
         raise UsageError(at_place(path, error.note)) from error
+    except zarr.errors.GroupNotFoundError as error:  # whose words name an object of the code
+        none = Note("is no store of Equipoise; give the folder that equipoise sweep has made")
+        raise UsageError(at_place(path, none)) from error
     except Exception as error:  # Zarr and its codecs raise anything where a file is damaged
         raise UsageError(
             at_place(

@@ -11,7 +11,14 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.errors import ChangePointError, EquipoiseError, MotionError, RangeError, UsageError
+from equipoise.errors import (
+    ChangePointError,
+    EquipoiseError,
+    ModelError,
+    MotionError,
+    RangeError,
+    UsageError,
+)
 from equipoise.mechanism.assembly import reach
 from equipoise.mechanism.kinematics.swinging import swing
 from equipoise.mechanism.parts.machine import FRAME
@@ -395,6 +402,13 @@ def test_angles_that_are_no_numbers(angles: object) -> None:
 def test_speeds_must_be_those_of_machines(key: str, rate: float) -> None:
     with np.errstate(all="ignore"), pytest.raises(UsageError):
         eq.analyze(crank_rocker(), 4, **{key: rate})
+
+
+def test_speeds_of_a_range_have_the_sign_of_the_speed() -> None:
+    """Negative ones were refused without a word of that, where the crank turns clockwise."""
+    with pytest.raises(ModelError, match=r"speeds\[1\]: got .*; give both as more than 0; they"):
+        crank_rocker().with_drive(speed=-30.0, speeds=(-20.0, -40.0))
+    assert crank_rocker().with_drive(speed=-30.0, speeds=(20.0, 40.0)).drive.range == (-20, -40)
 
 
 def test_one_angle_and_one_number() -> None:

@@ -168,7 +168,7 @@ def incomplete(path: Path) -> None:
     [
         (lambda path: None, "there is no such store; make it by: equipoise sweep"),
         (Path.touch, "a store is a folder; of a study file it is made by: equipoise sweep"),
-        (Path.mkdir, "is no store of Equipoise"),
+        (Path.mkdir, "is no store of Equipoise; give the folder that equipoise sweep has made"),
         (other_group, "is no store of Equipoise"),
         (torn, "is no store of Equipoise"),
         (incomplete, "is no store of Equipoise"),

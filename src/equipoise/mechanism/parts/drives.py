@@ -131,6 +131,7 @@ class Drive(Pushing, Frozen):
         default=(),
         example=["150 rpm", "240 rpm"],
         above=0,
+        why=Note("give both as more than 0; they count in the direction of speed"),
     )
     motion: AngleLaw | None = key(
         KeyTable(AngleLaw, headed=True),
