@@ -6,6 +6,7 @@ import gzip
 import os
 import re
 import shutil
+import threading
 from io import BytesIO
 from pathlib import Path
 from zipfile import ZipFile
@@ -20,7 +21,7 @@ from equipoise.web.bytecode import find_node
 from equipoise.web.gallery import titles
 from equipoise.web.site import Site, write_site
 from support.chosen import EXHAUSTIVE, few
-from support.host import RUNTIME, WHEELS, hosting
+from support.host import RUNTIME, WHEELS, Quiet, hosting
 
 TEXTS = re.compile(r"/equipoise_(\w+)-[^/]+\.whl")
 """A package with the catalogue of a language."""
@@ -149,6 +150,43 @@ def test_a_machine_is_changed_and_balanced_without_a_server(
     expect(keep).to_be_visible(timeout=LONGEST * 1000)
     assert not wrong
     page.close()
+
+
+class WithoutSciPy(Quiet):
+    """A host that hands out all but SciPy, until that is free."""
+
+    free = threading.Event()
+
+    def do_GET(self) -> None:
+        if "/scipy-" in self.path:
+            self.free.wait(2 * LONGEST)
+        super().do_GET()
+
+
+def test_a_balance_is_cancelled_and_begun_again(browser: Browser, hosted: Site) -> None:
+    """What it waits for is said, and a joint follows its keys meanwhile."""
+    context = browser.new_context(viewport={"width": 1280, "height": 900}, reduced_motion="reduce")
+    context.set_default_timeout(LONGEST * 1000)
+    with hosting(hosted.folder, WithoutSciPy) as address:
+        live = opened(context.new_page(), address, "yamashita-1")
+        page, joint = live.page, live.joint("B")
+        balance = page.get_by_role("button", name="Balance", exact=True)
+        balance.click()
+        loading = page.get_by_text("loading scipy, once")
+        expect(loading).to_be_visible(timeout=2 * LONGEST * 1000)  # after a second Python
+        before = joint.get_attribute("aria-valuetext") or ""
+        joint.press("ArrowRight")
+        expect(joint).not_to_have_attribute("aria-valuetext", before)
+        page.get_by_role("button", name="Cancel", exact=True).click()
+        expect(live.told("cancelled; nothing was changed")).to_be_visible()
+        expect(loading).to_be_hidden()
+        keep = page.get_by_role("button", name="Keep", exact=True)
+        expect(keep).to_be_hidden()
+        WithoutSciPy.free.set()
+        balance.click()
+        expect(keep).to_be_visible(timeout=2 * LONGEST * 1000)
+        expect(live.button("Undo")).to_be_enabled()
+    context.close()
 
 
 def test_what_was_loaded_is_used_offline(browser: Browser, host: str) -> None:

@@ -278,6 +278,19 @@ def test_figures_are_pinned_on_the_drawing(live: Live) -> None:
     expect(pins).to_be_hidden()
 
 
+def test_every_row_of_figures_is_one_line(new_page: Callable[..., Page], address: str) -> None:
+    """On a telephone, too, with its unit and the button that pins it."""
+    live = Live.open(new_page(viewport={"width": 400, "height": 900}), address)
+    rows = live.page.get_by_role("table", name="Figures", exact=True).locator("tbody tr")
+    heights = [box(row)[3] for row in rows.all()]
+    assert len(heights) == 5
+    assert max(heights) < min(heights) + 2
+    live.type(live.field("crank mass"), "400 g")  # what figures were goes below them
+    changed = live.page.locator(".readings .was").all()
+    assert changed and all(box(was)[3] < heights[0] for was in changed if was.is_visible())
+    assert live.page.evaluate(FITS)
+
+
 # -- forces of what is drawn -----------------------------------------------------------------------
 
 
