@@ -106,8 +106,8 @@ def test_a_moving_picture_says_whose_force_it_is(of_one: bool) -> None:
 
 def test_soil_reaches_both_sides_of_a_path() -> None:
     for panel in path(plant(eq.load("rotary-transplanter"))).panels:
-        assert panel.held is not None
-        ends = [corner.real for corner in panel.held]
+        assert panel.always_shown is not None
+        ends = [corner.real for corner in panel.always_shown]
         (earth,) = (shape for shape in panel.ground if shape.role == "soil")
         sides = np.real(earth.places)
         assert sides.min() < ends[0] and sides.max() > ends[1]
