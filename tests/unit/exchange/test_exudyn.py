@@ -16,6 +16,7 @@ from equipoise.mechanism.parts.support import unit_vector
 from support.conformance import compared
 from support.machines import make
 from support.rated import LAWS, LINEAR, ON_LINKS, machine_with
+from support.refusals import refused
 from support.sources import EXUDYN
 
 pytestmark = pytest.mark.skipif(find_spec("exudyn") is None, reason="not for this computer")
@@ -123,6 +124,6 @@ def test_what_a_planar_model_cannot_hold(tmp_path: Path) -> None:
     with pytest.raises(eq.EquipoiseError, match="the drive stands still"):
         eq.export(eq.load("yamashita-1").with_drive(speed=0.0), path)
     belted = make("belted_coupler", 1).machine
-    with pytest.raises(eq.EquipoiseError, match="the belt crank to wheel follows two bodies"):
+    with refused(eq.EquipoiseError, noun="belt", name="crank to wheel"):
         eq.export(belted, path)
     assert not path.exists()

@@ -15,6 +15,7 @@ from equipoise.handheld.frequencies import natural_frequencies
 from equipoise.handheld.model import Excitation, Hand, Harness, Station, Tool
 from equipoise.handheld.shaft import Section, Shaft
 from equipoise.handheld.sweep import source_of, transmit
+from support.refusals import refused
 from unit.handheld.samples import THEORIES, attached_of, bare, both, random_tool, reference, still
 
 Array = np.ndarray[Any, Any]
@@ -124,7 +125,7 @@ def test_source() -> None:
     assert source_of(replace(tool, excitations=(Excitation("e", "cutter", force=1.0),))) == "cutter"
     assert source_of(replace(tool, excitations=())) == "engine"
     assert source_of(bare(Station("b", 1.0), Station("a", 0.2))) == "a"
-    with pytest.raises(ModelError, match="there is none"):
+    with refused(ModelError, "shaft.stations"):
         source_of(bare())
 
 
@@ -137,11 +138,11 @@ def test_what_shakes_does_not_matter() -> None:
 
 
 def test_refusals() -> None:
-    with pytest.raises(ModelError, match="nothing holds the tool"):
+    with refused(ModelError, "shaft.stations"):
         transmit(bare(Station("a", 0.5, mass=1.0)), SPEEDS)
     with pytest.raises(UsageError, match="more than 0"):
         transmit(brush_cutter(), np.array([-1.0]))
-    with pytest.raises(ModelError, match="nobody"):
+    with refused(ModelError, "stations", given="nobody"):
         transmit(brush_cutter(), SPEEDS, "nobody")
 
 

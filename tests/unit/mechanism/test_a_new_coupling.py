@@ -43,6 +43,7 @@ from support.own_kinds import (
     scripted,
     with_own,
 )
+from support.refusals import refused
 from unit.mechanism.test_newton import only_loops, with_position
 
 
@@ -135,9 +136,9 @@ def test_it_is_read_written_and_refused() -> None:
     rows = f'between = ["{GEAR.driver}", "{GEAR.driven}"]\n'
     slip = r"^rollers\[1\]\.between\[1\]: .* did you mean 'rocker'"
     read_back(MACHINE, "rollers", rows, ("rocker", "rockr"), slip)
-    with pytest.raises(ModelError, match=r"^rollers\[1\]: 'counterweight' is moved already|^roll"):
+    with refused(ModelError, "rollers[1]"):
         eq.move(rolled(replace(ROLLERS, driver=GEAR.driven, driven="crank")))
-    with pytest.raises(MobilityError, match=r"mobility of the linkage is 2 \(.*\)"):
+    with refused(MobilityError, mobility="2"):
         eq.move(rolled())
 
 

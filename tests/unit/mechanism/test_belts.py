@@ -22,6 +22,7 @@ from equipoise.results.belt_blocks import slack
 from equipoise.results.blocks import Notes
 from equipoise.symbols.pieces import pieces
 from equipoise.symbols.scene import Scene
+from support import refusals
 from support.machines import make
 from unit.mechanism.build import ORIGIN, crank_rocker, heavy, machine, refused
 from unit.mechanism.test_newton import only_loops
@@ -257,12 +258,12 @@ def test_keys_of_a_belt(where: str, words: str, more: dict[str, Any]) -> None:
 
 
 def test_a_belt_that_never_closes() -> None:
-    with pytest.raises(MotionError, match=r"ratio 0\.318.* of crank to wheel is no fraction"):
+    with refusals.refused(MotionError, name="crank to wheel"):
         eq.move(belted(belt(radii=(0.1, 0.1 * pi))), 12)
 
 
 def test_gears_of_ratio_1_are_to_be_a_belt() -> None:
-    with pytest.raises(ModelError, match=r"the ratio is 1; .* take a belt, .*\[\[belts\]\]"):
+    with refusals.refused(ModelError, "gears[1]"):
         belted(gears=(eq.Gear("crank", "wheel", teeth=(20, 20), mesh="internal"),))
 
 
@@ -330,7 +331,7 @@ def test_the_guide_of_a_rack_is_hatched_away_from_its_teeth(side: Any, sense: in
 
 def test_a_file_without_racks_refuses_them(tmp_path: Path) -> None:
     given = racked(Rack("rocker", "ram", 0.07, "left"))
-    with pytest.raises(UsageError, match=r"racks\[1\]: a file of MuJoCo .* has no rack"):
+    with refusals.refused(UsageError, place="racks[1]", special="rack"):
         eq.export(given, tmp_path / "a.xml", format="mjcf")
     left = eq.export(belted(belt(tension=9.0)), tmp_path / "b.xml", format="mjcf")
     assert left == ("the tension of the belt crank to wheel, which its pins bear",)

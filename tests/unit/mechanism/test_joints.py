@@ -10,6 +10,7 @@ import equipoise as eq
 from equipoise.errors import MobilityError, ModelError
 from equipoise.mechanism.assembly.joints import structure
 from equipoise.mechanism.parts.machine import FRAME
+from support import refusals
 from unit.mechanism.build import ORIGIN, body, crank_rocker, machine, slider_crank, two_gears
 
 
@@ -135,7 +136,7 @@ def test_the_drive_turns_about_one_point_of_the_frame() -> None:
         {"A": ORIGIN, "D": (1.0, 0.0), "E": (2.0, 0.0)},
         {"crank": body(A=ORIGIN, D=(1.0, 0.0)), "one": body(E=ORIGIN), "other": body(E=ORIGIN)},
     )
-    with pytest.raises(ModelError, match="'crank' shares 2 points with the frame") as caught:
+    with refusals.refused(ModelError, "drive.link", drive="crank", pivots="2") as caught:
         eq.mechanism.assemble(given)
     assert caught.value.where == "drive.link"
 
@@ -147,7 +148,7 @@ def test_the_drive_needs_a_pivot() -> None:
         {"crank": body(B=ORIGIN)},
         sliders=(eq.Slider("crank", "B", FRAME, "A", 0.0),),
     )
-    with pytest.raises(ModelError, match="'crank' shares 0 points with the frame") as caught:
+    with refusals.refused(ModelError, "drive.link", drive="crank", pivots="0") as caught:
         eq.mechanism.assemble(given)
     assert caught.value.where == "drive.link"
 

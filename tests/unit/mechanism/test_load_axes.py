@@ -22,6 +22,7 @@ from equipoise.mechanism.dynamics.loads import work_in_cycle
 from equipoise.results.machine_blocks import model_blocks
 from equipoise.schema.writing import Writer, toml_text
 from support.own_kinds import scripted
+from support.refusals import refused
 
 RADIUS, PUSH = 0.3, 40.0
 ANGLES = 2 * np.pi * np.arange(13) / 12
@@ -194,8 +195,6 @@ def test_a_link_in_two_guides_needs_the_point_of_one() -> None:
     machine = eq.load("scotch-yoke")
     two = next(s for s in machine.sliders if sum(o.link == s.link for o in machine.sliders) == 1)
     more = replace(two, label="other", direction=two.direction + 1.0)
-    with pytest.raises(
-        ModelError, match=r"slides in several guides; give the point of one of them"
-    ):
+    with refused(ModelError, "loads[1].axes"):
         replace(machine, sliders=(*machine.sliders, more),
                 loads=(Load(two.link, two.point, (1.0, 0.0), axes="slider"),))  # fmt: skip

@@ -16,6 +16,7 @@ import pytest
 import equipoise as eq
 from equipoise.errors import ModelError
 from equipoise.mechanism.parts.machine import FRAME, LINKAGE, size_of
+from support import refusals
 from unit.mechanism.build import (
     ORIGIN,
     body,
@@ -337,7 +338,7 @@ def test_joints_of_one_name_are_refused() -> None:
     for name, link in pinned.links.items():
         points = {"piston on frame" if p == "B" else p: q for p, q in link.points.items()}
         renamed = replace(renamed, links={**renamed.links, name: replace(link, points=points)})
-    with pytest.raises(ModelError, match="two joints would be called 'piston on frame'"):
+    with refusals.refused(ModelError, "links", name="piston on frame"):
         eq.mechanism.assemble(renamed)
 
 
@@ -375,5 +376,5 @@ def test_a_number_is_changed_by_text_with_its_unit() -> None:
     moved = machine.with_number("links.crank.points.B.x", "3.4 cm")
     assert moved.links["crank"].points["B"] == pytest.approx((0.034, 0.0))
     assert machine.with_number("drive.speed", "30 rpm").drive.speed == pytest.approx(np.pi)
-    with pytest.raises(ModelError, match="mass: got '250'; the unit is missing"):
+    with refusals.refused(ModelError, "links.crank.mass", given="'250'"):
         machine.with_number("links.crank.mass", "250")

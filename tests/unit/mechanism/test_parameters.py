@@ -10,6 +10,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import MassError, UsageError
+from support.refusals import refused
 from unit.mechanism.build import ORIGIN, crank_rocker, heavy, machine
 
 OUTPUTS = ("shaking_force", "shaking_moment", "frame_force", "frame_moment", "drive_torque")
@@ -72,7 +73,7 @@ def test_about_another_point() -> None:
 
 def test_unknown_masses() -> None:
     given = crank_rocker().with_link("rocker", mass=None, center_of_mass=None, inertia=None)
-    with pytest.raises(MassError, match="missing for rocker"):
+    with refused(MassError, links="rocker"):
         eq.mechanism.regressor(eq.move(given, 4))
 
 
@@ -213,7 +214,7 @@ def test_combinations_can_be_read() -> None:
 
 
 def test_unknown_outputs() -> None:
-    with pytest.raises(UsageError, match="no output is called 'torque'"):
+    with refused(UsageError, kind="output", given="torque"):
         eq.mechanism.base_parameters(crank_rocker(), ["torque"])
-    with pytest.raises(UsageError, match="did you mean 'shaking_force'"):
+    with refused(UsageError, name="shaking_force"):
         eq.mechanism.base_parameters(crank_rocker(), ["shaking_forces"])

@@ -21,6 +21,7 @@ from equipoise.mechanism.parts.support import (
     Support,
     unit_vector,
 )
+from support import refusals
 from unit.mechanism.build import crank_rocker, refused
 
 FOUR = crank_rocker()
@@ -193,7 +194,7 @@ def test_numbers_of_mounts_gauges_and_rows() -> None:
     wrong("support.mounts", "got 201; at most 200 are computed with",
             replace(SUPPORT, mounts={**mounts, "more": MOUNT}))  # fmt: skip
     assert len(replace(FOUR, rows=(Row(),) * MOST["rows"]).rows) == 200
-    with pytest.raises(ModelError, match=r"^rows: got 201; at most 200 are used$"):
+    with refusals.refused(ModelError, "rows", rows="201", most="200"):
         replace(FOUR, rows=(Row(),) * 201)
 
 
@@ -244,5 +245,5 @@ def test_a_support_is_changed_key_by_key() -> None:
     rows = machine.with_rows([Row(), Row(pi)])
     assert rows.rows == (Row(), Row(pi))
     assert eq.mechanism.assemble(rows).cycle is cycle
-    with pytest.raises(ModelError, match=r"^support.mass: got -1 kg; give more than 0$"):
+    with refusals.refused(ModelError, "support.mass", limit="0"):
         machine.with_support(mass=-1.0)

@@ -23,6 +23,7 @@ from equipoise.schema.file_numbers import is_whole
 from equipoise.schema.numbers import from_polar
 from equipoise.schema.open_files import examples
 from equipoise.schema.template import Template
+from support.refusals import refused
 from unit.schema.samples import FOUR_BAR, SUPPORT
 from unit.schema.tool_samples import TOOL
 
@@ -199,7 +200,7 @@ def test_whole_numbers() -> None:
     machine = template.machine({"gears[2].teeth[2]": 25.0})
     assert isinstance(machine, Machine)
     assert machine.gears[1].teeth == (40, 25)
-    with pytest.raises(ModelError, match=r"gears\[2\].teeth\[2\]: got the number 24.5; give a wh"):
+    with refused(ModelError, "gears[2].teeth[2]", number=24.5):
         template.machine({"gears[2].teeth[2]": 24.5})
 
 
@@ -305,7 +306,7 @@ def test_a_linkage_of_a_tool_has_to_turn() -> None:
     path = "excitations[1].linkage.links.crank.points.B.x"
     with pytest.raises(MotionError):
         example("brush-cutter").machine({path: 1.0})
-    with pytest.raises(ModelError, match=r"excitations\[1\].linkage.links.crank.mass: got -1 kg"):
+    with refused(ModelError, "excitations[1].linkage.links.crank.mass"):
         example("brush-cutter").machine({"excitations[1].linkage.links.crank.mass": -1.0})
 
 

@@ -25,7 +25,7 @@ from equipoise.vibration.linear import around
 from equipoise.vibration.response import MODELS, Model
 from equipoise.vibration.sweep import sweep_speed
 from support.chosen import few
-from support.refusals import has_value
+from support.refusals import has_value, refused
 from unit.vibration.build import PIVOT, SPEED, Mount, block, cart, rig, rocking, short_rig, springs
 
 LINE = Motor(26.0, 6.0)
@@ -184,7 +184,7 @@ def test_missing_masses_are_all_named() -> None:
 def test_mounts_that_do_not_hold_the_machine() -> None:
     machine = springs(mounts={"a": Mount((0.0, 0.0, 0.0), direction=0.0, stiffness=1e3)})
     for model in MODELS:
-        with pytest.raises(ModelError, match=r"they do not carry the weight in .*heave"):
+        with refused(ModelError, "support.mounts", loose="heave"):
             respond(machine, SPEED, model)
 
 

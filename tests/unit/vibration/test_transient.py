@@ -18,6 +18,7 @@ from equipoise.mechanism.parts.support import Row
 from equipoise.vibration.coupled import StallError
 from equipoise.vibration.forced import respond
 from equipoise.vibration.free import Transient
+from support.refusals import refused
 from unit.mechanism.build import slider_crank
 from unit.vibration.build import DAMPING, PIVOT, SPEED, STIFFNESS, Mount, block, cart, rig
 
@@ -154,9 +155,9 @@ def test_wrong_durations(duration: float) -> None:
 def test_refusals() -> None:
     with pytest.raises(ModelError, match="the machine stands on solid ground"):
         eq.simulate(eq.load("yamashita-1"), 1.0)
-    with pytest.raises(ModelError, match=r"drive\.motor: missing"):
+    with refused(ModelError, "drive.motor"):
         eq.simulate(rig(), 1.0, drive=True)
-    with pytest.raises(ModelError, match="for motion in the plane of the drawing"):
+    with refused(ModelError, "support.freedoms"):
         eq.simulate(cart(), 1.0)
 
 

@@ -13,6 +13,7 @@ import pytest
 import equipoise as eq
 from equipoise.exchange.reading.formats import FORMATS
 from equipoise.exchange.reading.pmks import PLAIN
+from support.refusals import refused
 
 PAGE = Path(__file__).parents[4] / "docs" / "exchange.md"
 BEGIN, END = "<!-- readers -->\n", "<!-- /readers -->"
@@ -130,7 +131,7 @@ def test_blocks_that_hold_themselves_and_endless_ones_come_to_an_end(tmp_path: P
         block.add_blockref("loop", (1, 0))
     document.modelspace().add_blockref("loop", (0, 0))
     document.saveas(tmp_path / "a.dxf")
-    with pytest.raises(eq.EquipoiseError, match="blocks are nested more than 6 levels"):
+    with refused(eq.EquipoiseError, levels="6"):
         eq.import_machine(tmp_path / "a.dxf")
     document.modelspace().delete_all_entities()
     many = {"row_count": 30000, "row_spacing": 1, "column_count": 30000, "column_spacing": 1}
