@@ -172,17 +172,24 @@ HANDY = {"mass": "g", "inertia": "kg mm^2", "angular speed": "rpm", "stiffness":
 """Units of numbers of a model beside the usual ones."""
 
 
-def number_unit(dimension: str | None) -> Display:
-    """The unit in which a number of the model is told."""
+def number_unit(dimension: str | None, values: Sequence[float] | Array) -> Display:
+    """The unit in which numbers of the model are told: the handy one, or one that suits them."""
     if dimension is None:
         return Display("", 1.0)
-    return display(cast(Dimension, dimension), (), HANDY.get(dimension))
+    return display(cast(Dimension, dimension), np.asarray(values), HANDY.get(dimension))
+
+
+def _units(landscape: Landscape) -> dict[str, Display]:
+    """Of the numbers that vary, by the ranges over which they do."""
+    ranges = zip(landscape.paths, (landscape.x, landscape.y), strict=True)
+    return {path: number_unit(landscape.dimensions[path], values) for path, values in ranges}
 
 
 def told_best(landscape: Landscape) -> str:
     """The best place in a sentence."""
+    units = _units(landscape)
     places = [
-        f"{named(landscape, path)} = {_in_units(landscape, path, value, path)}"
+        f"{named(landscape, path)} = {Axis(path, units[path]).quantity(value)}"
         for path, value in zip(landscape.paths, landscape.best, strict=True)
     ]
     best = say(
@@ -198,9 +205,9 @@ def told_best(landscape: Landscape) -> str:
     return "; ".join([best, *edge])
 
 
-def _in_units(landscape: Landscape, path: str, value: float, label: str = "") -> str:
-    """A value of one of the numbers, with its unit."""
-    return Axis(label, number_unit(landscape.dimensions[path])).quantity(value)
+def _in_units(landscape: Landscape, path: str, value: float) -> str:
+    """A value of one of the numbers that are given, with its unit."""
+    return Axis("", number_unit(landscape.dimensions[path], [value])).quantity(value)
 
 
 def named(landscape: Landscape, path: str) -> str:
@@ -211,10 +218,11 @@ def named(landscape: Landscape, path: str) -> str:
 
 def landscape(result: Landscape) -> Chart:
     """Lines of equal value with their values, the least of all, and the model as it is."""
+    units = _units(result)
     x, y = (
         Axis(
             named(result, path),
-            number_unit(result.dimensions[path]),
+            units[path],
             low=float(values[0]),
             high=float(values[-1]),
         )

@@ -273,6 +273,23 @@ def test_the_least_and_the_model_are_marked_where_they_are() -> None:
     assert 3 <= len(levels) <= 13 and np.allclose(np.diff(levels), levels[1] - levels[0])
 
 
+@pytest.mark.parametrize(("most", "least", "words_of"), [(7e3, 6049.0, "6049 kg"),
+                                                         (0.5, 0.25, "250 g")])  # fmt: skip
+def test_a_number_has_a_unit_that_suits_its_range(most: float, least: float, words_of: str) -> None:
+    """The mass of a counterweight of some tonnes was told in grams, with a power of ten."""
+    smooth_map = smooth()
+    path, best = smooth_map.paths[1], (smooth_map.best[0], least)
+    of_mass = replace(
+        smooth_map,
+        dimensions={**smooth_map.dimensions, path: "mass"},
+        y=np.linspace(0.0, most, len(smooth_map.y)),
+        best=best,
+        start=None,
+    )
+    assert studies.told_best(of_mass).split(" = ")[2].startswith(words_of)
+    assert words_of in words(studies.landscape(of_mass))
+
+
 @pytest.mark.parametrize("places", [9, 31])
 def test_lines_of_equal_value_have_no_kinks(places: int) -> None:
     x, y = np.linspace(-1.0, 1.0, places), np.linspace(0.0, 3.0, places)
