@@ -709,7 +709,7 @@ def _carried(chance: random.Random, document: Document) -> None:
         "center_of_mass": ["0 mm", "100 mm"],
         "inertia": "4 kg m^2",
         "mounts": mounts,
-        "gauges": {"handle": {"point": ["-900 mm", "700 mm"]}},
+        "gauges": {"handle": {"point": ["-900 mm", "700 mm"], "exposure": "2 h"}},
     }
 
 

@@ -21,7 +21,9 @@ declared with them (`yardstick` in `mechanism.outputs.declared`):
                   wanted; the largest torque of the motor, over the mean of the drive's
     contact       of a cam: the speed of the crank, over that at which the follower lifts off
     vibration     the velocity of a gauge without a limit: RMS, over 4.5 mm/s; but where nothing
-                  moves except rotors (`results.rotors`), which may be there to shake
+                  moves except rotors (`results.rotors`), which may be there to shake, or where a
+                  hand holds the machine: the daily exposure A(8) of that hand, over the limit
+                  value of Directive 2002/44/EC
 
 A ratio of 1 is the yardstick itself.  More is large; of what a machine always has of its kind,
 more than `LARGE_FROM`: a joint carries what acts on it, and a torque without a mean swings to both
@@ -81,6 +83,17 @@ VIBRATION = 4.5e-3
 """RMS of a velocity, m/s, beyond which a machine should not run for long."""
 
 
+class HandReading(Protocol):
+    """What a hand gets that holds a support, as `HandVibration` has it."""
+
+    @property
+    def a8(self) -> float: ...
+    @property
+    def limit(self) -> float: ...
+    @property
+    def verdict(self) -> Note: ...
+
+
 class GaugeReading(Protocol):
     """What a gauge reads over a period, as `Response.gauges` has it."""
 
@@ -90,6 +103,8 @@ class GaugeReading(Protocol):
     def velocity(self) -> Any: ...
     @property
     def rotation(self) -> bool: ...
+    @property
+    def hand(self) -> HandReading | None: ...
 
 
 @dataclass(frozen=True)
@@ -717,8 +732,18 @@ def _of_motor(analysis: Analysis) -> Iterator[FigureAssessment]:
 
 
 def _of_gauge(machine: Machine, name: str, reading: GaugeReading) -> Iterator[FigureAssessment]:
-    """What a gauge reads against the limits that the file gives, or its velocity where none is."""
+    """What a gauge reads against the limits that the file gives, the daily exposure of a hand that
+    holds the machine there, or its velocity where there is neither.
+    """
     output = f"gauges.{name}"
+    if (hand := reading.hand) is not None:
+        yield FigureAssessment(
+            f"{output}.hand.a8",
+            Note("daily exposure A(8) of the hand at {name}, {verdict}", name=name,
+                 verdict=hand.verdict),
+            hand.a8, "acceleration", hand.limit, Note("limit value"), hand.a8 / hand.limit,
+            output, name, is_limit=True, shown_unit="m/s^2",
+        )  # fmt: skip
     what = DECLARED["gauges.{}"].note(name)
     dimension: Dimension = "angle" if reading.rotation else "length"
     limits = machine.balance.limits if machine.balance else ()
@@ -735,7 +760,9 @@ def _of_gauge(machine: Machine, name: str, reading: GaugeReading) -> Iterator[Fi
             f"{output}.{path}", label, value, dimension, most, Note("its limit"), ratio,
             output, name, is_limit=True,
         )  # fmt: skip
-    if known or unbalances(machine):  # a rotor's vibration may be what the machine is for
+    assert machine.support is not None
+    held = any(gauge.exposure is not None for gauge in machine.support.gauges.values())
+    if known or held or unbalances(machine):  # a rotor's vibration may be what the machine is for
         return
     rate: Dimension = "angular speed" if reading.rotation else "speed"
     most = VIBRATION / (_reach_of_support(machine) if reading.rotation else 1.0)

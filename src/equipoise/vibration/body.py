@@ -10,6 +10,7 @@ with it, by no small angle; there places and rates are arrays (3, ...) along sur
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
@@ -263,6 +264,10 @@ class Reading:
             return cls(None, np.zeros(2), 1.0 if item.axis == "pitch" else 0.0)
         arm = (np.array(item.point) - body.reference)[:2]
         return cls(np.array(unit_vector(item.direction)[:2]), arm)
+
+    def in_direction(self, direction: float) -> Reading:
+        """The same point along a direction in the plane, rad from the x axis."""
+        return replace(self, along=np.array(unit_vector(direction)[:2]))
 
     def displacement(self, place: Array) -> Array:
         """From the drawn position, m or rad."""

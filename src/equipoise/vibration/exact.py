@@ -23,6 +23,7 @@ from equipoise.results.analysis import analyze
 from equipoise.signals import GAUSS_POINTS, Array, JumpSampling, Periodic, mean
 from equipoise.vibration.body import IN_PLANE, PITCH, Reading, SupportBody
 from equipoise.vibration.coupled import TO_SETTLE, Coupled, StallError, follow, settled
+from equipoise.vibration.hand_held import hand_vibration
 from equipoise.vibration.linear import Linear, gauges_of
 from equipoise.vibration.linkages import BaseMotion, ReducedInertia, joint_forces, rows_of
 from equipoise.vibration.response import (
@@ -296,11 +297,16 @@ class ExactSolution:
         gauge_signals = {}
         for name, gauge in gauges_of(body).items():
             at = Reading.of(body, gauge)
+            along = tuple(
+                self.signal(axis.acceleration(base.place, base.rate, base.change))
+                for axis in (() if gauge.exposure is None else map(at.in_direction, (0.0, pi / 2)))
+            )
             gauge_signals[name] = GaugeSignals(
                 self.signal(at.displacement(base.place)),
                 self.signal(at.velocity(base.place, base.rate)),
                 self.signal(at.acceleration(base.place, base.rate, base.change)),
                 gauge.axis is not None,
+                hand_vibration(along, self.speed, gauge.exposure),
             )
         return gauge_signals
 

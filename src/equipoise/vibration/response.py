@@ -20,6 +20,7 @@ from equipoise.results.analysis import analyze
 from equipoise.results.declaring import NOTES, OWN, TITLE, Declarations, ResultOutput, columns_of
 from equipoise.results.result import Result
 from equipoise.signals import Array, Figures, Periodic
+from equipoise.vibration.hand_held import HandVibration
 
 Model = Literal["linear", "torque", "moment", "coupled", "exact"]
 MODELS: dict[Model, str] = {
@@ -155,12 +156,16 @@ def signal_output(meaning: str, dimension: Dimension, **options: Any) -> ResultO
 
 @dataclass(frozen=True, eq=False, repr=False)
 class GaugeSignals(Brief):
-    """What a gauge reads over a period: m, m/s and m/s2, or rad, rad/s and rad/s2."""
+    """What a gauge reads over a period: m, m/s and m/s2, or rad, rad/s and rad/s2.
+
+    hand : what a hand gets that holds the support there; None where none does.
+    """
 
     displacement: Periodic
     velocity: Periodic
     acceleration: Periodic
     rotation: bool
+    hand: HandVibration | None = None
 
     declared: ClassVar[Declarations] = {
         "quantity": ResultOutput(
@@ -173,6 +178,11 @@ class GaugeSignals(Brief):
         "velocity": signal_output("signal", "speed", turned="angular speed", column="velocity"),
         "acceleration": signal_output(
             "signal", "acceleration", turned="angular acceleration", column="acceleration"
+        ),
+        "hand": ResultOutput(
+            "vibration of a hand that holds the support there",
+            of=HandVibration.declared,
+            present="hand",
         ),
     }
 

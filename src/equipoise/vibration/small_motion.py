@@ -24,11 +24,14 @@ from equipoise.mechanism.kinematics.motion import move
 from equipoise.signals import Array, Periodic
 from equipoise.vibration.body import IN_PLANE, PITCH
 from equipoise.vibration.collocation import BoundaryConditions, Rates
+from equipoise.vibration.hand_held import hand_vibration
 from equipoise.vibration.linear import Linear, gauges_of
 from equipoise.vibration.linkages import rows_of
 from equipoise.vibration.response import DriveSignals, GaugeSignals, MountForce, Response, in_words
 from equipoise.vibration.steady import ROUGH, SAMPLES, steady
 
+ACROSS = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
+"""Directions along x, y and z."""
 NEUTRAL = 1e-9
 """Growth of a mode, beside its frequency, up to which it is rounding."""
 
@@ -48,7 +51,7 @@ def respond_linear(linear: Linear, speed: float) -> Response:
         linear.excitation.model,
         speed,
         moved.turns,
-        _gauges(linear, moved, moving, moving.derivative() * speed),
+        _gauges(linear, (moved, moving, moving.derivative() * speed), speed),
         mounts,
         linear.modes,
         DriveSignals(_torque(linear, speed), grounded=(body.machine, speed)),
@@ -57,13 +60,20 @@ def respond_linear(linear: Linear, speed: float) -> Response:
     )
 
 
-def _gauges(linear: Linear, *motion: Periodic) -> dict[str, GaugeSignals]:
-    """What gauges read of displacements, velocities and accelerations (D, K + 1)."""
-    gauge_signals = {}
+def _gauges(
+    linear: Linear, motion: tuple[Periodic, Periodic, Periodic], speed: float
+) -> dict[str, GaugeSignals]:
+    """What gauges read of displacements, velocities and accelerations (D, K + 1), at a speed of
+    the crank, rad/s.
+    """
+    gauge_signals, body = {}, linear.body
     for name, gauge in gauges_of(linear.body).items():
         row = linear.body.row(gauge)
         moved, moving, change = (linear.seen_by(row, item) for item in motion)
-        gauge_signals[name] = GaugeSignals(moved, moving, change, gauge.axis is not None)
+        axes = () if gauge.exposure is None else [replace(gauge, direction=axis) for axis in ACROSS]
+        along = tuple(linear.seen_by(body.row(axis), motion[2]) for axis in axes)
+        hand = hand_vibration(along, speed, gauge.exposure)
+        gauge_signals[name] = GaugeSignals(moved, moving, change, gauge.axis is not None, hand)
     return gauge_signals
 
 
@@ -229,7 +239,7 @@ def respond_coupled(linear: Linear, speed: float) -> Response:
     return replace(
         plain,
         model="coupled",
-        gauges=_gauges(linear, moved, moving, change),
+        gauges=_gauges(linear, (moved, moving, change), speed),
         mounts=_mounts(linear, moved, moving, speed)[0],
         motion=linear.body.whole(moved),
         residual=result.residual,

@@ -50,7 +50,7 @@ def unit_vector(direction: Direction) -> Place:
     return (0.0 if abs(x) < 1e-15 else x, 0.0 if abs(y) < 1e-15 else y, 0.0)
 
 
-OF_POINT = ("direction", "stiffness", "damping", "preload", "one_sided")
+OF_POINT = ("direction", "stiffness", "damping", "preload", "one_sided", "exposure")
 OF_AXIS = ("torsional_stiffness", "torsional_damping", "torsional_preload")
 
 
@@ -173,6 +173,16 @@ class Gauge(Frozen):
     )
     direction: Direction = key(DirectionKind(), "along which it is read", default=UP)
     axis: str | None = key(TextKind(AXES), "about which the rotation is read", default=None)
+    exposure: float | None = key(
+        "time",
+        "time a day for which a hand holds the support at the point: the machine is judged by the "
+        "daily exposure A(8) of hand and arm there, in all directions, not by ISO 20816-3",
+        default=None,
+        example="2 h",
+        above=0,
+        below=86_400,
+        word=to_say("daily exposure time"),
+    )
 
     @classmethod
     def from_table(cls, given: dict[str, Any]) -> Gauge:
@@ -211,6 +221,8 @@ def wrong_reading(where: str, item: Mount | Gauge) -> Iterator[ModelError]:
         yield ModelError(where, Note("give either point or axis"))
     if item.axis is not None and item.direction != UP:
         yield ModelError(f"{where}.direction", Note("goes with a point, not with an axis"))
+    if item.axis is not None and isinstance(item, Gauge) and item.exposure is not None:
+        yield ModelError(f"{where}.exposure", Note("goes with a point, not with an axis"))
     if isinstance(item.direction, tuple) and hypot(*item.direction) == 0:
         yield ModelError(f"{where}.direction", Note("got [0, 0, 0]; give a direction"))
 
