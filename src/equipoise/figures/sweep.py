@@ -227,7 +227,7 @@ def _chart(sweep: Sweep, name: str, what: str, panels: list[Panel]) -> Chart:
     keys = _keys(sweep, "loud")
     if np.any(~sweep.stable & np.isfinite(sweep.fluctuation)):
         keys.append(("not stable", say("not stable")))
-    what = f"{what}; {say('model {model}', model=sweep.model)}"
+    what = f"{what}; {say('{model} model', model=sweep.model)}"
     whole = (first, *panels[1:])
     return Chart(name, sweep.machine.title, what, whole, keys=tuple(keys))
 

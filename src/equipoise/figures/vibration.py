@@ -106,8 +106,8 @@ def period_told(response: Response) -> str:
     """Length of a period, speed and model in words."""
     values = {"speed": told_speed(response.speed), "model": response.model}
     if response.turns == 1:
-        return say("over one turn at {speed}; model {model}", **values)
-    return say("over {turns} turns at {speed}; model {model}", turns=response.turns, **values)
+        return say("over one turn at {speed}; {model} model", **values)
+    return say("over {turns} turns at {speed}; {model} model", turns=response.turns, **values)
 
 
 def gauge(response: Response, name: str) -> Chart:
@@ -165,7 +165,7 @@ def spectra(response: Response) -> Iterator[Chart]:
     for suffix, names in groups(every):
         what = say("Amplitude at the gauges by order") + continued(names, every)
         values = {"speed": told_speed(response.speed), "model": response.model}
-        what += ", " + say("at {speed}; model {model}", **values)
+        what += ", " + say("at {speed}; {model} model", **values)
         last = max(_last_order(response.gauges[name]) for name in names)
         panels = tuple(_bars(response.gauges[name], name, last) for name in names)
         yield Chart(f"spectrum{suffix}", response.machine.title, what, panels, min(2, len(panels)))
@@ -339,4 +339,4 @@ def _time_panel(transient: Transient, y: Axis, values: Array, **rest: Any) -> Pa
 
 def _from_rest(transient: Transient) -> str:
     turns = abs(float(transient.crank_angle[-1] - transient.crank_angle[0])) / (2 * pi)
-    return say("from rest, {turns} turns of the crank; model exact", turns=shown(turns))
+    return say("from rest, {turns} turns of the crank; exact model", turns=shown(turns))

@@ -39,8 +39,14 @@ SCALES = (0.2, 0.5, 1, 2, 5, 10, 20, 50, 100)
 """By how much smaller than true a part may be drawn; below 1 larger."""
 OFF = 12.0
 """Between a part and its widest measures, mm on paper."""
-LOWEST = 45.0
-"""mm on paper from the lower edge of the sheet to the part's middle, beside half its room."""
+MARGIN = 12.0
+"""mm on paper left, right and below all measures."""
+WRITTEN = 63.0
+"""mm on paper for ten lines of text below the upper edge, and a gap."""
+DRAWN = (SHEET[0] - 2 * MARGIN, SHEET[1] - EDGE - WRITTEN - MARGIN)
+"""Width and height of what is drawn with all its measures, mm on paper."""
+AXIS_BEFORE, AXIS_BEYOND = 0.15, 0.6
+"""Over the radius of a sector: how far the x axis is drawn on both sides of its axis."""
 
 
 def export_bytes(job: Job) -> bytes:
@@ -90,7 +96,41 @@ def scale_of(part: Part) -> float:
     low, high = (MM * corner for corner in part.box)
     size = high - low
     needed = max(size.real / ROOM[0], size.imag / ROOM[1])
-    return next((scale for scale in SCALES if scale >= needed), SCALES[-1])
+    fitting = (scale for scale in SCALES if scale >= needed and _fits(part, scale))
+    return next(fitting, SCALES[-1])
+
+
+def _fits(part: Part, scale: float) -> bool:
+    """Whether a part has room on its sheet with all its measures."""
+    low, high = _extent(part, scale)
+    size = high - low
+    return size.real <= DRAWN[0] * scale and size.imag <= DRAWN[1] * scale
+
+
+def _extent(part: Part, scale: float) -> tuple[complex, complex]:
+    """Lower left and upper right corner of a part with its measures, mm."""
+    low, high = (MM * corner for corner in part.box)
+    off = 1.5 * OFF * scale
+    if not part.arcs:
+        return low - off * (1 + 1j), high + off * (1 + 1j)
+    outer = part.arcs[0]
+    ends = outer.direction - outer.angle / 2, outer.direction + outer.angle / 2
+    center = MM * outer.center
+    course = center + (MM * outer.radius + off) * np.exp(1j * np.linspace(*ends, 181))
+    axis = center + np.array(_axis_ends(part, scale))
+    places = np.array([*course, *axis, low, high])
+    x, y = places.real, places.imag
+    return complex(np.min(x), np.min(y)), complex(np.max(x), np.max(y))
+
+
+def _axis_ends(part: Part, scale: float) -> tuple[float, float]:
+    """Where the x axis of a link begins and where its letter stands, beside a sector, mm from the
+    axis of that.
+    """
+    outer = part.arcs[0]
+    way = 1.0 if abs(outer.direction) > outer.angle / 2 else -1.0
+    reach = MM * outer.radius
+    return -AXIS_BEFORE * way * reach, way * (AXIS_BEYOND * reach + 3.0 * scale)
 
 
 def _sheet(part: Part, lines: Sequence[str]) -> Figure:
@@ -101,9 +141,9 @@ def _sheet(part: Part, lines: Sequence[str]) -> Figure:
     axes.set_axis_off()
     scale = scale_of(part)
     low, high = (MM * corner for corner in part.box)
-    middle = (low + high) / 2
     half = complex(*SHEET) * scale / 2
-    center = middle + 1j * scale * (SHEET[1] / 2 - LOWEST - ROOM[1] / 2)
+    drawn = _extent(part, scale)
+    center = (drawn[0] + drawn[1]) / 2 + 1j * scale * (SHEET[1] / 2 - MARGIN - DRAWN[1] / 2)
     axes.set_xlim(center.real - half.real, center.real + half.real)
     axes.set_ylim(center.imag - half.imag, center.imag + half.imag)
     for edges in part.edges:
@@ -152,12 +192,12 @@ def _angle(axes: Axes, part: Part, scale: float) -> None:
     at = center + rect(radius + (5.0 if align == "center" else 2.0) * scale, outer.direction)
     axes.text(at.real, at.imag, f"{in_mm(degrees(outer.angle))}°", ha=align, va="center",
               color=MAIN)  # fmt: skip
-    way = 1.0 if abs(outer.direction) > outer.angle / 2 else -1.0  # beside the part
-    reach = MM * outer.radius
-    axes.plot([center.real - 0.15 * way * reach, center.real + 0.6 * way * reach],
+    start, letter = _axis_ends(part, scale)
+    way = 1.0 if letter > 0 else -1.0
+    axes.plot([center.real + start, center.real + letter - 3.0 * scale * way],
               [center.imag] * 2, color=MAIN, linewidth=0.8, dashes=(8, 2, 1.5, 2))  # fmt: skip
-    axes.text(center.real + way * (0.6 * reach + 3.0 * scale), center.imag,
-              "x" if way > 0 else "−x", ha="center", va="center", color=MAIN)  # fmt: skip
+    axes.text(center.real + letter, center.imag, "x" if way > 0 else "−x", ha="center",
+              va="center", color=MAIN)  # fmt: skip
 
 
 def _radii(axes: Axes, part: Part, scale: float) -> None:

@@ -227,6 +227,25 @@ def test_what_is_written_keeps_the_edges_of_the_sheet() -> None:
             assert all(edge - 1 <= box.x0 and box.x1 <= figure.bbox.width - edge for box in boxes)
 
 
+@pytest.mark.parametrize("name", ["sieve", "lee-kim-c", "yamashita-rig"])
+def test_measures_of_a_workshop_drawing_are_on_the_sheet_and_below_its_text(name: str) -> None:
+    """A long sector went through the text, and the x axis over the edge of the sheet."""
+    found = findings_of(name)
+    assert isinstance(found, Findings) and found.balanced is not None
+    rounded, sizes = in_whole_sizes(found.balanced)
+    job = Job(rounded.machine, 0.0, rounded.changes, sizes=str(sizes))
+    with workshop_sheet.sheets(job) as figures:
+        assert figures
+        for figure in figures:
+            (text,), (axes,) = figure.texts, figure.axes
+            figure.draw_without_rendering()
+            lowest = text.get_window_extent().y0
+            for drawn in (*axes.lines, *axes.texts):
+                box = drawn.get_window_extent()
+                assert box.x0 > 0 and box.x1 < figure.bbox.width
+                assert box.y0 > 0 and box.y1 < lowest
+
+
 def centroid(edges: list[tuple[complex, float]]) -> complex:
     """Of an outline, from many triangles about the origin."""
     ends = zip(edges, (*edges[1:], edges[0]), strict=True)
