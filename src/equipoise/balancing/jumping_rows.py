@@ -91,7 +91,7 @@ class JumpingRows:
         return np.array([curve(theta + phase[..., None]) for (curve, _), phase in pairs])
 
     def slopes(self, phases: Array, theta: Array) -> Array:
-        """Their derivatives by the crank angle, (m, ..., P, C)."""
+        """Derivatives of the values by the crank angle, (m, ..., P, C)."""
         pairs = zip(self.curves, np.moveaxis(phases, -1, 0), strict=True)
         return np.array([slope(theta + phase[..., None]) for (_, slope), phase in pairs])
 

@@ -90,7 +90,7 @@ class ParameterSum:
 
     @property
     def text(self) -> str:
-        """Such as ``coupler.moment_x / 71.5 mm + rocker.moment_x / 80 mm``."""
+        """The condition, such as ``coupler.moment_x / 71.5 mm + rocker.moment_x / 80 mm``."""
         return self._sum(lambda term: f"{term.link}.{term.quantity}")
 
     @property

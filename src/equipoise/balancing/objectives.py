@@ -48,7 +48,7 @@ class LinearizationPoint:
 
     @cached_property
     def linear(self) -> Linear:
-        """Its support, on which linkages act with their whole force and moment."""
+        """The support, linear, on which linkages act with their whole force and moment."""
         return Linear.of(self.machine)
 
 

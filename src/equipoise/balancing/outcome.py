@@ -99,7 +99,7 @@ def _heavy(balanced: Balanced) -> Iterator[str]:
 
 
 def nothing_told(balanced: Balanced) -> Iterator[str]:
-    """That balancing brings nothing; how small the aims are, and what is proved."""
+    """Sentences that balancing brings nothing; how small the aims are, and what is proved."""
     if balanced.advice is not None:
         yield from why_nothing(balanced)
         yield from sentences_beyond_masses(balanced)

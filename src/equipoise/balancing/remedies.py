@@ -84,7 +84,7 @@ class Shapes:
     inertia: Array
 
     def subset(self, chosen: Array) -> Shapes:
-        """Those that are chosen, by flags or places (M,)."""
+        """The chosen shapes, by flags or places (M,)."""
         places = np.arange(len(self.items))[chosen]
         return Shapes([self.items[k] for k in places], self.mass[places],
                       self.moment[places], self.inertia[places])  # fmt: skip

@@ -71,7 +71,7 @@ class Sensitivity:
 
     @property
     def name(self) -> str:
-        """Such as ``coupler.center_x``."""
+        """Dotted name of the number, such as ``coupler.center_x``."""
         return f"{self.link}.{self.change}"
 
     @property
@@ -97,7 +97,7 @@ class Sensitivities(Result):
 
     @property
     def ranked(self) -> tuple[Sensitivity, ...]:
-        """Those with an effect, the largest of a change of 1 % first."""
+        """Numbers with an effect, the largest of a change of 1 % first."""
         values = [item for item in self.by_name.values() if item.has_effect]
         return tuple(sorted(values, key=lambda sensitivity: -sensitivity.percent))
 

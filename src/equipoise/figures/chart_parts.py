@@ -229,7 +229,7 @@ class SpeedCurve:
 
 
 def bounded(values: Array) -> Array:
-    """Those of some values that are numbers, and no peak without bound."""
+    """The finite ones of some values, and no peak without bound."""
     finite = values[np.isfinite(values)]
     if not finite.size:
         return finite

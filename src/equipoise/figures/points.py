@@ -299,7 +299,7 @@ def kinematics(analysis: Analysis) -> Iterator[Chart]:
 
 
 def main_kinematics(analysis: Analysis) -> list[Chart]:
-    """Those that matter most: of sliders, or driven links, on the frame; transmission angles."""
+    """The main charts: of sliders, or driven links, on the frame; transmission angles."""
     wanted = guided(analysis.machine) or pinned(analysis.machine)[:MOST_LINKS]
     names = {kinematics_named("transmission"), *map(kinematics_named, wanted)}
     return [chart for chart in kinematics(analysis) if chart.name in names]

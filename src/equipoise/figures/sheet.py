@@ -98,7 +98,7 @@ class Canvas:
 
     @property
     def words(self) -> list[Words]:
-        """Its texts."""
+        """Texts of the sheet."""
         return [item for item in self.items if isinstance(item, Words)]
 
 

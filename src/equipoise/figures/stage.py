@@ -55,7 +55,7 @@ class ForceArrow:
 
     @classmethod
     def of(cls, analysis: Analysis) -> ForceArrow:
-        """That of a machine whose masses are known."""
+        """The force arrow of a machine whose masses are known."""
         forces, of_one = analysis.forces, len(analysis.machine.rows) > 1
         return cls(forces.about, forces.shaking_force.value, of_one)
 
@@ -281,7 +281,7 @@ def rows_told(scene: Scene) -> list[str]:
 
 
 def rows_named(numbers: tuple[int, ...]) -> str:
-    """Such as ``rows 2, 3``."""
+    """Rows by their numbers in words, such as ``rows 2, 3``."""
     text = ", ".join(map(str, numbers))
     if len(numbers) == 1:
         return say("row {number}", number=text)

@@ -89,7 +89,7 @@ class ModeSwing:
 
     @classmethod
     def of(cls, scene: Scene, number: int, mode: Mode, coordinates: Sequence[str]) -> ModeSwing:
-        """That of a mode, counted from 1, of a machine whose support has some coordinates."""
+        """The swing of a mode, counted from 1, of a machine whose support has some coordinates."""
         whole = np.zeros(len(FREEDOMS), complex)
         whole[[*map(FREEDOMS.index, coordinates)]] = mode.shape
         values = (whole[:, None] * np.exp(1j * _phases(INSTANTS))).real

@@ -104,7 +104,7 @@ class DesignVariable(Frozen):
 
     @property
     def name(self) -> str:
-        """Such as ``belt harness.stiffness``."""
+        """Dotted name of the variable, such as ``belt harness.stiffness``."""
         return f"{self.station} {self.key}"
 
 

@@ -234,7 +234,7 @@ class Tool(Displayed, Frozen):
 
     @property
     def caption(self) -> str:
-        """Its title, for a line."""
+        """Title of a tool, for a line."""
         return repr(str(self.title))
 
     @classmethod

@@ -71,7 +71,7 @@ class Tube(Frozen):
 
     @property
     def material(self) -> tuple[str, Material]:
-        """Its material, and the name of that, empty where it is no known one."""
+        """Material of a piece, and the name of that, empty where it is no known one."""
         own = Material(self.youngs_modulus, self.density, self.poisson_ratio)
         return next((name for name, values in MATERIALS.items() if values == own), ""), own
 

@@ -419,7 +419,7 @@ def sweep_tool(tool: Tool, speed: Array, further: Sequence[float] = ()) -> ToolS
 
 
 def default_answers(tool: Tool) -> list[str]:
-    """Those of ``modes``, ``respond`` and ``exposure`` that the tool has what is needed for."""
+    """The answers of ``modes``, ``respond`` and ``exposure`` that the tool has the tables for."""
     if tool.operation is None or not tool.stations:
         return ["modes"]
     labels = ["exposure"] if tool.excitations and tool.grips else []

@@ -77,7 +77,7 @@ class KeyPath(tuple[str | int, ...]):
 
     @property
     def shown(self) -> str:
-        """Its text in a message, in which endless keys are cut."""
+        """Text of a path in a message, in which endless keys are cut."""
         return str(KeyPath(map(_cut, self)))
 
     def __repr__(self) -> str:

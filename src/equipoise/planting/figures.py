@@ -114,7 +114,7 @@ class GroundPath:
         return self.curve.at(turned).place.reshape(way.shape) + self.drive * way
 
     def rate(self, way: Array) -> Array:
-        """Its derivative, m, complex, as many as ways."""
+        """Derivative of `place` by `way`, m, complex, as many as ways."""
         turned = self.sense * way.reshape(1, -1)
         return self.sense * self.curve.at(turned).place_1.reshape(way.shape) + self.drive
 

@@ -404,7 +404,7 @@ class Edge:
         return kernels.cross(self.along, self.curve.at(theta).place - self.start)
 
     def slope(self, theta: Array) -> Any:
-        """Its derivative by crank angle, (P, K)."""
+        """Derivative of `side` by the crank angle, (P, K)."""
         return kernels.cross(self.along, self.curve.at(theta).place_1)
 
     def reached(self, theta: Array) -> Array:

@@ -177,7 +177,7 @@ class PlantingFigures(Result):
 
     @property
     def arms(self) -> tuple[PlantingFigures, ...]:
-        """Those of each arm, the first among them."""
+        """Planting figures of each arm, the first among them."""
         return (self, *self.further)
 
     @cached_property

@@ -152,7 +152,7 @@ def each(
     at: Sequence[float] | None = None,
     sections: Collection[str] = SECTIONS,
 ) -> Iterator[LazyPicture]:
-    """Those of some sections one by one: what only later ones need is not computed before."""
+    """Pictures of some sections one by one: what only later ones need is not computed before."""
     from equipoise.figures.style import free_name
 
     parts: dict[str, Callable[[Any], Iterator[PictureEntry]]] = {"tool": of_tool}

@@ -116,7 +116,7 @@ class Analysis(Result):
         return dwell(self.motion.linkage, name, tolerance)
 
     def dwells(self, tolerance: float, of: Dimension = "length") -> Mapping[str, Dwell]:
-        """Those of all sliders and points but the drive's, or, within an angle, of all links."""
+        """Dwells of all sliders and points but the drive's, or, within an angle, of all links."""
         drive = self.machine.drive.link
         names = [link for link in self.motion.links if link != drive]
         if of == "length":

@@ -46,7 +46,7 @@ class AnalysisOutput:
 
     @property
     def name(self) -> str:
-        """Such as ``joints.B.force_x``."""
+        """Dotted name of an output, such as ``joints.B.force_x``."""
         return self.declared.named(self.item)
 
     @property
@@ -157,7 +157,7 @@ class AnalysisOutputs:
         return self._outputs[name]
 
     def chosen(self, names: Iterable[str]) -> list[AnalysisOutput]:
-        """Those of some names, both components of what is a vector without a size.
+        """Outputs of some names, both components of what is a vector without a size.
 
         Raises
         ------
@@ -177,21 +177,21 @@ class AnalysisOutputs:
 
     @property
     def arrays(self) -> list[AnalysisOutput]:
-        """Those that stand among the arrays; the size of a vector is told by its components."""
+        """Outputs that stand among the arrays; the size of a vector is told by its components."""
         return [item for item in self if item.declared.array]
 
     @property
     def summed(self) -> list[AnalysisOutput]:
-        """Those of which the summary tells figures."""
+        """Outputs of which the summary has figures."""
         return [item for item in self if item.declared.summed]
 
     @property
     def ordered(self) -> list[AnalysisOutput]:
-        """Those that are told by orders."""
+        """Outputs of which amplitudes by order are given."""
         return [item for item in self if item.declared.ordered]
 
     def grouped(self) -> dict[str, list[AnalysisOutput]]:
-        """Those of each group of `GROUPS` that has any."""
+        """Outputs of each group of `GROUPS` that has any."""
         by_group = {group: [item for item in self if item.group == group] for group in GROUPS}
         return {group: ones for group, ones in by_group.items() if ones}
 

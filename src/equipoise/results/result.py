@@ -264,9 +264,9 @@ class Result(Displayed):
         }
 
     def to_dataset(self) -> xarray.Dataset:
-        """Its arrays as an `xarray.Dataset`, by dotted path along their abscissae; loads xarray.
+        """Arrays of a result as an `xarray.Dataset`, by dotted path along their abscissae.
 
-        Everything else is told as attributes.
+        Everything else is an attribute.  Loads xarray.
         """
         import xarray
 

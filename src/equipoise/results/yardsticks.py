@@ -204,7 +204,7 @@ class FigureAssessment:
 
     @property
     def excess(self) -> float:
-        """Its ratio over that from which it is large, by which figures are ranked."""
+        """Ratio of a figure over that from which it is large, by which figures are ranked."""
         return self.ratio / self.large_from
 
     @property

@@ -100,7 +100,7 @@ class Friction(Source):
 
     @cached_property
     def joints(self) -> tuple[RubbingJoint, ...]:
-        """Those of all rows, one row after the other."""
+        """Friction joints of all rows, one row after the other."""
         return rubbing_joints(assemble(self.machine)) * self.rows
 
     @cached_property
@@ -187,7 +187,7 @@ class Friction(Source):
     # -- on the crank ------------------------------------------------------------------------------
 
     def torque(self, columns: Array, speed: Array, factors: Factors) -> Array:
-        """It depends on more: see `torque_beside`."""
+        """Raise `NotImplementedError`: friction needs more, see `torque_beside`."""
         raise NotImplementedError
 
     def torque_beside(

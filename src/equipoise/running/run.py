@@ -57,7 +57,7 @@ class LastCycle:
 
     @property
     def energy_per_turn(self) -> float:
-        """That the drive gives in a turn of the crank, J."""
+        """Energy that the drive gives in a turn of the crank, J."""
         return self.energy / self.turns
 
     @property

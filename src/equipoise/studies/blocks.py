@@ -151,7 +151,7 @@ def designs_table(
 
 
 def wanted(by: Mapping[str, Make], units: Units | None) -> str:
-    """Such as ``vertical smallest, swing largest``."""
+    """Goals in words, such as ``vertical smallest, swing largest``."""
     ways = {"smallest": say("smallest"), "largest": say("largest")}
     return say(", ").join(f"{unit_in(units, name).called} {ways[way]}" for name, way in by.items())
 

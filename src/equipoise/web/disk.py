@@ -64,7 +64,7 @@ class Disk:
         return {"name": self.name, "saved": self.model == model, "comments": self.has_comments}
 
     def reply(self, seq: int | None, text: str) -> Reply:
-        """That it is saved; `text` is the model that the page's steps began with."""
+        """The reply that a file is saved; `text` is the model that the page's steps began with."""
         saved = {"name": self.name, "base": self.base, "text": text}
         return Reply({"type": "saved", "seq": seq, **saved})
 

@@ -121,7 +121,7 @@ class Interactive:
 
     @cached_property
     def outputs(self) -> list[AnalysisOutput]:
-        """Those that a script can have, and what all rows have together."""
+        """Outputs that a script can have, and what all rows have together."""
         outputs = {
             output.name: output
             for output in self.analysis.outputs

@@ -191,7 +191,7 @@ class Bushing(BetweenPoints, RatedElement):
                 yield number >= 0
 
     def sentence(self) -> Note:
-        """Its stiffness, or damping where it has none, preload and ends, for a report."""
+        """Stiffness of a bushing, or damping where it has none, preload and ends, for a report."""
         ends = {"point": self.point, "link": self.link, "to": self.to, "on": self.on}
         if not any((*self.stiffness, *self.damping)):
             return Note(

@@ -194,7 +194,7 @@ class Cam(Coupling):
         of_mesh(table)
 
     def sentence(self) -> Note:
-        """Its bodies."""
+        """Bodies of a cam."""
         return Note(
             "Cam: {cam} moves {follower} on {carrier}",
             cam=Note("frame") if self.driver == FRAME else self.driver,

@@ -98,7 +98,7 @@ class CircularSlot(JointKind):
             yield (wide > 0) & (wide < 2 * pi)
 
     def sentence(self) -> Note:
-        """Its radius, its pin and its bodies, for a report."""
+        """Radius of a circular slot, its pin and its bodies, for a report."""
         radius = format_quantity(self.radius, "length")
         return Note("Circular slot: {point} of {link} at {radius} from {center} of {on}",
                     point=self.point, link=self.link, radius=radius, center=self.center,

@@ -172,7 +172,7 @@ class Coupling(PartKind):
 
     @property
     def label(self) -> Note:
-        """Its name, by which it is told from others."""
+        """Name of a coupling, different from that of any other."""
         return Note("{name}", name=self.name)
 
     @property
@@ -373,7 +373,7 @@ class Turning(Coupling):
         return {"between": (value.driver, value.driven), **super().to_table(value)}
 
     def sentence(self) -> Note:
-        """Its bodies and the ratio of their speeds."""
+        """Bodies of a coupling and the ratio of their speeds."""
         low, high = self.ratios
         named = {
             "what": self.heading,

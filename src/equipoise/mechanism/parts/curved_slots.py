@@ -192,7 +192,7 @@ class CurvedSlot(JointKind):
         )
 
     def sentence(self) -> Note:
-        """Its length, its pin and its bodies, for a report."""
+        """Length of a curved slot, its pin and its bodies, for a report."""
         return Note("Curved slot: {point} of {link} on a curve of {length} in {on}",
                     point=self.point, link=self.link, on=self.on,
                     length=format_quantity(self.curve.length, "length"))  # fmt: skip

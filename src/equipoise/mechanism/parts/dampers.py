@@ -126,7 +126,7 @@ class Damper(BetweenPoints, Damping):
         return length, way, kernels.dot(way, apart_rate)
 
     def ways(self, at: Placed) -> tuple[tuple[Any, Any], ...]:
-        """Its length, m, with the speed with which that grows, m/s."""
+        """Length of a damper, m, with the speed with which that grows, m/s."""
         length, _, speed = self._line(at)
         return ((length, speed),)
 
@@ -138,7 +138,7 @@ class Damper(BetweenPoints, Damping):
         yield self.on, self.to, -force, 0.0
 
     def values(self, at: Placed) -> Mapping[str, Any]:
-        """Its pull, N, the speed with which it lengthens, m/s, and the power that it takes, W."""
+        """Pull of a damper, N, its lengthening speed, m/s, and the power that it takes, W."""
         _, _, speed = self._line(at)
         pull = self.resistance(speed)
         return {"pull": pull, "speed": speed, "loss": pull * speed}
@@ -159,7 +159,7 @@ class Damper(BetweenPoints, Damping):
         yield from self.wrong_law(where, given_twice, uneven)
 
     def sentence(self) -> Note:
-        """Its damping and its ends, for a report."""
+        """Damping of a damper and its ends, for a report."""
         ends = {"point": self.point, "link": self.link, "to": self.to}
         if self.damping is None:
             return Note("Damper: by a table, from {point} of {link} to {to}", **ends)

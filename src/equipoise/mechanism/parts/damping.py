@@ -18,7 +18,7 @@ ZERO = 1e-9
 
 
 def one_law(efforts: str) -> Conditions:
-    """That a damper has one way of giving its resistance; efforts : key of the list of them."""
+    """Check that a damper gives its resistance in one way; efforts : key of the list of them."""
     return {
         "oneOf": [
             {**needs("damping"), **lacks("speeds", efforts, "table")},

@@ -218,7 +218,7 @@ class FurtherDrive(Pushing, Frozen):
     stroke: LengthLaw | None = _stroke()
 
     def turned(self, crank_angle: Any) -> tuple[Any, Any, Any]:
-        """Its angle at crank angles (...), and its two derivatives by them."""
+        """Angle of a driven link at crank angles (...), and its two derivatives by them."""
         if self.motion is not None:
             return self.motion.value(crank_angle)
         return self.ratio * crank_angle + self.start, self.ratio, 0.0

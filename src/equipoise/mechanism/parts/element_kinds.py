@@ -145,7 +145,7 @@ class Element(PartKind):
 
     @abstractmethod
     def values(self, at: Placed) -> Mapping[str, Any]:
-        """Its outputs by name."""
+        """Outputs of a force element by name."""
 
     @classmethod
     def declare_outputs(cls, table: str) -> None:

@@ -230,7 +230,7 @@ class Load(Frozen):
 
     @cached_property
     def rows(self) -> LoadTable | None:
-        """Its force, in its axes, or torque over the crank angle; None of a constant load."""
+        """Force of a load, in its axes, or torque over the crank angle; None of a constant load."""
         if self.gas is None or self.bore is None:
             return self.table
         area = pi / 4 * self.bore**2 * (-1 if self.side == "ahead" else 1)
@@ -380,7 +380,7 @@ class Motor(Frozen):
 
     @property
     def smooth_curve(self) -> InductionMotor | None:
-        """Its curve where that is no sequence of straight lines: ``torque`` by speed, and
+        """Curve of a motor where that is no sequence of straight lines: ``torque`` by speed, and
         ``speed_at`` a torque, up to ``synchronous_speed``.
         """
         return self.induction

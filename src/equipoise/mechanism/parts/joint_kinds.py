@@ -124,7 +124,7 @@ class JointKind(Element):
 
     @property
     def label(self) -> Note:
-        """Its name, by which it is told from others."""
+        """Name of a joint, different from that of any other."""
         return Note("{name}", name=self.name)
 
     def problems(self, where: str, bodies: Bodies) -> Iterator[ModelError]:

@@ -178,7 +178,7 @@ class Rack(Coupling):
         yield is_pressure_angle(self.pressure_angle)
 
     def sentence(self) -> Note:
-        """Its bodies and the radius of its pinion."""
+        """Bodies of a rack and the radius of its pinion."""
         return Note(
             "Rack: {driver} drives {driven} on {carrier}, pitch radius {radius}",
             driver=self.driver,

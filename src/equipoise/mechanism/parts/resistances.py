@@ -220,8 +220,8 @@ class Resistance(BetweenPoints, RatedElement):
         yield self.on, self.to, -force, -cross(arm, force)
 
     def values(self, at: Placed) -> Mapping[str, Any]:
-        """Its size, N, the speed that it resists, m/s, along its direction where it has one, and
-        the power that it takes, W.
+        """Size of a resistance, N, the speed that it resists, m/s, along its direction where it has
+        one, and the power that it takes, W.
         """
         ways = self.ways(at)
         (_, along), (_, across) = ways

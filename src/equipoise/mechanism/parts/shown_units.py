@@ -64,7 +64,7 @@ class ShownUnits(Frozen):
 
     @property
     def by_dimension(self) -> dict[Dimension, str]:
-        """Those that are given, as `equipoise.quantities.showing` takes them."""
+        """The given units, as `equipoise.quantities.showing` takes them."""
         return {_dimension(name): unit for name, unit in self._given().items()}
 
 

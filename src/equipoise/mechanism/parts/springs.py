@@ -200,7 +200,7 @@ class Spring(BetweenPoints, ForceElement):
         return TableArgument(Note("length"), "length", lengths, kernels.length(to - place))
 
     def values(self, at: Placed) -> Mapping[str, Any]:
-        """Its length, m, and its pull, N, less than 0 where it pushes."""
+        """Length of a spring, m, and its pull, N, less than 0 where it pushes."""
         place, to = self.ends(at)
         length = kernels.length(to - place)
         return {"length": length, "pull": self._pull(length)}
@@ -240,7 +240,7 @@ class Spring(BetweenPoints, ForceElement):
             yield ModelError(at, Note("a length cannot be negative, give 0 or more"))
 
     def sentence(self) -> Note:
-        """Its stiffness and its ends, for a report."""
+        """Stiffness of a spring and its ends, for a report."""
         ends = {"point": self.point, "link": self.link, "to": self.to}
         if self.stiffness is None:
             return Note("Spring: by a table, from {point} of {link} to {to}", **ends)

@@ -127,7 +127,7 @@ class Stop(BetweenPoints, RatedElement):
         return elastic if dissipation is None else elastic * positive(1.0 - dissipation * opening)
 
     def ways(self, at: Placed) -> tuple[tuple[Any, Any], ...]:
-        """Its gap, m, and the speed with which that grows, m/s."""
+        """Gap of a stop, m, and the speed with which that grows, m/s."""
         _, _, gap, opening = self._contact(at)
         return ((gap, opening),)
 
@@ -144,7 +144,7 @@ class Stop(BetweenPoints, RatedElement):
         yield self.on, self.to, -force, -cross(arm, force)
 
     def values(self, at: Placed) -> Mapping[str, Any]:
-        """Its force, N, its gap, m, and the power that it turns into heat, W."""
+        """Force of a stop, N, its gap, m, and the power that it turns into heat, W."""
         _, _, gap, opening = self._contact(at)
         force = self.force(gap, opening)
         loss = (self.stiffness * positive(-gap) - force) * opening
@@ -165,7 +165,7 @@ class Stop(BetweenPoints, RatedElement):
             yield self.speed > 0
 
     def sentence(self) -> Note:
-        """Its stiffness and its ends, for a report."""
+        """Stiffness of a stop and its ends, for a report."""
         return Note(
             "Stop: {stiffness}, {point} of {link} on {to}",
             stiffness=format_quantity(self.stiffness, "stiffness", "N/m"),

@@ -103,7 +103,7 @@ class TorsionDamper(BetweenBodies, Damping):
         return at.rate(self.link) - at.rate(self.on)
 
     def ways(self, at: Placed) -> tuple[tuple[Any, Any], ...]:
-        """Its speed, rad/s; the angle itself does not matter to it."""
+        """Speed of a torsion damper, rad/s; the angle itself does not matter to it."""
         return ((0.0, self._speed(at)),)
 
     def exerted(self, at: Placed, efforts: Sequence[Any]) -> Iterator[Action]:
@@ -135,7 +135,7 @@ class TorsionDamper(BetweenBodies, Damping):
         yield from self.wrong_law(where, given_twice, uneven)
 
     def sentence(self) -> Note:
-        """Its damping and its bodies, for a report."""
+        """Damping of a torsion damper and its bodies, for a report."""
         if self.damping is None:
             return Note("Torsion damper: by a table, {link} on {on}", link=self.link, on=self.on)
         return Note(

@@ -202,7 +202,7 @@ class TorsionSpring(BetweenBodies, ForceElement):
         yield from (after > before for before, after in pairwise(self.rows[0]))
 
     def sentence(self) -> Note:
-        """Its stiffness and its bodies, for a report."""
+        """Stiffness of a torsion spring and its bodies, for a report."""
         if self.stiffness is None:
             return Note("Torsion spring: by a table, {link} on {on}", link=self.link, on=self.on)
         numbers = {
