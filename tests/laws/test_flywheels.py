@@ -33,6 +33,7 @@ from equipoise.running.piece_motion import Instant
 from equipoise.vibration.coupled import StallError
 from support.analyses import subject_of
 from support.chosen import few
+from support.refusals import refused
 
 WITHOUT_A_MOTOR = ("transplanter", "four-stroke-engine", "rotary-transplanter", "watt:1")
 
@@ -151,7 +152,7 @@ def test_turns_towards_steady_states_have_one_limit_for_all_flywheels(
     def progress(done: int, most: int) -> None:
         seen.append((done, most))
 
-    with pytest.raises(ResponseError, match=r"no steady state .* is met within 20 turns"):
+    with refused(ResponseError, count="20"):
         size_flywheel(machine, 0.05, progress)
     assert seen == sorted(seen)
     assert seen[-1] == (20, 20)

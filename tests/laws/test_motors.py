@@ -28,6 +28,7 @@ from equipoise.running.piece_motion import Instant
 from equipoise.schema.files import json_text
 from equipoise.vibration.steady import speed_at
 from laws.test_run import GRAVITY, INERTIA, WEIGHT, crank
+from support.refusals import refused
 from surface.running import equipoise
 from unit.schema.samples import survives
 
@@ -158,7 +159,7 @@ def test_they_are_read_printed_and_written(tmp_path: Any) -> None:
     [{"dc": DC, "torque": 1.0}, {"induction": KLOSS, "dc": DC}, {"no_load_speed": 3.0, "dc": DC}],
 )
 def test_a_motor_is_of_one_kind(given: dict[str, Any]) -> None:
-    with pytest.raises(ModelError, match=r"^drive\.motor: give either no_load_speed and stall_"):
+    with refused(ModelError, "drive.motor", no_load_speed="no_load_speed"):
         crank(Motor(**given))
 
 
@@ -238,7 +239,7 @@ def test_a_brake_presses_rubbing_joints_as_a_load_does() -> None:
 def test_a_brake_in_a_file() -> None:
     machine = braked(crank(), 5.0)
     assert eq.loads(eq.dumps(machine)) == machine
-    with pytest.raises(ModelError, match=r"drive\.brake: got -5 N m"):
+    with refused(ModelError, "drive.brake"):
         braked(crank(), -5.0)
 
 

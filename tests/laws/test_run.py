@@ -26,6 +26,7 @@ from equipoise.running.piece_motion import Instant
 from equipoise.running.run import Run
 from support.analyses import subject_of
 from support.chosen import EXHAUSTIVE
+from support.refusals import refused
 
 MASS, ARM, OWN, GRAVITY = 2.0, 0.3, 0.05, 9.81
 INERTIA = OWN + MASS * ARM**2
@@ -271,7 +272,7 @@ def test_what_takes_too_long_is_refused_when_it_goes_on_evenly(
 
 def test_nothing_is_switched_off_that_is_not_there() -> None:
     for values in ({"off": 0.1}, {"off_turns": 1.0}):
-        with pytest.raises(UsageError, match=r"drive\.motor: missing"):
+        with refused(UsageError, place="drive.motor"):
             eq.run(crank(), turns=1, **values)
 
 

@@ -14,6 +14,7 @@ from equipoise.mechanism.parts.dampers import Damper
 from equipoise.mechanism.parts.torsion_dampers import TorsionDamper
 from equipoise.running.blocks import verdict
 from equipoise.running.integration import AT_EASE
+from support.refusals import refused
 
 MASS, ARM, OWN, GRAVITY = 2.0, 0.3, 0.05, 9.81
 INERTIA = OWN + MASS * ARM**2
@@ -80,5 +81,5 @@ def test_a_damper_at_a_point_that_stands_still_is_called_a_damper() -> None:
     machine = eq.load("yamashita-1")
     frame = next(iter(set(machine.frame) & set(machine.links["rocker"].points)))
     other = next(point for point in machine.frame if point != frame)
-    with pytest.raises(ModelError, match="where a damper does nothing; give a point that moves"):
+    with refused(ModelError, "dampers[1].point"):
         replace(machine, dampers=(Damper("rocker", frame, other, damping=1.0),), balance=None)

@@ -18,6 +18,7 @@ from equipoise.figures.film import gif, mp4
 from equipoise.figures.stage import Stage
 from equipoise.symbols.looks import DARK, LIGHT, in_turn
 from equipoise.symbols.scene import Scene, clear_angle
+from support.refusals import refused
 from unit.animation.samples import analyzed, of_three_turns, prepared, shown
 
 SMALL = {"seconds": 0.4, "width": 320}
@@ -110,7 +111,7 @@ def test_links_that_cover_each_other_are_below_each_other(kind: str, near: float
             assert np.abs(shown - color(LIGHT["main"])).max() <= near
         top += stage.height
     assert {frame.shape[0] for frame in frames} == {top}
-    with pytest.raises(UsageError, match="no point is called 'T9'"):
+    with refused(UsageError, kind="point", given="T9"):
         film(scene, traced=["T9"], **SMALL)
 
 
@@ -177,7 +178,7 @@ def test_what_cannot_be_filmed_is_told(kind, options: dict[str, object], told: s
 
 def test_there_are_as_many_crank_angles_as_frames() -> None:
     _, scene, _ = analyzed("yamashita-1", 90)
-    with pytest.raises(UsageError, match="got 90 crank angles, too few for 100 frames in a turn"):
+    with refused(UsageError, angles="90", frames="100"):
         gif(scene, seconds=4.0)
 
 

@@ -15,6 +15,7 @@ import equipoise as eq
 from equipoise.errors import ModelError, MotionError, UsageError
 from equipoise.mechanism.parts.field import Planting, Soil
 from equipoise.planting.summary import PlantingFigures, plant, soil_forces, table
+from support.refusals import refused
 from unit.mechanism.build import four_bar
 from unit.planting.build import EXAMPLES, TURN, planetary, spinner, twice
 
@@ -207,7 +208,7 @@ def test_a_machine_without_planting() -> None:
 def test_a_crank_that_stands_still() -> None:
     machine = eq.load("kim-chung-a")
     for still in (lambda: plant(machine, speed=0.0), lambda: plant(machine.with_drive(speed=0.0))):
-        with pytest.raises(ModelError, match=r"^drive.speed: got 0; give the speed at which"):
+        with refused(ModelError, "drive.speed"):
             still()
 
 
@@ -372,5 +373,5 @@ def test_the_table_has_360_crank_angles_a_turn_unless_said_otherwise() -> None:
 def test_a_number_of_crank_angles_that_cannot_be(angles: int) -> None:
     with pytest.raises(UsageError, match=f"got {angles}; give 1 to 400000"):
         table(plant(spinner()), angles)
-    with pytest.raises(UsageError, match="give 1 to 133333"):
+    with refused(UsageError, most_angles="133333"):
         table(table_of("three turns"), 133_334)

@@ -25,6 +25,7 @@ from equipoise.studies.store import Store, open_store
 from equipoise.studies.study import Output, Study, samples
 from support import studies
 from support.chosen import EXHAUSTIVE
+from support.refusals import refused
 from support.studies import Formulas, contents, restore, short_study
 
 STUDY = short_study()
@@ -264,7 +265,7 @@ def test_other_versions_do_not_go_on(tmp_path: Path, monkeypatch: pytest.MonkeyP
 def test_another_engine_does_not_go_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     begun(tmp_path / "s")
     monkeypatch.setattr(run, "evaluator", lambda study, threads: Formulas(engine="numpy"))
-    with pytest.raises(UsageError, match="begun with engine numba, and here is engine numpy"):
+    with refused(UsageError, name="engine", wanted="numba", given="numpy"):
         resume(tmp_path / "s", restore)
 
 
