@@ -351,8 +351,7 @@ def _coordinate(step: str) -> int:
 def with_fields(value: Given, **changes: Any) -> Given:
     """A frozen value with fields changed, unchecked; what was kept with it is left behind."""
     result = object.__new__(type(value))
-    cls: type[Any] = type(value)
-    left = kept_by(cls)
+    left = kept_by(type(value))  # type: ignore[arg-type]
     values = {k: v for k, v in vars(value).items() if not k.startswith("_") and k not in left}
     _set(result, values | changes)
     if isinstance(value, Frozen) and isinstance(result, Frozen):
