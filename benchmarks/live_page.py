@@ -160,6 +160,7 @@ def timed_in_worker(browser: Browser, names: Sequence[str]) -> bool:
                 page = browser.new_page(
                     viewport={"width": 1280, "height": 900}, reduced_motion="reduce"
                 )
+                page.set_default_timeout(10_000 * COLD)
                 page.goto(f"{address}#example={name}")
                 page.wait_for_selector(f"option[value='{name}']:checked", state="attached")
                 live = Live(page)
