@@ -8,7 +8,7 @@ of every command, at some milliseconds a design; the other routes take what they
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from functools import partial
+from functools import cached_property, partial
 from math import isfinite, nan, remainder
 from typing import TYPE_CHECKING, Any, cast
 
@@ -283,9 +283,9 @@ def _figures_of(model: Machine | Tool, asked: Request, study: Study) -> tuple[li
     if angles is not None:
         values = analyzed(machine, angles, asked.wanted, asked.steps)
         return [read(values, steps) for steps in asked.steps], True
-    values = analyzed(machine, ANGLES, asked.wanted)
+    values = analyzed(machine, ANGLES, asked.wanted, asked.steps)
     items = [read(values, steps) for steps in asked.steps]
-    faint = {str(step[0]): FAINT * _limit_value(values, str(step[0])) for step in asked.steps}
+    faint = _Faint(machine, asked)
     number, calm = ANGLES, 0
     # Extremes, and their places, may stand still once by chance.
     needed = 1 if all(figure_name(step) in ("mean", "rms") for step in asked.steps) else 2
@@ -305,12 +305,12 @@ def _still(
     steps: Sequence[tuple[Step, ...]],
     before: Sequence[float],
     now: Sequence[float],
-    faint: Mapping[str, float],
+    faint: _Faint,
     tolerance: float,
 ) -> bool:
     """Whether figures have kept, within a share of the RMS of the signal that each is of.
 
-    faint : by the table in which a figure stands, below what a signal is rounding.
+    faint : below what a signal is rounding, by the table in which a figure stands.
     """
     for step, old, new in zip(steps, before, now, strict=True):
         change = abs(new - old)
@@ -319,9 +319,26 @@ def _still(
         if change == 0 or not (isfinite(old) and isfinite(new)):
             continue  # what is missing will not come with further crank angles
         size = scale(values, step)
-        if change > tolerance * size and change > tolerance * faint[str(step[0])]:
+        if change > tolerance * size and change > tolerance * faint.of(str(step[0])):
             return False
     return True
+
+
+class _Faint:
+    """Sizes below which signals of a machine are rounding; all its outputs are computed only where
+    one is asked for.
+    """
+
+    def __init__(self, machine: Machine, asked: Request) -> None:
+        self._machine, self._asked = machine, asked
+
+    def of(self, table: str) -> float:
+        """Of a table of figures, in its unit."""
+        return FAINT * _limit_value(self._values, table)
+
+    @cached_property
+    def _values(self) -> Values:
+        return analyzed(self._machine, ANGLES, self._asked.wanted)
 
 
 def _limit_value(values: Values, key: str) -> float:
