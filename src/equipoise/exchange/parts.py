@@ -7,6 +7,7 @@ the tangent of a quarter of the arc's angle, above 0 counterclockwise, 0 of a st
 from __future__ import annotations
 
 from cmath import phase, rect
+from collections import Counter
 from collections.abc import Iterable, Iterator
 from math import atan, ceil, degrees, log10, pi, sin, tan
 from typing import Any
@@ -326,14 +327,16 @@ def circle(center: complex, radius: float) -> tuple[Edge, ...]:
 
 
 def _of_changes(job: Job) -> Iterator[Part]:
-    """Counterweights that balancing adds."""
+    """Counterweights that balancing adds; those of a link may come from several changes."""
+    counts: Counter[str] = Counter()
     for change in job.changes or ():
         pieces: Iterable[dict[str, Any]] = change.values.get("pieces", ())
-        for number, piece in enumerate(pieces, 1):
+        for piece in pieces:
+            counts[change.link] += 1
             center = complex(*change.values["center"])
             edges = tuple(_edges_of_piece(piece, center))
-            part = Part(change.link, COUNTERWEIGHT, number, piece.get("thickness"), edges,
-                        piece.get("density"))  # fmt: skip
+            part = Part(change.link, COUNTERWEIGHT, counts[change.link], piece.get("thickness"),
+                        edges, piece.get("density"))  # fmt: skip
             if edges:
                 yield part
             else:

@@ -227,6 +227,15 @@ def test_what_is_written_keeps_the_edges_of_the_sheet() -> None:
             assert all(edge - 1 <= box.x0 and box.x1 <= figure.bbox.width - edge for box in boxes)
 
 
+def test_counterweights_of_a_link_in_several_planes_have_numbers_of_their_own() -> None:
+    found = findings_of("twin-engine")
+    assert isinstance(found, Findings) and found.balanced is not None
+    job = Job(found.balanced.machine, 0.0, found.balanced.changes)
+    names = [part.name for part in parts(job)]
+    assert {"crank, counterweight 1", "crank, counterweight 2"} < {*names}
+    assert len({*names}) == len(names)
+
+
 @pytest.mark.parametrize("name", ["sieve", "lee-kim-c", "yamashita-rig"])
 def test_measures_of_a_workshop_drawing_are_on_the_sheet_and_below_its_text(name: str) -> None:
     """A long sector went through the text, and the x axis over the edge of the sheet."""
