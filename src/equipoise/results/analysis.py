@@ -30,6 +30,7 @@ from equipoise.mechanism.parts.machine import Machine, Vector
 from equipoise.mechanism.parts.places import in_frame
 from equipoise.mechanism.parts.support import idle_parts
 from equipoise.quantities import Dimension, column_heading
+from equipoise.results.braking import braking_motor
 from equipoise.results.declaring import OWN, Declarations, ResultOutput, values_of
 from equipoise.results.lost_contacts import lost_contacts
 from equipoise.results.outputs import AnalysisOutput, AnalysisOutputs, figures_by_name
@@ -235,7 +236,9 @@ class Analysis(Result):
     @cached_property
     def notes(self) -> tuple[Note | str, ...]:
         """What to look at again, as `check` asks it: what may not be meant, and where it fails."""
-        lost = () if self.solved is None else lost_contacts(self.solved)
+        lost: tuple[Note, ...] = ()
+        if self.solved is not None:
+            lost = (*lost_contacts(self.solved), *braking_motor(self.motion, self.outputs))
         bending = slender_links(self.machine.links, self.motion.speed)
         unreached = unreached_tables(self.motion)
         parts = (*remarks(self.motion.linkage), *unreached, *lost, *bending)

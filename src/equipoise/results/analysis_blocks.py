@@ -18,6 +18,7 @@ from equipoise.mechanism.parts.support import idle_parts
 from equipoise.quantities import Dimension, Display, angle, display, percent
 from equipoise.quantities.numbers import ROUNDING
 from equipoise.results.blocks import Block, Cell, Column, Facts, Many, Notes, Table, Text, Value
+from equipoise.results.braking import braking_motor
 from equipoise.results.joint_blocks import elements_tables, joint_blocks, kind_tables
 from equipoise.results.machine_blocks import (
     angles_told,
@@ -69,7 +70,12 @@ def analysis_blocks(analysis: Analysis) -> Iterator[Block]:
 def question_blocks(analysis: Analysis) -> Iterator[Block]:
     """What may not be meant as the file gives it."""
     motion, support = analysis.motion, analysis.machine.support
-    asked = (*questions(motion.linkage), *unreached_tables(motion), *idle_parts(support))
+    asked = (
+        *questions(motion.linkage),
+        *unreached_tables(motion),
+        *braking_motor(motion, analysis.outputs),
+        *idle_parts(support),
+    )
     if asked:
         yield Notes(asked)
 

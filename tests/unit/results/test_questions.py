@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 import equipoise as eq
-from equipoise.mechanism import Resistance, TorsionSpring
+from equipoise.mechanism import Motor, Resistance, TorsionSpring
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.support import idle_parts
 from equipoise.present.checks import machine_blocks
@@ -108,3 +108,24 @@ def test_a_table_that_the_motion_never_reaches_is_asked_of() -> None:
         assert not asked(low - size, low + 0.1 * size, values, table)
         assert asked(high + 0.1 * size, high + 0.2 * size, values, table)
         assert asked(low - 0.2 * size, low - 0.1 * size, values, table)
+
+
+def test_loads_that_drive_a_machine_with_a_motor_are_asked_of() -> None:
+    """The same load against the motion, and with the crank turning the other way."""
+    base = eq.load("spring-balanced-crank")
+    motor = Motor(no_load_speed=200.0, stall_torque=5.0)
+    for force, speed in ((0.5, 1), (-0.5, 1), (0.5, -1)):
+        turning = force * speed > 0
+        drive = replace(base.drive, motor=motor, speed=speed * abs(base.drive.speed))
+        load = eq.Load("crank", torque=force)
+        machine = replace(base, drive=drive, loads=(load,), balance=None)
+        _, shown, plain = both(machine)
+        asked = {note for note in plain if "its motor has to brake" in note}
+        assert asked <= shown and bool(asked) is turning
+        if asked:  # springs and masses give back what they take
+            (note,) = asked
+            assert "0.5000 N m at the crank" in note or "500.0 N mm at the crank" in note
+    alone = replace(base, drive=replace(base.drive, motor=motor), balance=None)
+    without_motor = replace(base, loads=(eq.Load("crank", torque=0.5),), balance=None)
+    for machine in (alone, without_motor):
+        assert not any("has to brake" in note for note in both(machine)[2])
