@@ -51,7 +51,7 @@ def test_labels_have_the_commas_of_their_language() -> None:
     """Also those that are put together of several parts."""
     session, _ = opened("spring-balanced-crank")
     ask(session, "speak", languages=["ja"])
-    session.view.variants = session.view.variants.pinned(session.current())
+    session.view_state.variants = session.view_state.variants.pinned(session.current())
     (state, *_) = ask(session, "compare", on=False)
     labels = [one["label"] for one in state.content["fields"]]
     assert any("、" in label for label in labels)
