@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from math import pi
 from typing import Any, TypeVar
 
@@ -21,6 +22,8 @@ ROOM = 0.17
 """Share of what is drawn that stays free above and below for the numbers at extremes."""
 VARIES = 1e-9
 """Share of a signal below which what varies is rounding."""
+BESIDE_TEXT = 0.06
+"""Share of the crank angles that are shown, to both sides of a value's text."""
 STEPS = (30, 60, 90, 180, 360, 720, 1440, 3600)
 QUARTERS, FEW_TURNS = 90, 3
 """Degrees between crank angles that are numbered; turns from which they are further apart."""
@@ -173,11 +176,27 @@ def compared(
     axis = Axis.of(label, dimension, np.append(every, extent), unit, room=ROOM, low=low)
     marks: list[Mark] = []
     for role, (theta, values) in reversed(tuple(lines.items())):
-        marks += extremes(axis, values, sampled_extremes(theta, values), role)
+        others = [line for other, line in lines.items() if other != role]
+        found = extremes(axis, values, sampled_extremes(theta, values), role)
+        marks += (_on_its_side(mark, theta, others) for mark in found)
     curves = tuple(Curve(theta, values, "", role) for role, (theta, values) in lines.items())
     if not np.any(every):
         rest["message"] = say("zero at every crank angle")
     return Panel(x, axis, curves, tuple(marks), **rest)
+
+
+def _on_its_side(mark: Mark, theta: Array, others: Sequence[tuple[Array, Array]]) -> Mark:
+    """A mark whose text stands on the other side of its curve where another curve passes on this
+    one, whose extreme it would be taken for.
+
+    theta : crank angles (N,), rad, of its curve.  others : crank angles and values of the rest.
+    """
+    near, sign = BESIDE_TEXT * float(np.ptp(theta)), np.sign(mark.wish)
+    beyond = any(
+        np.any(sign * (values[np.abs(angles - mark.x) <= near] - mark.y) > 0)
+        for angles, values in others
+    )
+    return replace(mark, wish=-mark.wish) if beyond else mark
 
 
 # -- ends of arrows --------------------------------------------------------------------------------

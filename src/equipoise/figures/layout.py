@@ -98,7 +98,7 @@ def draw_legend(
 
 
 def _sample(sheet: Canvas, key: LegendKey, x: float, y: float) -> None:
-    if key.role in LOOKS:
+    if key.kind == "machine":
         draw_shapes(sheet, sample_of(key.role), lambda z: np.array([x + SAMPLE / 2, y]), 1.0, 6.0)
         return
     look = look_of(key.role, key.dashed)
@@ -108,12 +108,18 @@ def _sample(sheet: Canvas, key: LegendKey, x: float, y: float) -> None:
         return
     if look.width and key.kind == "line" and not (look.sign and look.order >= 4):
         ends = np.array([(x, y), (x + SAMPLE, y)])
-        sheet.add(CanvasStroke((ends,), look.color, look.width, look.lengths), 6)
+        sheet.add(CanvasStroke((ends,), look.color, look.width, _shortened(look.lengths)), 6)
     if look.sign or key.kind == "sign":
         shown = replace(look, size=3.0 if look.sign == "." else look.size)
         if not look.sign:
             shown = replace(look, sign="o", size=4.0)
         sheet.add(signs_at(np.array([(x + SAMPLE / 2, y)]), shown), 6.1)
+
+
+def _shortened(lengths: tuple[float, ...]) -> tuple[float, ...]:
+    """Dashes of which a sample shows at least one and a half, else it looks like a whole line."""
+    factor = min(1.0, SAMPLE / (1.5 * sum(lengths))) if lengths else 1.0
+    return tuple(factor * length for length in lengths)
 
 
 LIKE, ALIGNED = 5.0, 1.3

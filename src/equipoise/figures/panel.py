@@ -391,7 +391,7 @@ def _bar_numbers(view: View) -> None:
             if round(size, fewer)
         ]
         clear = _clear(texts)
-        if len(clear) == len(texts) or not fewer or largest * 10 ** (fewer - 1) < 10:
+        if len(clear) == len(texts) or not fewer or largest * 10 ** (fewer - 1) < 100:
             break
     for text, x, y, color in clear:
         view.write(x, y - 5.5, text, "middle", color=color)

@@ -5,6 +5,8 @@ from __future__ import annotations
 import subprocess
 import sys
 from math import pi
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -15,6 +17,9 @@ from equipoise.exposure.spectra import weigh_spectrum
 from equipoise.exposure.weighting import NOMINAL, Weighted
 from equipoise.figures import measured, plot, render
 from equipoise.figures import measured as of_decay
+from equipoise.figures.chart_parts import compared, crank_axis
+from equipoise.figures.layout import SAMPLE, LegendKey, draw_legend
+from equipoise.figures.sheet import CanvasStroke
 from equipoise.figures.style import look_of
 from equipoise.figures.view import AxisScale, ends_of, ticks_of
 from equipoise.measured.decay import Decay, identify_decay
@@ -206,3 +211,37 @@ def test_pictures_by_name() -> None:
     assert plot(analysis, "torque").get_size_inches()[0] == pytest.approx(7.2)
     with pytest.raises(eq.EquipoiseError, match="did you mean"):
         plot(analysis, "torqe")
+
+
+def test_values_of_lower_peaks_stand_under_their_curves() -> None:
+    """Above it they would be taken for the other curve's."""
+    theta = np.linspace(0.0, 2 * np.pi, 361)
+    lines = {"before": (theta, 2 * np.sin(theta)), "after": (theta, np.sin(theta - 0.1))}
+    panel = compared(crank_axis("crank", 10.0, 1), "size", "force", lines)
+    wishes = {(mark.role, mark.y > 0): mark.wish for mark in panel.marks}
+    assert wishes == {
+        ("before", True): 90.0,
+        ("before", False): -90.0,
+        ("after", True): -90.0,
+        ("after", False): 90.0,
+    }
+
+
+def test_values_beside_each_other_stand_outside_their_curves() -> None:
+    theta = np.linspace(0.0, 2 * np.pi, 361)
+    lines = {"before": (theta, 2 * np.sin(theta)), "after": (theta, -np.sin(theta))}
+    panel = compared(crank_axis("crank", 10.0, 1), "size", "force", lines)
+    assert all(mark.wish == (90.0 if mark.y > 0 else -90.0) for mark in panel.marks)
+
+
+def test_samples_of_legends_look_like_what_is_drawn() -> None:
+    """Also where a sign of machines has the same name."""
+    drawn: list[Any] = []
+    sheet: Any = SimpleNamespace(add=lambda item, _order: drawn.append(item))
+    draw_legend(sheet, [LegendKey("room", "room allowed", "line")], 0.0, 200.0, 0.0)
+    (line,) = [item for item in drawn if isinstance(item, CanvasStroke)]
+    look = look_of("room")
+    assert (line.color, line.width) == (look.color, look.width)
+    shown = line.dashes
+    assert np.allclose(np.array(shown) / shown[0], np.array(look.lengths) / look.lengths[0])
+    assert 1.5 * sum(shown) <= SAMPLE + 1e-9
