@@ -10,12 +10,22 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import ModelError
+from equipoise.mechanism.parts.machine import Machine
 from equipoise.results.yardsticks import assess, verdict
 from equipoise.signals import Array
 from support.analyses import subject_of
 from support.refusals import refused
 
 HANDLE = "handle_along"
+
+
+def held() -> Machine:
+    """A walking transplanter whose handle a hand holds for 2 h a day."""
+    machine = subject_of("walking-transplanter").machine
+    support = machine.support
+    assert support is not None
+    gauge = replace(support.gauges[HANDLE], exposure=7200.0)
+    return replace(machine, support=replace(support, gauges={**support.gauges, HANDLE: gauge}))
 
 
 def weighting(frequency: Array) -> Array:
@@ -51,7 +61,7 @@ def total_value(response: eq.Response, point: tuple[float, ...]) -> float:
 
 
 def test_the_total_value_is_that_of_the_sampled_motion() -> None:
-    machine = subject_of("walking-transplanter").machine
+    machine = held()
     assert machine.support is not None
     gauge = machine.support.gauges[HANDLE]
     assert gauge.exposure == 7200.0 and gauge.point is not None
@@ -66,7 +76,7 @@ def test_the_total_value_is_that_of_the_sampled_motion() -> None:
 
 def test_the_direction_of_the_gauge_does_not_matter() -> None:
     """A hand feels all directions."""
-    machine = subject_of("walking-transplanter").machine
+    machine = held()
     values = []
     for direction in (0.0, 0.7, pi / 2):
         support = machine.support
@@ -80,7 +90,7 @@ def test_the_direction_of_the_gauge_does_not_matter() -> None:
 
 
 def test_a_machine_in_a_hand_is_judged_by_that_hand_first() -> None:
-    machine = subject_of("walking-transplanter").machine
+    machine = held()
     response, analysis = eq.respond(machine), eq.analyze(machine)
     entries = assess(analysis, response.gauges)
     first = verdict(entries)
@@ -97,7 +107,7 @@ def test_a_machine_in_a_hand_is_judged_by_that_hand_first() -> None:
 
 def test_small_motion_and_large_agree() -> None:
     """The models `moment` and `exact` differ by what is of second order in the motion."""
-    machine = subject_of("walking-transplanter").machine.with_drive(speed=4 * pi)
+    machine = held().with_drive(speed=4 * pi)
     small, large = (eq.respond(machine, model=model).gauges[HANDLE].hand  # type: ignore[arg-type]
                     for model in ("moment", "exact"))  # fmt: skip
     assert small is not None and large is not None
@@ -105,9 +115,9 @@ def test_small_motion_and_large_agree() -> None:
 
 
 def test_a_hand_holds_a_point() -> None:
-    support = subject_of("walking-transplanter").machine.support
+    support = held().support
     assert support is not None
     gauge = replace(support.gauges["pitch"], exposure=60.0)
     with refused(ModelError, "support.gauges.pitch.exposure"):
-        replace(subject_of("walking-transplanter").machine,
+        replace(held(),
                 support=replace(support, gauges={**support.gauges, "pitch": gauge}))  # fmt: skip
