@@ -361,7 +361,11 @@ def _marks(view: View) -> None:
 
 
 def _bar_numbers(view: View) -> None:
-    """Sizes of bars that can be seen, at their ends, with as many digits as all have room for."""
+    """Sizes of bars that can be seen, at their ends, with as many decimals as all have room for.
+
+    Numbers up to 100 keep a decimal, and those whose largest is below 1 two digits of that, however
+    crowded they are: bars of 1.2 and 0.6 would both read 1.
+    """
     matching_bars = [bars for bars in view.panel.bars if bars.labelled]
     if not matching_bars:
         return
@@ -384,14 +388,15 @@ def _bar_numbers(view: View) -> None:
     most = max(0, 2 - floor(log10(largest)))
     if most > MOST_DECIMALS:
         return
-    for fewer in range(most, -1, -1):
+    least = min(most, max(1, most - 1))
+    for fewer in range(most, least - 1, -1):
         texts = [
             (decimals(f"{size:.{fewer}f}"), float(view.x.at(at)), float(scale.of(size)), color)
             for size, at, color in numbers
             if round(size, fewer)
         ]
         clear = _clear(texts)
-        if len(clear) == len(texts) or not fewer or largest * 10 ** (fewer - 1) < 100:
+        if len(clear) == len(texts):
             break
     for text, x, y, color in clear:
         view.write(x, y - 5.5, text, "middle", color=color)

@@ -77,6 +77,27 @@ def test_numbers_at_bars_keep_apart(factor: float) -> None:
     assert numbers
 
 
+@pytest.mark.parametrize(
+    ("factor", "free", "crowded"),
+    [
+        (0.1, "0.311 0.222 0.124 0.061", "0.31 0.22 0.12 0.06"),
+        (1.0, "3.11 2.22 1.24 0.61", "3.1 2.2 1.2 0.6"),
+        (10.0, "31.1 22.2 12.4 6.1", "31.1 22.2 12.4 6.1"),
+        (100.0, "311 222 124 61", "311 222 124 61"),
+    ],
+)
+def test_crowded_bars_have_fewer_decimals_that_still_tell_them_apart(
+    factor: float, free: str, crowded: str
+) -> None:
+    for times, expected in ((1, free), (3, crowded)):
+        sizes = factor * np.tile([0.0, 3.11, 2.22, 1.24, 0.61], times)
+        read = {role: (np.arange(float(len(sizes))), sizes) for role in ("bar before", "bar after")}
+        panel = order_panel("", "force", read, len(sizes) - 1, most_told=len(sizes))
+        words = lay_out(Chart("", "", "", (panel,))).words
+        numbers = {w.text for w in words if w.color in ("#0060a8", "#595959")}
+        assert numbers == {*expected.split()}
+
+
 def test_aims_are_drawn_as_they_are_asked() -> None:
     """A vector by its size, a joint, and two orders of a moment."""
     result, chart = found("one of each"), pictures("one of each")["aims"]
