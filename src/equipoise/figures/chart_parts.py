@@ -168,24 +168,34 @@ def compared(
 ) -> Panel:
     """Signals of one quantity by their roles over crank angle, with the extremes of each.
 
-    drawn : role -> crank angles (N,), rad, and values (N,), SI units.  low : where the axis begins.
-    beside : values of the same quantity in other panels, so that all have one unit.
+    lines : role -> crank angles (N,), rad, and values (N,), SI units.  low : where the axis begins.
+    extent : values of the same quantity in other panels, so that all have one scale and unit.
     unit : as of `Axis.of`.  rest : of the panel.
     """
     every = np.concatenate([values for _, values in lines.values()])
     axis = Axis.of(label, dimension, np.append(every, extent), unit, room=ROOM, low=low)
-    marks: list[Mark] = []
-    for role, (theta, values) in reversed(tuple(lines.items())):
-        others = [line for other, line in lines.items() if other != role]
-        found = extremes(axis, values, sampled_extremes(theta, values), role)
-        marks += (_on_its_side(mark, theta, others) for mark in found)
+    marks = marks_at_extremes(axis, lines)
     curves = tuple(Curve(theta, values, "", role) for role, (theta, values) in lines.items())
     if not np.any(every):
         rest["message"] = say("zero at every crank angle")
-    return Panel(x, axis, curves, tuple(marks), **rest)
+    return Panel(x, axis, curves, marks, **rest)
 
 
-def _on_its_side(mark: Mark, theta: Array, others: Sequence[tuple[Array, Array]]) -> Mark:
+def marks_at_extremes(axis: Axis, lines: Mapping[str, tuple[Array, Array]]) -> tuple[Mark, ...]:
+    """Marks at the largest and the smallest value of several curves; those of the last curve first,
+    whose texts so have the first choice of room.
+
+    lines : role -> crank angles (N,), rad, and values (N,), SI units.
+    """
+    marks: list[Mark] = []
+    for role, (theta, values) in reversed(tuple(lines.items())):
+        others = [line for other, line in lines.items() if other != role]
+        own = extremes(axis, values, sampled_extremes(theta, values), role)
+        marks += (_clear_of_other_curves(mark, theta, others) for mark in own)
+    return tuple(marks)
+
+
+def _clear_of_other_curves(mark: Mark, theta: Array, others: Sequence[tuple[Array, Array]]) -> Mark:
     """A mark whose text stands on the other side of its curve where another curve passes on this
     one, whose extreme it would be taken for.
 

@@ -15,7 +15,7 @@ from equipoise.figures.chart_parts import (
     crank_axis,
     degrees_told,
     extremes,
-    sampled_extremes,
+    marks_at_extremes,
 )
 from equipoise.figures.points import FORBIDDEN
 from equipoise.figures.style import free_name, short
@@ -234,16 +234,10 @@ def _air_and_soil(
     assert figures.forces is not None
     motion = figures.forces.motion
     names = {"air": say("in the air"), "soil signal": say("in the soil")}
-    marks: list[Mark] = []
-    for role, values in reversed([*pair.items()]):
-        places = sampled_extremes(*motion.shown(values))
-        if both:
-            marks += extremes(y, values, places, role)
-        elif role == "soil signal":
-            marks += extremes(y, values, places[:1], role)
+    lines = {role: motion.shown(values) for role, values in pair.items()}
+    marks = marks_at_extremes(y, lines)
+    if not both:
+        marks = tuple(mark for mark in marks if mark.role == "soil signal")[:1]
     period = figures.curve.period
-    curves = [
-        Curve(*closed(*motion.shown(values), period), names[role], role)
-        for role, values in pair.items()
-    ]
+    curves = [Curve(*closed(*line, period), names[role], role) for role, line in lines.items()]
     return stay_panel(figures, y, curves, marks, figures.arms, **rest)
