@@ -38,9 +38,8 @@ else:
         def decorate(cls: type) -> type:
             if not frozen:
                 return dataclasses.dataclass(cls, init=init, repr=repr, eq=eq, **others)
-            cls.__doc__ = (
-                cls.__doc__ or cls.__name__
-            )  # where it lacks, a signature is decorate of it
+            # a missing docstring would be replaced by a signature
+            cls.__doc__ = cls.__doc__ or cls.__name__
             cls = dataclasses.dataclass(cls, init=False, repr=False, eq=False, **others)
             own = fields(cls)
             methods: dict[str, Any] = _protected(cls, frozenset(item.name for item in own))
@@ -115,11 +114,11 @@ def _constructor(cls: type) -> Callable[..., None]:
     for item in fields(cls):
         known |= {f"_default_{item.name}": item.default, f"_make_{item.name}": item.default_factory}
     inner = f" def __init__({', '.join(['self', *parameters])}):\n" + "\n".join(lines or ["  pass"])
-    text = f"def factory({', '.join(known)}):\n{inner}\n return __init__"
-    factory: dict[str, Any] = {}
+    text = f"def make({', '.join(known)}):\n{inner}\n return __init__"
+    namespace: dict[str, Any] = {}
     module = sys.modules.get(cls.__module__)  # where names of types are looked up
-    exec(text, {} if module is None else vars(module), factory)
-    function = factory["factory"](**known)
+    exec(text, {} if module is None else vars(module), namespace)
+    function = namespace["make"](**known)
     function.__qualname__ = f"{cls.__qualname__}.__init__"
     function.__module__ = cls.__module__
     function.__annotations__ = {item.name: item.type for item in own} | {"return": None}
@@ -135,8 +134,8 @@ def _parameter(item: Field[Any]) -> str:
 def _value(item: Field[Any]) -> str:
     if item.default_factory is MISSING:
         return item.name
-    factory = f"_make_{item.name}()"
-    return f"{factory} if {item.name} is _factory else {item.name}" if item.init else factory
+    new = f"_make_{item.name}()"
+    return f"{new} if {item.name} is _factory else {item.name}" if item.init else new
 
 
 def _protected(cls: Any, names: frozenset[str]) -> dict[str, Any]:
