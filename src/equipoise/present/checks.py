@@ -278,7 +278,10 @@ def _build_up(linkage: Linkage) -> Iterable[str]:
             else Note("{joint} (pin in a slot)", joint=r.name) if r.name in structure.riders
             else Note("{joint} (pin on {body})", joint=r.name, body=body_named(r.by))
             if r.kind == "pin"
-            else Note("{joint} ({kind} on {body})", joint=r.name, kind=Note(r.kind), body=r.by)
+            else Note(
+                "{joint} ({kind} on {body})",
+                joint=r.name, kind=Note(r.kind), body=body_named(r.by),
+            )
             for r in shown
         ]  # fmt: skip
         yield INDENT + say(

@@ -14,7 +14,7 @@ from equipoise.errors import EquipoiseError
 from equipoise.i18n import said, say, to_say
 from equipoise.mechanism.dynamics.forces import massless
 from equipoise.mechanism.kinematics.strokes import declared_figures, dimension_of
-from equipoise.mechanism.outputs.declared import DECLARED, joint_named
+from equipoise.mechanism.outputs.declared import DECLARED, coupling_named, joint_named
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.support import FREEDOMS, PLANAR
 from equipoise.quantities import Dimension, display
@@ -295,7 +295,7 @@ def _strokes_of(analysis: Analysis) -> Iterator[tuple[str, FigureValue]]:
         of_joint = partial(_of_joint, machine, name)
         yield from _declared_of(f"strokes.{name}", joint_named(name), stroke, of_joint)
     for table, name, figures in figures_by_name(analysis):
-        yield from _declared_of(f"{table}.{name}", name.replace(" to ", " → "), figures, _own)
+        yield from _declared_of(f"{table}.{name}", coupling_named(name), figures, _own)
     yield from _losses_of(analysis)
 
 

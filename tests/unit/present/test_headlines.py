@@ -404,10 +404,16 @@ def test_a_transmission_angle_reaches_its_ends_between_the_samples() -> None:
     assert line == "The transmission angle stays between 0.0° and 180.0°"
 
 
-def test_the_frame_is_called_so_in_the_language_of_the_report() -> None:
-    """In tables, in sentences on parts and above the forces of joints, but not in the file."""
-    text = page(document("flap-folder", "de"))
+@pytest.mark.parametrize(
+    ("name", "joint"),
+    [("flap-folder", "A: Gestell auf crank"), ("rotary-transplanter", "auf Gestell")],
+)
+def test_the_frame_is_called_so_in_the_language_of_the_report(name: str, joint: str) -> None:
+    """In tables, in sentences on parts, on how gears are built up and above the forces of joints,
+    but not in the file.
+    """
+    text = page(document(name, "de"))
     text = re.sub(r"<(style|script|pre)\b.*?</\1>", "", text, flags=re.DOTALL)
     words = re.sub(r"<[^>]+>", "\n", text)
-    assert "A: Gestell auf crank" in words
+    assert joint in words
     assert not re.findall(r".*\bframe\b.*", words)

@@ -125,6 +125,11 @@ def body_named(name: str) -> str:
     return say("frame") if name == FRAME else name
 
 
+def coupling_named(name: str) -> str:
+    """A gear, belt or cam by its two bodies, such as ``frame to idler``, in words."""
+    return " → ".join(map(body_named, name.split(" to ")))
+
+
 LETTER = re.compile(r"[A-Z]'?[0-9]*")
 
 
@@ -511,7 +516,7 @@ of_section("bending_moment", "torque", to_say("largest bending moment along {nam
 def _members_of(table: str) -> dict[str, Any]:
     return {
         "members": lambda machine: [item.name for item in getattr(machine, table)],
-        "spoken": lambda name: name.replace(" to ", " → "),
+        "spoken": coupling_named,
     }
 
 
