@@ -177,8 +177,8 @@ class Analysis(Result):
         return figures
 
     @property
-    def has_together(self) -> bool:
-        """Whether there are figures of all rows together: see `together`."""
+    def has_rows_total(self) -> bool:
+        """Whether there are figures of all rows together: see `rows_total`."""
         several = len(self.machine.rows) > 1
         return several and self.motion.whole_cycle and self.solved is not None
 
@@ -191,7 +191,7 @@ class Analysis(Result):
         there is one row, or the crank angles are not those of a whole cycle.
         """
         rows = self.machine.rows
-        if not self.has_together or self.solved is None:
+        if not self.has_rows_total or self.solved is None:
             return {}
         count, effort = len(self.crank_angle), self.machine.drive.effort
         whole = {"shaking_force": np.zeros(count, complex)}

@@ -199,7 +199,7 @@ class AnalysisOutputs:
 def _can_be_had(declared: Declared, analysis: Any) -> bool:
     if declared.needs == "motion":
         return True
-    return analysis.solved is not None and (declared.is_of_row or analysis.has_together)
+    return analysis.solved is not None and (declared.is_of_row or analysis.has_rows_total)
 
 
 def unit_of(name: str) -> str:

@@ -2,7 +2,7 @@
 
 Where there is none, for it lies at infinity, or has no bound, values are NaN.
 
-An analysis reads them: `found` has its machine, motion and forces, and in `together` the signals of
+An analysis reads them: it has the machine, motion and forces, and in `rows_total` the signals of
 all rows.
 """
 
