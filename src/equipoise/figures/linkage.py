@@ -257,13 +257,13 @@ def _closest(places: Array, box: tuple[complex, complex]) -> Array:
     return np.where(far, complex(np.nan, np.nan), places)
 
 
-def centrodes(analysis: Analysis, links: Sequence[str] | None = None) -> Chart:
+def centrodes(analysis: Analysis, links: Sequence[str]) -> Chart:
     """Paths of instant centres of links in the frame and in the link, which roll on each other.
 
-    links : names; where they are not given, some that turn about no pin in the frame.
+    links : names, of which the first `MOST_CENTRODES` are drawn; see `rolling`.
     """
     motion, scene = analysis.motion, Scene.of(analysis.motion)
-    names = rolling(analysis)[:MOST_CENTRODES] if links is None else [*links]
+    names = links[:MOST_CENTRODES]
     k = clear_angle(scene)
     panels = []
     for name in names:

@@ -63,8 +63,8 @@ def analysis_pictures(analysis: Analysis, at: Sequence[float] | None = None) -> 
         return pictures
     if points.moving(analysis.motion):
         pictures |= {"curves": points.curves(analysis), "hodograph": points.hodograph(analysis)}
-    if rolling(analysis):
-        pictures["centrodes"] = centrodes(analysis)
+    if links := rolling(analysis):
+        pictures["centrodes"] = centrodes(analysis, links)
     pictures |= {chart.name: chart for chart in couplings.ratios(analysis)}
     if analysis.solved is None:
         return pictures

@@ -200,9 +200,9 @@ def _motion(findings: Findings) -> Iterator[PictureEntry]:
         partial(headlines.fastest, analysis),
         True,
     )
-    if rolling(analysis):
+    if links := rolling(analysis):
         caption = to_say("Centrodes: paths of instant centres in the frame and in the link.")
-        yield PictureEntry("centrodes", caption, partial(centrodes, analysis), detail=True)
+        yield PictureEntry("centrodes", caption, partial(centrodes, analysis, links), detail=True)
     caption = to_say("Motion over crank angle: position, velocity and acceleration.")
     charts = main_kinematics(analysis) if len(analysis.crank_angle) > 1 else ()
     for number, chart in enumerate(charts):
@@ -458,7 +458,7 @@ Drawings = dict[str, list[SvgPicture]]
 def drawings(findings: Findings | ToolFindings, parallel: bool = False) -> Drawings:
     """All pictures.
 
-    together : whether a copy of this process may draw half of them, where there are two processors,
+    parallel : whether a copy of this process may draw half of them, where there are two processors,
         Linux, and no other thread, which the copy would lack.
     """
     processors = len(os.sched_getaffinity(0)) if sys.platform == "linux" else 1
