@@ -29,12 +29,11 @@ if TYPE_CHECKING:
 MM, INCH = 1e3, 25.4
 """mm in a metre, and in an inch."""
 SHEET = (210.0, 297.0)
+"""Width and height of a sheet of A4, mm."""
 EDGE = 20.0
 """mm on paper left, right and above what is written."""
 LETTERS, POINTS = 11.0, 72.0
 """Height of letters, points; points of an inch."""
-ROOM = (150.0, 190.0)
-"""Width and height of a sheet and of what is drawn on it, mm."""
 SCALES = (0.2, 0.5, 1, 2, 5, 10, 20, 50, 100)
 """By how much smaller than true a part may be drawn; below 1 larger."""
 OFF = 12.0
@@ -93,11 +92,7 @@ def _texts(job: Job, part: Part) -> tuple[str, ...]:
 
 def scale_of(part: Part) -> float:
     """By how much smaller than true a part is drawn, so that it fits on its sheet."""
-    low, high = (MM * corner for corner in part.box)
-    size = high - low
-    needed = max(size.real / ROOM[0], size.imag / ROOM[1])
-    fitting = (scale for scale in SCALES if scale >= needed and _fits(part, scale))
-    return next(fitting, SCALES[-1])
+    return next((scale for scale in SCALES if _fits(part, scale)), SCALES[-1])
 
 
 def _fits(part: Part, scale: float) -> bool:
@@ -123,14 +118,15 @@ def _extent(part: Part, scale: float) -> tuple[complex, complex]:
     return complex(np.min(x), np.min(y)), complex(np.max(x), np.max(y))
 
 
-def _axis_ends(part: Part, scale: float) -> tuple[float, float]:
-    """Where the x axis of a link begins and where its letter stands, beside a sector, mm from the
-    axis of that.
+def _axis_ends(part: Part, scale: float) -> tuple[float, float, float]:
+    """Where the x axis of a link begins and ends and where its letter stands, beside a sector, mm
+    from the axis of that.
     """
     outer = part.arcs[0]
     way = 1.0 if abs(outer.direction) > outer.angle / 2 else -1.0
     reach = MM * outer.radius
-    return -AXIS_BEFORE * way * reach, way * (AXIS_BEYOND * reach + 3.0 * scale)
+    end = AXIS_BEYOND * reach
+    return -AXIS_BEFORE * way * reach, way * end, way * (end + 3.0 * scale)
 
 
 def _sheet(part: Part, lines: Sequence[str]) -> Figure:
@@ -192,11 +188,10 @@ def _angle(axes: Axes, part: Part, scale: float) -> None:
     at = center + rect(radius + (5.0 if align == "center" else 2.0) * scale, outer.direction)
     axes.text(at.real, at.imag, f"{in_mm(degrees(outer.angle))}°", ha=align, va="center",
               color=MAIN)  # fmt: skip
-    start, letter = _axis_ends(part, scale)
-    way = 1.0 if letter > 0 else -1.0
-    axes.plot([center.real + start, center.real + letter - 3.0 * scale * way],
+    start, end_at, letter = _axis_ends(part, scale)
+    axes.plot([center.real + start, center.real + end_at],
               [center.imag] * 2, color=MAIN, linewidth=0.8, dashes=(8, 2, 1.5, 2))  # fmt: skip
-    axes.text(center.real + letter, center.imag, "x" if way > 0 else "−x", ha="center",
+    axes.text(center.real + letter, center.imag, "x" if letter > 0 else "−x", ha="center",
               va="center", color=MAIN)  # fmt: skip
 
 

@@ -197,11 +197,6 @@ class ReportDocument:
         """Blocks but for the drawing that the summary has."""
         return [block for block in blocks if block is not self.drawing]
 
-    @property
-    def appendix_blocks(self) -> tuple[Block | ReportSection, ...]:
-        """The appendix without its headings."""
-        return tuple(block for section in self.appendix for block in section.blocks)
-
     @contextmanager
     def spoken(self) -> Iterator[None]:
         """Inside, its language is spoken, and values are shown in its units."""

@@ -142,7 +142,7 @@ def test_pictures_stand_in_pairs() -> None:
 def test_long_tables_stand_in_the_appendix_and_none_is_lost(name: str) -> None:
     found, told = findings_of(name), document(name)
     in_sections = [b for s in told.sections for b in s.blocks if isinstance(b, Table)]
-    behind = [b for b in told.appendix_blocks if isinstance(b, Table)]
+    behind = [b for s in told.appendix for b in s.blocks if isinstance(b, Table)]
     assert all(len(table.rows) <= SHORT for table in in_sections)
     assert behind and all(len(table.rows) > SHORT or table.detail for table in behind)
     html = page(told)
