@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -113,7 +114,8 @@ class Figure:
 
 def figure_of(value: str) -> Figure | None:
     """The figure by its path in the output of an analysis; None for what is no such figure."""
-    signal, dot, name = value.removeprefix("summary.").rpartition(".")
+    unquoted = re.sub(r'"([^"]*)"', r"\1", value)  # as names stand in signals
+    signal, dot, name = unquoted.removeprefix("summary.").rpartition(".")
     return Figure(signal, name) if dot and name in GATHERED else None
 
 

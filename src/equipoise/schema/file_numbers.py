@@ -76,7 +76,7 @@ def find(content: Content, kind: Kind, path: str) -> NumberLocation:
     place = KeyPath()
     here: Any = content
     for count, step in enumerate(steps):
-        group = _group(here, step, kind) if count == len(steps) - 1 else None
+        group = _group(here, step, kind, place) if count == len(steps) - 1 else None
         if group is not None:
             part = XYZ[step] if isinstance(step, int) else step
             return NumberLocation(place, group.numbers[part], group, part)
@@ -90,13 +90,13 @@ def find(content: Content, kind: Kind, path: str) -> NumberLocation:
     return NumberLocation(place, number)
 
 
-def all_numbers(content: Content) -> dict[str, FileNumber]:
+def all_numbers(content: Content, kind: Kind) -> dict[str, FileNumber]:
     """Every number that is written in a model file, by its path."""
-    return dict(_walk(content, KeyPath()))
+    return dict(_walk(content, KeyPath(), kind))
 
 
-def _walk(here: Any, place: KeyPath) -> Iterator[tuple[str, FileNumber]]:
-    vector, number = vector_of(here), read_number(here)
+def _walk(here: Any, place: KeyPath, kind: Kind) -> Iterator[tuple[str, FileNumber]]:
+    vector, number = _vector_at(kind, place, here), read_number(here)
     if vector is not None:
         for part, component in vector.numbers.items():
             yield str(place / part), component
@@ -104,15 +104,25 @@ def _walk(here: Any, place: KeyPath) -> Iterator[tuple[str, FileNumber]]:
         yield str(place), number
     elif isinstance(here, dict | list):
         for key, below in here.items() if isinstance(here, dict) else enumerate(here):
-            yield from _walk(below, place / key)
+            yield from _walk(below, place / key, kind)
 
 
-def _group(here: Any, step: str | int, kind: Kind) -> Vector | PlanePair | None:
+def _vector_at(kind: Kind, place: KeyPath, here: Any) -> Vector | None:
+    """The vector at a place, or None: lengths in a list that is no point are values of their own,
+    such as the two ends of a lift.
+    """
+    vector = vector_of(here)
+    if vector is not None and vector.dimension == "length":
+        return None if isinstance(_kind_at(kind, place), Listing) else vector
+    return vector
+
+
+def _group(here: Any, step: str | int, kind: Kind, place: KeyPath) -> Vector | PlanePair | None:
     """The vector or pair of planes that has a number of that name, or None."""
     if kind == "tool" and step in PLANES and isinstance(here, str):
         number = read_number(here)
         return None if number is None else PlanePair(here, number)
-    vector = vector_of(here)
+    vector = _vector_at(kind, place, here)
     if vector is None:
         return None
     if isinstance(step, int):
@@ -174,7 +184,7 @@ def _below(content: Content, kind: Kind, path: str, place: KeyPath, here: Any) -
             )
     if expression := _expression_in_point(here, step):
         raise ModelError(path, _worked_out(path, expression))
-    raise ModelError(path, unknown(path, all_numbers(content), "number of the model"))
+    raise ModelError(path, unknown(path, all_numbers(content, kind), "number of the model"))
 
 
 def _expression_in_point(here: Any, step: str | int) -> str | None:

@@ -176,7 +176,7 @@ class Template:
 
     def numbers(self) -> dict[str, FileNumber]:
         """Every number that the file has, by its path."""
-        return all_numbers(self._content)
+        return all_numbers(self._content, self.kind)
 
     def base(self) -> Machine | Tool:
         """The machine or tool as the file has it."""

@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.codegen.batch import Batch
+from equipoise.codegen.batch import Batch, jumps_alike
 from equipoise.codegen.coupled import curve_value
 from equipoise.codegen.emit import can_compute
-from equipoise.codegen.figures import COMPUTED, NO_MACHINE, Figure
+from equipoise.codegen.figures import COMPUTED, NO_MACHINE, Figure, figure_of
 from equipoise.codegen.source import on_arrays
 from equipoise.codegen.terms import ANGLE
 from equipoise.codegen.trace import Trace
@@ -23,9 +23,11 @@ from equipoise.keys import changed
 from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.assembly.family import can_vary
 from equipoise.mechanism.assembly.linkage import assemble
-from equipoise.mechanism.parts.laws import LengthLaw, LengthSegment
+from equipoise.mechanism.parts.laws import AngleLaw, LengthLaw, LengthSegment
 from equipoise.mechanism.parts.machine import Machine
+from equipoise.schema.template import Template
 from support.batches import by_numpy, known_of, same_figures, wanted_of
+from support.machines_cams import make
 
 SIGNALS = ("shaking_force.x", "drive_torque", "cams.crank to pusher.normal")
 
@@ -50,6 +52,12 @@ ROWS = LengthLaw(
     crank_angles=tuple(np.radians([0, 60, 120, 200, 280]).tolist()),
     values=(0.0, 0.004, 0.01, 0.008, 0.002),
     phase=0.5,
+)
+
+
+CLOSED = LengthLaw(
+    crank_angles=tuple(np.radians([0, 60, 120, 200, 280, 360]).tolist()),
+    values=(0.001, 0.004, 0.01, 0.008, 0.002, 0.001),
 )
 
 
@@ -78,6 +86,7 @@ def design(base: Machine, paths: Sequence[str], values: Sequence[float]) -> Mach
         (SEGMENTS, ("segments[2].to", "phase"), [[0.0125, 0.7], [0.0118, 1.3]]),
         (ROWS, ("values[2]", "values[4]"), [[0.0042, 0.0083], [0.0038, 0.0078]]),
         (ROWS, ("values[3]", "phase"), [[0.0105, 0.3], [0.0095, 0.9]]),
+        (CLOSED, ("values[3]", "phase"), [[0.0105, 0.3], [0.0095, 0.9]]),
     ],
 )
 def test_designs_are_their_own_machines(
@@ -125,6 +134,66 @@ def test_designs_that_cannot_be_made(tmp_path: Path) -> None:
     assert {*refused} == {COMPUTED, NO_MACHINE}
 
 
+def test_a_swing_is_its_own_machine(tmp_path: Path) -> None:
+    """A pinned follower, whose law is an angle."""
+    base = make("camshaft_lever", 0).machine
+    (cam,) = base.cams
+    swing = AngleLaw(between=(0.0, 0.15), phase=0.2)
+    base = replace(base, cams=(replace(cam, swing=swing),))
+    paths = ["cams[1].swing.between[2]", "cams[1].swing.phase"]
+    wanted = wanted_of(["shaking_force.x", "drive_torque"])
+    values = [[0.12, 0.5], [0.17, -0.4]]
+    with by_numpy(tmp_path):
+        figures, reasons = Batch(base, paths, wanted, angles=180)(np.array(values))
+    assert not reasons.any()
+    for row, own in zip(figures, values, strict=True):
+        known = known_of(design(base, paths, own), 180, ["shaking_force.x", "drive_torque"])
+        same_figures(row, wanted, known, 180, 1e-9)
+
+
+def test_a_law_that_jumps_begins_elsewhere_in_each_design(tmp_path: Path) -> None:
+    """As many crank angles are taken as hold the jumps of each."""
+    base, paths = pusher(JUMPING), ["cams[1].lift.phase"]
+    assert not jumps_alike(assemble(base), paths)
+    values = [[0.3], [2.0]]
+    with by_numpy(tmp_path):
+        batch = Batch(base, paths, [Figure("shaking_force.x", "rms")], tolerance=1e-3)
+        figures, reasons = batch(np.array(values))
+    assert not reasons.any()
+    for (value,), own in zip(figures.tolist(), values, strict=True):
+        exact = eq.analyze(design(base, paths, own)).summary["shaking_force.x"].rms
+        assert value == pytest.approx(exact, rel=1e-3)
+
+
+def test_many_designs_are_looked_at_by_parts(tmp_path: Path) -> None:
+    """Also those that are near to what cannot be made."""
+    base, paths = pusher(SEGMENTS), ["cams[1].lift.segments[3].to", "cams[1].base_radius"]
+    values = np.array([[low, 0.01] for low in np.linspace(-0.012, 0.004, 300)])
+    with by_numpy(tmp_path):
+        _, reasons = Batch(base, paths, [Figure("shaking_force.x", "rms")], 60)(values)
+    feasible = np.flatnonzero(reasons == COMPUTED)
+    border = feasible[0]
+    assert 128 < len(feasible) < 300 and feasible.tolist() == [*range(border, 300)]
+    eq.analyze(design(base, paths, values[border].tolist()), 8)
+    with pytest.raises(ModelError):
+        eq.analyze(design(base, paths, values[border - 1].tolist()), 8)
+
+
+def test_ends_of_a_lift_have_numbers_as_in_a_file() -> None:
+    """They are no point with x and y; so studies and interactive files vary them in loops."""
+    numbers = Template.of(pusher(SWING)).numbers()
+    assert {"cams[1].lift.between[1]", "cams[1].lift.between[2]"} < numbers.keys()
+    assert not any(path.endswith((".between.x", ".between.y")) for path in numbers)
+    assert "links.crank.points.B.x" in numbers
+    assert can_vary(pusher(SWING), "cams[1].lift.between[2]")
+
+
+def test_names_in_quotes_are_those_of_signals() -> None:
+    """As figures of studies write names that hold spaces."""
+    quoted, bare = (figure_of(f"cams.{q}crank to pusher{q}.normal.min") for q in ('"', ""))
+    assert quoted == bare == Figure("cams.crank to pusher.normal", "min")
+
+
 @pytest.mark.parametrize(
     ("law", "key"),
     [
@@ -133,6 +202,8 @@ def test_designs_that_cannot_be_made(tmp_path: Path) -> None:
         (SEGMENTS, "segments[1].over"),  # where all knots after it are
         (JUMPING, "segments[2].to"),
         (ROWS, "crank_angles[2]"),
+        (CLOSED, "values[1]"),  # and the last, which is the same place
+        (CLOSED, "values[6]"),
     ],
 )
 def test_numbers_that_others_follow_are_no_columns(law: LengthLaw, key: str) -> None:
@@ -141,9 +212,9 @@ def test_numbers_that_others_follow_are_no_columns(law: LengthLaw, key: str) -> 
 
 def test_laws_that_would_jump_elsewhere_are_no_columns() -> None:
     """A rest between harmonic segments has no jump of acceleration at its end; a design would."""
-    still = (LengthSegment(over=radians(90), to=0.01, law="harmonic") for _ in range(1))
     first = LengthSegment(over=radians(90), to=0.01)
+    still = LengthSegment(over=radians(90), to=0.01, law="harmonic")
     last = LengthSegment(over=radians(180), to=0.0)
-    resting = pusher(LengthLaw(segments=(first, *still, last)))
+    resting = pusher(LengthLaw(segments=(first, still, last)))
     assert not can_vary(resting, "cams[1].lift.segments[2].to")
     assert can_vary(pusher(JUMPING), "cams[1].lift.segments[1].to")
