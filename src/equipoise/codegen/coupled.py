@@ -28,7 +28,8 @@ from equipoise.codegen.terms import (
     rotation,
     select,
 )
-from equipoise.codegen.trace import Array, Trace, links_of
+from equipoise.codegen.trace import Array, Trace, links_of, numbered
+from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.assembly.cam_groups import Displacement
 from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.assembly.steps import KernelCall, u
@@ -38,7 +39,6 @@ from equipoise.mechanism.formulas.curves import MOST_POWERS, ROUNDING, PeriodicC
 from equipoise.mechanism.formulas.rolling import HalfAngle, PitchCurve, RatioTable, RatioWaves
 from equipoise.mechanism.parts.cams import Cam
 from equipoise.mechanism.parts.couplings import Coupling
-from equipoise.mechanism.parts.laws import Steps
 from equipoise.mechanism.parts.machine import FRAME
 
 Turning = Callable[[Array], tuple[Any, Any, Any]]
@@ -175,38 +175,39 @@ def can_trace_followers(linkage: Linkage) -> bool:
 
 
 def trace_displacement(trace: Trace, step: Displacement, number: int) -> None:
-    """What the law of a cam says at the angle that this has turned against the carrier: the step
-    of this number of the ``motion``.
+    """Displacement of a cam's follower, with its two derivatives by the cam angle.
 
-    The law is linear in its values: those that designs change are factors of curves that none does.
+    The law is linear in its amounts; those that designs change multiply unit curves.
+
+    number : place of the step in the linkage's ``motion``.
     """
-    cam, places = step.cam, trace.amounts[step.cam.driven]
-    rest = cam.law.with_amounts(dict.fromkeys(places, 0.0)).curve
-    value = _displacement(trace, step, number)
-    y, y1, y2 = value(rest, "the others")
-    for place in places:
-        amount = trace.slot(f"{place} of {cam.driven}", partial(_amount, number, place))
-        by, by1, by2 = value(cam.law.unit_curve(place), f"{place}")
+    cam = step.cam
+    where = next(path for path, item in numbered(trace.machine) if item.driven == cam.driven)
+    varied = [p for p in cam.law.amounts if KeyPath((*where, cam.law_key, *p)) in trace.varied]
+    curve_at = _evaluation(trace, step, number)
+    rest = cam.law.with_amounts(dict.fromkeys(varied, 0.0)).curve
+    y, y1, y2 = curve_at(rest, "constant part")
+    for path in varied:
+        amount = trace.slot(f"{path} of {cam.driven}", partial(_amount, number, path))
+        by, by1, by2 = curve_at(cam.law.unit_curve(path), str(path))
         y, y1, y2 = y + amount * by, y1 + amount * by1, y2 + amount * by2
     trace.put(step.outputs, (y, y1, y2))
 
 
-def _displacement(
+def _evaluation(
     trace: Trace, step: Displacement, number: int
 ) -> Callable[[PeriodicCurve, str], Sequence[Any]]:
-    """What a curve, which has a name, says of a cam's angle."""
+    """Function that returns a curve, which is given with a name for its rows, and its two
+    derivatives at the cam's angle.
+    """
     cam, turnings = step.cam, known_by_crank(trace)
     known = {cam.driver, cam.carrier} <= turnings.keys() - trace.shifted
     if known and cam.driven not in trace.late:
         turned = turnings[cam.driver], turnings[cam.carrier]
-
-        def row(curve: PeriodicCurve, name: str) -> Sequence[Any]:
-            return [
-                trace.row(f"{output}, {name}", partial(_displaced, curve, cam, turned, place))
-                for place, output in enumerate(step.outputs)
-            ]
-
-        return row
+        return lambda curve, name: [
+            trace.row(f"{output}, {name}", partial(_displaced, curve, cam, turned, place))
+            for place, output in enumerate(step.outputs)
+        ]
     driver, carrier = (trace.state[f"phi({body})"] for body in (cam.driver, cam.carrier))
     origin: Any = float(cam.law.origin)
     if cam.driven in trace.late:
@@ -228,8 +229,8 @@ def _cam(number: int, linkage: Linkage) -> Cam:
     return step.cam
 
 
-def _amount(number: int, place: Steps, linkage: Linkage) -> Any:
-    return _cam(number, linkage).law.amounts[place]
+def _amount(number: int, path: KeyPath, linkage: Linkage) -> Any:
+    return _cam(number, linkage).law.amounts[path]
 
 
 def _origin(number: int, linkage: Linkage) -> Any:

@@ -15,9 +15,7 @@ from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.assembly.steps import KernelCall, RunningAngle, Step, p, planar, u
 from equipoise.mechanism.formulas import kernels
-from equipoise.mechanism.parts.cams import Cam
 from equipoise.mechanism.parts.couplings import Coupling, coupled
-from equipoise.mechanism.parts.laws import Steps
 from equipoise.mechanism.parts.machine import FRAME, Machine
 
 Array = np.ndarray[Any, Any]
@@ -81,7 +79,7 @@ class Trace:
     fixed : whether no design changes the motion, so that the crank angle alone decides it.
     loose : couplings of varying ratio at angles, or by numbers, that designs change.
     shifted : links that designs start at other angles.
-    amounts : follower of a cam -> places of values of its law that designs change.
+    varied : paths of the numbers in which designs differ.
     late : followers whose laws designs begin at angles of their own.
     rotated : those of them whose rotation is known without their angle.
     counted : whether angles of links are counted on from crank angle to crank angle, because a
@@ -110,7 +108,8 @@ class Trace:
         self.width = 0
         self.fixed = linkage.shared is not None and paths is not None
         self.shifted, self.loose = _changed(linkage, paths or ())
-        self.amounts, self.late = _changed_laws(self.machine, paths or ())
+        self.varied = {*map(KeyPath.parse, paths or ())}
+        self.late = {*_begun_elsewhere(self.machine, self.varied)}
         self.rotated: set[str] = set()
         steps = any(map(_counts, linkage.motion)) or _drives_on(self.machine)
         steps |= bool(self.loose or self.late)
@@ -258,7 +257,7 @@ def _changed(linkage: Linkage, paths: Collection[str]) -> tuple[set[str], set[st
     """
     shifted, shaped = set(), set()
     varied = {*map(KeyPath.parse, paths)}
-    for where, item in _numbered(linkage.machine):
+    for where, item in numbered(linkage.machine):
         if where / "start" in varied:
             shifted.add(item.driven)
         if any(path.begin(3) == where / "shape" for path in varied):
@@ -278,25 +277,16 @@ def _changed(linkage: Linkage, paths: Collection[str]) -> tuple[set[str], set[st
     return shifted, loose
 
 
-def _changed_laws(
-    machine: Machine, paths: Collection[str]
-) -> tuple[dict[str, tuple[Steps, ...]], set[str]]:
-    """As of `Trace.amounts` and `Trace.late`."""
-    varied = {*map(KeyPath.parse, paths)}
-    amounts, late = dict[str, tuple[Steps, ...]](), set[str]()
-    for where, item in _numbered(machine):
-        if not isinstance(item, Cam):
-            continue
-        law = where / item.law_key
-        amounts[item.driven] = tuple(
-            place for place in item.law.amounts if KeyPath((*law, *place)) in varied
-        )
-        if law / "phase" in varied:
-            late.add(item.driven)
-    return amounts, late
+def _begun_elsewhere(machine: Machine, varied: set[KeyPath]) -> Iterator[str]:
+    """Followers of cams whose laws designs begin at angles of their own."""
+    for where, item in numbered(machine):
+        if item.contact == "surface" and any(
+            path.begin(2) == where and path[-1] == "phase" for path in varied
+        ):
+            yield item.driven
 
 
-def _numbered(machine: Machine) -> Iterator[tuple[KeyPath, Coupling]]:
+def numbered(machine: Machine) -> Iterator[tuple[KeyPath, Coupling]]:
     """Couplings, each with its path in the file."""
     counts: Counter[str] = Counter()
     for coupling in machine.couplings:

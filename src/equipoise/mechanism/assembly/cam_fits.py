@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from functools import partial
+from functools import cached_property, partial
 from math import degrees, floor, log10, pi, radians
 from numbers import Real
 from typing import Any
@@ -72,8 +72,8 @@ class CamFit:
         """The point of the follower about which its joint's moments are taken."""
         return self.pin if self.guide is None else self.guide.point
 
-    @property
-    def law(self) -> Law:
+    @cached_property
+    def law_from_zero(self) -> Law:
         """That of the cam; where designs begin it at angles of their own, which only turn the cam
         on its shaft, from 0 on.
         """
@@ -84,24 +84,25 @@ class CamFit:
     @property
     def knots(self) -> Array:
         """Cam angles (K,), rad, at which the law changes."""
-        return self.law.curve.knots[:-1] + self.law.origin
+        law = self.law_from_zero
+        return law.curve.knots[:-1] + law.origin
 
     @property
-    def varies(self) -> bool:
+    def has_columns(self) -> bool:
         """Whether the shape has numbers that are columns of designs."""
-        return bool(self.cam.law.varied) or not isinstance(self.rest, float | complex)
+        return bool(self.cam.law.unit_curves) or not isinstance(self.rest, float | complex)
 
     def shape(self, angle: Array) -> CamShape:
         """The cam under its follower at angles (N,), rad, by which it has turned."""
-        return CamShape(angle, self.path, self.law.value, self.cam.roller_radius)
+        return CamShape(angle, self.path, self.law_from_zero.value, self.cam.roller_radius)
 
-    def of(self, which: Any) -> CamFit:
-        """One design or some, by number, where numbers of this are columns."""
+    def shape_of(self, which: Any, angle: Array) -> CamShape:
+        """The same of one design or some, by number, where numbers of this are columns."""
+        law = self.law_from_zero
+        amounts = {place: law.amounts[place][which] for place in law.unit_curves}
         path = replace(self.path, **{k: design(v, which) for k, v in vars(self.path).items()})  # type: ignore[type-var]
-        cam, key = self.cam, self.cam.law_key
-        radii = {"roller_radius": design(cam.roller_radius, which)}
-        laws = {key: cam.law.of_designs(which)} if key else {}
-        return replace(self, cam=with_fields(cam, **radii, **laws), path=path)
+        value = partial(law.value, amounts=amounts)
+        return CamShape(angle, path, value, design(self.cam.roller_radius, which))
 
 
 def fitted(machine: Machine, joints: Structure, cam: Cam) -> CamFit:
@@ -147,7 +148,7 @@ def fitted(machine: Machine, joints: Structure, cam: Cam) -> CamFit:
 
 
 def _is(flag: Any) -> bool:
-    """Whether it is so of one machine; of columns of designs `cam_demands` tells."""
+    """Whether it is so of one machine; of columns of designs `can_be_made` tells."""
     return np.ndim(flag) == 0 and bool(flag)
 
 
@@ -237,7 +238,7 @@ def sharpest(fit: CamFit) -> tuple[float, float]:
 
 
 @dataclass(frozen=True)
-class RequiredWrench:
+class ShapeCondition:
     """Something (N,) that has to be above 0 all over a cam.
 
     violation : what is said where it is not, of its least value and the cam angle of that, deg.
@@ -311,34 +312,35 @@ def can_be_made(fit: CamFit) -> Array:
     feasible: Array = np.isfinite(fit.rest) & (np.asarray(cam.base_radius) > 0)
     if cam.rides == "roller":
         feasible = feasible & (np.asarray(cam.roller_radius) > 0)
-    amounts = (cam.law.amounts[place] for place in cam.law.varied)
+    amounts = (cam.law.amounts[place] for place in cam.law.unit_curves)
     feasible = np.array(np.broadcast_arrays(feasible, *amounts)[0])
     count, knots = len(feasible), fit.knots
     angles = _spread(knots)
     with np.errstate(all="ignore"):
         for begin in range(0, count, AT_ONCE):
             some = slice(begin, begin + AT_ONCE)
+            shape = fit.shape_of(some, angles)
             for demand in _demands(cam):
-                least = np.min(demand.value(fit.of(some).shape(angles)), axis=-1, keepdims=True)
+                least = np.min(demand.value(shape), axis=-1, keepdims=True)
                 feasible[some] &= least > 0
                 doubtful = feasible[some] & (least < ZERO_MARGIN * design(demand.size, some))
                 for k in begin + np.flatnonzero(doubtful):
-                    one = fit.of(k)
-                    feasible[k] = lowest(one.shape(knots), demand.value, knots)[0] > 0
+                    alone = fit.shape_of(k, knots)
+                    feasible[k] = lowest(alone, demand.value, knots)[0] > 0
     return feasible
 
 
 def _spread(knots: Array) -> Array:
-    """Cam angles, rad, between which no value is lower by as much as `NEAR`."""
+    """Cam angles, rad, between which no value is lower by as much as `ZERO_MARGIN`."""
     ends = np.append(knots, knots[0] + 2 * pi)
     counts = np.maximum(FEWEST, np.ceil(np.diff(ends) / WIDEST)).astype(int)
     pairs = zip(ends + KNOT_OFFSET, ends[1:] - KNOT_OFFSET, counts, strict=False)
     return np.concatenate([np.linspace(*pair) for pair in pairs])
 
 
-def _demands(cam: Cam) -> Iterator[RequiredWrench]:
+def _demands(cam: Cam) -> Iterator[ShapeCondition]:
     if cam.rides == "flat":
-        yield RequiredWrench(
+        yield ShapeCondition(
             lambda shape: 1 - STEEPEST - shape.ride.turn_1,
             lambda _, angle: Note(
                 "at cam angle {angle:.4g} deg the follower turns as fast as the cam, which no flat "
@@ -347,7 +349,7 @@ def _demands(cam: Cam) -> Iterator[RequiredWrench]:
             ),
             mended=False,
         )
-    yield RequiredWrench(
+    yield ShapeCondition(
         lambda item: np.cos(item.pressure_angle) - STEEPEST,
         lambda _, angle: Note(
             "the follower jams at cam angle {angle:.4g} deg, where the pressure angle is 90 "
@@ -357,13 +359,13 @@ def _demands(cam: Cam) -> Iterator[RequiredWrench]:
         ),
     )
     if cam.rides == "flat":
-        yield RequiredWrench(
+        yield ShapeCondition(
             lambda shape: shape.radius_of_curvature, _undercut_flat, cam.base_radius
         )
         return
     # the curve of a roller's centre bends less than the roller, outward and in a groove inward
     for sign in (1.0, -1.0) if cam.closed_by == "groove" else (1.0,):
-        yield RequiredWrench(
+        yield ShapeCondition(
             partial(_blunt, sign),
             partial(_undercut_round, cam.roller_radius),
         )

@@ -49,7 +49,7 @@ def contact(builder: Builder, joints: Structure, cam: Cam) -> CamPush:
     ModelError : they cannot be joined like this, or the cam cannot be made.
     """
     fit = fitted(builder.machine, joints, cam)
-    if not fit.varies:  # else `can_be_made` tells of which designs
+    if not fit.has_columns:  # else `can_be_made` tells of which designs
         check_shape(builder.machine, joints, fit)
     return CamPush(fit)
 

@@ -5,7 +5,7 @@ solves all machines at all their crank angles.
 
 Everything that puts a linkage together from numbers (`mechanism.assembly.linkage`) works on columns
 as well as on numbers.  So the steps of all designs are made in one go.  What a single machine is
-refused for is here a design of which `refusing.wrong` is true.
+refused for is here a design of which `invalid_designs` is true.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ from equipoise.mechanism.assembly.steps import (
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.formulas.rolling import stacked
 from equipoise.mechanism.parts.bodies import Body, outlined_by_columns
-from equipoise.mechanism.parts.couplings import Coupling, coupling_kinds
+from equipoise.mechanism.parts.couplings import Coupling, PathPattern, coupling_kinds
 from equipoise.mechanism.parts.element_kinds import element_kinds
 from equipoise.mechanism.parts.links import demands_across
 from equipoise.mechanism.parts.machine import FRAME, Machine, Vector
@@ -198,7 +198,7 @@ Part = str | tuple[str, int]
 PAIR = {"x", "y", "distance", "direction"}
 
 
-HOLDERS: Mapping[tuple[str | type, ...], Set[str] | None] = {
+HOLDERS: Mapping[PathPattern, Set[str] | None] = {
     ("drive",): {"speed", "acceleration"},
     ("gravity",): PAIR,
     ("frame", "points", str): PAIR,
@@ -217,7 +217,7 @@ their keys; None where these are names.  Couplings tell theirs, and all quantiti
 """
 
 
-def _listed_holders(of: type[Frozen]) -> Iterator[tuple[tuple[str | type, ...], Set[str]]]:
+def _listed_holders(of: type[Frozen]) -> Iterator[tuple[PathPattern, Set[str]]]:
     """As `HOLDERS`, of the couplings and elements of a class of machines."""
     for table, coupling in coupling_kinds(of).items():
         for inner, keys in coupling.columns.items():
@@ -326,7 +326,7 @@ def _check_outlines(machine: Machine) -> None:
 def _check_shapes(machine: Machine, base: Machine) -> None:
     """Whether the relations of couplings are formulas of their numbers."""
     pairs = zip(machine.couplings, base.couplings, strict=True)
-    if not all(coupling.varies_like(before) for coupling, before in pairs):
+    if not all(coupling.accepts_columns(before) for coupling, before in pairs):
         raise KeyError
 
 
@@ -398,7 +398,7 @@ def _demands(machine: Machine, base: Linkage) -> Iterator[Any]:
     for coupling in machine.couplings:
         yield from coupling.demands(partial(_distance, machine, base, coupling))
     fits = fits_of(machine, joints_of(machine, base)) if _has_surfaces(machine) else ()
-    yield from (can_be_made(fit) for fit in fits if fit.varies)
+    yield from (can_be_made(fit) for fit in fits if fit.has_columns)
     yield from demands_across(machine)
     for *_, element in machine.elements:
         yield from element.demands()

@@ -22,7 +22,7 @@ from equipoise.mechanism.checks import Bodies
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.outputs.declared import FORCE, of_coupling, of_mesh, part_in_loops
 from equipoise.mechanism.parts.couplings import (
-    Inner,
+    PathPattern,
     Pushed,
     Relation,
     Seat,
@@ -62,7 +62,7 @@ class Belt(Turning):
         to_say("Tension of the strands of belts over crank angle."),
     )
     pushes = False
-    columns: ClassVar[Mapping[Inner, Set[str]]] = {(): {"start", "tension"}}
+    columns: ClassVar[Mapping[PathPattern, Set[str]]] = {(): {"start", "tension"}}
     counted = to_say("{count} belts")
 
     teeth: tuple[int, int] | None = key(

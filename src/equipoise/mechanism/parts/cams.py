@@ -18,7 +18,7 @@ from equipoise.mechanism.outputs.declared import (
     of_mesh,
     part_in_loops,
 )
-from equipoise.mechanism.parts.couplings import Coupling, Inner, Pushed, Relation, coupled
+from equipoise.mechanism.parts.couplings import Coupling, PathPattern, Pushed, Relation, coupled
 from equipoise.mechanism.parts.laws import CAM, AngleLaw, Law, LengthLaw, wrong_law
 
 RIDES = ("roller", "flat", "knife")
@@ -41,7 +41,7 @@ class Cam(Coupling):
     sign = "equipoise.symbols.cams:cam_sign"
     noun = to_say("cam")
     group = to_say("cams")
-    columns: ClassVar[Mapping[Inner, Set[str]]] = {
+    columns: ClassVar[Mapping[PathPattern, Set[str]]] = {
         (): {"base_radius", "roller_radius", "normal"},
         **{(law,): {"between", "values", "phase"} for law in ("lift", "swing")},
         **{(law, "segments", int): {"to"} for law in ("lift", "swing")},
@@ -149,10 +149,10 @@ class Cam(Coupling):
         """Of `law` in the file; nothing without one."""
         return "lift" if self.lift else "swing" if self.swing else ""
 
-    def varies_like(self, base: Coupling) -> bool:
+    def accepts_columns(self, base: Coupling) -> bool:
         """Whether the law of all designs is linear in its columns, and jumps as the base's does."""
         assert isinstance(base, Cam)
-        return self.law.varies_like(base.law)
+        return self.law.accepts_columns(base.law)
 
     @property
     def relation(self) -> Relation:

@@ -26,10 +26,10 @@ from equipoise.mechanism.parts.element_kinds import PartKind
 from equipoise.quantities import number
 
 Relation = tuple[Callable[..., tuple[Any, ...]], tuple[Any, ...]]
-Inner = tuple[str | type, ...]
-"""Keys that lead into a table, and `int` for a place in a list."""
 """Kernel and its numbers: called with angle, first and second derivative of the driver, then of the
 carrier, then these numbers and an offset, it gives those of the driven body."""
+PathPattern = tuple[str | type, ...]
+"""Keys that lead into a table, with `str` for any key and `int` for any place in a list."""
 Law = Callable[[Any], tuple[Any, Any, Any]]
 """A function of an angle, with its first and second derivative."""
 
@@ -146,7 +146,7 @@ class Coupling(PartKind):
     grows: ClassVar[bool] = False
     loses: ClassVar[bool] = False
     curves: ClassVar[tuple[tuple[str, ...], str, str] | None] = None
-    columns: ClassVar[Mapping[Inner, Set[str]]] = {}
+    columns: ClassVar[Mapping[PathPattern, Set[str]]] = {}
 
     if TYPE_CHECKING:  # fields of some kinds, and properties of others
 
@@ -237,14 +237,9 @@ class Coupling(PartKind):
         low, high = self.ratios
         return low != high
 
-    @property
-    def has_formula(self) -> bool:
-        """Whether its relation has a formula for columns of its numbers."""
+    def accepts_columns(self, base: Coupling) -> bool:
+        """Whether its relation has a formula for columns of its numbers, together with the base."""
         return True
-
-    def varies_like(self, base: Coupling) -> bool:
-        """Whether all designs of columns of its numbers have a formula together with the base."""
-        return self.has_formula
 
     @property
     def slides(self) -> str:

@@ -27,9 +27,10 @@ from equipoise.mechanism.checks import Bodies
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.outputs.declared import of_mesh
 from equipoise.mechanism.parts.couplings import (
-    Inner,
+    Coupling,
     Law,
     LineOfAction,
+    PathPattern,
     Pushed,
     Relation,
     RollingLine,
@@ -65,7 +66,7 @@ class Gear(Turning):
     noun = to_say("pair of gears")
     group = to_say("gears")
     loses = True
-    columns: ClassVar[Mapping[Inner, Set[str]]] = {
+    columns: ClassVar[Mapping[PathPattern, Set[str]]] = {
         (): {"start", "pressure_angle"},
         ("shape",): {"eccentricity", "phase", "cosines", "sines"},
     }
@@ -153,8 +154,8 @@ class Gear(Turning):
     def unevenness(self) -> float:
         return max(map(abs, self.ratios)) / abs(self.speed_ratio)
 
-    @property
-    def has_formula(self) -> bool:
+    def accepts_columns(self, base: Coupling) -> bool:
+        """Whether the shape of its pitch curves has a formula."""
         if self.shape is None:
             return True
         from equipoise.mechanism.parts.pitch_curves import can_vary

@@ -9,7 +9,7 @@ evaluates.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from functools import cached_property, partial
+from functools import cached_property
 from itertools import pairwise
 from math import degrees, pi
 from numbers import Real
@@ -28,20 +28,18 @@ from equipoise.keys import (
     Tables,
     TextKind,
     Whole,
-    changed,
     declared,
     inside,
     key,
     with_fields,
 )
 from equipoise.keys.csv_tables import CsvTable
+from equipoise.keys.paths import KeyPath
 from equipoise.quantities import KINDS, Measured
 
 if TYPE_CHECKING:
     from equipoise.mechanism.formulas.curves import Array, PeriodicCurve
 
-Steps = tuple[str | int, ...]
-"""Keys and numbers in lists that lead to a value of a table."""
 LAWS = ("cycloidal", "modified sine", "modified trapezoid", "3-4-5", "4-5-6-7", "harmonic",
         "s-curve", "trapezoid", "linear")  # fmt: skip
 SPLINES = {"cubic": 3, "quintic": 5}
@@ -171,63 +169,67 @@ class Law(Frozen):
             return self.crank_angles, self.values
         return self.table.crank_angle, self.table.values
 
-    @property
-    def amounts(self) -> dict[Steps, Any]:
-        """Values in which the law is linear, by their places in its table; without those that
-        another has to follow.
+    @cached_property
+    def amounts(self) -> dict[KeyPath, Any]:
+        """Values in which the law is linear, by their paths in its table: numbers, or columns of
+        designs (P, 1).  Those that have to be equal to another are none of them.
         """
         if self.between is not None:
-            return {("between", k): value for k, value in enumerate(self.between)}
+            return {KeyPath(("between", k)): value for k, value in enumerate(self.between)}
         if self.segments:
-            return {("segments", k, "to"): s.to for k, s in enumerate(self.segments[:-1])}
-        ends = (0, len(self.values) - 1) if self.values and self.is_closed else ()
-        return {("values", k): v for k, v in enumerate(self.values) if k not in ends}
+            ends = enumerate(self.segments[:-1])
+            return {KeyPath(("segments", k, "to")): segment.to for k, segment in ends}
+        bound = (0, len(self.values) - 1) if self.values and self.is_closed else ()
+        each = enumerate(self.values)
+        return {KeyPath(("values", k)): value for k, value in each if k not in bound}
 
     @cached_property
-    def varied(self) -> dict[Steps, PeriodicCurve]:
-        """Places of amounts that are columns of designs, each with the curve of 1 there."""
-        places = (place for place, value in self.amounts.items() if not isinstance(value, Real))
-        return {place: self.unit_curve(place) for place in places}
+    def unit_curves(self) -> dict[KeyPath, PeriodicCurve]:
+        """By the paths of amounts that are columns of designs, the curve of an amount of 1."""
+        columns = (path for path, value in self.amounts.items() if not isinstance(value, Real))
+        return {path: self.unit_curve(path) for path in columns}
 
-    def unit_curve(self, place: Steps) -> PeriodicCurve:
-        """The curve by which the value grows with an amount."""
-        law = self
+    def unit_curve(self, path: KeyPath) -> PeriodicCurve:
+        """The curve by which the displacement grows with an amount."""
+        flat = self
         if self.segments:
             still = with_fields(self.segments[-1], to=0.0)
-            law = with_fields(self, start=0.0, segments=(*self.segments[:-1], still))
-        elif self.values and self.is_closed:
-            law = with_fields(self, values=(0.0,) * len(self.values))
-        return law.with_amounts({other: float(other == place) for other in self.amounts}).curve
+            flat = with_fields(self, start=0.0, segments=(*self.segments[:-1], still))
+        elif self.values:
+            flat = with_fields(self, values=(0.0,) * len(self.values))
+        return flat.with_amounts({other: float(other == path) for other in self.amounts}).curve
 
-    def with_amounts(self, amounts: Mapping[Steps, Any]) -> Self:
-        """The law with other values in these places; unchecked."""
-        law = self
-        for place, value in amounts.items():
-            law = changed(law, place, partial(_instead, value), with_fields)
-        return law
+    def with_amounts(self, amounts: Mapping[KeyPath, Any]) -> Self:
+        """The law with other values of some amounts; unchecked."""
+        values = [amounts.get(path, value) for path, value in self.amounts.items()]
+        if self.between is not None:
+            return with_fields(self, between=tuple(values))
+        if self.segments:
+            pairs = zip(self.segments, values, strict=False)
+            moved = (with_fields(segment, to=value) for segment, value in pairs)
+            return with_fields(self, segments=(*moved, self.segments[-1]))
+        if len(values) < len(self.values):
+            values = [self.values[0], *values, self.values[-1]]
+        return with_fields(self, values=tuple(values))
 
-    def of_designs(self, which: Any) -> Self:
-        """One design or some, by number, where amounts are columns of designs (P, 1)."""
-        amounts = self.amounts
-        return self.with_amounts({place: amounts[place][which] for place in self.varied})
-
-    def varies_like(self, base: Law) -> bool:
-        """Whether columns of designs are amounts of the law, and none of the designs jumps where
-        the base does not, in speed or acceleration.
+    def accepts_columns(self, base: Law) -> bool:
+        """Whether what is a column of designs is an amount, and no design jumps where the base does
+        not, in speed or acceleration.
         """
-        ends = (self.start, *(segment.to for segment in self.segments[-1:]))
-        rest = (v for k, v in enumerate(self.values) if ("values", k) not in self.amounts)
-        return all(isinstance(value, Real) for value in (*ends, *rest)) and all(
+        bound = [self.start, *(segment.to for segment in self.segments[-1:])]
+        if self.values and self.is_closed:
+            bound += [self.values[0], self.values[-1]]
+        return all(isinstance(value, Real) for value in bound) and all(
             {*curve.jumps(order)} <= {*base.curve.jumps(order)}
-            for curve in self.varied.values()
+            for curve in self.unit_curves.values()
             for order in (1, 2)
         )
 
     @cached_property
     def curve(self) -> PeriodicCurve:
         """The value over the crank angle from `origin` on; amounts that are columns are 0 in it."""
-        if self.varied:
-            return self.with_amounts(dict.fromkeys(self.varied, 0.0)).curve
+        if self.unit_curves:
+            return self.with_amounts(dict.fromkeys(self.unit_curves, 0.0)).curve
         return self._joined()
 
     def _joined(self) -> PeriodicCurve:
@@ -260,12 +262,18 @@ class Law(Frozen):
         angles = self.rows[0]
         return abs(angles[-1] - angles[0] - self.period) <= CLOSED * self.period
 
-    def value(self, crank_angle: Any) -> tuple[Array, Array, Array]:
-        """The value and its first and second derivative by crank angle, at crank angles (...)."""
-        at = crank_angle - self.origin
+    def value(
+        self, crank_angle: Any, amounts: Mapping[KeyPath, Any] | None = None
+    ) -> tuple[Array, Array, Array]:
+        """The value and its first and second derivative by crank angle, at crank angles (...).
+
+        amounts : of those that are columns of designs, where other ones are to take their place,
+            such as some of the designs.
+        """
+        at, given = crank_angle - self.origin, self.amounts if amounts is None else amounts
         y, y1, y2 = self.curve.at(at)
-        for place, curve in self.varied.items():
-            amount, (by, by1, by2) = self.amounts[place], curve.at(at)
+        for path, curve in self.unit_curves.items():
+            amount, (by, by1, by2) = given[path], curve.at(at)
             y, y1, y2 = y + amount * by, y1 + amount * by1, y2 + amount * by2
         return y, y1, y2
 
@@ -285,10 +293,6 @@ class Law(Frozen):
     def extremes(self) -> tuple[float, float]:
         """Smallest and largest value in a cycle."""
         return self.curve.extremes
-
-
-def _instead(value: Any, _: Any) -> Any:
-    return value
 
 
 def _between(dimension: Any, example: list[str]) -> Any:

@@ -15,8 +15,8 @@ from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.outputs.declared import of_mesh
 from equipoise.mechanism.parts.couplings import (
     Coupling,
-    Inner,
     LineOfAction,
+    PathPattern,
     Pushed,
     Relation,
     Seat,
@@ -41,7 +41,7 @@ class Rack(Coupling):
     noun = to_say("rack")
     group = to_say("racks")
     loses = True
-    columns: ClassVar[Mapping[Inner, Set[str]]] = {(): {"angle", "travel", "pressure_angle"}}
+    columns: ClassVar[Mapping[PathPattern, Set[str]]] = {(): {"angle", "travel", "pressure_angle"}}
     special = "rack"
     counted = to_say("{count} racks")
 
