@@ -30,7 +30,7 @@ from equipoise.codegen.terms import VectorTerm, angle_of, rotation
 from equipoise.codegen.trace import FAR, Array, Read, Trace, links_of, running_angle
 from equipoise.dataclass import dataclass
 from equipoise.errors import MassError
-from equipoise.keys import MEMORY, Frozen, with_fields
+from equipoise.keys import Frozen, cached_names, with_fields
 from equipoise.mechanism.assembly.cam_groups import Displacement
 from equipoise.mechanism.assembly.flanks import rolled
 from equipoise.mechanism.assembly.joints import coupling_pins
@@ -230,7 +230,7 @@ def traced_element(trace: Trace, table: str, number: int) -> tuple[Element, Trac
         if isinstance(value, Frozen):
             still = value.still if isinstance(value, Element) else ()
             traceds = {key: traced(var, *steps, key) for key, var in vars(value).items()
-                    if key not in still and key != MEMORY}  # fmt: skip
+                    if key not in {*still, *cached_names(type(value))}}  # fmt: skip
             return with_fields(value, **traceds)
         if isinstance(value, tuple):
             return tuple(traced(item, *steps, k) for k, item in enumerate(value))

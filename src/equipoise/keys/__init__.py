@@ -19,7 +19,6 @@ from equipoise.keys.conditions import lacks as lacks
 from equipoise.keys.conditions import needs as needs
 from equipoise.keys.conditions import not_both as not_both
 from equipoise.keys.conditions import told_by as told_by
-from equipoise.keys.declaring import MEMORY as MEMORY
 from equipoise.keys.declaring import REQUIRED as REQUIRED
 from equipoise.keys.declaring import ROW as ROW
 from equipoise.keys.declaring import SCHEMA_VERSION as SCHEMA_VERSION
@@ -29,6 +28,7 @@ from equipoise.keys.declaring import Frozen as Frozen
 from equipoise.keys.declaring import Key as Key
 from equipoise.keys.declaring import Keys as Keys
 from equipoise.keys.declaring import all_keys as all_keys
+from equipoise.keys.declaring import cached_names as cached_names
 from equipoise.keys.declaring import changed as changed
 from equipoise.keys.declaring import declared as declared
 from equipoise.keys.declaring import inside as inside

@@ -223,7 +223,7 @@ class Frozen(TableRecord):
         return {
             key: dict(value) if isinstance(value, MappingProxyType) else value
             for key, value in self.__dict__.items()
-            if not key.startswith("_") and key != MEMORY
+            if not key.startswith("_") and key not in cached_names(type(self))
         }
 
     def __setstate__(self, state: dict[str, Any]) -> None:
@@ -351,7 +351,7 @@ def _coordinate(step: str) -> int:
 def with_fields(value: Given, **changes: Any) -> Given:
     """A frozen value with fields changed, unchecked; what was kept with it is left behind."""
     result = object.__new__(type(value))
-    left = kept_by(type(value))  # type: ignore[arg-type]
+    left = cached_names(type(value))  # type: ignore[arg-type]
     values = {k: v for k, v in vars(value).items() if not k.startswith("_") and k not in left}
     _set(result, values | changes)
     if isinstance(value, Frozen) and isinstance(result, Frozen):
@@ -362,8 +362,8 @@ def with_fields(value: Given, **changes: Any) -> Given:
 
 
 @cache
-def kept_by(cls: type[Any]) -> frozenset[str]:
-    """Names under which the values of a class keep what follows from their fields."""
+def cached_names(cls: type[Any]) -> frozenset[str]:
+    """Names of the cached properties of a class, `memory` among them."""
     own = (name for base in cls.__mro__ for name, item in vars(base).items()
            if isinstance(item, cached_property))  # fmt: skip
     return frozenset(own)

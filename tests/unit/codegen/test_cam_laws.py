@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from collections.abc import Sequence
 from dataclasses import replace
 from math import radians
@@ -19,7 +20,7 @@ from equipoise.codegen.source import on_arrays
 from equipoise.codegen.terms import ANGLE
 from equipoise.codegen.trace import Trace
 from equipoise.errors import ModelError
-from equipoise.keys import changed
+from equipoise.keys import changed, with_fields
 from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.assembly.family import can_vary
 from equipoise.mechanism.assembly.linkage import assemble
@@ -218,3 +219,12 @@ def test_laws_that_would_jump_elsewhere_are_no_columns() -> None:
     resting = pusher(LengthLaw(segments=(first, still, last)))
     assert not can_vary(resting, "cams[1].lift.segments[2].to")
     assert can_vary(pusher(JUMPING), "cams[1].lift.segments[1].to")
+
+
+def test_copies_take_along_nothing_that_was_computed() -> None:
+    """Of a law: its curve and those of its amounts, which are of the old values."""
+    law = LengthLaw(between=(0.0, 0.01))
+    before = law.value(np.array([1.0]))[0]
+    other = with_fields(law, between=(0.0, 0.02))
+    assert other.value(np.array([1.0]))[0] == pytest.approx(2 * before)
+    assert not {"curve", "amounts"} & vars(pickle.loads(pickle.dumps(law))).keys()
