@@ -37,7 +37,7 @@ from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
 from equipoise.i18n import Note
 from equipoise.keys.paths import KeyPath
-from equipoise.mechanism.assembly import cycle, reach
+from equipoise.mechanism.assembly import reach
 from equipoise.mechanism.assembly.family import invalid_designs, linkage_of, with_columns
 from equipoise.mechanism.assembly.linkage import Linkage, assemble
 from equipoise.mechanism.assembly.loops import LoopGroup
@@ -215,7 +215,7 @@ class Batch:
         self.threads = threads or processors()
         self.needed = 2 if any(figure.name not in SMOOTH for figure in self.wanted) else 1
         rounds = machine.couplings or any(isinstance(s, LoopGroup) for s in self.base.motion)
-        self.turns = self.base.cycle.turns if rounds else cycle.turns_given(machine)
+        self.turns = self.base.cycle.turns if rounds else machine.turns_given
         self.jumps, self.least = self._known_jumps()
         resolves = len(self.jumps) > 0
         self.source = emit(self.base, Gathered.of(self.wanted), self.paths, resolves)

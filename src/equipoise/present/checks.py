@@ -13,7 +13,6 @@ from equipoise.handheld.design_plan import OUTPUTS
 from equipoise.handheld.hand_blocks import varied_named
 from equipoise.handheld.shaft import Section
 from equipoise.i18n import Note, all_of, coordinates, listed, said, say, series, to_say
-from equipoise.mechanism.assembly.cycle import turns_given
 from equipoise.mechanism.assembly.joints import moving_links
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.dynamics.assessment import remarks
@@ -206,7 +205,7 @@ def machine_blocks(machine: Machine) -> Iterator[Block]:
     after = say("{count} turns", count=cycle.turns)
     if not crank:
         after = say("{angle} of the cycle", angle=angle(2 * pi * cycle.turns, 0))
-    yield Text(_repeats(crank, turns_given(machine) == 1, after))
+    yield Text(_repeats(crank, machine.turns_given == 1, after))
     yield from bodies_tables(machine)
     parts = (
         *_joints(machine),

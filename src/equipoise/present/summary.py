@@ -102,11 +102,11 @@ def tiles(findings: Findings) -> Iterator[Tile]:
 def _pace(findings: Findings) -> Tile:
     """Speed of the crank, or how often a drive without one comes back."""
     motion, drive = findings.analysis.motion, findings.machine.drive
-    rpm = abs(motion.speed) / PER_RPM
     if findings.machine.crank_turns:
-        return Tile(say("crank speed"), brief(rpm), "rpm", drive.link)
+        return Tile(say("crank speed"), brief(abs(motion.speed) / PER_RPM), "rpm", drive.link)
     what = pushed_named(drive) if drive.pushes else drive.link
-    return Tile(say("cycles"), brief(rpm / motion.turns), say("a minute"), what)
+    rate = findings.machine.cycles_per_minute(motion.speed)
+    return Tile(say("cycles"), brief(rate), say("a minute"), what)
 
 
 def _tile(

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from equipoise.i18n import Note, coordinates, said, say, to_say
-from equipoise.mechanism.assembly.cycle import turns_given
 from equipoise.mechanism.outputs.declared import body_named, joint_named
 from equipoise.mechanism.parts.bodies import combined, inertia_of, material_of
 from equipoise.mechanism.parts.drives import Drive, FurtherDrive
@@ -347,7 +346,7 @@ def driven(machine: Machine, speed: float) -> str:
         return say(
             "{drives}, {rate} cycles a minute",
             drives=say(", ").join(map(drive_told, machine.driven)),
-            rate=number(abs(speed) / PER_RPM / turns_given(machine)),
+            rate=number(machine.cycles_per_minute(speed)),
         )
     if machine.drives or (law is not None and law.windings):
         return say(
@@ -361,7 +360,7 @@ def driven(machine: Machine, speed: float) -> str:
             "{what} from {low} to {high} and back, {rate} cycles a minute",
             what=pushed_named(drive) if drive.pushes else drive.link,
             **told_between(law),
-            rate=number(abs(speed) * 60 / law.period),
+            rate=number(machine.cycles_per_minute(speed)),
         )
     return say(
         "{link} driven at {speed} rpm ({rate} rad/s)",

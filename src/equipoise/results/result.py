@@ -13,7 +13,6 @@ import numpy as np
 from equipoise.displays import Displayed, room
 from equipoise.errors import UsageError
 from equipoise.i18n import Note, to_say, wording
-from equipoise.mechanism.assembly.cycle import turns_given
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.shown_units import units_of
 from equipoise.quantities import column_heading, showing_by_default
@@ -167,7 +166,7 @@ def words_of(model: Any) -> Mapping[str, str]:
     words = dict(OF_CYCLES)
     if all(item.pushes for item in model.driven):
         words |= PUSHED
-    if model.only_swings and turns_given(model) == 1:
+    if model.only_swings and model.turns_given == 1:
         words |= CYCLES_A_MINUTE
     return words
 

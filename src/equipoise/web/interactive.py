@@ -307,7 +307,8 @@ class Interactive:
             unit = _unit(number, template.unit(path))
             key = template.key(path)
             is_cycle_speed = path == "drive.speed" and not self.machine.crank_turns
-            shown = _per_minute(unit) if is_cycle_speed else unit
+            per_minute = is_cycle_speed and self.machine.turns_given == 1
+            shown = _per_minute(unit) if per_minute else unit
             yield {
                 "path": path,
                 "steps": [*steps],

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
-from math import hypot
+from math import hypot, pi
 from typing import Any
 
 import numpy as np
@@ -17,9 +17,12 @@ from equipoise.exchange.formats import FORMATS
 from equipoise.figures import render
 from equipoise.mechanism.dynamics.parameters import parameter_values, regressor
 from equipoise.mechanism.parts.drives import Drive, FurtherDrive
+from equipoise.mechanism.parts.force_elements import Load, LoadTable
 from equipoise.mechanism.parts.laws import AngleLaw, LengthLaw
 from equipoise.present.findings import Findings
 from equipoise.present.pictures import each
+from equipoise.present.summary import tiles
+from equipoise.results.machine_blocks import driven
 from equipoise.web.design import Design
 from equipoise.web.messages import message_of
 from equipoise.web.session import Session
@@ -194,6 +197,20 @@ def test_everything_is_shown_of_it() -> None:
     assert "Drive force by cause" in blocks
     told = " ".join(str(one) for one in found.analysis.blocks())
     assert "cylinder A to B from 550.0 to 800.0 mm and back, 19.10 cycles a minute" in told
+
+
+def test_a_load_over_two_turns_halves_the_cycles_a_minute_everywhere() -> None:
+    """2 rad/s are 19.10 turns of the phase a minute, and all is back after two of them."""
+    table = LoadTable((0.0, 4 * pi), ((5.0, 5.0),))
+    loaded = replace(boom(), loads=(Load("boom", table=table),))
+    for given, rate, turns in ((boom(), "19.10", 1), (loaded, "9.549", 2)):
+        assert f"{rate} cycles a minute" in repr(given)
+        assert f"{rate} cycles a minute" in repr(eq.move(given, 90))
+        assert f"{rate} cycles a minute" in driven(given, -2.0)
+        assert given.turns_given == eq.move(given, 90).turns == turns
+        assert given.cycles_per_minute(-2.0) == pytest.approx(60 * 2 / (2 * pi * turns))
+        pace = next(iter(tiles(Findings(given, "", "boom.toml", 120))))
+        assert float(pace.value) == pytest.approx(float(rate), rel=1e-2)
 
 
 def test_the_page_draws_barrel_and_rod_which_keep_their_lengths() -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import runpy
 from dataclasses import replace
+from math import pi
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +19,7 @@ from equipoise.exchange.formats import FORMATS
 from equipoise.i18n import catalogue, speaking
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.kinematics.tip import surface_of
+from equipoise.mechanism.parts.force_elements import Load, LoadTable
 from equipoise.schema.template import Template
 from equipoise.symbols.scene import Scene
 from equipoise.web.drawing import stage_of
@@ -217,12 +219,21 @@ def test_limits_and_units_of_typed_numbers(tmp_path: Path) -> None:
 
 
 def test_a_cycle_of_a_cylinder_has_no_speed_in_rpm() -> None:
-    """It goes on by so many a minute; the file has it as it was written."""
+    """It goes on by so many a minute; the file has it as it was written.
+
+    Of two turns of the phase, after which a load is back, the speed is that of the phase.
+    """
     told = {}
-    for name in ("hydraulic-loader", "yamashita-1"):
-        fields = Interactive(eq.load(name), 0.0).content["fields"]
+    machines = {name: eq.load(name) for name in ("hydraulic-loader", "yamashita-1")}
+    loader = machines["hydraulic-loader"]
+    table = LoadTable((0.0, 4 * pi), ((5.0, 5.0),))
+    load = Load(loader.drive.link, table=table)
+    machines["two turns"] = replace(loader, loads=(*loader.loads, load))
+    for name, machine in machines.items():
+        fields = Interactive(machine, 0.0).content["fields"]
         (speed,) = (one for one in fields if one["path"] == "drive.speed")
         told[name] = [speed[key] for key in ("label", "unit", "written")]
+    assert told["two turns"] == ["speed of the cycle", "rpm", "rpm"]
     assert told["hydraulic-loader"] == ["speed of the cycle", "1/min", "rpm"]
     assert told["yamashita-1"] == ["speed of the drive", "rpm", "rpm"]
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from functools import cached_property
-from math import lcm, pi
+from math import pi
 from typing import Any
 
 import numpy as np
@@ -74,12 +74,6 @@ REPEAT = "the-motion-does-not-repeat"
 """What `equipoise explain` knows about cycles that are too long."""
 
 
-def turns_given(machine: Machine) -> int:
-    """Turns of the crank after which all drives and loads of a machine are back."""
-    loads = (load.rows.turns for load in machine.loads if load.rows is not None)
-    return lcm(*(drive.turns for drive in machine.driven), *loads)
-
-
 def close(
     machine: Machine,
     groups: Iterable[Group],
@@ -96,7 +90,7 @@ def close(
     RangeError, ChangePointError : the crank cannot turn fully, or not in a definite way.
     MotionError : the motion does not close within `MOST_TURNS` turns of the crank.
     """
-    base = turns = tried = turns_given(machine)
+    base = turns = tried = machine.turns_given
     if base > MOST_TURNS:
         raise MotionError(
             Note(

@@ -108,7 +108,7 @@ from equipoise.mechanism.parts.support import Row, Support, wrong_support
 from equipoise.mechanism.parts.timed_loads import TimedLoad, wrong_timed_load
 from equipoise.mechanism.parts.torsion_dampers import TorsionDamper
 from equipoise.mechanism.parts.torsion_springs import TorsionSpring
-from equipoise.quantities import display
+from equipoise.quantities import PER_RPM, display, number
 
 if TYPE_CHECKING:
     from equipoise.mechanism.parts.balance import Balance
@@ -366,12 +366,20 @@ class Machine(Driven, Displayed, Frozen):
 
     def spoken_rate(self, speed: float) -> str:
         """A speed of the crank, rad/s, or the cycles in a minute of what no crank drives."""
-        turns = 1 if self.crank_turns else lcm(*(item.turns for item in self.driven))
-        rate = display("angular speed", [speed / turns], "rpm")
-        text = rate.text(speed / turns)
-        return (
-            rate.with_unit(text) if self.crank_turns else say("{rate} cycles a minute", rate=text)
-        )
+        if not self.crank_turns:
+            return say("{rate} cycles a minute", rate=number(self.cycles_per_minute(speed)))
+        rate = display("angular speed", [speed], "rpm")
+        return rate.with_unit(rate.text(speed))
+
+    @property
+    def turns_given(self) -> int:
+        """Turns of the crank after which all drives and loads are back."""
+        loads = (load.rows.turns for load in self.loads if load.rows is not None)
+        return lcm(*(item.turns for item in self.driven), *loads)
+
+    def cycles_per_minute(self, speed: float) -> float:
+        """How often all drives and loads are back in a minute, at a speed of the crank, rad/s."""
+        return abs(speed) / PER_RPM / self.turns_given
 
     @property
     def bodies(self) -> Bodies:
@@ -405,8 +413,8 @@ class Machine(Driven, Displayed, Frozen):
 
     def _listed(self, tables: Iterable[str]) -> Iterator[tuple[str, int, Any]]:
         for table in tables:
-            for number, item in enumerate(getattr(self, table)):
-                yield table, number, item
+            for place, item in enumerate(getattr(self, table)):
+                yield table, place, item
 
     @property
     def pins_in_slots(self) -> Mapping[str, JointKind]:
