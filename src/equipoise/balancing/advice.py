@@ -390,12 +390,14 @@ class _Adviser:
     @cached_property
     def loud_gauges(self) -> tuple[Objective, ...]:
         """What those gauges read that are loud, the loudest against its limit first."""
-        read = {item.output: item.excess for item in self.before.headline
+        # Reversed, for the largest entry of a gauge with several to remain.
+        read = {item.output: item.excess for item in reversed(self.before.headline)
                 if item.output.startswith(GAUGES)}  # fmt: skip
         least = QUIET_GAUGE * max(read.values(), default=0.0)
-        loud = [x for x in gauge_aims(self.machine) if read.get(x.output, least) >= least]
+        # A gauge that nothing judges is no aim beside those that are judged.
+        loud = [x for x in gauge_aims(self.machine) if read.get(x.output, 0.0) >= least]
         # To six digits: gauges that read alike keep their order whatever rounding does.
-        return tuple(sorted(loud, key=lambda aim: -float(f"{read.get(aim.output, least):.6g}")))
+        return tuple(sorted(loud, key=lambda aim: -float(f"{read.get(aim.output, 0.0):.6g}")))
 
     @cached_property
     def mounts(self) -> ResonantMounts | None:

@@ -24,6 +24,7 @@ from equipoise.mechanism.parts.balance import Limit, Objective
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.objectives import GAUGES, MEASURES, ROWS
 from equipoise.results.analysis import Analysis, analyze
+from equipoise.results.rotors import unbalances
 from equipoise.results.yardsticks import FigureAssessment, assess, assess_parts
 from equipoise.signals import Array
 from equipoise.vibration.forced import readings_of
@@ -109,7 +110,8 @@ class AssessedMachine:
 
     def aims(self, objectives: Iterable[Objective]) -> Iterator[tuple[Objective, FigureAssessment]]:
         """Aims that are headline figures, and these."""
-        entries = {item.output: item for item in self.headline}
+        # Reversed, for the largest entry of an output with several to remain.
+        entries = {item.output: item for item in reversed(self.headline)}
         for objective in objectives:
             for name in (f"{ROWS}{objective.output}", objective.output):
                 if name in entries:
@@ -248,7 +250,6 @@ def watched_of(assessed: AssessedMachine) -> Iterator[HeadlineLimit]:
     """Figures that masses change, and the most that they may become."""
     for part in assessed.headline:
         if part.output.startswith(GAUGES):
-            yield from _watched_gauge(assessed.analysis.machine, part)
             continue
         members = [
             out.name for out in assessed.analysis.outputs if out.declared.name == part.family[0]
@@ -256,6 +257,7 @@ def watched_of(assessed: AssessedMachine) -> Iterator[HeadlineLimit]:
         yield from _watched(part, members, HEADLINE_GROWTH)
     for part in assessed.parts:
         yield from _watched(part, [part.output], PART_GROWTH)
+    yield from _watched_gauges(assessed)
 
 
 def _watched(
@@ -269,13 +271,20 @@ def _watched(
     yield HeadlineLimit(objectives, entry=assessment, growth=growth)
 
 
-def _watched_gauge(machine: Machine, assessment: FigureAssessment) -> Iterator[HeadlineLimit]:
-    """What a gauge reads at the machine's own speed."""
-    for objective in (
-        Objective(assessment.output, "ripple"),
-        Objective(assessment.output, "peak_to_peak"),
-    ):
-        yield HeadlineLimit((objective,), HEADLINE_GROWTH * Problem.value_of(machine, objective))
+def _watched_gauges(assessed: AssessedMachine) -> Iterator[HeadlineLimit]:
+    """What gauges read at the machine's own speed: those that are judged, and beside them, where
+    no rotor is there to shake, those that are not, as none is but by its limit or its hand where a
+    hand holds the machine.
+    """
+    machine = assessed.analysis.machine
+    judged = [item.output for item in assessed.headline if item.output.startswith(GAUGES)]
+    names = dict.fromkeys(judged)
+    if judged and machine.support is not None and not unbalances(machine):
+        names |= dict.fromkeys(f"{GAUGES}{name}" for name in machine.support.gauges)
+    for name in names:
+        for objective in (Objective(name, "ripple"), Objective(name, "peak_to_peak")):
+            most = HEADLINE_GROWTH * Problem.value_of(machine, objective)
+            yield HeadlineLimit((objective,), most)
 
 
 def headline_objectives(entries: Assessment) -> tuple[Objective, ...]:

@@ -16,9 +16,14 @@ from equipoise.balancing.advice import advise, running_speeds
 from equipoise.balancing.balanced import Balanced
 from equipoise.balancing.blocks import outcome_blocks
 from equipoise.balancing.first_order import end_weights_for
-from equipoise.balancing.headlines import Saving, worse_headlines
+from equipoise.balancing.headlines import Saving, assessed, watched_of, worse_headlines
 from equipoise.balancing.outcome import helps_told, why_not
-from equipoise.balancing.policy import LEAST_GAIN, LEAST_GAIN_OF_ADDED, SMALL_FIGURE
+from equipoise.balancing.policy import (
+    HEADLINE_GROWTH,
+    LEAST_GAIN,
+    LEAST_GAIN_OF_ADDED,
+    SMALL_FIGURE,
+)
 from equipoise.balancing.remedies import Sector as SectorShape
 from equipoise.balancing.remedies import is_worth, plate_of, sectors, with_sectors
 from equipoise.balancing.room import pivots_of, room_about, rooms_about
@@ -129,6 +134,38 @@ def test_rows_are_turned_so_that_the_gauges_read_least() -> None:
     )
     assert any("reading at yaw, peak to peak, by 89 %" in line for line in worse_told(by_force))
     assert not found.worse
+
+
+def with_hand(hours: float) -> eq.Machine:
+    """The walking transplanter, one of whose three gauges is where a hand holds it."""
+    machine = bare("walking-transplanter")
+    assert machine.support is not None
+    gauges = machine.support.gauges
+    held = replace(gauges["handle_along"], exposure=3600 * hours)
+    return machine.with_support(gauges={**gauges, "handle_along": held})
+
+
+def test_where_a_hand_holds_the_machine_its_gauge_alone_is_an_aim() -> None:
+    """The others, which nothing judges then, may not grow either."""
+    machine = with_hand(8.0)
+    remedy = advise(machine)
+    assert [aim.name for aim in remedy.plan.objectives] == ["ripple of gauges.handle_along"]
+    assert machine.support is not None
+    watched = {item.output for limit in watched_of(assessed(machine)) for item in limit.objectives
+               if item.output.startswith("gauges.")}  # fmt: skip
+    assert watched == {f"gauges.{name}" for name in machine.support.gauges}
+    for name in machine.support.gauges:
+        assert swing(remedy.machine, name) <= HEADLINE_GROWTH * swing(machine, name)
+
+
+@pytest.mark.parametrize("limit", [1e-6, 10.0])
+def test_a_gauge_with_a_limit_and_a_hand_stands_for_the_larger(limit: float) -> None:
+    aim = Objective("gauges.handle_along", "ripple")
+    plan = Balance(limits=(Limit(aim, at_most=limit),))
+    before = assessed(with_hand(8.0).with_balance(plan))
+    own = [item.excess for item in before.headline if item.output == aim.output]
+    ((_, entry),) = before.aims([aim])
+    assert len(own) == 2 and entry.excess == max(own)
 
 
 def test_all_speeds_at_which_a_machine_runs_are_aims() -> None:
