@@ -428,8 +428,6 @@ def _split_demands(
         cause: applied_loads.spring_demands(motion, cause=cause)
         for cause in causes
         if cause in ELEMENTS
-        for cause in causes
-        if cause in ELEMENTS
     }
     for k, link in enumerate(whole.inertia):
         force, moment = np.zeros(shape, complex), np.zeros(shape)
