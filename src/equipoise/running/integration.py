@@ -30,8 +30,8 @@ from equipoise.running.equation import CrankEquation, just_after
 from equipoise.running.piece_motion import (
     AT_ENDS,
     ELECTRIC,
-    PATHS,
-    STATIONS,
+    INTEGRALS,
+    ROW_PLACES,
     Instant,
     PieceMotion,
     TableRange,
@@ -345,11 +345,11 @@ class Integration:
             edge = ends[self.direction > 0]
             far = 1.0 if self._slows(begin) else SPEEDING_UP
             return self._in_time(begin, begin.angle + far * (edge - begin.angle))
-        x, kind = self._first_in(begin, part.ends, solution)
+        x, kind = self._first_in(solution)
         if x == self.direction:
             self.track.append(solution.passed)
             return self._happens(kind, solution.at(x))
-        before = (STATIONS[self.direction] - x) * self.direction < 0
+        before = (ROW_PLACES[self.direction] - x) * self.direction < 0
         end = solution.at(x)
         self.track.append(solution.passed[before])
         self._record(end)
@@ -378,7 +378,7 @@ class Integration:
 
     def _by_angle(self, begin: Instant, part: TableRange) -> PieceMotion | None:
         """The motion in a piece; None where the crank is so slow that the angle is no clock."""
-        paths = part.half * PATHS[self.direction]
+        paths = part.half * INTEGRALS[self.direction]
         began = float(part.coefficients @ AT_ENDS[-self.direction]) * begin.speed**2 / 2
         before = self.cycle_before.get(part.place)
         solution = before and self._iterated((begin, began), part, paths, before)
@@ -488,27 +488,23 @@ class Integration:
         """Torque of the brake on a crank that turns as it does, N m; empty without a brake."""
         return [-self.direction * self.driver.holding()] if self.driver.brake else []
 
-    def _first_in(
-        self, begin: Instant, ends: tuple[float, float], solution: PieceMotion
-    ) -> tuple[float, str]:
-        """Place in a piece at which something happens first, and what."""
+    def _first_in(self, solution: PieceMotion) -> tuple[float, str]:
+        """Place in a part of a piece at which something happens first, and what."""
         from scipy.optimize import brentq
 
-        at = solution.at
-        far, half = self.direction, (ends[1] - ends[0]) / 2
+        at, begin, part, far = solution.at, solution.begin, solution.part, solution.sense
+        ends, start = part.ends, (begin.angle - part.ends[0]) / part.half - 1
         pairs: list[tuple[float, str]] = []
         for kind, angle in self._angles():
             if ends[0] <= angle <= ends[1] and (angle - begin.angle) * far > AT_EDGE:
-                pairs.append(((angle - ends[0]) / half - 1, kind))
+                pairs.append(((angle - ends[0]) / part.half - 1, kind))
         for kind, time in self._times():
             if begin.time < time < inf and time <= at(far).time:
-                start = (begin.angle - ends[0]) / half - 1
 
                 def left(x: float, time: float = time) -> float:
                     return at(x).time - time
 
                 pairs.append((brentq(left, start, far, xtol=1e-15), kind))
-        start = (begin.angle - ends[0]) / half - 1
         if self.driver.controlled and (limit := self._limit_in(start, solution.rows)) is not None:
             pairs.append((limit, "limit"))
         # of what happens at the edge itself the others come first

@@ -12,12 +12,18 @@ from equipoise.running.drivers import Driver
 from equipoise.running.tabulated import NODES, POINTS, integral_to, polynomials
 from equipoise.signals import Array
 
-PATHS = {sense: integral_to(POINTS, -sense) for sense in (1.0, -1.0)}
-"""By the sense of the way, integrals from the begin of a part up to each node, of values there."""
-STATIONS = {sense: np.append(POINTS[:: int(sense)], sense) for sense in (1.0, -1.0)}
-"""By the sense of the way, where the track has its rows: the nodes in passing, and the end."""
-PASSED = {sense: integral_to(places, -sense) for sense, places in STATIONS.items()}
+INTEGRALS = {sense: integral_to(POINTS, -sense) for sense in (1.0, -1.0)}
+"""By the sense of the way, (NODES, NODES): integrals from the begin of a part up to each node, of
+values (NODES,) there, in a part from -1 to 1."""
+ROW_PLACES = {sense: np.append(POINTS[:: int(sense)], sense) for sense in (1.0, -1.0)}
+"""By the sense of the way, places (NODES + 1,) from -1 to 1 at which the track has its rows: the
+nodes in passing, and the end."""
+PASSED = {sense: integral_to(places, -sense) for sense, places in ROW_PLACES.items()}
+"""By the sense of the way, (NODES + 1, NODES): integrals from the begin of a part up to each of
+`ROW_PLACES`, of values (NODES,) at the nodes."""
 AT_ENDS = {end: polynomials(end)[:NODES] for end in (1.0, -1.0)}
+"""By the end of a part, 1 or -1, the polynomials (NODES,) there, which the coefficients of its
+reduced inertia multiply."""
 ELECTRIC = 3
 """Values of a motor's circuit in a row of the track: its current, and two works."""
 
@@ -60,7 +66,7 @@ class TableRange:
         return np.asarray(polynomials(x)[..., :NODES] @ self.coefficients)
 
     def inertia_passed(self, sense: float) -> Array:
-        """Reduced inertia (NODES + 1,), kg m2, at the `STATIONS` of a sense."""
+        """Reduced inertia (NODES + 1,), kg m2, at the `ROW_PLACES` of a sense."""
         return np.append(self.values[0][:: int(sense)], self.coefficients @ AT_ENDS[sense])
 
 
@@ -82,9 +88,9 @@ class PieceMotion:
 
     @cached_property
     def passed(self) -> Array:
-        """Rows (NODES + 1, ...) of the track at the `STATIONS` of the sense."""
+        """Rows (NODES + 1, ...) of the track at the `ROW_PLACES` of the sense."""
         sense, part = self.sense, self.part
-        rows = self._rows(STATIONS[sense], PASSED[sense], part.inertia_passed(sense))
+        rows = self._rows(ROW_PLACES[sense], PASSED[sense], part.inertia_passed(sense))
         rows[-1, 1] = part.ends[sense > 0]
         return rows
 
