@@ -124,20 +124,21 @@ def _limits(
         if name == ADDED:
             yield name, replace(price, used=price.used + sum(growth.values()))
         elif isinstance(name, Note) and name.template in RADII:
-            places = _places_of(balanced.plan, name)
+            point = _point_of_limit(balanced.plan, name)
             gained = sum(
                 mass for (link, at), mass in growth.items()
-                if link == name.values["link"] and (not places or at in places)
+                if link == name.values["link"] and point in (None, at)
             )  # fmt: skip
             yield name, replace(price, used=price.used + gained)
 
 
-def _places_of(plan: Balance, name: Note) -> list[str]:
-    """Point of the weight that a limit is named for, of a link with several; else empty."""
-    if (number := name.values.get("number")) is None:
-        return []
+def _point_of_limit(plan: Balance, name: Note) -> str | None:
+    """Point of the weight that a limit is named for, of a link with several; else None."""
+    number: int | None = name.values.get("number")
+    if number is None:
+        return None
     same = [item.at for item in plan.masses if item.link == name.values["link"]]
-    return same[number - 1 : number]
+    return same[number - 1]
 
 
 def _exceeded(exact: Balanced, rounded: Balanced) -> str:

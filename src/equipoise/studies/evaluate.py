@@ -285,7 +285,7 @@ def _figures_of(model: Machine | Tool, asked: Request, study: Study) -> tuple[li
         return [read(values, steps) for steps in asked.steps], True
     values = analyzed(machine, ANGLES, asked.wanted, asked.steps)
     items = [read(values, steps) for steps in asked.steps]
-    faint = _Faint(machine, asked)
+    noise = _NoiseFloor(machine, asked)
     number, calm = ANGLES, 0
     # Extremes, and their places, may stand still once by chance.
     needed = 1 if all(figure_name(step) in ("mean", "rms") for step in asked.steps) else 2
@@ -294,7 +294,7 @@ def _figures_of(model: Machine | Tool, asked: Request, study: Study) -> tuple[li
         number *= 2
         values = analyzed(machine, number, asked.wanted, asked.steps)
         before, items = items, [read(values, steps) for steps in asked.steps]
-        calm = calm + 1 if _still(values, asked.steps, before, items, faint, tolerance) else 0
+        calm = calm + 1 if _still(values, asked.steps, before, items, noise, tolerance) else 0
         if calm == needed:
             return items, True
     return items, False
@@ -305,12 +305,12 @@ def _still(
     steps: Sequence[tuple[Step, ...]],
     before: Sequence[float],
     now: Sequence[float],
-    faint: _Faint,
+    noise: _NoiseFloor,
     tolerance: float,
 ) -> bool:
     """Whether figures have kept, within a share of the RMS of the signal that each is of.
 
-    faint : below what a signal is rounding, by the table in which a figure stands.
+    noise : below what a signal is rounding, by the table in which a figure stands.
     """
     for step, old, new in zip(steps, before, now, strict=True):
         change = abs(new - old)
@@ -319,12 +319,12 @@ def _still(
         if change == 0 or not (isfinite(old) and isfinite(new)):
             continue  # what is missing will not come with further crank angles
         size = scale(values, step)
-        if change > tolerance * size and change > tolerance * faint.of(str(step[0])):
+        if change > tolerance * size and change > tolerance * noise.of(str(step[0])):
             return False
     return True
 
 
-class _Faint:
+class _NoiseFloor:
     """Sizes below which signals of a machine are rounding; all its outputs are computed only where
     one is asked for.
     """
