@@ -26,6 +26,7 @@ from equipoise.results.blocks import (
 from equipoise.results.declaring import cells_of, headings, table_of
 from equipoise.results.machine_blocks import driven
 from equipoise.signals import Array
+from equipoise.vibration.hand_held import HandVibration
 from equipoise.vibration.response import MODELS, GaugeSignals, Joint, Model, MountForce, members_of
 
 if TYPE_CHECKING:
@@ -86,6 +87,10 @@ def response_blocks(
     if response.modes:
         yield modes_table(response.modes)
     yield from _gauges(response)
+    hands = {name: gauge.hand for name, gauge in response.gauges.items() if gauge.hand is not None}
+    if hands:
+        title = say("Hand and arm vibration; weighted by ISO 5349-1, in all directions")
+        yield table_of(title, hands, HandVibration.declared)
     if response.gauges:
         yield _orders(response)
     if others:

@@ -5,13 +5,11 @@ from __future__ import annotations
 from math import pi
 from typing import ClassVar
 
-import numpy as np
-
 from equipoise.dataclass import dataclass
 from equipoise.exposure.blocks import VERDICTS
 from equipoise.exposure.daily import LIMIT, partial_exposure, total_value, verdict_of
 from equipoise.exposure.weighting import factor
-from equipoise.i18n import Note
+from equipoise.i18n import Note, to_say
 from equipoise.results.declaring import Declarations, ResultOutput
 from equipoise.signals import Periodic
 
@@ -44,10 +42,20 @@ class HandVibration:
 
     declared: ClassVar[Declarations] = {
         "a_hv": ResultOutput(
-            "vibration total value: RMS weighted by ISO 5349-1, of all directions", "acceleration"
+            "vibration total value: RMS weighted by ISO 5349-1, of all directions",
+            "acceleration",
+            heading=to_say("total value a_hv"),
+            unit="m/s^2",
         ),
-        "duration": ResultOutput("`exposure`, time a day", "time"),
-        "a8": ResultOutput("daily exposure A(8)", "acceleration"),
+        "duration": ResultOutput(
+            "`exposure`, time a day", "time", heading=to_say("daily exposure time"), unit="h"
+        ),
+        "a8": ResultOutput(
+            "daily exposure A(8)",
+            "acceleration",
+            heading=to_say("daily exposure A(8)"),
+            unit="m/s^2",
+        ),
     }
 
 
@@ -66,5 +74,5 @@ def hand_vibration(
 
 def _weighted_rms(signal: Periodic, turns_a_second: float) -> float:
     """RMS of a signal about its mean, weighted by Wh, order by order."""
-    weighted = signal.sizes[1:] * factor(signal.orders[1:] * turns_a_second)
-    return float(np.sqrt(np.sum(weighted**2) / 2))
+    weighted = signal.amplitudes * factor(signal.orders * turns_a_second)
+    return float(Periodic(weighted, signal.turns).vibration_rms)

@@ -30,8 +30,6 @@ from equipoise.vibration.linkages import rows_of
 from equipoise.vibration.response import DriveSignals, GaugeSignals, MountForce, Response, in_words
 from equipoise.vibration.steady import ROUGH, SAMPLES, steady
 
-ACROSS = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
-"""Directions along x, y and z."""
 NEUTRAL = 1e-9
 """Growth of a mode, beside its frequency, up to which it is rounding."""
 
@@ -70,8 +68,10 @@ def _gauges(
     for name, gauge in gauges_of(linear.body).items():
         row = linear.body.row(gauge)
         moved, moving, change = (linear.seen_by(row, item) for item in motion)
-        axes = () if gauge.exposure is None else [replace(gauge, direction=axis) for axis in ACROSS]
-        along = tuple(linear.seen_by(body.row(axis), motion[2]) for axis in axes)
+        along = tuple(
+            linear.seen_by(body.wrench(axis, gauge.point), motion[2])
+            for axis in (() if gauge.exposure is None else np.eye(3))
+        )
         hand = hand_vibration(along, speed, gauge.exposure)
         gauge_signals[name] = GaugeSignals(moved, moving, change, gauge.axis is not None, hand)
     return gauge_signals

@@ -181,6 +181,7 @@ class Gauge(Frozen):
         example="2 h",
         above=0,
         below=86_400,
+        why=Note("give more than 0 and less than 24 h"),
         word=to_say("daily exposure time"),
     )
 
