@@ -371,13 +371,12 @@ class WithShafts:
 
 
 @dataclass(frozen=True)
-class TriedGears:
+class GearTrial:
     """What stays of a choice of gears that was solved: thousands of whole solutions need gigabytes.
 
-    cost : with the best weights.  mass : added in all, kg.  nodes : cone programs solved.
+    mass : added in all by the best weights, kg.  nodes : cone programs solved.
     """
 
-    cost: float
     mass: float
     nodes: int
 
@@ -404,9 +403,9 @@ class GearSearch(DesignProblem):
             for k, gearing in enumerate(self.gearings)
             for name, limits in gearing.ranges.items()
         ]
-        self.tried: list[tuple[Choice, TriedGears]] = []
+        self.tried: list[tuple[Choice, GearTrial]] = []
         self.costs: dict[Choice, float] = {}
-        self.problems: list[UsageError] = []
+        self.first_error: UsageError | None = None
         self.most = 0
 
     @property
@@ -438,7 +437,8 @@ class GearSearch(DesignProblem):
             return self._with(choice).solved(self.progress)
         solve(self)
         if not self.tried:
-            raise self.problems[0]
+            assert self.first_error is not None  # of each choice there is a solution or an error
+            raise self.first_error
         options = [set(own) for own in self.options]
         tried = sum(all(map(set.__contains__, options, choice)) for choice in self.costs)
         return replace(self._lightest(), gears_left=tried < everything)
@@ -467,25 +467,29 @@ class GearSearch(DesignProblem):
 
     def cost(self, choice: Choice) -> float:
         """Cost with these gears, not closely where others cost less; infinite where none do."""
-        least = min((item.cost for _, item in self.tried), default=LARGE)
+        above = min([LARGE, *self.costs.values()])
         try:
-            solution = self._with(choice).solved(None, least)
+            solution = self._with(choice).solved(None, above)
         except UsageError as error:
-            self.problems.append(error)
-            self.costs[choice] = inf
+            if self.first_error is None:  # not all: the frames of each hold a whole problem
+                self.first_error = error.with_traceback(None)
+            self.costs.setdefault(choice, inf)
             return inf
         cost, mass = solution.best.value, solution.problem.mass_added(solution.numbers)
-        self.tried.append((choice, TriedGears(cost, mass, solution.best.nodes)))
+        self.tried.append((choice, GearTrial(mass, solution.best.nodes)))
         if self.progress is not None:
             self.most = max(self.most, len(self.tried))
             self.progress(len(self.tried), self.most)
-        self.costs[choice] = cost
+        # The second time, and above the best of all, it may be solved less closely.
+        self.costs[choice] = min(cost, self.costs.get(choice, inf))
         return cost
 
     def _lightest(self) -> Solution:
         """The lightest of those that cost least."""
-        least = min(item.cost for _, item in self.tried)
-        ties = {choice: item.mass for choice, item in self.tried if item.cost <= least + TIE}
+        least = min(self.costs.values())
+        ties = {
+            choice: item.mass for choice, item in self.tried if self.costs[choice] <= least + TIE
+        }
         equal = sorted(ties, key=lambda choice: [(item.ratio, item.direction) for item in choice])
         light = sorted(equal, key=ties.__getitem__)[:LIGHT_TIES]
         tried = dict.fromkeys([*equal[:: max(1, len(equal) // MOST_TIES)], *light])

@@ -10,6 +10,7 @@ from itertools import product
 from math import radians
 from typing import Any
 
+import numpy as np
 import pytest
 
 import equipoise as eq
@@ -118,6 +119,27 @@ def test_limits_that_no_gears_keep() -> None:
     limits = (Limit(Objective("shaking_moment"), ratio=1e-6),)
     with pytest.raises(UsageError, match="at most"):
         eq.balance(MACHINE, replace(plan(TOOTHED, CRANK), limits=limits))
+
+
+def test_errors_of_gears_are_not_all_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Frames in which each was raised hold its problem; the first alone is raised in the end."""
+    alive: list[weakref.ref[Problem]] = []
+    of = Problem.of
+
+    def recorded(*given: Any) -> Problem:
+        problem = of(*given)
+        alive.append(weakref.ref(problem))
+        return problem
+
+    monkeypatch.setattr(Problem, "of", recorded)
+    own = replace(plan(TOOTHED), limits=(Limit(Objective("shaking_moment"), ratio=1e-6),))
+    search = gear_search.GearSearch(gear_search.WithShafts(MACHINE, own, MACHINE))
+    places = np.array([[k / 9] for k in range(9)])
+    costs, impossible = search.evaluate(places)
+    gc.collect()
+    assert impossible.all() and np.all(costs == gear_search.LARGE)
+    assert len(alive) == 9 and not any(item() is not None for item in alive[1:])
+    assert search.first_error is not None and search.first_error.__traceback__ is None
 
 
 def test_solutions_of_gears_are_not_all_kept(monkeypatch: pytest.MonkeyPatch) -> None:
