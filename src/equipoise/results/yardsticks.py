@@ -38,7 +38,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import fields
 from functools import cached_property
-from math import copysign, hypot, isfinite, pi, radians
+from math import hypot, isfinite, pi, radians
 from typing import Any, Protocol
 
 import numpy as np
@@ -55,6 +55,7 @@ from equipoise.mechanism.parts.objectives import GAUGES
 from equipoise.quantities import SI, Dimension, angle, display, number, percent
 from equipoise.results.analysis import Analysis
 from equipoise.results.machine_blocks import pushing
+from equipoise.results.motor_torque import LEAST_MEAN, motor_torque
 from equipoise.results.outputs import FIGURES, AnalysisOutput
 from equipoise.results.rotors import unbalances
 
@@ -71,9 +72,6 @@ LOAD_SHARE = 0.25
 """Of the largest load: a force that shakes the frame is felt beside the loads from there on."""
 SHAKING = ("weight", "span", "bearings", "vibration")
 """Yardsticks of what counterweights and phases are for."""
-LEAST_MEAN = 0.01
-"""Of the RMS of a torque: less is what samples of narrow peaks leave of a mean that is 0, as of a
-machine that swings near a dead position and does no work."""
 BY_LOADS, TRIFLE = 0.9, 0.1
 """Shares of the swing of a torque: what loads make of it at least, and what lifts the links at
 most, where its mean, which is the work that the loads take, is its yardstick in any case.  On a
@@ -716,18 +714,16 @@ def _capacity(
 
 def _of_motor(analysis: Analysis) -> Iterator[FigureAssessment]:
     """The mean torque of the drive, against the largest that the motor has at the crank."""
-    machine, motor = analysis.machine, analysis.machine.drive.motor
-    name = f"rows.{machine.drive.effort}"
-    name = name if name in analysis.outputs else machine.drive.effort
-    if motor is None or not machine.has_crank or name not in analysis.outputs:
+    motor, driven = analysis.machine.drive.motor, motor_torque(analysis.machine, analysis.outputs)
+    if motor is None or driven is None:
         return
-    mean, most = analysis.outputs[name].figures.mean, motor.ratio * motor.largest_torque
-    if (needed := copysign(1.0, machine.drive.speed) * mean) <= 0:
+    (torque, needed), most = driven, motor.ratio * motor.largest_torque
+    if needed <= 0:
         return
     yield FigureAssessment(
-        f"{name}.mean", Note("{what}, {part}", what=Note("drive torque"), part=Note("mean")),
-        mean, "torque", most, Note("the largest torque of the motor at the crank"), needed / most,
-        "drive.motor", is_limit=True, is_capacity=True,
+        f"{torque.name}.mean", Note("{what}, {part}", what=Note("drive torque"), part=Note("mean")),
+        torque.figures.mean, "torque", most, Note("the largest torque of the motor at the crank"),
+        needed / most, "drive.motor", is_limit=True, is_capacity=True,
     )  # fmt: skip
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 import equipoise as eq
 from equipoise.mechanism import Motor, Resistance, TorsionSpring
@@ -129,3 +130,16 @@ def test_loads_that_drive_a_machine_with_a_motor_are_asked_of() -> None:
     without_motor = replace(base, loads=(eq.Load("crank", torque=0.5),), balance=None)
     for machine in (alone, without_motor):
         assert not any("has to brake" in note for note in both(machine)[2])
+
+
+@pytest.mark.parametrize(("share", "brakes"), [(0.005, False), (0.02, True)])
+def test_a_motor_that_brakes_by_less_than_rounding_is_not_asked_of(
+    share: float, brakes: bool
+) -> None:
+    """A torque at the crank of some share of the RMS of what springs and masses make there."""
+    base = eq.load("spring-balanced-crank").with_balance(None)
+    base = replace(base, drive=replace(base.drive, motor=Motor(200.0, 5.0)))
+    figures = eq.analyze(base).outputs["drive_torque"].figures
+    torque = (share * figures.rms + figures.mean) * (1 if base.drive.speed > 0 else -1)
+    machine = replace(base, loads=(eq.Load("crank", torque=torque),))
+    assert any("has to brake" in note for note in both(machine)[2]) is brakes
