@@ -298,7 +298,7 @@ class Law(Frozen):
 def _between(dimension: Any, example: list[str]) -> Any:
     text = "two values between which it swings by a sine, from the first and back"
     kind = Listing(Quantity(dimension=dimension), (2,))
-    return key(kind, text, default=None, example=example)
+    return key(kind, text, default=None, word=to_say("extreme value"), example=example)
 
 
 def _start(dimension: Any, word: str) -> Any:
