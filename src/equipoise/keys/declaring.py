@@ -351,7 +351,7 @@ def _coordinate(step: str) -> int:
 def with_fields(value: Given, **changes: Any) -> Given:
     """A frozen value with fields changed, unchecked; what was kept with it is left behind."""
     result = object.__new__(type(value))
-    left = cached_names(type(value))  # type: ignore[arg-type]
+    left = cached_names(type(value))
     values = {k: v for k, v in vars(value).items() if not k.startswith("_") and k not in left}
     _set(result, values | changes)
     if isinstance(value, Frozen) and isinstance(result, Frozen):
@@ -361,9 +361,14 @@ def with_fields(value: Given, **changes: Any) -> Given:
     return result
 
 
-@cache
 def cached_names(cls: type[Any]) -> frozenset[str]:
     """Names of the cached properties of a class, `memory` among them."""
+    # Mypy takes the hash of a class for that of its values, which frozen ones with lists have not.
+    return _cached_names(cls)  # type: ignore[arg-type]
+
+
+@cache
+def _cached_names(cls: type[Any]) -> frozenset[str]:
     own = (name for base in cls.__mro__ for name, item in vars(base).items()
            if isinstance(item, cached_property))  # fmt: skip
     return frozenset(own)
