@@ -117,7 +117,7 @@ def test_a_heavy_flywheel_is_sized_in_few_pieces(
     assert steady is not None
     state, _ = steady
     limits = Limits(turns=shooting.equation.period / np.pi, steady=False)  # two cycles
-    run = Integration(shooting.equation, Driver(shooting.equation.machine), limits)
+    run = Integration(shooting.equation, Driver.of(shooting.equation.machine), limits)
     run.follow(0.0, float(state[0]) * found.speed)
     assert run.events[-1].speed == pytest.approx(float(state[0]) * found.speed, rel=1e-9)
 

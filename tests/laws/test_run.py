@@ -117,7 +117,7 @@ def test_near_a_steady_state_a_piece_takes_few_rounds(monkeypatch: pytest.Monkey
 
 def speed_by_scipy(machine: eq.Machine, found: Run) -> float:
     """Crank speed at the end of a run, rad/s, integrated in time from its second cycle on."""
-    equation, driver = CrankEquation(machine), Driver(machine)
+    equation, driver = CrankEquation(machine), Driver.of(machine)
     begin = found.begins[-2]
 
     def rates(_: float, state: np.ndarray) -> list[float]:
@@ -204,7 +204,7 @@ def test_energy_and_time_integration(name: str) -> None:
     found = eq.run(machine, turns=4)
     assert found.end.kind == "turns"
     assert found.energy_error < 1e-9
-    equation, driver = CrankEquation(machine), Driver(machine)
+    equation, driver = CrankEquation(machine), Driver.of(machine)
 
     def rates(_: float, y: np.ndarray) -> list[float]:
         inertia, slope, torques = equation.at(y[0], y[1])
@@ -235,7 +235,7 @@ def test_values_that_cannot_be_used() -> None:
             eq.run(crank(), **values)  # type: ignore[arg-type]
     with pytest.raises(UsageError):
         eq.run(crank(), speed=float("inf"))
-    with pytest.raises(UsageError, match="one crank"):
+    with pytest.raises(UsageError, match="given motion"):
         eq.run(eq.load("hydraulic-loader"))
 
 

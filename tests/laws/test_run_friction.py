@@ -146,7 +146,7 @@ def test_a_motor_works_against_friction() -> None:
     assert cycle is not None and cycle.energy > 0
     free = eq.run(replace(ENGINE, drive=drive)).last_cycle
     assert free is not None and cycle.mean_speed < free.mean_speed
-    torque = Driver(found.machine).torque(np.array(cycle.mean_speed))
+    torque = Driver.of(found.machine).torque(np.array(cycle.mean_speed))
     assert cycle.energy_per_turn == pytest.approx(2 * pi * float(torque), rel=0.05)
 
 

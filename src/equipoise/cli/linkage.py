@@ -312,9 +312,10 @@ def run(
     fluctuation: Annotated[float | None, read_by(_share, '"2 %"')] = None,
     motor: Annotated[Any, read_by(_motor, f'"{MOTOR}"')] = None,
 ) -> Result:
-    """Simulate a machine on a fixed frame under its motor, weight, springs and loads.
+    """Simulate a machine on a fixed frame under its motors, weight, springs and loads.
 
-    Defaults are those of the table [run] of the file.
+    Of several drives, those with a motor or `free = true` follow from torques.  Defaults are those
+    of the table [run] of the file.
 
     Parameters
     ----------

@@ -92,7 +92,7 @@ def trace_load(trace: Trace, number: int, load: Load) -> HoldingWrench:
             return np.exp(1j * machine.loads[number - 1].axes_angle(machine.sliders))
 
         force = force * trace.slot(f"load {number} axes", turn, vector=True)
-    return _holding_wrench(trace, load.link, load.point, force, torque)
+    return holding_wrench(trace, load.link, load.point, force, torque)
 
 
 def _part_of_load(load: Load, key: str, theta: Array) -> Array:
@@ -114,7 +114,7 @@ def trace_soil(trace: Trace) -> Iterator[tuple[str, str, HoldingWrench]]:
         place, first, _ = trace.point(link, arm.tip)
         over_ground = first * trace.rate("speed") + forward
         force = against_soil(soil, surface - place.imag, over_ground)
-        yield link, arm.tip, _holding_wrench(trace, link, arm.tip, force, 0.0)
+        yield link, arm.tip, holding_wrench(trace, link, arm.tip, force, 0.0)
 
 
 def _forward(linkage: Linkage) -> Any:
@@ -212,7 +212,7 @@ def trace_element(trace: Trace, table: str, number: int) -> Iterator[HoldingWren
     element, at = traced_element(trace, table, number)
     assert isinstance(element, ForceElement)
     for link, point, force, torque in element.on_links(at):
-        yield _holding_wrench(trace, link, point, force, torque)
+        yield holding_wrench(trace, link, point, force, torque)
 
 
 def traced_element(trace: Trace, table: str, number: int) -> tuple[Element, TracedBodies]:
@@ -258,10 +258,10 @@ def trace_preload(trace: Trace, number: int) -> Iterator[HoldingWrench]:
     force = (ends[1] - ends[0]) * trace.slot(f"preload rate({number})", rate)
     for link, pin, pulled in ((coupling.driver, driver, force), (coupling.driven, driven, -force)):
         if link != FRAME:
-            yield _holding_wrench(trace, link, pin, pulled, 0.0)
+            yield holding_wrench(trace, link, pin, pulled, 0.0)
 
 
-def _holding_wrench(
+def holding_wrench(
     trace: Trace, link: str, point: str | None, force: Any, torque: Any
 ) -> HoldingWrench:
     """What holds a force at a point of a link, and a torque on it."""
@@ -374,11 +374,16 @@ def _moment(linkage: Linkage, link: str, place: int) -> Read:
 # -- motion ----------------------------------------------------------------------------------------
 
 
-def trace_motion(trace: Trace) -> None:
-    """The steps from the crank angle to every link, or what they come to for all designs."""
+def trace_frame(trace: Trace) -> None:
+    """Points of the frame, which stand still."""
     for name in trace.machine.frame:
         place = trace.slot(f"p({name})", partial(_frame_point, name), vector=True)
         trace.put(p(name), (place, 0j, 0j))
+
+
+def trace_motion(trace: Trace) -> None:
+    """The steps from the crank angle to every link, or what they come to for all designs."""
+    trace_frame(trace)
     if trace.fixed:
         trace_prescribed(trace)
     else:
@@ -390,11 +395,11 @@ def _trace_steps(trace: Trace) -> None:
     machine = trace.machine
     driven = {item.link: _driven(trace, item) for item in machine.driven if not item.pushes}
     if machine.pushers:
-        driven |= TracedStrokes(trace, partial(_run_motion, trace), driven).turned()
-    _run_motion(trace, driven)
+        driven |= TracedStrokes(trace, partial(run_motion, trace), driven).turned()
+    run_motion(trace, driven)
 
 
-def _run_motion(trace: Trace, driven: Mapping[str, tuple[Any, Any, Any, Any]]) -> None:
+def run_motion(trace: Trace, driven: Mapping[str, tuple[Any, Any, Any, Any]]) -> None:
     """From the angles of driven links, with their rotations and rates, to every link."""
     for link, (angle, *values) in {FRAME: (0.0, 1 + 0j, 0.0, 0.0), **driven}.items():
         trace.put(u(link), values)
@@ -487,7 +492,7 @@ def trace_demands(trace: Trace) -> None:
     if missing := massless(trace.machine):
         raise MassError(missing)
     machine, state = trace.machine, trace.state
-    moving, weights = _inertia(trace)
+    moving, weights = trace_inertia(trace)
     loads = [trace_load(trace, k, load) for k, load in enumerate(machine.loads, 1)]
     springs = [
         wrench
@@ -515,7 +520,7 @@ def trace_demands(trace: Trace) -> None:
         state["drive torque"] = sum(_drive_torques(trace))
 
 
-def _inertia(trace: Trace) -> tuple[list[HoldingWrench], list[HoldingWrench]]:
+def trace_inertia(trace: Trace) -> tuple[list[HoldingWrench], list[HoldingWrench]]:
     """What moves every link, and what holds its weight."""
     speed, acceleration = trace.rate("speed"), trace.rate("acceleration")
     gravity = trace.slot("gravity", lambda linkage: planar(linkage.machine.gravity), vector=True)
@@ -523,14 +528,20 @@ def _inertia(trace: Trace) -> tuple[list[HoldingWrench], list[HoldingWrench]]:
     moving, weights = [], []
     for link in trace.machine.links:
         _, p1, p2, turn, w, a = trace.body(link)
-        mass, moment, inertia = (
-            trace.slot(f"{key}({link})", _inertial(trace, link, place), vector=place == 1)
-            for place, key in enumerate(("mass", "moment", "inertia"))
-        )
-        rates, body = (speed * speed, acceleration), (mass, moment, inertia)
+        body = inertial(trace, link)
+        rates = (speed * speed, acceleration)
         moving.append((link, *kernels.inertia_demand(p1, p2, turn, w, a, *rates, *body)))
-        weights.append((link, *kernels.weight_demand(turn, mass, moment, gravity)))
+        weights.append((link, *kernels.weight_demand(turn, body[0], body[1], gravity)))
     return moving, weights
+
+
+def inertial(trace: Trace, link: str) -> tuple[Any, Any, Any]:
+    """Mass of a link, its moment and inertia about its anchor."""
+    mass, moment, inertia = (
+        trace.slot(f"{key}({link})", _inertial(trace, link, place), vector=place == 1)
+        for place, key in enumerate(("mass", "moment", "inertia"))
+    )
+    return mass, moment, inertia
 
 
 def _inertial(trace: Trace, link: str, place: int) -> Read:

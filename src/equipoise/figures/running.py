@@ -4,13 +4,17 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from equipoise.figures.chart_parts import varies
 from equipoise.i18n import say
 from equipoise.results.charts import Axis, Chart, Curve, Panel
 from equipoise.running.blocks import verdict
+from equipoise.running.drives_blocks import verdict as drives_verdict
 
 if TYPE_CHECKING:
     from equipoise.quantities import Dimension
+    from equipoise.running.drives_run import DrivesRun
     from equipoise.running.run import Run
     from equipoise.signals import Array
 
@@ -25,9 +29,33 @@ def run_charts(run: Run) -> dict[str, Chart]:
     return {"speed": Chart("speed", run.machine.title, verdict(run), tuple(panels))}
 
 
+def drives_charts(run: DrivesRun) -> dict[str, Chart]:
+    """``speed`` of all drives, with the torques of those that have any below it."""
+    if not run.time[-1] > 0:
+        return {}
+    time, courses = run.time, run.drives
+    speeds = [Curve(time, course.speed, link, "thin") for link, course in courses.items()]
+    torques = [
+        Curve(time, course.torque, link, "thin")
+        for link, course in courses.items()
+        if varies(course.torque)
+    ]
+    panels = [_curves(time, say("speed of the drives"), "angular speed", speeds, "rpm")]
+    if torques:
+        panels.append(_curves(time, say("torque of the drives"), "torque", torques))
+    return {"speed": Chart("speed", run.machine.title, drives_verdict(run), tuple(panels))}
+
+
 def _panel(
     run: Run, label: str, dimension: Dimension, values: Array, unit: str | None = None
 ) -> Panel:
-    x = Axis.of(say("time"), "time", low=0.0, high=float(run.time[-1]))
+    return _curves(run.time, label, dimension, [Curve(run.time, values, "", "thin")], unit)
+
+
+def _curves(
+    time: Array, label: str, dimension: Dimension, curves: list[Curve], unit: str | None = None
+) -> Panel:
+    values = np.concatenate([curve.y for curve in curves])
+    x = Axis.of(say("time"), "time", low=0.0, high=float(time[-1]))
     y = Axis.of(label, dimension, () if unit else values, unit, room=0.08)
-    return Panel(x, y, (Curve(run.time, values, "", "thin"),))
+    return Panel(x, y, tuple(curves))

@@ -1,2 +1,3 @@
+from .drives_run import DrivesRun as DrivesRun
 from .run import Run as Run
 from .run import run as run

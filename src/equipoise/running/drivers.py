@@ -10,6 +10,7 @@ from math import copysign, inf, log, sqrt
 import numpy as np
 
 from equipoise.dataclass import dataclass
+from equipoise.mechanism.parts.force_elements import Motor
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.servo_motors import ServoMotor
 from equipoise.signals import Array
@@ -102,15 +103,23 @@ class Driver:
     brake : torque of the brake on the crank, N m, which acts while no motor is on; 0 without one.
     """
 
-    def __init__(self, machine: Machine) -> None:
+    def __init__(self, motor: Motor | None, speed: float, brake: float = 0.0) -> None:
+        """motor : what drives it.  speed : with the sign of that at which it is to turn the driven
+        link.  brake : torque of its brake, N m.
+        """
+        self.sense = copysign(1.0, speed)
+        self.on = motor is not None
+        self.brake = brake
+        self._torque = None if motor is None else torque_on_crank(motor, speed)
+        self.circuit = None if motor is None else motor.dc
+        self.servo = None if motor is None else motor.servo
+        self._gear = 1.0 if motor is None else self.sense * motor.ratio
+
+    @classmethod
+    def of(cls, machine: Machine) -> Driver:
+        """Of the crank of a machine."""
         drive = machine.drive
-        self.sense = copysign(1.0, drive.speed)
-        self.on = drive.motor is not None
-        self.brake = drive.brake
-        self._torque = torque_on_crank(drive, drive.speed) if self.on else None
-        self.circuit = None if drive.motor is None else drive.motor.dc
-        self.servo = None if drive.motor is None else drive.motor.servo
-        self._gear = 1.0 if drive.motor is None else self.sense * drive.motor.ratio
+        return cls(drive.motor, drive.speed, drive.brake)
 
     def begins(self, angle: float, speed: float, lag: float | None = None) -> None:
         """Start at a crank angle, rad, and speed, rad/s, at time 0.

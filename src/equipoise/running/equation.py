@@ -61,8 +61,8 @@ class CrankEquation:
         if not self.machine.has_crank:
             raise UsageError(
                 Note(
-                    "forward dynamics is for one crank that a torque turns, not for several drives "
-                    "or one that follows a law; leave the others and the law out"
+                    "a flywheel is sized for one crank that a torque turns, not for several drives "
+                    "or one that follows a law; leave the fluctuation, or the others, out"
                 )
             )
         if missing := massless(self.machine):

@@ -68,7 +68,7 @@ class Shooting:
     before: dict[tuple[float, ...], Gained] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        self.driver = Driver(self.equation.machine)
+        self.driver = Driver.of(self.equation.machine)
         circuit, servo = self.driver.circuit, self.driver.servo
         self.sizes, self.first = [self.speed], [1.0]
         if self.driver.lags and circuit is not None:
@@ -390,7 +390,7 @@ def _check_mean_torque(steady: SteadyCycle) -> None:
     Looking for a steady state would take hundreds of turns for each of many inertias, and meet
     none.
     """
-    driver = Driver(steady.equation.machine)
+    driver = Driver.of(steady.equation.machine)
     motor = steady.equation.machine.drive.motor
     assert motor is not None
     high = max(fastest(motor) / motor.ratio, steady.mean_speed)
@@ -509,7 +509,7 @@ class MotorCycles:
         """So many turns from speed, current and lag on, or until something ends the run before."""
         before = self.turns
         run = Integration(
-            equation, Driver(equation.machine), Limits(inf, turns, inf, inf, steady=True)
+            equation, Driver.of(equation.machine), Limits(inf, turns, inf, inf, steady=True)
         )
         run.on_turns = lambda done: self.progress(before + int(done), MOST_TURNS)
         speed, current, lag = start

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from functools import cached_property
 from itertools import pairwise
 from math import ceil, copysign, inf, pi
@@ -18,6 +19,9 @@ from equipoise.mechanism.parts.run_plans import MOST_TURNS, RunPlan
 from equipoise.quantities import Dimension, in_si
 from equipoise.results.result import Result
 from equipoise.running.drivers import Driver
+from equipoise.running.drives_equation import DrivesEquation
+from equipoise.running.drives_run import DrivesRun, Start, run_drives
+from equipoise.running.electric import Electric
 from equipoise.running.equation import CrankEquation
 from equipoise.running.flywheel import Flywheel, share_of_mean, size_flywheel
 from equipoise.running.integration import Event, Integration, Limits
@@ -64,24 +68,6 @@ class LastCycle:
     def power(self) -> float:
         """Mean power of the drive, W."""
         return self.energy / self.time
-
-
-@dataclass(frozen=True, eq=False)
-class Electric:
-    """The circuit of a direct-current motor, at the M instants of a run.
-
-    current : (M,) A.  supply : work of its supply since the start (M,), J.  heat : of that, what
-    its resistance has turned into heat, and a switch with what the field held (M,), J.
-    """
-
-    current: Array
-    supply: Array
-    heat: Array
-
-    def columns(self) -> list[tuple[str, str, Array]]:
-        """Name, unit and values (M,) of every signal."""
-        units = {"current": "A", "supply": "J", "heat": "J"}
-        return [(f"electric.{name}", unit, getattr(self, name)) for name, unit in units.items()]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -136,7 +122,7 @@ class Run(Result):
         worst = float(np.max(np.abs(missed)))
         if self.electric is not None:
             of = self.electric
-            stored = Driver(self.machine).stored(of.current)
+            stored = Driver.of(self.machine).stored(of.current)
             missed = of.supply - of.heat - (stored - stored[0]) - self.work[DRIVE]
             worst = max(worst, float(np.max(np.abs(missed))))
             size = max(size, float(np.max(np.abs(of.supply))))
@@ -216,7 +202,7 @@ class Run(Result):
         """
         if self.end.kind != "stall":
             return None
-        driver = Driver(self.machine)
+        driver = Driver.of(self.machine)
         acting, holding = self.equation.at_rest(
             self.end.crank_angle, self.equation.factors_at(self.end.time, self.end.time)
         )
@@ -305,8 +291,11 @@ def run(
     off_turns: float | None = None,
     fluctuation: float | str | None = None,
     progress: Progress | None = None,
-) -> Run:
+) -> Run | DrivesRun:
     """Let a machine run on a fixed frame: its crank follows from motor, weight, springs and loads.
+
+    Of a machine with several drives, those with a motor, and those that are free, follow from
+    torques, and the others have the motion that is given; the result is a `DrivesRun`.
 
     The motor's curve holds as it is, whatever its `mean_speed`.  What is not given is that of the
     machine's `run`, where it has one; `duration` and `turns` replace its end, `off` and `off_turns`
@@ -341,17 +330,47 @@ def run(
         off, off_turns = plan.off, plan.off_turns
     speed = plan.speed if speed is None else speed
     angle = plan.angle if angle is None else angle
-    positive = {"duration": duration, "turns": turns, "off": off, "off_turns": off_turns}
-    sizes = {name: _positive(name, value) for name, value in positive.items()}
-    _check_turns(turns)
-    switched_off = off is not None or off_turns is not None
-    if switched_off and machine.drive.motor is None:
+    limits = _limits(machine, {"duration": duration, "turns": turns, "off": off,
+                               "off_turns": off_turns})  # fmt: skip
+    whole_turns = _turns_counted(limits, progress)
+    if not machine.has_crank:
+        if fluctuation is not None:
+            CrankEquation(machine)  # which says that it takes one crank
+        return _run_drives(machine, limits, speed, angle, whole_turns)
+    first = 0.0 if machine.drive.motor is not None else machine.drive.speed
+    start = _start(first, speed, angle)
+    wanted = None if fluctuation is None else share_of_mean(fluctuation)
+    equation, driver = CrankEquation(machine), Driver.of(machine)
+    integration = Integration(equation, driver, limits)
+    integration.on_turns = whole_turns
+    integration.follow(start[1], start[0])
+    flywheel = None if wanted is None else size_flywheel(machine, wanted, progress)
+    return _result(equation, integration, flywheel)
+
+
+def _limits(machine: Machine, given: Mapping[str, float | str | None]) -> Limits:
+    """Where a run ends, by what is given of it."""
+    sizes = {name: _positive(name, value) for name, value in given.items()}
+    _check_turns(given["turns"])  # type: ignore[arg-type]
+    switched_off = given["off"] is not None or given["off_turns"] is not None
+    if switched_off and not any(drive.motor for drive in machine.driven):
         raise UsageError(
             at_place("drive.motor", Note("missing; without a motor there is nothing to switch off"))
         )
-    first = 0.0 if machine.drive.motor is not None else machine.drive.speed
+    free = min(sizes["duration"], sizes["turns"]) == inf
+    return Limits(
+        sizes["duration"],
+        TURNS if free else sizes["turns"],
+        sizes["off"],
+        sizes["off_turns"],
+        steady=free,
+    )
+
+
+def _start(usual: float, speed: float | str | None, angle: float | str | None) -> list[float]:
+    """Speed of the crank at the start, rad/s, and its angle, rad."""
     start = [
-        first if speed is None else in_si(speed, "angular speed", "speed"),
+        usual if speed is None else in_si(speed, "angular speed", "speed"),
         in_si(angle, "angle", "angle"),
     ]
     if not np.all(np.isfinite(start)):
@@ -362,23 +381,38 @@ def run(
                 angle=angle,
             )
         )
-    free = min(sizes["duration"], sizes["turns"]) == inf
-    limits = Limits(
-        sizes["duration"],
-        TURNS if free else sizes["turns"],
-        sizes["off"],
-        sizes["off_turns"],
-        steady=free,
-    )
-    wanted = None if fluctuation is None else share_of_mean(fluctuation)
-    equation, driver = CrankEquation(machine), Driver(machine)
-    integration = Integration(equation, driver, limits)
-    if progress is not None and limits.turns < inf:
-        most = ceil(limits.turns)
-        integration.on_turns = lambda done: progress(int(done), most)
-    integration.follow(float(start[1]), float(start[0]))
-    flywheel = None if wanted is None else size_flywheel(machine, wanted, progress)
-    return _result(equation, integration, flywheel)
+    return [float(value) for value in start]  # type: ignore[arg-type]
+
+
+def _turns_counted(limits: Limits, progress: Progress | None) -> Callable[[float], None]:
+    """What is called with the turns of the crank so far."""
+    if progress is None or limits.turns == inf:
+        return lambda turns: None
+    most = ceil(limits.turns)
+    return lambda done: progress(int(done), most)
+
+
+def _run_drives(
+    machine: Machine,
+    limits: Limits,
+    speed: float | str | None,
+    angle: float | str | None,
+    on_turns: Callable[[float], None],
+) -> DrivesRun:
+    """Of several drives: with a speed all start as at that of the crank, without one those with a
+    motor start at rest, and those that are free at the speed of the file.
+    """
+    pace, theta = _start(machine.drive.speed, speed, angle)
+    turned = [drive.turned(np.array([theta])) for drive in machine.driven]
+    angles, rates = ([float(np.ravel(each[part])[0]) for each in turned] for part in (0, 1))
+    speeds = [
+        0.0 if speed is None and drive.motor is not None else rate * pace
+        for drive, rate in zip(machine.driven, rates, strict=True)
+    ]
+    if limits.time == inf and limits.steady:
+        limits = replace(limits, time=2 * pi * TURNS / (abs(machine.drive.speed) or 1.0))
+    start = Start(angles, speeds, on_turns)
+    return run_drives(DrivesEquation(machine, theta), limits, start)
 
 
 def _result(equation: CrankEquation, integration: Integration, flywheel: Flywheel | None) -> Run:
@@ -387,7 +421,7 @@ def _result(equation: CrankEquation, integration: Integration, flywheel: Flywhee
     time, crank_angle, crank_speed, *work = np.vstack(integration.track).T
     electric, work = np.array(work[:ELECTRIC]), work[ELECTRIC:]
     switched = next((event.time for event in integration.events if event.kind == "off"), inf)
-    driver = Driver(machine)
+    driver = Driver.of(machine)
     driver.begins(float(crank_angle[0]), float(crank_speed[0]))
     driving = driver.torque_at(crank_speed, crank_angle, time)
     driving = driver.torque_of(electric[0]) if driver.lags else driving

@@ -15,7 +15,7 @@ from equipoise.mechanism.dynamics.forces import forces
 from equipoise.mechanism.kinematics.jumps import resolved
 from equipoise.mechanism.kinematics.motion import move
 from equipoise.mechanism.parts.force_elements import Motor
-from equipoise.mechanism.parts.machine import Drive, Machine
+from equipoise.mechanism.parts.machine import Machine
 from equipoise.signals import Array
 from equipoise.vibration.collocation import NOTHING, RULE, BoundaryConditions, Orbit, System, solve
 from equipoise.vibration.coupled import Coupled, StallError, Torque, mean_stall_note
@@ -196,13 +196,11 @@ def _cut(points: Array, coarse: Array) -> Array:
     return np.sort(np.concatenate([points, inner[coarse].ravel()]))
 
 
-def torque_on_crank(drive: Drive, way: float) -> Torque:
+def torque_on_crank(motor: Motor, way: float) -> Torque:
     """Torque on the crank, N m, at its speed and a shift of the motor's curve, both rad/s.
 
     way : with the sign of the speed at which the motor is to turn the crank.
     """
-    motor = drive.motor
-    assert motor is not None
     sense = copysign(1.0, way)
     smooth = motor.smooth_curve
     curve = _straight(motor) if smooth is None else smooth.torque
@@ -287,7 +285,8 @@ def equations(machine: Machine, speed: float, drive: bool) -> tuple[Coupled, Lin
 
     drive : whether the crank's speed follows from the motor.
     """
-    torque = torque_on_crank(machine.drive, speed) if drive else None
+    motor = machine.drive.motor if drive else None
+    torque = None if motor is None else torque_on_crank(motor, speed)
     if machine.support is None:
         assert torque is not None
         return Coupled.on_ground(machine, speed, torque), None

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-import equipoise as eq
 from equipoise.errors import ResponseError
 from equipoise.mechanism.parts.force_elements import Motor, MotorTable
 from equipoise.vibration.steady import speed_at, torque_on_crank
@@ -16,7 +15,7 @@ HUMP = Motor(table=MotorTable((0.0, 50.0, 100.0, 110.0), (2.0, 6.0, 4.0, -1.0)))
 
 
 def torque(motor: Motor, speed: float | list[float], shift: float = 0.0, sense: float = 1) -> Array:
-    found = torque_on_crank(eq.Drive("crank", 10.0, motor=motor), sense * 20.0)
+    found = torque_on_crank(motor, sense * 20.0)
     return found(np.atleast_1d(np.array(speed, float)), np.array(shift))
 
 
@@ -70,7 +69,7 @@ def test_reversed(motor: Motor) -> None:
 
 def test_slopes_by_complex_steps() -> None:
     """The solver asks for derivatives so; each piece has its own."""
-    found = torque_on_crank(eq.Drive("crank", 10.0, motor=HUMP), 10.0)
+    found = torque_on_crank(HUMP, 10.0)
     speeds = np.array([25.0, 75.0, 105.0, 130.0, -3.0])
     slopes = found(speeds + 1e-30j, np.array(0.0)).imag / 1e-30
     assert slopes == pytest.approx([0.08, -0.04, -0.5, -0.5, 0.08])

@@ -13,6 +13,8 @@ from equipoise.mechanism.parts.drives import Drive, FurtherDrive
 from equipoise.mechanism.parts.force_elements import wrong_motor
 from equipoise.mechanism.parts.laws import MOST_TURNS, wrong_law
 
+OF_CRANKS = Note("turns with the crank, and here the driven link has a motion; leave it out")
+
 
 def wrong_together(first: Drive, others: Sequence[FurtherDrive]) -> Iterator[ModelError]:
     """Everything that is wrong with drives beside each other."""
@@ -29,6 +31,9 @@ def wrong_further(
     """Everything that is wrong with a further drive."""
     yield from unknown_link(f"{where}.link", drive.link, bodies)
     yield from _wrong_push(where, drive, bodies, sliders)
+    yield from _wrong_mover(where, drive)
+    if drive.motor is not None and (drive.motion is not None or drive.pushes):
+        yield ModelError(f"{where}.motor", OF_CRANKS)
     if drive.pushes:
         if drive.ratio != 1:
             yield ModelError(where, Note("give either stroke, or ratio"))
@@ -60,16 +65,23 @@ def wrong_drive(drive: Drive, bodies: Bodies, sliders: list[str]) -> Iterator[Mo
     if drive.motor is not None:
         yield from wrong_motor("drive.motor", drive.motor)
     yield from _wrong_push("drive", drive, bodies, sliders)
+    yield from _wrong_mover("drive", drive)
     if drive.motion is not None:
         yield from wrong_law("drive.motion", drive.motion)
     if drive.motion is None and drive.stroke is None:
         return
     for name in ("motor", "flywheel", "brake"):
         if getattr(drive, name):
-            yield ModelError(
-                f"drive.{name}",
-                Note("turns with the crank, and here the driven link has a motion; leave it out"),
-            )
+            yield ModelError(f"drive.{name}", OF_CRANKS)
+
+
+def _wrong_mover(where: str, drive: Drive | FurtherDrive) -> Iterator[ModelError]:
+    """What is wrong with a drive that moves freely."""
+    if drive.free and drive.motor is not None:
+        yield ModelError(f"{where}.free", Note("a motor drives it; leave one of them out"))
+    if drive.free and drive.pushes:
+        note = Note("a stroke moves the link, and no run lets it go; leave one of them out")
+        yield ModelError(f"{where}.free", note)
 
 
 def _wrong_push(

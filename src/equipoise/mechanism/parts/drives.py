@@ -10,6 +10,7 @@ from equipoise.i18n import Note, to_say
 from equipoise.keys import (
     NO_INERTIA,
     Conditions,
+    Flag,
     Frozen,
     KeyTable,
     Listing,
@@ -32,6 +33,13 @@ class Pushing:
     between: tuple[str, str] | None
     slider: str
     stroke: LengthLaw | None
+    motor: Motor | None
+    free: bool
+
+    @property
+    def moves_freely(self) -> bool:
+        """Whether its motion in a run of several drives follows from forces."""
+        return self.free or self.motor is not None
 
     @property
     def pushes(self) -> bool:
@@ -81,6 +89,15 @@ def _stroke() -> Any:
         "length of the cylinder, or travel of the sliding joint, over the cycle; `speed` tells how "
         "fast the cycle goes on",
         default=None,
+    )
+
+
+def _free() -> Any:
+    return key(
+        Flag(),
+        "true where nothing drives it in `run`, so that it starts as given here and goes on as "
+        "forces let it",
+        default=False,
     )
 
 
@@ -139,6 +156,7 @@ class Drive(Pushing, Frozen):
         "the same where it is left out",
         default=None,
     )
+    free: bool = _free()
     between: tuple[str, str] | None = _between()
     slider: str = _slider()
     stroke: LengthLaw | None = _stroke()
@@ -213,6 +231,13 @@ class FurtherDrive(Pushing, Frozen):
         "how its angle goes with the crank angle, instead of `ratio` and `start`",
         default=None,
     )
+    motor: Motor | None = key(
+        KeyTable(Motor, headed=True),
+        "what drives it in `run`, from its angle at crank angle 0 on; analyses take the motion "
+        "that is given",
+        default=None,
+    )
+    free: bool = _free()
     between: tuple[str, str] | None = _between()
     slider: str = _slider()
     stroke: LengthLaw | None = _stroke()

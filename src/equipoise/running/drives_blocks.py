@@ -1,0 +1,143 @@
+"""What a run of several drives shows: its end, each drive, where energy went, and events."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import pi
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from equipoise.i18n import say, to_say
+from equipoise.quantities import PER_RPM, number
+from equipoise.results.blocks import Block, Column, Facts, Table, Text, Value, broken_if
+from equipoise.running.blocks import EVENTS as OF_A_RUN
+from equipoise.running.blocks import MOST_EVENTS
+from equipoise.running.drives_run import FREE, GIVEN, MOTOR
+from equipoise.running.sources import sources_of
+
+if TYPE_CHECKING:
+    from equipoise.running.drives_integration import DriveEvent
+    from equipoise.running.drives_run import DrivesRun
+
+EVENTS = {
+    **OF_A_RUN,
+    "off": to_say("motors switched off"),
+    "stall": to_say("motors stall"),
+    "reversal": to_say("{of} turns back"),
+    "dead": to_say("dead position of dyad {of}"),
+}
+MOVED_BY = {MOTOR: to_say("motor"), FREE: to_say("no motor"), GIVEN: to_say("given motion")}
+ENDS = {
+    "standstill": to_say("The machine stands still after {time} s."),
+    "stall": to_say("The motors stall after {time} s: all drives stand still."),
+    "steady": to_say("The machine runs steadily after {time} s and {turns} turns of the crank."),
+    "dead": to_say(
+        "After {time} s dyad {of} comes to its dead position, beyond which its motion is "
+        "undetermined; the run ends there."
+    ),
+}
+OTHER_END = to_say("The run ends after {time} s.")
+
+
+def run_headline(run: DrivesRun, alone: bool = False) -> Iterator[Block]:
+    """How the run ends; alone also each drive in its last cycle.
+
+    alone : whether nothing follows, as on a terminal.
+    """
+    yield Text(verdict(run), broken_if(run.end.kind in ("stall", "dead")))
+    if alone and (lines := tuple(_speeds(run))):
+        yield Facts(say("Last cycle"), lines)
+
+
+def verdict(run: DrivesRun) -> str:
+    """What came of the run, in a sentence."""
+    values = {"time": number(run.end.time), "turns": number(abs(run.turned)), "of": run.end.of}
+    return say(ENDS.get(run.end.kind, OTHER_END), **values)
+
+
+def _speeds(run: DrivesRun) -> Iterator[str]:
+    """Speeds of each drive in the last cycle of the crank."""
+    inside = run.last_cycle
+    if inside is None:
+        return
+    time = run.time[inside]
+    for link, course in run.drives.items():
+        speed = course.speed[inside]
+        mean = (course.angle[inside][-1] - course.angle[inside][0]) / (time[-1] - time[0])
+        values = {"low": np.min(speed), "high": np.max(speed), "mean": mean}
+        yield say(
+            "{link}: from {low} to {high} rpm, {mean} rpm in the mean",
+            link=link,
+            **{name: number(float(value) / PER_RPM) for name, value in values.items()},
+        )
+
+
+def run_blocks(run: DrivesRun) -> Iterator[Block]:
+    """Speeds, drives, energies and events."""
+    if lines := tuple(_speeds(run)):
+        yield Facts(say("Last cycle"), lines)
+    yield _drives(run)
+    yield _energies(run)
+    error = f"{run.energy_error:.1e}"
+    yield Text(say("Kinetic energy and work agree to {error} of the largest.", error=error))
+    rows = [
+        (
+            _event(event),
+            Value(event.time),
+            Value((event.crank_angle - run.crank_angle[0]) / (2 * pi)),
+        )
+        for event in run.events[-MOST_EVENTS:]
+    ]
+    heads = ("", Column(say("time"), "time"), say("turns of the crank"))
+    yield Table.of(say("Events"), heads, rows)
+
+
+def _event(event: DriveEvent) -> str:
+    return say(EVENTS[event.kind], of=event.of) if event.of else say(EVENTS[event.kind])
+
+
+def _drives(run: DrivesRun) -> Table:
+    """How each drive moves: turns, speed at the end, and its largest torque and current."""
+    electric = any(course.electric is not None for course in run.drives.values())
+    rows = []
+    for link, course in run.drives.items():
+        torque = None if course.moved_by == FREE else Value(float(np.max(np.abs(course.torque))))
+        row = [
+            link,
+            say(MOVED_BY[course.moved_by]),
+            Value(course.turns),
+            Value(course.speed[-1]),
+            torque,
+        ]
+        if electric:
+            circuit = course.electric
+            row.append(None if circuit is None else Value(float(np.max(np.abs(circuit.current)))))
+        rows.append(tuple(row))
+    heads = [
+        say("drive"),
+        say("moved by"),
+        say("turns"),
+        Column(say("speed at the end"), "angular speed", "rpm"),
+        Column(say("largest torque"), "torque"),
+        *([Column(say("largest current"), "current")] if electric else []),
+    ]
+    return Table.of(say("Drives"), tuple(heads), rows)
+
+
+def _energies(run: DrivesRun) -> Table:
+    """Work of everything that has acted, and what became of it."""
+    labels = {source.key: say(source.label) for source in sources_of(run.machine)}
+    labels["brake"] = say("brake")
+    labels |= {f"drives.{link}": say("drive of {link}", link=link) for link in run.drives}
+    rows = [(labels[name], Value(float(work[-1]))) for name, work in run.work.items()]
+    energy = run.kinetic_energy
+    rows.append((say("kinetic energy"), Value(float(energy[-1] - energy[0]))))
+    for link, course in run.drives.items():
+        if (circuit := course.electric) is not None:
+            supply = say("from the supply of the motor of {link}", link=link)
+            heat = say("heat in the motor of {link}", link=link)
+            rows.append((supply, Value(float(circuit.supply[-1]))))
+            rows.append((heat, Value(float(circuit.heat[-1]))))
+    columns = ("", Column(say("work"), "energy"))
+    return Table.of(say("Energy from the start to the end"), columns, rows)

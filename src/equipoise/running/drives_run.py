@@ -1,0 +1,216 @@
+"""A machine of several drives on a fixed frame: how it moves under motors, weight and loads."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from functools import cached_property
+from math import inf, pi
+from typing import Any, ClassVar
+
+import numpy as np
+
+from equipoise.dataclass import dataclass
+from equipoise.mechanism.parts.machine import Machine
+from equipoise.results.result import Result
+from equipoise.running.drives_equation import DrivesEquation
+from equipoise.running.drives_integration import DriveEvent, DrivesIntegration
+from equipoise.running.electric import Electric
+from equipoise.running.integration import Limits
+from equipoise.signals import Array
+
+
+@dataclass(frozen=True)
+class Start:
+    """From where a run goes on.
+
+    angles, speeds : of all drives (N,), rad and rad/s.  on_turns : as of `DrivesIntegration`.
+    """
+
+    angles: Sequence[float]
+    speeds: Sequence[float]
+    on_turns: Callable[[float], None]
+
+
+MOTOR, FREE, GIVEN = "motor", "free", "given motion"
+
+
+@dataclass(frozen=True, eq=False)
+class DriveCourse:
+    """How a drive moves in a run, at M instants.
+
+    link : the driven link.  moved_by : ``motor``, ``free`` or ``given motion``.
+    angle, speed : (M,) rad and rad/s.  torque : (M,) of motor or given motion, N m.
+    electric : circuit of a direct-current motor; None of any other.
+    """
+
+    link: str
+    moved_by: str
+    angle: Array
+    speed: Array
+    torque: Array
+    electric: Electric | None
+
+    @property
+    def turns(self) -> float:
+        """Turns from the start to the end."""
+        return float(self.angle[-1] - self.angle[0]) / (2 * pi)
+
+    def to_dict(self) -> dict[str, Any]:
+        """All of it, in SI units."""
+        electric = {} if self.electric is None else {"electric": dict(vars(self.electric))}
+        return {
+            "moved_by": self.moved_by,
+            "turns": self.turns,
+            "angle": self.angle,
+            "speed": self.speed,
+            "torque": self.torque,
+            **electric,
+        }
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class DrivesRun(Result):
+    """How a machine of several drives moves from a start on, at M instants, not equally spaced.
+
+    time : (M,) s, rising.  crank_angle : (M,) rad; of a machine whose first drive has a motion of
+        its own the angle of its cycle.
+    drives : how each moves, by its link.
+    work : what has acted -> work on the machine since the start (M,), J; that of a drive as
+        ``drives.LINK``.
+    events : what happened; the last one ended the run.
+    cycle_begins : times at which a cycle of the crank began, s.
+    """
+
+    machine: Machine
+    equation: DrivesEquation
+    time: Array
+    crank_angle: Array
+    drives: Mapping[str, DriveCourse]
+    work: Mapping[str, Array]
+    events: tuple[DriveEvent, ...]
+    cycle_begins: tuple[float, ...]
+    blocks_in = "running.drives_blocks.run_blocks"
+    pictures_in = "figures.running.drives_charts"
+    headline_in: ClassVar[str] = "running.drives_blocks.run_headline"
+
+    @property
+    def end(self) -> DriveEvent:
+        """What ended the run."""
+        return self.events[-1]
+
+    @property
+    def turned(self) -> float:
+        """Turns of the crank from the start to the end."""
+        return float(self.crank_angle[-1] - self.crank_angle[0]) / (2 * pi)
+
+    @cached_property
+    def kinetic_energy(self) -> Array:
+        """(M,), J, from the linkage itself and not from what was integrated."""
+        courses = self.drives.values()
+        angles, speeds = ([getattr(each, name) for each in courses] for name in ("angle", "speed"))
+        return self.equation.energy(np.array(angles), np.array(speeds))
+
+    @cached_property
+    def energy_error(self) -> float:
+        """Largest difference of kinetic energy and work done, or of what a motor's supply gave and
+        what became of it, over the largest of them all.
+        """
+        energy, work = self.kinetic_energy, np.array([*self.work.values()])
+        worst = float(np.max(np.abs(energy - energy[0] - np.sum(work, axis=0))))
+        size = max(float(np.max(energy)), float(np.max(np.abs(work), initial=0.0)))
+        drivers = dict(zip(self.drives, self.equation.drivers(), strict=True))
+        for link, course in self.drives.items():
+            if (circuit := course.electric) is not None:
+                stored = drivers[link].stored(circuit.current)
+                missed = circuit.supply - circuit.heat - (stored - stored[0])
+                missed = missed - self.work[f"drives.{link}"]
+                worst = max(worst, float(np.max(np.abs(missed))))
+                size = max(size, float(np.max(np.abs(circuit.supply))))
+        return worst / size if size else 0.0
+
+    @property
+    def last_cycle(self) -> Array | None:
+        """Which of the M instants are in the last whole cycle of the crank; None without one."""
+        if len(self.cycle_begins) < 2:
+            return None
+        first, last = self.cycle_begins[-2:]
+        return np.asarray((self.time >= first) & (self.time <= last))
+
+    def columns(self) -> list[tuple[str, str, Array]]:
+        """Name, unit and values (M,) of every signal."""
+        columns = [("time", "s", self.time), ("crank_angle", "rad", self.crank_angle)]
+        for link, course in self.drives.items():
+            columns += [
+                (f"drives.{link}.angle", "rad", course.angle),
+                (f"drives.{link}.speed", "rad/s", course.speed),
+                (f"drives.{link}.torque", "N m", course.torque),
+            ]
+            if course.electric is not None:
+                columns += [
+                    (f"drives.{link}.{name}", unit, values)
+                    for name, unit, values in course.electric.columns()
+                ]
+        columns.append(("kinetic_energy", "J", self.kinetic_energy))
+        return columns + [(f"work.{name}", "J", values) for name, values in self.work.items()]
+
+    def to_dict(self) -> dict[str, Any]:
+        """The machine-readable output, in SI units."""
+        return {
+            "title": self.machine.title,
+            "end": self.end.kind,
+            "turns": self.turned,
+            "drives": {link: course.to_dict() for link, course in self.drives.items()},
+            "energy_error": self.energy_error,
+            "events": [vars(event) for event in self.events],
+            "time": self.time,
+            "crank_angle": self.crank_angle,
+            "kinetic_energy": self.kinetic_energy,
+            "work": dict(self.work),
+        }
+
+
+def run_drives(equation: DrivesEquation, limits: Limits, start: Start) -> DrivesRun:
+    """Run from a start until something ends it."""
+    unknowns = equation.unknowns
+    integration = DrivesIntegration(equation, limits)
+    integration.on_turns = start.on_turns
+    integration.follow([start.angles[k] for k in unknowns], [start.speeds[k] for k in unknowns])
+    time = np.array([moment for moment, _ in integration.track])
+    state = np.array([values for _, values in integration.track]).T
+    where = integration.where(time, [*state])
+    torques = np.array(integration.torques).T
+    courses = {
+        drive.link: DriveCourse(
+            drive.link,
+            MOTOR if drive.motor else FREE if k in unknowns else GIVEN,
+            where.angles[k] + 0.0 * time,
+            where.speeds[k] + 0.0 * time,
+            torques[k],
+            _electric(integration, k, time, state, where.speeds[k]),
+        )
+        for k, drive in enumerate(equation.drives)
+    }
+    return DrivesRun(
+        equation.machine,
+        equation,
+        time,
+        where.crank_angle + 0.0 * time,
+        courses,
+        dict(zip(integration.works, state[len(state) - len(integration.works) :], strict=True)),
+        tuple(integration.events),
+        tuple(integration.marks),
+    )
+
+
+def _electric(
+    integration: DrivesIntegration, drive: int, time: Array, state: Array, speed: Array
+) -> Electric | None:
+    """The circuit of a drive's motor; None of one without."""
+    if drive not in integration.circuits:
+        return None
+    current, supply, heat = state[integration.circuit_place(drive)]
+    motor = integration.equation.drivers()[drive]
+    if not motor.lags:
+        off = next((event.time for event in integration.events if event.kind == "off"), inf)
+        current = np.where(time <= off, motor.current(speed), 0.0)
+    return Electric(current, supply, heat)

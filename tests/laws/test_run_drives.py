@@ -1,0 +1,191 @@
+"""Runs of several drives: motions with a known answer, events, and what is refused."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import pi
+from typing import Any
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.errors import ModelError, ResponseError, UsageError
+from equipoise.mechanism.parts.dc_motors import DcMotor
+from equipoise.mechanism.parts.force_elements import Motor
+from equipoise.mechanism.parts.joint_properties import JointProperties
+from equipoise.mechanism.parts.laws import AngleLaw
+from equipoise.mechanism.parts.machine import FurtherDrive, Row
+from equipoise.mechanism.parts.servo_motors import ServoMotor
+from equipoise.mechanism.parts.timed_loads import TimedLoad
+from equipoise.mechanism.parts.torsion_dampers import TorsionDamper
+from equipoise.running.drives_blocks import run_blocks, run_headline, verdict
+
+MASS, ARM, OWN = 2.0, 0.3, 0.05
+INERTIA = OWN + MASS * ARM**2
+STRAIGHT = Motor(30.0, 6.0, mean_speed="free")
+
+
+def cranks(drive: eq.Drive, other: FurtherDrive, gravity: float = 0.0) -> eq.Machine:
+    """Two links that turn about points of the frame and do not feel each other."""
+    links = {
+        "left": eq.Link({"A": (0.0, 0.0), "C": (0.5, 0.0)}, MASS, (ARM, 0.0), OWN),
+        "right": eq.Link({"B": (0.0, 0.0), "D": (0.5, 0.0)}, MASS, (ARM, 0.0), OWN),
+    }
+    return eq.Machine(
+        "cranks", drive, {"A": (0.0, 0.0), "B": (2.0, 0.0)}, links, drives=(other,),
+        gravity=(0.0, -gravity),
+    )  # fmt: skip
+
+
+def test_motors_of_straight_lines_start_exponentially() -> None:
+    machine = cranks(eq.Drive("left", 30.0, motor=STRAIGHT),
+                     FurtherDrive("right", ratio=-0.5, motor=Motor(10.0, 6.0)))  # fmt: skip
+    found = eq.run(machine, 0.8)
+    left, right = found.drives.values()
+    rates = {6.0 / 30.0: (left, 30.0), 6.0 / 10.0: (right, -10.0)}
+    for slope, (course, final) in rates.items():
+        wanted = final * (1 - np.exp(-slope / INERTIA * found.time))
+        np.testing.assert_allclose(course.speed, wanted, atol=1e-9 * abs(final))
+        np.testing.assert_allclose(course.torque, slope * (final - course.speed), atol=1e-8)
+    assert found.end.kind == "time"
+
+
+def test_a_steady_state_of_two_motors() -> None:
+    machine = cranks(eq.Drive("left", 30.0, motor=STRAIGHT), FurtherDrive("right", motor=STRAIGHT))
+    found = eq.run(machine)
+    assert found.end.kind == "steady"
+    assert found.drives["right"].speed[-1] == pytest.approx(30.0, rel=1e-5)
+    assert found.energy_error < 1e-9
+
+
+def test_a_crank_that_follows_the_first_takes_nothing_from_it() -> None:
+    alone = eq.run(cranks(eq.Drive("left", 30.0, motor=STRAIGHT),
+                          FurtherDrive("right", free=True, ratio=0.0)), 0.5)  # fmt: skip
+    beside = eq.run(cranks(eq.Drive("left", 30.0, motor=STRAIGHT), FurtherDrive("right", 2.0)), 0.5)
+    assert beside.drives["left"].angle[-1] == pytest.approx(
+        alone.drives["left"].angle[-1], rel=1e-9
+    )
+    right = beside.drives["right"]
+    wanted = INERTIA * 2 * (6.0 - 6.0 / 30.0 * beside.drives["left"].speed) / INERTIA
+    np.testing.assert_allclose(right.torque, wanted, rtol=1e-8, atol=1e-8)
+
+
+def test_a_pendulum_keeps_its_energy_and_turns_back() -> None:
+    machine = cranks(eq.Drive("left", 10.0), FurtherDrive("right", ratio=0.0, free=True), 9.81)
+    found = eq.run(machine, 1.5)
+    right = found.drives["right"]
+    energy = INERTIA * right.speed**2 / 2 + MASS * 9.81 * ARM * np.sin(right.angle)
+    np.testing.assert_allclose(energy, 0.0, atol=1e-8)
+    back = [event for event in found.events if event.kind == "reversal"]
+    assert {event.of for event in back} == {"right"}
+    assert right.angle[np.searchsorted(found.time, back[0].time)] == pytest.approx(-pi, abs=1e-2)
+
+
+def test_a_load_over_time_gives_its_impulse() -> None:
+    machine = replace(
+        cranks(eq.Drive("left", 10.0, free=True), FurtherDrive("right", ratio=0.0, free=True)),
+        timed_loads=(TimedLoad("left", (0.0, 0.2), (1.0, 0.0), torque=3.0),),
+    )
+    found = eq.run(machine, 0.5)
+    left = found.drives["left"]
+    gained = INERTIA * (left.speed[-1] - 10.0)
+    assert gained == pytest.approx(3.0 * 0.2 / 2, rel=1e-8)
+    assert found.work["timed_loads"][-1] == pytest.approx(
+        INERTIA * (left.speed[-1] ** 2 - 10.0**2) / 2, rel=1e-8
+    )
+
+
+def test_motors_are_switched_off_and_a_brake_stops_the_first() -> None:
+    motor = Motor(dc=DcMotor(24.0, 1.0, 0.1, 5e-3), ratio=5.0, mean_speed="free")
+    machine = cranks(eq.Drive("left", 30.0, motor=motor, brake=4.0),
+                     FurtherDrive("right", motor=motor))  # fmt: skip
+    found = eq.run(machine, 2.0, off=0.5)
+    kinds = [event.kind for event in found.events]
+    assert kinds == ["off", "time"]
+    left, right = found.drives.values()
+    assert abs(left.speed[-1]) < 1e-2 and right.speed[-1] > 1.0
+    after = found.time > 0.5
+    assert not np.any(right.torque[after]) and not np.any(right.electric.current[after])
+    assert found.work["brake"][-1] < 0
+    assert found.energy_error < 1e-9
+
+
+def test_motors_that_cannot_lift_a_weight_stall() -> None:
+    motor = Motor(servo=ServoMotor(speed=5.0, torque_limit=3.0, speed_gain=50.0), mean_speed="free")
+    machine = cranks(eq.Drive("left", 5.0, motor=motor), FurtherDrive("right", motor=motor), 9.81)
+    machine = replace(machine, torsion_dampers=tuple(
+        TorsionDamper(link, damping=20.0) for link in ("left", "right")))  # fmt: skip
+    found = eq.run(machine, "60 s")
+    assert found.end.kind == "stall"
+    level = np.arccos(3.0 / (MASS * 9.81 * ARM))
+    for course in found.drives.values():
+        assert course.angle[-1] == pytest.approx(-level, abs=1e-4)
+    assert "stall" in verdict(found)
+
+
+def five_bar(**drive: Any) -> eq.Machine:
+    """One whose arms are too short for all angles of its cranks."""
+    crank = {"mass": 0.4, "inertia": 2e-4, "center_of_mass": (0.02, 0.0)}
+    arm = {"mass": 0.25, "inertia": 1e-3, "center_of_mass": (0.04, 0.0)}
+    links = {
+        "left": eq.Link({"A": (0.0, 0.0), "B": (0.05, 0.0)}, **crank),
+        "left arm": eq.Link({"B": (0.0, 0.0), "C": (0.08, 0.0)}, **arm),
+        "right arm": eq.Link({"C": (0.0, 0.0), "D": (0.08, 0.0)}, **arm),
+        "right": eq.Link({"D": (0.05, 0.0), "E": (0.0, 0.0)}, **crank),
+    }
+    return eq.Machine(
+        "five-bar", eq.Drive("left", 10.0, **drive), {"A": (0.0, 0.0), "E": (0.12, 0.0)}, links,
+        assembly={"C": "left"}, drives=(FurtherDrive("right", free=True),),
+    )  # fmt: skip
+
+
+def test_a_run_ends_in_a_dead_position() -> None:
+    found = eq.run(apart(), 5.0)
+    assert (found.end.kind, found.end.of) == ("dead", "C")
+    state = found.drives["left"].angle[-1], found.drives["right"].angle[-1]
+    ends = [0.05 * np.exp(1j * state[0]), 0.12 + 0.05 * np.exp(1j * state[1])]
+    assert abs(ends[1] - ends[0]) == pytest.approx(0.16, rel=1e-5)
+    assert found.energy_error < 1e-9
+    assert any("dead position" in str(block) for block in run_blocks(found))
+    assert [*run_headline(found, alone=True)]
+
+
+def apart(**changes: Any) -> eq.Machine:
+    """The five-bar whose cranks turn against each other."""
+    machine = five_bar(free=True)
+    return replace(machine, drives=(FurtherDrive("right", ratio=-1.0, free=True),), **changes)
+
+
+def test_links_that_reach_no_start_are_refused() -> None:
+    with pytest.raises(ResponseError, match="assembled"):
+        eq.run(replace(five_bar(free=True), drives=(FurtherDrive("right", start=pi, free=True),)),
+               1.0, angle=pi)  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"rows": (Row(), Row(phase=pi))},
+        {"joints": (JointProperties("joints.C", radius=0.01, friction=0.1),)},
+    ],
+)
+def test_what_a_run_of_several_drives_lacks_is_refused(changes: Any) -> None:
+    with pytest.raises(UsageError, match=f"^{next(iter(changes))}: "):
+        eq.run(apart(**changes))
+
+
+def test_drives_of_given_motions_alone_are_refused() -> None:
+    machine = cranks(eq.Drive("left", 10.0), FurtherDrive("right"))
+    with pytest.raises(UsageError, match="given motion"):
+        eq.run(machine)
+    with pytest.raises(UsageError, match="flywheel"):
+        eq.run(replace(machine, drive=eq.Drive("left", 10.0, free=True)), fluctuation=0.01)
+
+
+def test_a_motor_beside_a_motion_or_a_free_drive_is_refused() -> None:
+    with pytest.raises(ModelError, match="motor drives it"):
+        cranks(eq.Drive("left", 10.0, free=True, motor=STRAIGHT), FurtherDrive("right"))
+    law = AngleLaw(between=(0.0, 1.0))
+    with pytest.raises(ModelError, match="has a motion"):
+        cranks(eq.Drive("left", 10.0), FurtherDrive("right", motion=law, motor=STRAIGHT))

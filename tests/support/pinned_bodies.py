@@ -1,0 +1,117 @@
+"""Pinned bodies in the plane as free bodies with constraints, integrated in time.
+
+Each link has the place of its centre of mass and its angle, each pin two equations; a motion that
+is given is one more.  Multipliers follow from the second derivatives of all of them.  It knows
+nothing of drives, dyads or reduced inertias.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from itertools import pairwise
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+import equipoise as eq
+from equipoise.mechanism.parts.machine import FRAME
+from support.poses import Array, pins, quarter, turned
+
+Given = Callable[[float], tuple[float, float, float]]
+"""Angle of a link and its first two derivatives, by the time."""
+Torques = Callable[
+    [float, Mapping[str, tuple[float, float]], Array], tuple[dict[str, float], Array]
+]
+"""From time, angle and speed of each link, and further states: torques on links, and what these
+states change by."""
+
+
+class PinnedBodies:
+    """A machine of pins alone."""
+
+    def __init__(self, machine: eq.Machine, given: Mapping[str, Given], torques: Torques) -> None:
+        self.machine, self.given, self.torques = machine, given, torques
+        self.names = list(machine.links)
+        links = machine.links.values()
+        self.mass = np.ravel([[link.mass, link.mass, link.inertia] for link in links])
+        self.pairs = [
+            (label, *pair) for label, bodies in pins(machine).items() for pair in pairwise(bodies)
+        ]
+
+    def arm(self, body: str, label: str, angle: float) -> Array:
+        """From a link's centre of mass to a point, in the frame."""
+        link = self.machine.links[body]
+        offset = np.subtract(link.points[label], link.center_of_mass)
+        return turned(angle, tuple(offset))
+
+    def rows(self, q: Array, v: Array, time: float) -> tuple[Array, Array]:
+        """Constraint Jacobian, and what it has to give with the accelerations."""
+        rows, right = [], []
+        for label, first, second in self.pairs:
+            row, known = np.zeros((2, len(q))), np.zeros(2)
+            for sign, body in ((1.0, first), (-1.0, second)):
+                if body == FRAME:
+                    continue
+                k = 3 * self.names.index(body)
+                arm = self.arm(body, label, q[k + 2])
+                row[:, k : k + 2] += sign * np.eye(2)
+                row[:, k + 2] += sign * quarter(arm)
+                known += sign * v[k + 2] ** 2 * arm
+            rows += [*row]
+            right += [*known]
+        for body, law in self.given.items():
+            row = np.zeros(len(q))
+            row[3 * self.names.index(body) + 2] = 1.0
+            rows.append(row)
+            right.append(law(time)[2])
+        return np.array(rows), np.array(right)
+
+    def rates(self, time: float, state: Array) -> Array:
+        """Of places, speeds, and further states."""
+        count = len(self.mass)
+        q, v, more = state[:count], state[count : 2 * count], state[2 * count :]
+        jacobian, right = self.rows(q, v, time)
+        force = np.tile([*self.machine.gravity, 0.0], len(self.names)) * self.mass
+        moving = {name: (q[3 * k + 2], v[3 * k + 2]) for k, name in enumerate(self.names)}
+        torques, changes = self.torques(time, moving, more)
+        for name, torque in torques.items():
+            force[3 * self.names.index(name) + 2] += torque
+        size = len(right)
+        whole = np.block([[np.diag(self.mass), jacobian.T], [jacobian, np.zeros((size, size))]])
+        solved = np.linalg.solve(whole, np.concatenate([force, right]))
+        return np.concatenate([v, solved[:count], changes])
+
+    def start(self, angles: Mapping[str, float], speeds: Mapping[str, float]) -> Array:
+        """State with all links at angles, placed from pin to pin, whose speeds meet the pins."""
+        points: dict[str, Array] = {n: np.array(at) for n, at in self.machine.frame.items()}
+        q = np.zeros(len(self.mass))
+        left = list(self.names)
+        while left:
+            body = next(b for b in left if any(n in points for n in self.machine.links[b].points))
+            link = self.machine.links[body]
+            known = next(label for label in link.points if label in points)
+            centre = points[known] - self.arm(body, known, angles[body])
+            k = 3 * self.names.index(body)
+            q[k : k + 3] = *centre, angles[body]
+            for label in link.points:
+                points.setdefault(label, centre + self.arm(body, label, angles[body]))
+            left.remove(body)
+        jacobian, _ = self.rows(q, np.zeros_like(q), 0.0)
+        if self.given:
+            jacobian = jacobian[: -len(self.given)]
+        rows, right = [*jacobian], [0.0] * len(jacobian)
+        for body, speed in speeds.items():
+            row = np.zeros(len(q))
+            row[3 * self.names.index(body) + 2] = 1.0
+            rows.append(row)
+            right.append(speed)
+        v = np.linalg.lstsq(np.array(rows), np.array(right), rcond=None)[0]
+        return np.concatenate([q, v])
+
+    def follow(self, state: Array, times: Array) -> dict[str, Array]:
+        """Angles of all links at times."""
+        done = solve_ivp(
+            self.rates, (0.0, times[-1]), state, "DOP853", t_eval=times, rtol=1e-11, atol=1e-12
+        )
+        assert done.success
+        return {name: done.y[3 * k + 2] for k, name in enumerate(self.names)}
