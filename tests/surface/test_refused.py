@@ -114,7 +114,7 @@ REFUSED = {
         "--speed '20:30 rpm' --speeds -2": "--speeds: got '-2'; give",
         "--speed '2:3 rpm' --speeds 20001": "got '20001'; give",
         "--speed '20:30 rpm' --speeds many": "--speeds",
-        "--drive --model linear": "the motor in the model exact, not in",
+        "--drive --model linear": "the motor in the exact model, not in",
         "--model best": "--model",
         "--format png": "--format belongs to --plot; give both",
         "--plot new --format gif": "--format",
@@ -135,9 +135,9 @@ REFUSED = {
         "yamashita-rig-counterweight --drive": "drive.motor: missing; give its no_l",
         "riding-transplanter --drive": "riding-transplanter: drive.motor: mi",
         "riding-transplanter --model exact": (
-            "riding-transplanter: support.freedoms: the model exact is for motion in the plane"
+            "riding-transplanter: support.freedoms: the exact model is for motion in the plane"
         ),
-        "riding-transplanter --model coupled": "the model coupled is for",
+        "riding-transplanter --model coupled": "the coupled model is for",
     },
     "simulate yamashita-rig": {
         "--foo": "Unknown option: --foo.",
@@ -150,7 +150,7 @@ REFUSED = {
     },
     "simulate": {
         "yamashita-1 '1 s'": "yamashita-1: support: the machine stands on solid gro",
-        "riding-transplanter '1 s'": "the model exact is for motion in the plane",
+        "riding-transplanter '1 s'": "the exact model is for motion in the plane",
     },
     "modes": {
         "yamashita-1": "yamashita-1: support: the machine stands on solid ground; ad",

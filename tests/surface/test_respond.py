@@ -69,7 +69,7 @@ def test_tables_of_an_example(name: str) -> None:
 @pytest.mark.parametrize("model", MODELS)
 def test_tables_of_a_model(model: str) -> None:
     text = succeeded(equipoise("respond", "--full", RIG, "--model", model))
-    assert f"by the model {model}: " in text
+    assert f"by the {model} model: " in text
     assert ("residual" in text) == (model in {"coupled", "exact"})
     assert ("energy per period" in text) == (model == "exact")
 

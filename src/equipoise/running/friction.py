@@ -341,7 +341,7 @@ def _pushing(motion: Motion, side: RubbingJoint) -> Demands:
     rack along its guide.
     """
     assert side.mesh is not None
-    guide = guide_of(motion.machine, side.mesh)
+    guide = guide_of(motion.linkage, side.mesh)
     if guide is None:
         return demands_of(motion, [(side.on, None, 0j, 1.0)])  # type: ignore[list-item]
     sliding = replace(side, slider=guide)

@@ -37,18 +37,15 @@ def rack_sign(rack: Rack, around: Surroundings) -> Iterator[BodyMark]:
     """The rack, as far as its pinion rolls on it, and a radius more; a sketch may lack its guide or
     its pin.
     """
-    pair = (rack.rack, rack.carrier)
-    slider = next(
-        (slider for slider in around.joints.sliders if (slider.link, slider.on) == pair), None
-    )
+    guides = around.joints.guides(rack)
     pins = around.joints.pins_between(rack.pinion, rack.carrier)
-    if slider is None or len(pins) != 1:
+    if not guides or len(pins) != 1:
         return
-    guide = Guide.seen_from(slider, rack.carrier)
+    guide = Guide.seen_from(guides[0], rack.carrier)
     points = around.bodies[rack.carrier]
     foot = (complex(*points[pins[0]]) - complex(*points[guide.base])) / guide.along
     foot -= 1j * rack.left * rack.radius
-    reach = foot.real - around.travel(slider)
+    reach = foot.real - around.travel(guides[0])
     low, high = float(np.min(reach)) - rack.radius, float(np.max(reach)) + rack.radius
     toward = 1j * rack.left  # the pinion, of a bar along the x axis
     corners = low + 1j * foot.imag + _bar(high - low, rack.radius, toward)

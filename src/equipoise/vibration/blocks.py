@@ -57,7 +57,7 @@ TURNED: tuple[Kind, ...] = (
 
 def model_told(model: Model) -> str:
     """Which model answers, and what it stands for."""
-    return say("Vibration by the model {model}: {what}", model=model, what=say(MODELS[model]))
+    return say("Vibration by the {model} model: {what}", model=model, what=say(MODELS[model]))
 
 
 def reading(

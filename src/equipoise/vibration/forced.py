@@ -55,7 +55,7 @@ def chosen_model(machine: Machine, model: str | None, drive: bool) -> Model:
         raise ModelError("drive.motor", note)
     if drive and model not in {None, "exact"}:
         raise UsageError(
-            Note("the speed follows from the motor in the model exact, not in {model}", model=model)
+            Note("the speed follows from the motor in the exact model, not in {model}", model=model)
         )
     support = machine.support
     if support is None:
@@ -67,7 +67,7 @@ def chosen_model(machine: Machine, model: str | None, drive: bool) -> Model:
         raise ModelError(
             "support.freedoms",
             Note(
-                "the model {value} is for motion in the plane of the drawing; leave out "
+                "the {value} model is for motion in the plane of the drawing; leave out "
                 "{names}, or choose moment",
                 value=model or "exact",
                 names=" and ".join([*filter(None, [", ".join(others)]), last]),
@@ -76,7 +76,7 @@ def chosen_model(machine: Machine, model: str | None, drive: bool) -> Model:
     if model in WITH_CRANK and not machine.has_crank:
         raise UsageError(
             Note(
-                "the model {value} is for one crank that turns, not for several drives or one that "
+                "the {value} model is for one crank that turns, not for several drives or one that "
                 "follows a law; choose moment",
                 value=model,
             )

@@ -453,7 +453,7 @@ class Response(Result):
             "what happens at the crank", of=DriveSignals.declared, column="drive."
         ),
         "joints": ResultOutput(
-            "largest forces in a joint, only with the model exact",
+            "largest forces in a joint, only with the exact model",
             of=Joint.declared,
             family=True,
             present="joints",
@@ -465,7 +465,7 @@ class Response(Result):
             read=lambda response: [[m.real, m.imag] for m in response.multipliers.tolist()],
             present="multipliers",
         ),
-        "energy": ResultOutput("only with the model exact", of=Energy.declared, present="energy"),
+        "energy": ResultOutput("only with the exact model", of=Energy.declared, present="energy"),
         "notes": NOTES,
     }
 

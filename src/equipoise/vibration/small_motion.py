@@ -93,8 +93,8 @@ def _mounts(
             said = to_say("{name} has no contact at rest and is ignored")
         elif mount.one_sided and force.extreme(-1)[0] + preload < 0:
             said = to_say(
-                "{name} would be in tension, which a one-sided mount cannot transmit; the model "
-                "exact includes the loss of contact"
+                "{name} would be in tension, which a one-sided mount cannot transmit; the exact "
+                "model includes the loss of contact"
             )
         if said:
             notes.append(Note(said, name=name))

@@ -98,7 +98,7 @@ def steady(
             Note(
                 "the support swings freely {swings:.3g} times in a turn of the crank, more "
                 "often than the {most_swings} that the exact equations follow; for so slow "
-                "a crank choose the model moment",
+                "a crank choose the moment model",
                 swings=swings,
                 most_swings=MOST_SWINGS,
             )

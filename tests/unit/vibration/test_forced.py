@@ -37,7 +37,7 @@ GROUND = ModelError(
 )
 MOTORLESS = ModelError("drive.motor", "missing; give its no_load_speed and stall_torque")
 SPACE = (
-    "the model {} is for motion in the plane of the drawing; leave out sway, roll and yaw, or "
+    "the {} model is for motion in the plane of the drawing; leave out sway, roll and yaw, or "
     "choose moment"
 )
 
@@ -116,7 +116,7 @@ def test_the_model_asked_for(model: str) -> None:
         (rig(), None, True, MOTORLESS),
         (BARE, None, True, MOTORLESS),
         (rig().with_drive(motor=LINE), "linear", True,
-         UsageError("the speed follows from the motor in the model exact, not in linear")),
+         UsageError("the speed follows from the motor in the exact model, not in linear")),
         (cart(), "exact", False, ModelError("support.freedoms", SPACE.format("exact"))),
         (cart(), "coupled", False, ModelError("support.freedoms", SPACE.format("coupled"))),
         (cart().with_drive(motor=LINE), None, True,

@@ -184,7 +184,7 @@ def test_mount_that_would_have_to_pull() -> None:
     }
     machine = unbalance(mounts=feet).with_link("crank", mass=5.0)
     words = (
-        "would be in tension, which a one-sided mount cannot transmit; the model exact includes "
+        "would be in tension, which a one-sided mount cannot transmit; the exact model includes "
         "the loss of contact"
     )
     assert not respond(machine, 1.0, "moment").notes

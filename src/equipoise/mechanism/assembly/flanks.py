@@ -56,7 +56,7 @@ class CarrierJoint:
     def of(cls, joints: Structure, coupling: Coupling, body: str, pin: str) -> CarrierJoint:
         """pin : about which it turns; empty of what slides."""
         if body == coupling.slides:
-            guide = Guide.seen_from(_guides(joints, coupling)[0], coupling.carrier)
+            guide = Guide.seen_from(joints.guides(coupling)[0], coupling.carrier)
             name = coupling.name
             return cls(body, guide.point, guide, (f"t({name})", f"t1({name})", f"t2({name})"))
         return cls(body, pin, None, (f"phi({body})", *u(body)[1:]))
@@ -260,7 +260,7 @@ def _pins(joints: Structure, coupling: Coupling) -> tuple[str, str]:
     """About which driver and driven body turn on the carrier; empty of the one that slides."""
     if not coupling.slides:
         return coupling_pins(joints, coupling)
-    guides = len(_guides(joints, coupling))
+    guides = len(joints.guides(coupling))
     pins, counts = [], []
     for body in (coupling.driver, coupling.driven):
         shared = joints.pins_between(body, coupling.carrier)
@@ -270,9 +270,3 @@ def _pins(joints: Structure, coupling: Coupling) -> tuple[str, str]:
     if counts != [1, 1]:
         raise ModelError(place_in_file(joints, coupling), coupling.unheld(*counts))
     return pins[0], pins[1]
-
-
-def _guides(joints: Structure, coupling: Coupling) -> list[Any]:
-    """Guides of the body that slides on the carrier."""
-    ends = (coupling.slides, coupling.carrier)
-    return [slider for slider in joints.sliders if (slider.link, slider.on) == ends]

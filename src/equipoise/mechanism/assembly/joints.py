@@ -99,6 +99,11 @@ class Structure:
     def pins_between(self, a: str, b: str) -> list[str]:
         return [point for point, bodies in self.pins.items() if a in bodies and b in bodies]
 
+    def guides(self, coupling: Coupling) -> list[Slider]:
+        """In which the body of a coupling that slides does so on the carrier; none if all turn."""
+        ends = coupling.slides, coupling.carrier
+        return [slider for slider in self.sliders if (slider.link, slider.on) == ends]
+
 
 def structure(machine: Machine) -> Structure:
     """Read joints off the names that bodies share."""

@@ -18,7 +18,7 @@ from equipoise.mechanism.parts.couplings import Coupling
 from equipoise.mechanism.parts.gears import Gear
 from equipoise.mechanism.parts.joint_kinds import JointKind
 from equipoise.mechanism.parts.joint_properties import JOINTS, JointProperties
-from equipoise.mechanism.parts.machine import FRAME, Machine, Slider
+from equipoise.mechanism.parts.machine import FRAME, Slider
 
 STILL = 1e-10
 """rad or lengths of the largest link, by rad of the crank: a joint that moves less is at rest, as
@@ -184,12 +184,9 @@ def rubbing_joints(linkage: Linkage) -> tuple[RubbingJoint, ...]:
     return known
 
 
-def guide_of(machine: Machine, mesh: Coupling) -> Slider | None:
+def guide_of(linkage: Linkage, mesh: Coupling) -> Slider | None:
     """The sliding joint along which a driven rack slides on its carrier; None of all else."""
-    if mesh.slides != mesh.driven:
-        return None
-    ends = mesh.driven, mesh.carrier
-    return next(item for item in machine.sliders if (item.link, item.on) == ends)
+    return linkage.joints.guides(mesh)[0] if mesh.slides == mesh.driven else None
 
 
 def _rubbing(linkage: Linkage) -> Iterator[RubbingJoint]:
@@ -218,7 +215,7 @@ def _passing_on(
     """A coupling that loses a share of what it passes on, or a cam on which its follower slides;
     still : m by rad of the crank.
     """
-    guide = guide_of(linkage.machine, mesh)
+    guide = guide_of(linkage, mesh)
     joint = RubbingJoint(mesh.name, reaction, entry, guide, still, mesh, pitch_radius=1.0)
     if joint.slides:
         return joint
