@@ -94,12 +94,17 @@ class Aim:
 
     @cached_property
     def read(self) -> Read:
-        """Orders, and the size of each; of a vector of both its parts together."""
+        """Orders, and the size of each, of the mean with its sign; of a vector of both its parts
+        together.
+        """
         result = {}
         for when, signal in (("before", self.before), ("after", self.after)):
             parts = np.array([np.real(signal.start), np.imag(signal.start)])
             periodic = Periodic.of(parts * np.any(self.pair[when]), signal.turns)
-            result[f"bar {when}"] = periodic.orders, np.linalg.norm(periodic.sizes, axis=0)
+            sizes = np.linalg.norm(periodic.sizes, axis=0)
+            if not self.output.is_vector:
+                sizes[0] = periodic.amplitudes[0, 0].real
+            result[f"bar {when}"] = periodic.orders, sizes
         return result
 
     def panels(self, last: int, with_speed: bool) -> tuple[Panel, Panel]:

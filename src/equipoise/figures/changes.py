@@ -116,6 +116,7 @@ def changes(balanced: Balanced) -> Chart:
     every = _with_labels_apart([*additions(posed, balanced.changes, balanced.plan)])
     new = [addition.in_meters() for addition in every]
     scene = _without_new(Scene.of(posed.motion), Scene.of(move(original, [0.0])), balanced.changes)
+    scene = replace(scene, carrier=None)  # nothing of a support is changed, and it may reach far
     changed = any(item.kind != "room" for item in new)
     what = say("What to change, to scale") if changed else say("Nothing to change, to scale")
     text = told_angle(posed.angle(machine.drive.link))

@@ -138,11 +138,15 @@ def extremes(
     places: Sequence[tuple[float, float]],
     role: str,
 ) -> tuple[Mark, ...]:
-    """Marks at extremes of a signal (N,), none where it does not vary.
+    """Marks at extremes of a signal (N,), or its value where it does not vary and is not 0.
 
     places : crank angles (rad) and values.
     """
     marks = []
+    if places and not varies(values) and values[0]:
+        text = say("{value} at every crank angle", value=axis.format_value(float(values[0])))
+        middle = float(np.mean([angle for angle, _ in places]))
+        return (Mark(middle, float(values[0]), text, role, sign=False),)
     for angle, value in places if varies(values) else ():
         text = say("{value} at {angle}", value=axis.format_value(value), angle=degrees_told(angle))
         wish = 90.0 if value > float(np.mean(values)) else -90.0
@@ -221,15 +225,21 @@ def told_angles(angles: Array) -> dict[int, int]:
 
 
 def numbers(labelled: Mapping[int, int], values: Array, role: str, size: float) -> tuple[Mark, ...]:
-    """Marks at crank angles of a path (N,), complex, of some size; of several at one place one."""
-    marks: dict[complex, Mark] = {}
+    """Marks at crank angles of a path (N,), complex, of some size; where several are at one place,
+    one mark with all their numbers.
+    """
+    angles: dict[complex, list[int]] = {}
     middle = complex(np.mean(values))
     for angle, k in labelled.items():
         place = complex(values[k])
-        if all(abs(place - other) > ALIKE * size for other in marks):
-            wish = float(np.degrees(np.angle(place - middle)))
-            marks[place] = Mark.of(place, f"{angle}", role, wish, optional=True, distance=5.0)
-    return tuple(marks.values())
+        same = (other for other in angles if abs(place - other) <= ALIKE * size)
+        angles.setdefault(next(same, place), []).append(angle)
+    marks = []
+    for place, at_place in angles.items():
+        text = say(", ").join(map(str, at_place))
+        wish = float(np.degrees(np.angle(place - middle)))
+        marks.append(Mark.of(place, text, role, wish, optional=True, distance=5.0))
+    return tuple(marks)
 
 
 def extent(*parts: Array) -> float:

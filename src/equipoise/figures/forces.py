@@ -62,12 +62,14 @@ def over_crank(
     name: str,
     what: str,
     panels: Sequence[Signals],
+    output: str = "",
 ) -> Chart:
     """Signals over crank angle, below each other.
 
-    panels : what is in each.
+    panels : what is in each.  output : of frame or drive, whose unit they have.
     """
     x = angle_axis(analysis)
+    unit = _unit(analysis, output)
     every = [(dimension, [*signals.values()]) for _, dimension, signals in panels]
     result = [
         compared(
@@ -79,18 +81,18 @@ def over_crank(
                 [v for item, values in every if item == dimension for v in values]
             ),
             low=0.0 if label == say("size") else None,
-            unit=_unit(analysis, dimension),
+            unit=unit,
         )
         for label, dimension, signals in panels
     ]
     return Chart(name, analysis.machine.title, what, tuple(result), keys=row_keys(analysis))
 
 
-def _unit(analysis: Analysis, dimension: Dimension | None) -> str | None:
-    """The unit of forces and moments on frame and drive, as tables and sentences have it."""
-    if dimension not in ("force", "torque") or analysis.solved is None:
+def _unit(analysis: Analysis, output: str) -> str | None:
+    """The unit of an output of frame or drive, as tables and sentences have it."""
+    if not output or analysis.solved is None:
         return None
-    return display_of_totals(analysis, dimension).unit
+    return display_of_totals(analysis, output).unit
 
 
 def force(analysis: Analysis) -> Chart:
@@ -106,7 +108,9 @@ def force(analysis: Analysis) -> Chart:
         (label, "force", {role: part(values) for role, values in result.items()})
         for label, part in parts.items()
     ]
-    return over_crank(analysis, "force", title(analysis, say("Shaking force")), panels)
+    return over_crank(
+        analysis, "force", title(analysis, say("Shaking force")), panels, "shaking_force"
+    )
 
 
 def moment(analysis: Analysis) -> Chart:
@@ -126,7 +130,7 @@ def moment(analysis: Analysis) -> Chart:
             (output_named(name), "torque", {role: settled(values, least)})
             for name, values in parts.items()
         ]
-    return over_crank(analysis, "moment", what, panels)
+    return over_crank(analysis, "moment", what, panels, "shaking_moment")
 
 
 def torques(analysis: Analysis) -> Iterator[Chart]:
@@ -149,7 +153,8 @@ def torque(analysis: Analysis, number: int = 1) -> Chart:
     of_force = say("Force of the drive on {link}", link=link)
     what = title(analysis, of_force if drive.pushes else of_torque)
     name = "torque" if number == 1 else f"torque-{number}"
-    chart = over_crank(analysis, name, what, [(output_named(output), drive.effort_in, signals)])
+    panels = [(output_named(output), drive.effort_in, signals)]
+    chart = over_crank(analysis, name, what, panels, output)
     (whole,) = chart.panels
     if analysis.motion.whole_cycle:
         whole = with_mean(whole, signals[ALL], analysis.motion)
@@ -180,7 +185,7 @@ def _causes(analysis: Analysis, output: str, kind: Dimension) -> Panel:
     if not curves:
         curves = [Curve(*over(analysis, 0 * analysis.crank_angle))]
     every = np.concatenate([curve.y for curve in curves])
-    unit = display_of_totals(analysis, kind).unit
+    unit = display_of_totals(analysis, output).unit
     y = Axis.of(say("by cause"), kind, every, unit, room=ROOM / 2)
     remark = say("of one row") if analysis.rows_total else ""
     return Panel(angle_axis(analysis), y, tuple(curves), title=remark, keyed=True)
@@ -194,7 +199,7 @@ def polar(analysis: Analysis) -> Chart:
     result = each(analysis, "shaking_force")
     resolved = analysis.resolved
     every = np.concatenate([*result.values()])
-    unit = display_of_totals(analysis, "force").unit
+    unit = display_of_totals(analysis, "shaking_force").unit
     x, y = (
         Axis.of(say("shaking force along {axis}", axis=axis), "force", every, unit)
         for axis in ("x", "y")
@@ -290,22 +295,29 @@ def spectrum(analysis: Analysis) -> Chart:
 
 BAR_ROLES = {SINGLE: "bar before", ALL: "bar after"}
 Read = Mapping[str, tuple[Array, Array]]
-"""Role -> orders, and the size of each in SI units."""
-MATTERS, VISIBLE = 0.01, 0.004
-"""Over the largest amplitude: above this an order is drawn; below this a bar cannot be seen."""
+"""Role -> orders, and the size of each in SI units; of the mean with its sign."""
+MATTERS, VISIBLE, ROOM_BELOW = 0.01, 0.004, 1.1
+"""Over the largest amplitude: above this an order is drawn; below this a bar cannot be seen.
+Over a mean below 0: where its axis begins, with some room.
+"""
 LEAST, MOST, MOST_TOLD = 4, 12, 8
 """Orders that are drawn at least and at most; places on the axis up to which bars have numbers."""
 
 
 def orders_of(values: Array, motion: Motion) -> tuple[Array, Array]:
-    """Orders of a signal (N,) of a motion, and their sizes."""
+    """Orders of a signal (N,) of a motion, and their sizes, of the mean with its sign."""
     signal = motion.periodic(values)
-    return signal.orders, signal.sizes
+    return signal.orders, np.append(signal.amplitudes[:1].real, signal.sizes[1:])
+
+
+def largest_order(read: Read) -> float:
+    """The largest size of an order."""
+    return max(float(np.max(np.abs(sizes))) for _, sizes in read.values())
 
 
 def last_order(read: Read) -> int:
     """Up to where orders matter, a whole number."""
-    largest = max(float(np.max(sizes)) for _, sizes in read.values())
+    largest = largest_order(read)
     last = max(
         float(np.max(orders[sizes > MATTERS * largest], initial=0.0))
         for orders, sizes in read.values()
@@ -323,9 +335,11 @@ def order_panel(
 ) -> Panel:
     """Bars beside each other for each order up to the last; numbers at them where there is room.
 
+    The bar of a mean below 0 goes down.
+
     unit : as of `Axis.of`.
     """
-    largest = max(float(np.max(sizes)) for _, sizes in read.values())
+    largest = largest_order(read)
     finest = _finest(read, VISIBLE * largest)
     wide = BAR_WIDE * finest / len(read)
     bars = []
@@ -338,7 +352,8 @@ def order_panel(
     label, room = say("order: events in one turn of the crank"), 0.7 * finest
     x = Axis(label, low=-room, high=last + room, ticks=ticks)
     every = np.concatenate([sizes for _, sizes in read.values()])
-    y = Axis.of(say("amplitude"), dimension, every, unit, low=0.0, room=0.2)
+    low = ROOM_BELOW * float(np.min(every, initial=0.0))
+    y = Axis.of(say("amplitude"), dimension, every, unit, low=low, room=0.2)
     message = "" if largest else say("zero at every order")
     return Panel(x, y, bars=tuple(bars), title=name, message=message)
 

@@ -278,7 +278,7 @@ def _stretch(cell: Cell, columns: int) -> None:
 
 
 NUMBERS = 15.0
-"""Points above the highest bar that its number takes."""
+"""Points that a number takes above the highest bar, or below one that goes down."""
 
 
 def make_room(cell: Cell, over: float) -> None:
@@ -297,11 +297,15 @@ def make_room(cell: Cell, over: float) -> None:
         (float(np.max(bars.size, initial=0.0)) for bars in matching_bars), default=0.0
     )
     above = max(NUMBERS - (high - top) / rate, 0.0) if matching_bars else 0.0
+    bottom = factor * min(
+        (float(np.min(bars.size, initial=0.0)) for bars in matching_bars), default=0.0
+    )
+    under = max(NUMBERS - (bottom - low) / rate, 0.0) if bottom < 0 else 0.0
     longest = max((width_of(word, NORMAL) for word in panel.y.text.split()), default=0.0)
     extra = max(longest - over - cell.height - above, 0.0)
     below = 0.0 if panel.bars else extra / 2
-    cell.height += above + extra
-    cell.y_ends = (low - below * rate, high + (above + extra - below) * rate)
+    cell.height += above + extra + under
+    cell.y_ends = (low - (below + under) * rate, high + (above + extra - below) * rate)
 
 
 WIDE, HALF = 518.4, 262.0

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -28,6 +29,8 @@ if TYPE_CHECKING:
     from equipoise.results.analysis import Analysis
 
 
+ViewBox = tuple[complex, complex]
+"""Lower left and upper right corner, x + iy, m."""
 MOST = 24
 """Crank angles in one picture."""
 MANY, SMALLER = 3, 0.75
@@ -144,14 +147,20 @@ def _at_ends(scene: Scene) -> Iterator[Shape]:
 
 def _panel(scene: Scene, k: int, paths: tuple[Curve, ...], title: str, whole: Scene) -> Panel:
     """A scene on the axes of the whole one; with a crank angle as its title without names of links,
-    for which it has no room.
+    for which it has no room, and without names of joints with links that it does not show.
     """
     parts = panel_content(scene, k)
     named = title != told_pose(scene, k)
+    elsewhere = {
+        point
+        for body in whole.bodies
+        for point in body.points
+        if body.name not in {shown_body.name for shown_body in scene.bodies}
+    }
     return Panel(
         *plane_axes(whole),
         paths,
-        (*joint_names(scene, k), *(_other_names(scene, k) if named else ())),
+        (*joint_names(scene, k, without=elsewhere), *(_other_names(scene, k) if named else ())),
         title=title,
         equal=True,
         zero=False,
@@ -170,9 +179,12 @@ def _paths(motion: Motion, scene: Scene) -> Iterator[Curve]:
         yield Curve.of(place, say("paths of points"), "point path")
 
 
-def joint_names(scene: Scene, k: int, optional: bool = False) -> Iterator[Mark]:
-    """Names of points, out of the links that meet there."""
-    for name, place in scene.places.items():
+def joint_names(
+    scene: Scene, k: int, optional: bool = False, without: Collection[str] = ()
+) -> Iterator[Mark]:
+    """Names of points, out of the links that meet there; without : points that get none."""
+    for name in (name for name in scene.places if name not in without):
+        place = scene.places[name]
         z = complex(place[k])
         met = [body for body in scene.bodies if name in body.points]
         ways = [complex(np.mean(_outline(scene, body.outline, k))) - z for body in met]
@@ -223,8 +235,10 @@ def _outline(scene: Scene, names: tuple[str, ...], k: int) -> Array:
 
 MOST_CENTRODES = 4
 """Links whose centrodes are drawn in one picture."""
-BEYOND = 1.0
-"""Over the size of the machine: instant centres that lie further off are not drawn."""
+NEAR, MARGIN = 1.0, 0.2
+"""Over the diagonal of the machine's box: how far from its middle centrodes may go that are drawn
+whole.  Over its longer side: room around it in which others are drawn.
+"""
 
 
 def rolling(analysis: Analysis) -> list[str]:
@@ -239,10 +253,9 @@ def rolling(analysis: Analysis) -> list[str]:
     free = [link for link in machine.links if link not in pinned_links]
     turning = {name for name in free if np.ptp(motion.links[name].angle) > STILL}
     names = [name for name in free if name in turning and f"{name}/{FRAME}" in pairs(machine)]
-    box = Scene.of(motion).box
-    return [
-        name for name in names if np.isfinite(_closest(_fixed_centrode(motion, name), box)).any()
-    ]
+    scene = _bare_scene(motion)
+    around = _with_margin(_pose_box(scene, clear_angle(scene)))
+    return [name for name in names if _inside(_fixed_centrode(motion, name), around).any()]
 
 
 def _fixed_centrode(motion: Motion, link: str) -> Array:
@@ -250,11 +263,74 @@ def _fixed_centrode(motion: Motion, link: str) -> Array:
     return instant_center(motion, f"{link}/{FRAME}")
 
 
-def _closest(places: Array, box: tuple[complex, complex]) -> Array:
-    """Places, m, without those that are too far from a box to be drawn with it."""
+def _bare_scene(motion: Motion) -> Scene:
+    """A machine without soil and support, of which centrodes tell nothing."""
+    return replace(Scene.of(motion), carrier=None, field=None)
+
+
+def _pose_box(scene: Scene, k: int) -> ViewBox:
+    """Box of a machine at the k-th crank angle, with the ways of its blocks, m."""
+    centers = [place[k] for place in scene.mass_centers.values()]
+    ends = [
+        scene.places[guide.point][k] + reach * guide.way[k]
+        for guide in scene.guides
+        for reach in (-guide.behind[k], guide.ahead[k])
+    ]
+    places = np.array([*scene.corners_at(k), *centers, *ends])
+    x, y = places.real, places.imag
+    return complex(x.min(), y.min()), complex(x.max(), y.max())
+
+
+def _with_margin(box: ViewBox) -> ViewBox:
+    """A box, m, with room around it in which centrodes are drawn; as wide as high at least."""
     low, high = box
-    far = np.abs(places - (low + high) / 2) >= BEYOND * abs(high - low)
-    return np.where(far, complex(np.nan, np.nan), places)
+    size = high - low
+    margin = MARGIN * max(size.real, size.imag) * (1 + 1j)
+    margin += max(size.imag - size.real, 0.0) / 2
+    return low - margin, high + margin
+
+
+def _inside(places: Array, box: ViewBox) -> Array:
+    """Which places, m, lie in a box; none of those that are infinite."""
+    low, high = box
+    across = (low.real <= places.real) & (places.real <= high.real)
+    return np.asarray(across & (low.imag <= places.imag) & (places.imag <= high.imag))
+
+
+def _centrode_box(box: ViewBox, curves: tuple[Array, Array]) -> ViewBox | None:
+    """The box, m, at which centrodes are cut that run far away; None of those that do not."""
+    low, high = box
+    far = [np.abs(places - (low + high) / 2) <= NEAR * abs(high - low) for places in curves]
+    return None if np.all(far) else _with_margin(box)
+
+
+def cut_at(box: ViewBox, places: Array) -> Array:
+    """A line through places, m, as far as it lies in a box: its parts with NaN between them.
+
+    Steps longer than half of the box are left out: they lead through infinity to the other side.
+    """
+    parts: list[complex] = []
+    low, high = box
+    for start, end in pairwise(map(complex, places)):
+        if not abs(end - start) <= abs(high - low) / 2:
+            continue
+        first, last = 0.0, 1.0
+        for at, along, least, most in (
+            (start.real, (end - start).real, low.real, high.real),
+            (start.imag, (end - start).imag, low.imag, high.imag),
+        ):
+            if along:
+                shares = sorted(((least - at) / along, (most - at) / along))
+                first, last = max(first, shares[0]), min(last, shares[1])
+            elif not least <= at <= most:
+                last = -1.0
+        if first > last:
+            continue
+        begin = start + first * (end - start)
+        if not parts or parts[-1] != begin:
+            parts += [complex(np.nan, np.nan), begin]
+        parts.append(end if last == 1.0 else start + last * (end - start))
+    return np.array(parts[1:], complex)
 
 
 def centrodes(analysis: Analysis, links: Sequence[str]) -> Chart:
@@ -262,38 +338,43 @@ def centrodes(analysis: Analysis, links: Sequence[str]) -> Chart:
 
     links : names, of which the first `MOST_CENTRODES` are drawn; see `rolling`.
     """
-    motion, scene = analysis.motion, Scene.of(analysis.motion)
+    motion, scene = analysis.motion, _bare_scene(analysis.motion)
     names = links[:MOST_CENTRODES]
     k = clear_angle(scene)
-    panels = []
+    machine = _pose_box(scene, k)
+    panels, cut = [], False
     for name in names:
         link, base = motion.links[name], motion.points[motion.linkage.anchors[name]].place
-        fixed = _closest(_fixed_centrode(motion, name), scene.box)
+        fixed = _fixed_centrode(motion, name)
         turn = np.exp(1j * (link.angle[k] - link.angle))
-        moving = _closest(base[k] + (fixed - base) * turn, scene.box)
-        curves = (
-            Curve.of(np.append(fixed, fixed[:1]), say("fixed centrode"), "several 1"),
-            Curve.of(np.append(moving, moving[:1]), say("moving centrode"), "several 2"),
-        )
+        moving = base[k] + (fixed - base) * turn
+        lines = (np.append(fixed, fixed[:1]), np.append(moving, moving[:1]))
+        box = _centrode_box(machine, lines)
+        if box is not None:
+            lines, cut = (cut_at(box, lines[0]), cut_at(box, lines[1])), True
         marks = [*joint_names(scene, k, optional=True)]
-        if np.isfinite(fixed[k]):
+        if box is None or _inside(fixed[k], box):
             marks.append(Mark.of(fixed[k], say("instant centre"), "several 1", 60.0))
         panel = Panel(
             *plane_axes(scene),
-            curves,
+            (
+                Curve.of(lines[0], say("fixed centrode"), "several 1"),
+                Curve.of(lines[1], say("moving centrode"), "several 2"),
+            ),
             tuple(marks),
             title=short(name),
             equal=True,
             zero=False,
             sign_size=1.0 if len(names) == 1 else SMALLER,
-            always_shown=scene.box,
-            **panel_content(scene, k, without=SOIL),
+            always_shown=box or machine,
+            **panel_content(scene, k),
         )
         panels.append(panel)
     text = {"link": short(analysis.machine.drive.link), "angle": told_pose(scene, k)}
     what = say("Centrodes of links in the frame; angle of {link}: {angle}", **text)
+    words = (say("Centrodes that run far away are drawn near the machine only."),) if cut else ()
     columns = 1 if len(panels) == 1 else 2
-    return Chart("centrodes", analysis.machine.title, what, tuple(panels), columns)
+    return Chart("centrodes", analysis.machine.title, what, tuple(panels), columns, words=words)
 
 
 def keys_of(scene: Scene) -> Iterator[tuple[str, str]]:

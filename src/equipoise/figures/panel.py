@@ -304,6 +304,10 @@ ALIKE = (0.01, 0.004)
 """Shares of the axes nearer than which two signs with numbers, or two equal names, are one."""
 VISIBLE = 0.004
 """Over the longest bar: shorter ones cannot be seen, and get no number."""
+OVER, UNDER = -5.5, 6.5
+"""Points from the end of a bar to the middle of its number: above it, or below one that goes down.
+"""
+MINUS = "\N{MINUS SIGN}"
 MOST_DECIMALS = 4
 """Of numbers at bars; longer ones are left out."""
 LEAD, ROW, STAND = 8.0, 9.6, 10.0
@@ -371,14 +375,14 @@ def _bar_numbers(view: View) -> None:
         return
     scale = view.y if matching_bars[0].across == "x" else view.x
     factor = scale.axis.unit.factor
-    largest = factor * max(float(np.max(bars.size, initial=0.0)) for bars in matching_bars)
+    largest = factor * max(float(np.max(np.abs(bars.size), initial=0)) for bars in matching_bars)
     if not largest:
         return
     numbers = [
         (size, at, look_of(bars.role).ink)
         for bars in matching_bars
         for at, size in zip(bars.at.tolist(), (factor * bars.size).tolist(), strict=True)
-        if size > VISIBLE * largest
+        if abs(size) > VISIBLE * largest
     ]
     if scale is view.x:
         for size, at, _ in numbers:
@@ -391,7 +395,12 @@ def _bar_numbers(view: View) -> None:
     least = min(most, max(1, most - 1))
     for fewer in range(most, least - 1, -1):
         texts = [
-            (decimals(f"{size:.{fewer}f}"), float(view.x.at(at)), float(scale.of(size)), color)
+            (
+                decimals(f"{size:.{fewer}f}".replace("-", MINUS)),
+                float(view.x.at(at)),
+                float(scale.of(size)) + (UNDER if size < 0 else OVER),
+                color,
+            )
             for size, at, color in numbers
             if round(size, fewer)
         ]
@@ -399,7 +408,7 @@ def _bar_numbers(view: View) -> None:
         if len(clear) == len(texts):
             break
     for text, x, y, color in clear:
-        view.write(x, y - 5.5, text, "middle", color=color)
+        view.write(x, y, text, "middle", color=color)
 
 
 def _clear(texts: list[Number]) -> list[Number]:

@@ -12,6 +12,7 @@ from equipoise.figures.chart_parts import SpeedCurve, curves_of, ends, log_ends
 from equipoise.figures.style import short
 from equipoise.figures.tool_shaft import (
     RATE,
+    TOTAL_VALUE,
     engine_axis,
     hand_peaks,
     plane_named,
@@ -228,7 +229,7 @@ def design(result: ToolDesign) -> Chart:
     )
     x = engine_axis(result.speed)
     low, high = log_ends([*before, *after], 1.8, 2.2)
-    y = Axis(say("total value a_hv"), RATE, "log", low, high)
+    y = Axis(say(TOTAL_VALUE), RATE, "log", low, high)
     old = (replace(curve, label="", dashed=True) for curve in curves_of(result.speed, before))
     work = work_line(result.tool, x)
     marks = (*hand_peaks(result.better, result.speed, after, y), *work_mark(work, y, above=False))

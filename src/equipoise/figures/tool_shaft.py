@@ -444,7 +444,7 @@ def weighted(exposure: ToolExposure) -> Chart:
         role: np.full(len(exposure.speed), level) for role, level in levels(exposure).items()
     }
     what = say("Weighted acceleration; dotted: action and limit value")
-    chart = _of_hands(exposure, "exposure", read, allowed, what, say("total value a_hv"))
+    chart = _of_hands(exposure, "exposure", read, allowed, what, say(TOTAL_VALUE))
     over = say(VERDICTS["above the limit value"])
     beyond = (np.where(item > allowed["limit"], item, np.nan) for item in read.values())
     stretches = tuple(
@@ -458,6 +458,10 @@ def weighted(exposure: ToolExposure) -> Chart:
         return chart
     text = {"a8": shown(exposure.a8), "hand": short(exposure.worst)}
     return replace(chart, what=f"{chart.what}; " + say("A(8) = {a8} m/s² at {hand}", **text))
+
+
+TOTAL_VALUE = to_say("vibration total value aₕᵥ (ISO 5349-1)")
+"""Name of the axis along which the weighted vibration of hands is drawn."""
 
 
 def duration_of(exposure: ToolExposure) -> float:

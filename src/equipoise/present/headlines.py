@@ -347,7 +347,7 @@ def shaking_headline(findings: Findings) -> str:
     size = Shaking.of(findings).size
     if not size.peak:
         return say("No force shakes the frame")
-    unit = display_of_totals(findings.analysis, "force")
+    unit = display_of_totals(findings.analysis, "shaking_force")
     peak = unit.with_unit(unit.text(size.peak, digits=3))
     return say("Up to {peak} shakes the frame", peak=peak)
 
@@ -364,7 +364,7 @@ def peaked(analysis: Analysis, name: str, dimension: Dimension) -> str:
     item, scale, what = analysis.summary[name], scale_of(analysis, dimension), output_named(name)
     if item.peak <= NOTHING * scale:
         return say("{what}: none", what=capital(what))
-    return topped(what, item, display_of_totals(analysis, dimension))
+    return topped(what, item, display_of_totals(analysis, name))
 
 
 def topped(what: str, figures: Figures, unit: Display) -> str:

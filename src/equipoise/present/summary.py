@@ -68,7 +68,7 @@ def tiles(findings: Findings) -> Iterator[Tile]:
     size = Shaking.of(findings).size
     after = None if later is None else Shaking.of(later).size.peak
     note = _at(size.peak_at) if size.peak else ""
-    force = display_of_totals(analysis, "force")
+    force = display_of_totals(analysis, "shaking_force")
     template = to_say("all rows: {what}") if len(findings.machine.rows) > 1 else "{what}"
     label = say(template, what=say("shaking force, peak"))
     yield _tile(label, size.peak, force, note, after=after)
@@ -83,7 +83,7 @@ def tiles(findings: Findings) -> Iterator[Tile]:
         item, scale = analysis.summary[name], scale_of(analysis, kind)
         after = None if later is None else later.analysis.summary[name].signed_peak
         note = _at(item.peak_at) if brief(item.peak, scale) != "0" else ""
-        unit = display_of_totals(analysis, kind)
+        unit = display_of_totals(analysis, name)
         yield _tile(say(template, what=label), item.signed_peak, unit, note, scale, after)
     if analysis.forces.joints:
         name, largest = largest_joint(analysis)
@@ -133,7 +133,7 @@ def _at(crank_angle: float) -> str:
 
 def _shaking_sentences(findings: Findings, shaking: Shaking) -> Iterator[str]:
     size, rows = shaking.size, len(findings.machine.rows)
-    analysis, unit = findings.analysis, display_of_totals(findings.analysis, "force")
+    analysis, unit = findings.analysis, display_of_totals(findings.analysis, "shaking_force")
     speed = brief(abs(findings.analysis.motion.speed) / PER_RPM)
     if not size.peak:
         yield say("At {speed} rpm the linkage does not shake its frame by any force.", speed=speed)
@@ -166,7 +166,7 @@ def _shaking_sentences(findings: Findings, shaking: Shaking) -> Iterator[str]:
     of_rows = to_say("The shaking moment of all rows together reaches {peak} ({rms} RMS).")
     of_one = to_say("The shaking moment about the drive pivot reaches {peak} ({rms} RMS).")
     template = of_rows if rows > 1 else of_one
-    unit = display_of_totals(analysis, "torque")
+    unit = display_of_totals(analysis, "shaking_moment")
     sizes = (moment.signed_peak, moment.rms)
     peak, rms = (unit.with_unit(unit.text(size, digits=3)) for size in sizes)
     yield say(template, peak=peak, rms=rms)
@@ -223,7 +223,7 @@ def _why(findings: Findings) -> Iterator[str]:
         of_force = to_say(
             "The drive force swings between {low} and {high}; that comes from: {parts}."
         )
-        unit = display_of_totals(analysis, drive.effort_in)
+        unit = display_of_totals(analysis, drive.effort)
         low, high = (unit.text(end, effort.peak, 3) for end in (effort.min, effort.max))
         yield say(
             of_force if drive.pushes else of_rows if len(findings.machine.rows) > 1 else of_one,

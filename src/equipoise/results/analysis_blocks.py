@@ -173,11 +173,24 @@ def advantages_table(analysis: Analysis) -> Table:
 # -- forces ----------------------------------------------------------------------------------------
 
 
-def display_of_totals(analysis: Analysis, kind: Dimension | None) -> Display:
-    """The unit in which forces, or moments and torques, on frame and drive are shown everywhere."""
-    ones = (item.figures for item in analysis.outputs.summed
-            if item.group in TOTALS and item.dimension == kind)  # fmt: skip
+def display_of_totals(analysis: Analysis, output: str) -> Display:
+    """The unit in which an output of frame or drive is shown everywhere.
+
+    Shaking forces have one, and those that hold loads another: a cylinder may push a hundred times
+    as much as its machine shakes.  So have moments.
+    """
+    kind, with_loads = analysis.outputs[output].dimension, _holds_loads(output)
+    ones = (
+        item.figures
+        for item in analysis.outputs.summed
+        if item.group in TOTALS and item.dimension == kind and _holds_loads(item.name) == with_loads
+    )
     return display(kind, [0.0, *(max(item.peak, item.peak_to_peak) for item in ones)])
+
+
+def _holds_loads(output: str) -> bool:
+    """Whether an output is a force of frame or drive, or the moment on the frame."""
+    return output.startswith("frame_") or ("force" in output and "shaking_force" not in output)
 
 
 def force_blocks(analysis: Analysis) -> Iterator[Block]:
@@ -189,7 +202,7 @@ def force_blocks(analysis: Analysis) -> Iterator[Block]:
     rows: list[tuple[Cell, ...]] = []
     for entry in ones:
         figures, kind = entry.figures, entry.dimension
-        scale, unit = scale_of(analysis, kind), display_of_totals(analysis, kind).unit
+        scale, unit = scale_of(analysis, kind), display_of_totals(analysis, entry.name).unit
         mean, rms, swing = (
             Value(value, scale, dimension=kind, unit=unit)
             for value in (figures.mean, figures.rms, figures.peak_to_peak)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from itertools import combinations
@@ -17,6 +18,7 @@ from equipoise.figures.style import PAPER, DrawingStyle, look_of
 from equipoise.figures.vector import svg_of
 from equipoise.figures.view import View
 from equipoise.results.charts import DEGREES, Chart
+from equipoise.symbols.shapes import Shape
 
 Fault = tuple[str, str]
 """What is not kept, and where."""
@@ -63,9 +65,12 @@ class Laid:
             texts_cut,
             texts_covered,
             axes,
+            axes_in_words,
             runs_back,
             bars_afloat,
             panels_left,
+            supports_cut,
+            machines_small,
             alike_in_grey,
         )
         return [fault for check in checks for fault in check(self)]
@@ -133,6 +138,20 @@ def axes(laid: Laid) -> Iterator[Fault]:
                 yield "few numbers on an axis", f"{axis.text}: {numbers}"
 
 
+def axes_in_words(laid: Laid) -> Iterator[Fault]:
+    """Axes are named in words and not by names of the code, in units that suit what is drawn."""
+    largest: dict[str, float] = {}
+    for view, _ in laid.panels:
+        for axis, scale in ((view.panel.x, view.x), (view.panel.y, view.y)):
+            if re.search(r"[a-z]_[a-z]", axis.label):
+                yield "axis named as in the code", axis.label
+            most = max(abs(scale.low), abs(scale.high))
+            largest[axis.unit_name] = max(largest.get(axis.unit_name, 0.0), most)
+    for unit, most in largest.items():
+        if unit.startswith("k") and not unit.startswith("kg") and most < 1:
+            yield "unit too large", f"{most:g} {unit}"
+
+
 def runs_back(laid: Laid) -> Iterator[Fault]:
     """Over the crank angle lines go on from left to right."""
     for view, _ in laid.panels:
@@ -186,6 +205,34 @@ def panels_left(laid: Laid) -> Iterator[Fault]:
             if _beyond(view, places) > SLACK:
                 yield "cut by its axes", _told(view)
                 break
+
+
+SMALLEST = 0.25
+"""Share of the axes that a machine takes at least along one of them."""
+
+
+def machines_small(laid: Laid) -> Iterator[Fault]:
+    """A machine is read where it is drawn; but to scale with what is new it may be small."""
+    for view, _ in laid.panels if laid.chart.name != "changes" else ():
+        if view.panel.signs:
+            x, y = (np.ptp(part) for part in _places(view, view.panel.signs).T)
+            if max(x / view.x.length, y / view.y.length) < SMALLEST:
+                yield "machine too small", _told(view)
+
+
+def supports_cut(laid: Laid) -> Iterator[Fault]:
+    """Where a support goes on beyond a drawing, words say what is there."""
+    for view, _ in laid.panels:
+        supports = [one for one in view.panel.ground if one.role.startswith("support")]
+        noted = not supports or any("Beyond" in text for text in laid.chart.words)
+        if not noted and _beyond(view, _places(view, supports)) > SLACK:
+            yield "support cut without a note", _told(view)
+
+
+def _places(view: View, shapes: Iterable[Shape]) -> np.ndarray:
+    """Places (N, 2) of shapes of a machine on the sheet, without the sizes of their signs."""
+    every = np.concatenate([np.atleast_1d(shape.places) for shape in shapes])
+    return view.places(every.real, every.imag)
 
 
 def _drawn_whole(view: View) -> Iterator[np.ndarray]:

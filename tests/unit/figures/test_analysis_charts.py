@@ -16,6 +16,7 @@ from equipoise.figures import analysis as of_joints
 from equipoise.figures import analysis as view
 from equipoise.figures import forces, planting, points
 from equipoise.figures.chart_parts import angle_step
+from equipoise.figures.linkage import cut_at
 from equipoise.figures.pictures import analysis_pictures, planting_pictures
 from equipoise.figures.style import look_of
 from equipoise.mechanism.dynamics.shares import CAUSES
@@ -220,27 +221,64 @@ def test_centrodes_of_gears_are_their_pitch_circles() -> None:
 
 @pytest.mark.parametrize("name", ["yamashita-1", "quick-return", "watt-six-bar"])
 def test_centrodes_roll_on_each_other(name: str) -> None:
-    """Along both the same way is covered, and they touch in the instant centre."""
+    """The moving one is the fixed one in the link's axes, and they touch in the instant centre."""
+    motion = analysis_of(name).motion
+    k = clear_angle(Scene.of(motion))
     for panel in charts_of(name)["centrodes"].panels:
+        link, base = motion.links[panel.title], motion.linkage.anchors[panel.title]
+        rotation = np.exp(1j * (link.angle - link.angle[k]))
+        place = motion.points[base].place
+        center = place + 1j * motion.points[base].place_1 / link.angle_1  # where nothing moves
         fixed, moving = places(panel)
-        there = np.isfinite(fixed[:-1]) & np.isfinite(fixed[1:])
-        there &= np.isfinite(moving[:-1]) & np.isfinite(moving[1:])
-        ways = (np.abs(np.diff(z))[there] for z in (fixed, moving))
-        np.testing.assert_allclose(*ways, rtol=2e-2, atol=2e-5)
+        for curve, whole in ((fixed, center), (moving, place[k] + (center - place) / rotation)):
+            away = np.abs(curve[:, None] - whole)
+            samples = np.min(away, axis=1)[np.isfinite(curve)] < 1e-9
+            assert np.mean(samples) > 0.9  # but for the places at which curves are cut
         if (mark := panel.marks[-1]).text == "instant centre":  # it is not too far off
-            touching = int(np.nanargmin(np.abs(fixed - moving)))
-            assert fixed[touching] == pytest.approx(complex(mark.x, mark.y), abs=1e-12)
-            assert moving[touching] == pytest.approx(fixed[touching], abs=1e-12)
+            touching = int(np.nanargmin(np.abs(fixed - complex(mark.x, mark.y))))
+            assert fixed[touching] == pytest.approx(center[k], abs=1e-12)
+            assert np.nanmin(np.abs(moving - center[k])) < 1e-12
 
 
-@pytest.mark.parametrize("name", ["class-three", "baler-pickup", "transplanter"])
+def test_centrodes_are_cut_where_they_leave_a_box() -> None:
+    box = (0j, 4 + 2j)
+    infinite = complex(np.inf, np.inf)
+    line = np.array([-1 + 1j, 1 + 1j, 2 + 1j, 2 + 3j, infinite, -50 + 1j, 3 + 1j, 3 + 0j])
+    wanted = [1j, 1 + 1j, 2 + 1j, 2 + 2j, complex(np.nan, np.nan), 3 + 1j, 3 + 0j]
+    np.testing.assert_allclose(cut_at(box, line), wanted)
+    assert cut_at(box, line - 10).size == 0
+    np.testing.assert_allclose(cut_at(box, np.array([3 + 0j, 5 + 1j])), [3, 4 + 0.5j])
+
+
+@pytest.mark.parametrize(
+    "name", ["class-three", "baler-pickup", "transplanter", "carton-pusher", "balance-rig"]
+)
 def test_a_picture_of_centrodes_has_them_and_the_whole_machine(name: str) -> None:
-    """No link whose instant centres are all too far off, and no soil that ends among the curves."""
-    low, high = Scene.of(analysis_of(name).motion).box
-    for panel in charts_of(name)["centrodes"].panels:
+    """No link whose instant centres are all too far off, no soil and no support; and the machine,
+    which the picture shows at one angle, takes most of it: curves that run far away are cut.
+    """
+    motion = analysis_of(name).motion
+    scene = Scene.of(motion)
+    corners = scene.corners_at(clear_angle(scene))
+    size = max(np.ptp(corners.real), np.ptp(corners.imag))
+    chart = charts_of(name)["centrodes"]
+    for panel in chart.panels:
+        curves = np.concatenate(places(panel))
         assert np.isfinite(places(panel)[0]).any()
-        assert panel.always_shown == (low, high)
-        assert not [shape for shape in panel.ground if shape.role in ("soil", "stubble", "surface")]
+        assert (
+            max(
+                np.nanmax(curves.real) - np.nanmin(curves.real),
+                np.nanmax(curves.imag) - np.nanmin(curves.imag),
+            )
+            <= 1.5 * size
+        )
+        low, high = panel.always_shown or (0j, 0j)
+        assert np.all((low.real <= corners.real) & (corners.real <= high.real))
+        assert np.all((low.imag <= corners.imag) & (corners.imag <= high.imag))
+        roles = {shape.role for shape in (*panel.ground, *panel.signs)}
+        assert not roles & {"soil", "stubble", "surface", "support", "support-edge"}
+    cut = name != "baler-pickup"
+    assert any("far away" in text for text in chart.words) is cut
 
 
 @pytest.mark.parametrize("name", ["yamashita-1", "quick-return", "planetary-planting-arm"])

@@ -12,13 +12,13 @@ import pytest
 
 import equipoise as eq
 from equipoise.figures.analysis import joint_polars, joints
-from equipoise.figures.forces import force, spectrum, torque
+from equipoise.figures.forces import force, polar, spectrum, torque
 from equipoise.figures.layout import HALF, lay_out
 from equipoise.figures.linkage import linkage
 from equipoise.figures.modes import mode_chart
-from equipoise.figures.points import main_kinematics
-from equipoise.figures.sheet import Markers, Words, box_of
-from equipoise.figures.tool_shaft import mode_charts
+from equipoise.figures.points import hodograph, main_kinematics
+from equipoise.figures.sheet import Box, Markers, Words, box_of
+from equipoise.figures.tool_shaft import mode_charts, weighted
 from equipoise.figures.vibration import spectra
 from equipoise.figures.view import View
 from equipoise.handheld.modes import vibrate_tool
@@ -27,6 +27,7 @@ from equipoise.results.charts import Axis, Chart, Curve, Panel
 from equipoise.schema.models import load_tool
 from equipoise.vibration.free import modes
 from support.chosen import DISTINCT, few
+from support.findings import findings_of
 from unit.figures.checks import Laid, bars_afloat, texts_covered, texts_cut, views
 
 LINKAGES = tuple(eq.examples("linkage"))
@@ -87,7 +88,8 @@ def test_peaks_tell_their_crank_angle(name: str) -> None:
     for chart, found in drawn(name):
         if chart.name in {"force", "joints", "torque"}:
             texts = [mark.text for view in found for mark in view.panel.marks]
-            assert all(text.endswith("°") for text in texts), (chart.name, texts)
+            ends = ("°", " at every crank angle")
+            assert all(text.endswith(ends) for text in texts), (chart.name, texts)
 
 
 @pytest.mark.parametrize("name", ["yamashita-rig", "stephenson-six-bar"])
@@ -141,6 +143,56 @@ def test_sizes_on_a_logarithmic_axis_are_dots_and_no_bars() -> None:
     assert len(dots.places) == len(panel.bars[0].at)
 
 
+def test_the_mean_of_a_spectrum_has_its_sign() -> None:
+    """A mean below 0 is a bar that goes down, with its number below it; orders go up."""
+    analysis = eq.analyze(eq.load("brush-cutter-engine")).resolved  # which its gas drives
+    laid = Laid.of(spectrum(analysis))
+    view = laid.panels[3][0]
+    (bars,) = view.panel.bars
+    mean = float(analysis.motion.mean(analysis.forces.drive_torque))
+    assert mean < -1 and bars.size[0] == pytest.approx(mean, rel=1e-9)
+    assert np.all(bars.size[1:] >= 0)
+    assert view.y.low < mean
+    (number,) = (one for one in laid.sheet.words if one.text == f"−{-mean:.2f}")
+    assert box_of(number)[1] >= float(view.y.at(mean)) and box_of(number)[3] <= view.box[3]
+
+
+def test_numbers_of_crank_angles_at_one_place_stand_together() -> None:
+    """A force that does not turn is the same at all of them; one to and fro at two."""
+    (chart,) = joint_polars(eq.analyze(eq.load("knife-drive")))
+    shaft = next(panel for panel in chart.panels if panel.title == "S: frame on shaft")
+    assert [mark.text for mark in shaft.marks] == ["0, 90, 180, 270"]
+    assert "0, 90, 180, 270" in [one.text for one in lay_out(chart).words]
+    (up, _) = hodograph(eq.analyze(eq.load("balance-shafts"))).panels
+    assert [mark.text for mark in up.marks] == ["", "0", "90, 270", "180"]
+
+
+def test_a_force_that_does_not_vary_has_its_value() -> None:
+    (chart, *_) = joints(eq.analyze(eq.load("knife-drive")))
+    panel = next(panel for panel in chart.panels if panel.title == "S: frame on shaft")
+    value = panel.y.format_value(float(panel.curves[0].y[0]))
+    assert [mark.text for mark in panel.marks] == [f"{value} at every crank angle"]
+
+
+@pytest.mark.parametrize("name", ["hydraulic-loader", "yamashita-1"])
+def test_the_unit_of_a_shaking_force_is_its_own(name: str) -> None:
+    """However hard a cylinder pushes."""
+    analysis = eq.analyze(eq.load(name))
+    for chart in (force(analysis), polar(analysis), spectrum(analysis)):
+        assert {view.y.axis.unit.name for view in views(chart)[:2]} == {"N"}, chart.name
+    if name == "hydraulic-loader":
+        assert torque(analysis).panels[0].y.unit.name == "kN"
+
+
+@pytest.mark.parametrize("language", ["en", "de", "ja", "ko"])
+def test_the_vibration_of_hands_is_named_on_its_axis(language: str) -> None:
+    """What it is, its symbol in the standard and its unit."""
+    exposure = findings_of("brush-cutter").exposure
+    with speaking(language):
+        axis = weighted(exposure).panels[0].y.text
+    assert "aₕᵥ" in axis and "ISO 5349-1" in axis and "m/s²" in axis
+
+
 @pytest.mark.parametrize("language", ["en", "ja", "ko"])
 def test_no_label_of_a_mode_covers_another(language: str) -> None:
     """Of a support in space with nine mounts and gauges, and of a tool with numbered nodes."""
@@ -155,6 +207,23 @@ def test_no_label_of_a_mode_covers_another(language: str) -> None:
             assert len(names) > 10
 
 
+@pytest.mark.parametrize("name", few(LINKAGES, {*DISTINCT, "straw-walker"}))
+def test_names_of_joints_stand_at_them(name: str) -> None:
+    """No more than about a letter's height and a half away, in a picture over all of a page."""
+    for view, items in Laid.of(linkage(eq.analyze(eq.load(name), 72))).panels:
+        boxes: dict[str, list[Box]] = {}
+        for item in items:
+            if isinstance(item, Words) and item.bold:
+                boxes.setdefault(item.text, []).append(box_of(item))
+        names = [mark for mark in view.panel.marks if mark.bold and mark.text]
+        assert names
+        for mark in names:
+            ((x, y),) = view.places(mark.x, mark.y)
+            away = [np.hypot(max(left - x, 0, x - right), max(top - y, 0, y - bottom))
+                    for left, top, right, bottom in boxes[mark.text]]  # fmt: skip
+            assert min(away) < 12, mark.text
+
+
 def test_links_that_cover_each_other_are_shown_in_turn() -> None:
     """Four walkers lie within 100 mm of each other, over 2300 mm."""
     panels = linkage(eq.analyze(eq.load("straw-walker"), 72)).panels
@@ -162,7 +231,9 @@ def test_links_that_cover_each_other_are_shown_in_turn() -> None:
     for number, panel in enumerate(panels, 1):
         texts = {mark.text for mark in panel.marks}
         assert {text for text in texts if text.startswith("walker")} == {f"walker-{number}"}
-        assert {"front", "rear", f"T{number}", "F1", "F4"} <= texts
+        own = {"A", "D", f"F{number}", f"R{number}", f"T{number}"}
+        assert {"front", "rear", *own} <= texts
+        assert not {text for text in texts if text[0] in "FRT"} - own  # of walkers elsewhere
     assert len({panel.always_shown for panel in panels}) == 1  # at one scale
     for name in ("stephenson-six-bar", "cam-pusher", "twin-engine"):
         assert len(linkage(eq.analyze(eq.load(name), 72)).panels) == 1

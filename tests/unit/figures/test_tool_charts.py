@@ -327,7 +327,7 @@ def test_each_hand_before_and_after() -> None:
         np.testing.assert_allclose(worst, found.a_hv[number])
     told, figure = words(chart), found.figures[0]
     assert f"RMS over the band: {figure.before:.4g} → {figure.after:.4g} m/s²" in told
-    assert "before" in told and "after" in told and "a_hv, m/s²" in told
+    assert "before" in told and "after" in told and "aₕᵥ (ISO 5349-1), m/s²" in told
 
 
 def test_measures_and_many_changes() -> None:

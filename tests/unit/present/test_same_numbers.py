@@ -345,7 +345,7 @@ def test_a_figure_has_one_unit_everywhere(name: str) -> None:
     """Large forces of joints and drives stand beside small ones of the frame."""
     found, made = findings_of(name), document(name)
     analysis = found.analysis
-    units = {"force": display_of_totals(analysis, "force").name}
+    units = {"force": display_of_totals(analysis, "shaking_force").name}
     (frame,) = (t for t in analysis.blocks() if isinstance(t, Table) and "frame" in t.title)
     rows = [cell.text for cell in (row[0] for row in grid(frame).rows)]
     assert any(one.endswith(units["force"]) for one in rows)
