@@ -188,9 +188,9 @@ def _machine_of(value: Any) -> str:
 def _is_tried(law: str, name: str) -> bool:
     """Whether a test is tried on one of its many machines, other tests on others.
 
-    Half of those that can do what no other can, and a quarter of the rest.
+    A quarter of those that can do what no other can, and a twelfth of the rest.
     """
-    return crc32(f"{law} {name}".encode()) % (2 if name in DISTINCT else 4) == 0
+    return crc32(f"{law} {name}".encode()) % (4 if name in DISTINCT else 12) == 0
 
 
 def _thinned(mark: pytest.Mark, seeds: int | None, every: bool, some: str | None) -> pytest.Mark:

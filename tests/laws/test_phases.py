@@ -102,7 +102,7 @@ def chosen(case: str) -> tuple[eq.Machine, Phasing]:
     return machine, choose_phases(machine, wishes, combine=combine)
 
 
-@pytest.mark.parametrize("case", few(CASES, ["force", "squares"]))
+@pytest.mark.parametrize("case", few(CASES, ["force"]))
 def test_nothing_better_is_found_by_evolution(case: str) -> None:
     """1e-6 of the value: sampled peaks are too low by up to 1e-7 times the square of the order."""
     count, wishes, combine = CASES[case]
@@ -134,7 +134,7 @@ def test_nothing_better_on_a_coarse_grid_in_time(output: str) -> None:
     assert after <= best * (1 + 1e-12)
 
 
-@pytest.mark.parametrize("case", few(CASES, ["torque", "size", "force and roll"]))
+@pytest.mark.parametrize("case", few(CASES, ["torque", "force and roll"]))
 def test_polished_to_ten_digits(case: str) -> None:
     """A simplex search from the phases found, small and large, gains nothing."""
     count, wishes, combine = CASES[case]
@@ -189,7 +189,7 @@ def test_equal_rows_are_laid_out_with_the_least_twist() -> None:
     assert max(twists) > 1.5 * mine
 
 
-@pytest.mark.parametrize("count", few([2, 3, 4, 5, 6], {2, 3, 4, 5}))
+@pytest.mark.parametrize("count", few([2, 3, 4, 5, 6], {2, 3, 4}))
 def test_a_finer_grid_finds_the_same(count: int) -> None:
     machine = side_by_side(TYPE_II, [0.1 * k for k in range(count)])
     wishes = [Objective("shaking_force")]
@@ -248,7 +248,9 @@ def test_no_phases_on_a_grid_of_5_degrees_are_better(kind: str, seed: int) -> No
     assert after - found.bound * before <= (1.01 * CLOSE + short) * before
 
 
-@pytest.mark.parametrize("name", ["four-row-transplanter", "riding-transplanter"])
+@pytest.mark.parametrize(
+    "name", few(["four-row-transplanter", "riding-transplanter"], {"four-row-transplanter"})
+)
 def test_no_phases_of_bundled_machines_are_better_on_a_grid(name: str) -> None:
     """Four rows, whose shaking force and vertical force depend on the phases alone."""
     machine = eq.load(name).with_balance(None)

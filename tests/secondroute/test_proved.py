@@ -72,7 +72,7 @@ def rows_of(seed: int) -> tuple[Machine, list[Objective]]:
     return side_by_side(machine, phases), list(wishes.values())
 
 
-@pytest.mark.parametrize("case", few(ROWS, ROWS[::5]))
+@pytest.mark.parametrize("case", few(ROWS, [5]))
 def test_no_phases_are_better_than_what_is_proved(case: int) -> None:
     machine, wishes = rows_of(case)
     found, dumb = choose_phases(machine, wishes), Dumb(machine, wishes, "sum")

@@ -240,7 +240,7 @@ STEPS: dict[int, Model] = {59: "linear", 57: "torque", 54: "coupled"}
     ("rig", "speed"),
     [
         (one_row(), 193 * RPM),
-        (one_row(), -150 * RPM),
+        pytest.param(one_row(), -150 * RPM, marks=EXHAUSTIVE),
         pytest.param(two_rows(), 193 * RPM, marks=EXHAUSTIVE),
     ],
     ids=["one row", "reversed", "two rows"],

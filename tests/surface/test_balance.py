@@ -310,7 +310,11 @@ def test_csv() -> None:
 
 
 @pytest.mark.parametrize(
-    "name", ["balance-crank", "balance-coupler", "balance-rig", "exudyn-slider-crank"]
+    "name",
+    few(
+        ["balance-crank", "balance-coupler", "balance-rig", "exudyn-slider-crank"],
+        {"balance-coupler", "balance-rig"},
+    ),
 )
 def test_the_new_model_does_what_was_printed(name: str) -> None:
     result = equipoise("balance", name, "--out", "new.toml", "--json")
@@ -510,11 +514,11 @@ def test_nothing_is_printed_beside_a_broken_pipe() -> None:
 @pytest.mark.parametrize("row", few(["drive_torque", "rows.drive_torque"], {"rows.drive_torque"}))
 def test_outputs_of_several_rows_are_taken_by_the_names_that_results_have(row: str) -> None:
     """What `analyze` calls rows.drive_torque is the drive_torque that balancing makes small."""
-    words = ("--phases", "--objective", f"peak {row}", "--limit", f"peak {row} <= 100 %")
+    words = ("--phases", "--objective", f"rms {row}", "--limit", f"rms {row} <= 100 %")
     text = succeeded(equipoise("balance", "four-row-transplanter", *words, "--json"))
-    before = json.loads(text)["objectives"]["peak of drive_torque"]["before"]
+    before = json.loads(text)["objectives"]["rms of drive_torque"]["before"]
     summary = eq.analyze(eq.load("four-row-transplanter"), acceleration=0.0).summary
-    assert before == pytest.approx(summary["rows.drive_torque"].peak, rel=1e-9)
+    assert before == pytest.approx(summary["rows.drive_torque"].rms, rel=1e-9)
 
 
 def test_a_file_names_outputs_of_several_rows_as_results_do() -> None:

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 from equipoise.limits import USUAL_OUTPUTS
+from support.chosen import EXHAUSTIVE
 from surface.running import Result, command, equipoise, example_text, refused, succeeded
 
 pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="reads /proc")
@@ -68,6 +69,8 @@ make = "smallest"
 """
 
 
+# Analyses that stay fail in `test_tolerances_give_back_the_memory_of_their_machines` too.
+@EXHAUSTIVE
 def test_a_search_gives_back_the_memory_of_its_designs() -> None:
     """Analyses of 300 designs hold 25 MB."""
     Path("study.toml").write_text(STUDY, encoding="utf-8")
@@ -115,7 +118,7 @@ def test_tolerances_give_back_the_memory_of_their_machines() -> None:
 
 def test_a_long_sweep_gives_back_the_memory_of_its_speeds() -> None:
     """Each held 39 MB."""
-    words = ("yamashita-rig", "--speed", "20 rpm : 400 rpm", "--speeds", "60", "--model", "exact")
+    words = ("yamashita-rig", "--speed", "20 rpm : 400 rpm", "--speeds", "12", "--model", "exact")
     result, peak = peak_of("respond", *words)
     assert result.status == 0, result.err
     assert peak < 125
@@ -211,14 +214,12 @@ def test_an_option_that_is_repeated_ten_thousand_times() -> None:
 def test_a_study_of_more_outputs_than_usual(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The limit is told with what raises it, which it then does."""
     assert USUAL_OUTPUTS == 1000  # of which each takes some ms
-    monkeypatch.setattr("equipoise.limits.USUAL_OUTPUTS", 20)
+    monkeypatch.setattr("equipoise.limits.USUAL_OUTPUTS", 2)
     text = example_text("study-of-lengths").partition("[[outputs]]")[0]
-    text += "".join(
-        f'[[outputs]]\nname = "o{k}"\nvalue = "shaking_force.peak"\n' for k in range(21)
-    )
+    text += "".join(f'[[outputs]]\nname = "o{k}"\nvalue = "shaking_force.peak"\n' for k in range(3))
     (folder / "many.toml").write_text(text, encoding="utf-8")
     told = refused(equipoise("check", "many.toml"))
-    assert "outputs: got 21; at most 20 are computed" in told
+    assert "outputs: got 3; at most 2 are computed" in told
     (setting,) = re.findall(r"EQUIPOISE_OUTPUTS=\d+", told)
     monkeypatch.setenv(*setting.split("="))
     assert equipoise("check", "many.toml").status == 0

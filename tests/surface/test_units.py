@@ -68,7 +68,7 @@ LINKAGE = [
     ("respond",),
     ("respond", "--full"),
     ("respond", "--speed", "5 rpm : 40 rpm", "--speeds", "5", "--full"),
-    ("simulate", "2 s"),
+    ("simulate", "0.5 s"),
     ("balance", "--crank-counterweight", "--objective", "shaking_force"),
     ("balance", "--crank-counterweight", "--objective", "shaking_force", "--full"),
     ("balance conditions",),

@@ -28,6 +28,7 @@ from equipoise.signals import Array, Periodic
 from equipoise.studies.commands import analyzed
 from equipoise.studies.evaluate import OneByOne
 from equipoise.studies.study import Output, Sampling, Study
+from support.chosen import few
 from surface.running import example_text
 
 TURNS, ORDERS = 200, 6000
@@ -98,7 +99,9 @@ def test_what_is_computed_in_parts_is_that_of_the_whole(
         assert part == pytest.approx(whole, rel=1e-12)
 
 
-@pytest.mark.parametrize("figure", ["drive_torque.peak", "links.rod.stress.peak"])
+@pytest.mark.parametrize(
+    "figure", few(["drive_torque.peak", "links.rod.stress.peak"], {"links.rod.stress.peak"})
+)
 def test_a_design_with_a_section_holds_what_is_asked_for(figure: str) -> None:
     """Loads in every cut of the rod at every crank angle were held, and every other output."""
     text = example_text("slider-crank-engine")

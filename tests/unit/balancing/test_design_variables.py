@@ -19,6 +19,7 @@ from equipoise.balancing.program import Affine, NoSolutionError, Program
 from equipoise.mechanism.dynamics.parameters import parameter_values
 from equipoise.mechanism.parts.balance import Balance, Objective, SpringChoice
 from equipoise.mechanism.parts.springs import Spring
+from support.chosen import few
 from support.machines import make
 from unit.mechanism.build import crank_rocker
 
@@ -141,7 +142,7 @@ def plan_of(choice: SpringChoice, objective: Objective = RIPPLE) -> Balance:
     return Balance(springs=(choice,), objectives=(objective,))
 
 
-@pytest.mark.parametrize("measure", ["ripple", "peak"])
+@pytest.mark.parametrize("measure", few(["ripple", "peak"], {"ripple"}))
 def test_no_other_spring_is_better(measure: str) -> None:
     """The ripple to 1e-6 of the value before; the peak has a kink there, which costs digits."""
     objective = Objective("drive_torque", measure)  # type: ignore[arg-type]

@@ -20,6 +20,7 @@ from equipoise.vibration.forced import respond
 from equipoise.vibration.free import simulate
 from equipoise.vibration.linear import Resonance
 from equipoise.vibration.sweep import Sweep, sweep_speed
+from support.chosen import few
 from unit.figures.checks import views
 from unit.figures.samples import words
 from unit.figures.vibration_samples import (
@@ -213,7 +214,7 @@ def test_speed_of_work_is_marked_with_what_is_read_there() -> None:
     assert f"{1e3 * mark.y:.4g}" in words(chart)
 
 
-@pytest.mark.parametrize("sense", [1, -1])
+@pytest.mark.parametrize("sense", few([1, -1], {-1}))
 def test_bands_to_keep_away_from(sense: int) -> None:
     sweep = sweep_speed(plane(), sense * 3, sense * 60, speeds=10)
     panel = sweep_charts(sweep)["response"].panels[0]

@@ -25,6 +25,7 @@ from equipoise.mechanism.parts.gear_shapes import GearShape
 from equipoise.mechanism.parts.machine import Gear, Machine
 from equipoise.mechanism.parts.pitch_curves import law_of
 from support.batches import every_dyad
+from support.chosen import few
 from support.designs import Array, Number, design, drawn, named, numbers_of, plain_of, reason_of
 from support.machines import KINDS, make
 from unit.mechanism.build import ORIGIN, body, four_bar, heavy, machine
@@ -363,7 +364,7 @@ def test_impossible_number(path: str, value: float) -> None:
     assert refusals([path], [[own], [value], [own]]) == [False, True, False]
 
 
-@pytest.mark.parametrize("value", [nan, inf, -inf, 1e31, -1e31, 1e-31])
+@pytest.mark.parametrize("value", few([nan, inf, -inf, 1e31, -1e31, 1e-31], [nan, inf, 1e-31]))
 def test_not_a_number(value: float) -> None:
     numbers = numbers_of(GEARED)
     for number in numbers:

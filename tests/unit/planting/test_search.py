@@ -80,6 +80,9 @@ def calmer(figures_of_a: eq.planting.PlantingFigures) -> tuple[Fit, list[Require
     return fit_planting(machine, goals, seed=2, generations=20, population=25), goals
 
 
+# Steps to a better machine fail in `test_shaking_is_kept_small` too, and lost limits in
+# `test_two_goals_of_one_figure`.
+@EXHAUSTIVE
 def test_a_stated_figure_becomes_better(calmer: tuple[Fit, list[Requirement]]) -> None:
     fit, _ = calmer
     assert fit.before is not None
@@ -87,6 +90,8 @@ def test_a_stated_figure_becomes_better(calmer: tuple[Fit, list[Requirement]]) -
     assert fit.after[name] < 0.8 * fit.before[name]
 
 
+# Of the same search.
+@EXHAUSTIVE
 def test_no_other_figure_becomes_worse_than_its_limit(
     calmer: tuple[Fit, list[Requirement]],
 ) -> None:
@@ -97,6 +102,8 @@ def test_no_other_figure_becomes_worse_than_its_limit(
         assert goal.at_most is None or value <= goal.at_most
 
 
+# Of the same search.
+@EXHAUSTIVE
 def test_the_result_is_a_machine_that_turns(calmer: tuple[Fit, list[Requirement]]) -> None:
     """Read from a file again, it has the figures that were told."""
     fit, _ = calmer
@@ -122,10 +129,9 @@ def told_of(fit: Fit) -> str:
     return " ".join(str(note) for notes in found for note in notes)
 
 
-def test_what_is_as_small_as_was_found_is_not_called_proved(
-    calmer: tuple[Fit, list[Requirement]],
-) -> None:
-    fit, _ = calmer
+def test_what_is_as_small_as_was_found_is_not_called_proved() -> None:
+    goals, vary = [Requirement("curve.height", make="smallest")], {"tip.x": (-0.2, -0.1)}
+    fit = fit_planting(eq.load("kim-chung-a"), goals, vary, generations=2, population=6)
     assert (fit.to_dict()["solver"], fit.to_dict()["proved"]) == ("differential evolution", False)
     assert "the optimum is not proved" in told_of(fit)
 

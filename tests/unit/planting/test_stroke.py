@@ -13,6 +13,7 @@ from equipoise.errors import ModelError
 from equipoise.mechanism.kinematics.tip import TipCurve
 from equipoise.planting.stroke import Visit, direction, visits
 from equipoise.planting.summary import PlantingFigures, plant
+from support.chosen import few
 from unit.planting.build import (
     EXAMPLES,
     TURN,
@@ -225,7 +226,7 @@ def sampled_instants(machine: eq.Machine) -> list[float]:
     return [float(x) for x in theta[k][(middles >= 0) & (middles <= 1)]]
 
 
-@pytest.mark.parametrize("name", TRAYS)
+@pytest.mark.parametrize("name", few(TRAYS, {"kim-chung-a", "three turns clockwise", "twice"}))
 def test_every_crossing_of_the_tray(name: str) -> None:
     machine = machine_of(name)
     wanted = sampled_instants(machine)
@@ -260,7 +261,7 @@ def test_pick_up_is_the_last_crossing_before_entry(name: str) -> None:
 
 
 @pytest.mark.parametrize("crank_angle", [1.997, 2.001])
-@pytest.mark.parametrize("slant", [1.5, 0.1])
+@pytest.mark.parametrize("slant", few([1.5, 0.1], {0.1}))
 @pytest.mark.parametrize("beyond", [1e-5, -1e-5])
 def test_an_edge_that_ends_beside_the_path(crank_angle: float, slant: float, beyond: float) -> None:
     """A tray 50 mm long, at a slant to the path, that ends this far (m) beyond it or before it."""
@@ -276,7 +277,7 @@ def test_an_edge_that_ends_beside_the_path(crank_angle: float, slant: float, bey
         assert apart(figures["pick_up.crank_angle"], last_before_entry(figures)) < 1e-9
 
 
-@pytest.mark.parametrize("back", [6.0, 40.0])
+@pytest.mark.parametrize("back", few([6.0, 40.0], {40.0}))
 def test_a_short_edge_passed_once_in_many_turns(back: float) -> None:
     """The line through it is crossed at every turn, the edge only long before the tip enters."""
     machine = planetary(teeth=35)
@@ -342,7 +343,9 @@ INSTANTS = ("entry", "lowest", "exit", "highest", "release", "pick_up")
 
 
 @pytest.mark.parametrize(("travel", "acceleration"), [("forward", 0.0), ("backward", 120.0)])
-@pytest.mark.parametrize("name", TRAYS)
+@pytest.mark.parametrize(
+    "name", few(TRAYS, {"kim-chung-a", "three turns clockwise", "half the curve"})
+)
 def test_vectors_at_each_instant(name: str, travel: Any, acceleration: float) -> None:
     figures = instants_of(name)
     if travel == "backward":

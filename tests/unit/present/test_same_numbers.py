@@ -144,7 +144,9 @@ def document(name: str) -> Any:
     return report_of(name)
 
 
-@pytest.mark.parametrize("name", few(MACHINES, {*MACHINES} - {"riding-transplanter"}))
+@pytest.mark.parametrize(
+    "name", few(MACHINES, {*MACHINES} - {"riding-transplanter", "sieve", "four-stroke-engine"})
+)
 def test_every_number_of_cards_and_titles_is_in_the_json(name: str) -> None:
     made = document(name)
     texts = [f"{one.value} {one.unit}, {one.note}" for one in made.tiles]

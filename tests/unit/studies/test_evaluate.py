@@ -25,6 +25,7 @@ from equipoise.studies.commands import dimension_of, find_outputs, read, resolve
 from equipoise.studies.evaluate import OneByOne
 from equipoise.studies.outcomes import Outcome
 from equipoise.studies.study import Command, Output, Sampling, Study
+from support.chosen import EXHAUSTIVE, few
 from surface.running import equipoise, example_text, succeeded
 from unit.studies.samples import template
 
@@ -246,7 +247,7 @@ def test_several_commands_share_a_design() -> None:
         assert row == pytest.approx(wanted, rel=1e-9)
 
 
-@pytest.mark.parametrize("name", ["transplanter", "kim-chung-b"])
+@pytest.mark.parametrize("name", few(["transplanter", "kim-chung-b"], {"kim-chung-b"}))
 def test_planting_figures_of_many_designs_are_those_of_each(name: str) -> None:
     """All but the last are computed together."""
     paths = ("curve.height", "soil.path_length_machine", "exit.ground_velocity.direction",
@@ -290,6 +291,8 @@ def test_crank_angles_double_until_figures_stand_still() -> None:
     assert errors[-1] <= np.pi / 720  # a place is that of the nearest crank angle
 
 
+# Figures beyond their tolerance fail in `test_crank_angles_double_until_figures_stand_still` too.
+@EXHAUSTIVE
 def test_the_tolerance_decides_how_many_crank_angles() -> None:
     """A peak lies between the crank angles, the nearer the more of them there are."""
     exact = eq.analyze(eq.load("yamashita-1"), 100_000).summary["drive_torque"]

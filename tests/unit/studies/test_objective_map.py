@@ -157,7 +157,8 @@ def test_a_map_of_masses_makes_no_machine_for_each_point(monkeypatch: pytest.Mon
 
 @pytest.mark.parametrize(
     "output",
-    ["belts.shaft to crank.right", "racks.sector to knife",
+    ["belts.shaft to crank.right",
+     pytest.param("racks.sector to knife", marks=EXHAUSTIVE),
      pytest.param("joints.D", marks=EXHAUSTIVE), "drive_torque"],
 )  # fmt: skip
 def test_contacts_that_change_sides_are_those_of_each_machine(output: str, tmp_path: Path) -> None:

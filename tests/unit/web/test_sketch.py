@@ -12,7 +12,7 @@ import equipoise as eq
 from equipoise.web.desk import PageBackend
 from equipoise.web.messages import message_of
 from equipoise.web.session import Session
-from support.chosen import DISTINCT, few
+from support.chosen import few
 from unit.web.pages import ask, edit, move, opened, refusal, state
 
 Content = dict[str, Any]
@@ -468,7 +468,7 @@ def test_a_new_machine_takes_the_place_of_a_tool() -> None:
         ["transplanter", "balance-spring", "balance-geared-a", "brush-cutter-engine",
          "spring-balanced-crank", "planetary-planting-arm", "riding-transplanter",
          "cam-pusher", "hydraulic-loader"],
-        DISTINCT,
+        {"balance-geared-a", "cam-pusher", "hydraulic-loader"},
     ),
 )  # fmt: skip
 def test_whatever_names_a_point_or_a_link_gets_its_new_name(name: str) -> None:

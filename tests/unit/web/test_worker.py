@@ -13,6 +13,7 @@ from equipoise.balancing.program import interior_point_solver
 from equipoise.i18n import catalogue
 from equipoise.web import worker
 from equipoise.web.worker import Background, Foreground
+from support.chosen import EXHAUSTIVE
 from unit.web.pages import unpacked
 
 
@@ -212,6 +213,8 @@ def test_a_language_is_spoken_once_its_texts_are_loaded(
     assert asked(page, "undo")[0]["message"] == catalogue("ja")["there is nothing to undo"]
 
 
+# Another solution fails in `test_plans_of_the_examples_come_to_the_same` too.
+@EXHAUSTIVE
 def test_a_balance_without_clarabel_comes_to_the_same(
     page: Foreground, monkeypatch: pytest.MonkeyPatch
 ) -> None:
