@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from equipoise.i18n import said, say, to_say
-from equipoise.quantities import PER_RPM, format_quantity, number
+from equipoise.mechanism.outputs.declared import joint_named
+from equipoise.quantities import PER_RPM, format_quantity, number, percent
 from equipoise.results.blocks import Block, Column, Facts, Table, Text, Value, broken_if
 from equipoise.running.run import BRAKE, DRIVE
 from equipoise.vibration.coupled import stall_note
@@ -202,12 +203,40 @@ def _figures(run: Run) -> Iterator[str]:
             energy=format_quantity(cycle.energy_per_turn if gives else 0.0, "energy", "J"),
             power=format_quantity(cycle.power if gives else 0.0, "power", "W"),
         )
+    yield from _lossiest(run)
     if run.electric is not None:
         yield say(
             "current of the motor: up to {most}, {last} at the end",
             most=format_quantity(float(np.max(np.abs(run.electric.current))), "current", "A"),
             last=format_quantity(float(run.electric.current[-1]), "current", "A"),
         )
+
+
+def _lossiest(run: Run) -> Iterator[str]:
+    """Which joint loses most."""
+    total = sum(float(lost[-1]) for lost in run.losses.values())
+    if not total > 0:
+        return
+    name, most = max(run.losses.items(), key=lambda item: float(item[1][-1]))
+    yield say(
+        "friction in joints: {energy} since the start, of which {share} % in {joint}",
+        energy=format_quantity(total, "energy", "J"),
+        share=percent(float(most[-1]) / total),
+        joint=joint_named(name),
+    )
+
+
+def _losses(run: Run) -> Iterator[Block]:
+    """What each joint has lost since the start."""
+    total = sum(float(lost[-1]) for lost in run.losses.values())
+    if not total > 0:
+        return
+    rows = [
+        (joint_named(name), Value(float(lost[-1])), f"{percent(float(lost[-1]) / total)} %")
+        for name, lost in run.losses.items()
+    ]
+    columns = ("", Column(say("work"), "energy"), say("share"))
+    yield Table.of(say("Friction in joints from the start to the end"), columns, rows)
 
 
 def run_blocks(run: Run) -> Iterator[Block]:
@@ -224,6 +253,7 @@ def run_blocks(run: Run) -> Iterator[Block]:
         rows.append((say("heat in the motor"), Value(float(run.electric.heat[-1]))))
     columns = ("", Column(say("work"), "energy"))
     yield Table.of(say("Energy from the start to the end"), columns, rows)
+    yield from _losses(run)
     error = f"{run.energy_error:.1e}"
     yield Text(say("Kinetic energy and work agree to {error} of the largest.", error=error))
     events = [

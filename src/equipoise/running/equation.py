@@ -24,7 +24,7 @@ from equipoise.mechanism.kinematics.jumps import bends_of_rows, jumps_of_rows, r
 from equipoise.mechanism.kinematics.motion import Motion, move
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.support import Row
-from equipoise.running.friction import Friction
+from equipoise.running.friction import FRICTION, Friction
 from equipoise.running.sources import Factors, Source, sources_of
 from equipoise.running.tabulated import Tabulated
 from equipoise.signals import Array
@@ -78,6 +78,19 @@ class CrankEquation:
         """What acts on the crank beside the drive; friction in joints comes last."""
         friction = () if self.friction is None else (self.friction,)
         return (*sources_of(self.machine), *friction)
+
+    @property
+    def works(self) -> tuple[str, ...]:
+        """What acts on the crank beside the drive, as `torques` has it: keys of sources, and
+        ``friction.JOINT`` of each joint with friction.
+        """
+        keys = [source.key for source in self.sources if source is not self.friction]
+        return (*keys, *(f"{FRICTION}.{name}" for name in self.rubbing))
+
+    @property
+    def rubbing(self) -> tuple[str, ...]:
+        """Joints with friction."""
+        return () if self.friction is None else self.friction.names
 
     @cached_property
     def friction(self) -> Friction | None:
@@ -164,7 +177,7 @@ class CrankEquation:
         sense: float = 1.0,
         factors: Factors = (),
     ) -> Array:
-        """Torque (K, ...) of each source, N m, by columns (C, ...) of the table, at speeds.
+        """Torque (K, ...) of each of `works`, N m, by columns (C, ...) of the table, at speeds.
 
         driving : torque (...) of the drive, which matters to friction in joints only.
         sense : in which the crank turns, 1 or -1, which matters to all dry friction.
@@ -175,9 +188,8 @@ class CrankEquation:
                   for source, part in each if source is not self.friction]  # fmt: skip
         if self.friction is not None:
             others = columns[0], np.asarray(sum(values, start=driving))
-            values.append(
-                self.friction.torque_beside(columns[self.slices[-1]], speed, sense, factors, others)
-            )
+            own = columns[self.slices[-1]]
+            values += [*self.friction.torques_beside(own, speed, sense, factors, others)]
         return np.array(values) if values else np.zeros((0, *np.shape(speed)))
 
     def at(
@@ -188,7 +200,7 @@ class CrankEquation:
         sense: float = 1.0,
         factors: Factors = (),
     ) -> tuple[float, float, Array]:
-        """J, J' and the torque of each source at a crank angle and speed, as of `torques`."""
+        """J, J' and the torque of each of `works` at a crank angle and speed, as of `torques`."""
         values, slopes = self.table.at(theta)
         torques = self.torques(values, np.asarray(speed), np.asarray(driving), sense, factors)
         return float(values[0]), float(slopes[0]), torques

@@ -50,6 +50,8 @@ from equipoise.mechanism.parts.machine import Machine
 from equipoise.running.sources import Factors, Motions, OfSoil, Source, timed_units
 from equipoise.signals import Array
 
+FRICTION = "friction"
+"""In the works of a run: friction in all joints."""
 KNOWN = 3
 """Parts of what presses without friction: what stands still, by speed squared, by acceleration."""
 
@@ -78,7 +80,7 @@ class Friction(Source):
     """
 
     machine: Machine
-    key: str = field(default="friction", init=False)
+    key: str = field(default=FRICTION, init=False)
     label: str = field(default=to_say("friction"), init=False)
 
     def __post_init__(self) -> None:
@@ -187,10 +189,15 @@ class Friction(Source):
     # -- on the crank ------------------------------------------------------------------------------
 
     def torque(self, columns: Array, speed: Array, factors: Factors) -> Array:
-        """Raise `NotImplementedError`: friction needs more, see `torque_beside`."""
+        """Raise `NotImplementedError`: friction needs more, see `torques_beside`."""
         raise NotImplementedError
 
-    def torque_beside(
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """Of the friction joints of a row, in order."""
+        return tuple(joint.name for joint in self.joints[: len(self.joints) // self.rows])
+
+    def torques_beside(
         self,
         columns: Array,
         speed: Array,
@@ -198,7 +205,7 @@ class Friction(Source):
         factors: Factors,
         others: tuple[Array, Array],
     ) -> Array:
-        """Torque (...) of friction on the crank, N m.
+        """Torque (J, ...) of friction on the crank, N m, of each of `names` in all rows together.
 
         columns : (C, ...).  speed : rad/s.  sense : 1 or -1, in which the crank turns, or would.
         factors : of loads over time.  others : reduced inertia, kg m2, and torque of the rest, N m.
@@ -210,14 +217,14 @@ class Friction(Source):
         of_acceleration = parts[:, :, 2]
         without = parts[:, :, 0] + speed**2 * parts[:, :, 1] + free * of_acceleration
         response = parts[:, :, KNOWN:] + np.einsum("jcn,kn->jckn", of_acceleration, rates / inertia)
-        result = self._obeying(rates, speed, sense, Press.of(without, response))
-        return np.asarray(result.reshape(shape))
+        each = self._obeying(rates, speed, sense, Press.of(without, response))[: len(self.joints)]
+        return np.asarray(each.reshape(self.rows, len(self.names), *shape).sum(axis=0))
 
     def breakaway(self, columns: Array, sense: float, factors: Factors) -> float:
         """Torque, N m, that has to be exceeded for the crank to leave its rest in a sense."""
         _, rates, parts = self._split(columns, np.zeros(1), sense, factors)
         press = Press.of(parts[:, :, 0], parts[:, :, KNOWN:])
-        return -sense * float(self._obeying(rates, np.zeros(1), sense, press)[0])
+        return -sense * float(np.sum(self._obeying(rates, np.zeros(1), sense, press)))
 
     def _split(
         self, columns: Array, speed: Array, sense: float, factors: Factors
@@ -254,13 +261,13 @@ class Friction(Source):
         return np.array(np.broadcast_arrays(*efforts, speed)[:-1])
 
     def _obeying(self, rates: Array, speed: Array, sense: float, press: Press) -> Array:
-        """Torque (N,) on the crank of the friction that obeys the law."""
+        """Torque (U, N) on the crank of each friction that obeys the law, and of each flank."""
         law = FrictionLaw.of(self.joints, rates[: len(self.joints)] * speed,
                              sense * np.sign(rates[: len(self.joints)]))  # fmt: skip
         efforts, share = balanced(law.with_sides(self.sides), press)
         if np.any(share < 1):
             raise LockError(Note("friction in joints locks the machine on the way"))
-        return np.asarray(np.sum(rates * efforts, axis=0))
+        return np.asarray(rates * efforts)
 
 
 def sided_meshes(linkage: Linkage) -> tuple[RubbingJoint, ...]:

@@ -169,7 +169,7 @@ class Integration:
         self.start = angle
         inertia = float(np.max(equation.inertia(np.linspace(0.0, equation.period, SAMPLES))[0]))
         self.usual = usual = max(abs(speed), abs(equation.machine.drive.speed)) or 1.0
-        works = len(equation.sources) + bool(self.driver.brake) + 1
+        works = len(equation.works) + bool(self.driver.brake) + 1
         energy = inertia * usual**2 / 2
         circuit = self.driver.circuit
         rated = 1.0 if circuit is None else circuit.voltage / circuit.resistance
@@ -473,7 +473,7 @@ class Integration:
         return begin.time + paths @ (1 / speed) if self.equation.times else begin.time
 
     def _torques(self, columns: Array, speed: Array, driving: Array, time: Array | float) -> Array:
-        """Of each source, of the brake where there is one, and of the drive, (K + 1, ...) or
+        """Of each of the works, of the brake where there is one, and of the drive, (K + 1, ...) or
         (K + 2, ...); driving : of the drive (...), N m.  time : (...), s.
         """
         braking = self._braking()

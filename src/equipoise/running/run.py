@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
+from dataclasses import field, replace
 from functools import cached_property
 from itertools import pairwise
 from math import ceil, copysign, inf, pi
@@ -24,6 +24,7 @@ from equipoise.running.drives_run import DrivesRun, Start, run_drives
 from equipoise.running.electric import Electric
 from equipoise.running.equation import CrankEquation
 from equipoise.running.flywheel import Flywheel, share_of_mean, size_flywheel
+from equipoise.running.friction import FRICTION
 from equipoise.running.integration import Event, Integration, Limits
 from equipoise.running.piece_motion import ELECTRIC, Instant
 from equipoise.running.sources import LOADS
@@ -31,6 +32,9 @@ from equipoise.signals import Array
 
 TURNS = 300
 """Turns after which a run ends where nothing else ends it."""
+TURNS_OF_DRIVES = 30
+"""The same of several drives, each turn of which takes some hundred times as long to follow; two
+motors of their own speeds never come to a steady state."""
 STARTED = 0.95
 """Share of the mean speed of a steady state at which a machine has started."""
 BRAKE, DRIVE = "brake", "drive"
@@ -81,6 +85,7 @@ class Run(Result):
     begins : instants at which a cycle began.
     flywheel : the one that a wanted fluctuation needs, where it is asked for.
     electric : circuit of a direct-current motor; None of any other.
+    losses : joint with friction -> energy lost in it since the start (M,), J.
     """
 
     machine: Machine
@@ -94,6 +99,7 @@ class Run(Result):
     begins: tuple[Instant, ...]
     flywheel: Flywheel | None = None
     electric: Electric | None = None
+    losses: Mapping[str, Array] = field(default_factory=dict)
     blocks_in = "running.blocks.run_blocks"
     pictures_in = "figures.running.run_charts"
     headline_in: ClassVar[str] = "running.blocks.run_headline"
@@ -218,6 +224,7 @@ class Run(Result):
             ("drive_torque", "N m", self.drive_torque),
             ("kinetic_energy", "J", self.kinetic_energy),
             *((f"work.{name}", "J", values) for name, values in self.work.items()),
+            *((f"losses.{name}", "J", values) for name, values in self.losses.items()),
             *(() if self.electric is None else self.electric.columns()),
         ]
 
@@ -250,6 +257,7 @@ class Run(Result):
             "drive_torque": self.drive_torque,
             "kinetic_energy": self.kinetic_energy,
             "work": dict(self.work),
+            "losses": dict(self.losses),
             **({} if self.electric is None else {"electric": dict(vars(self.electric))}),
         }
 
@@ -304,7 +312,8 @@ def run(
     Parameters
     ----------
     duration : s, or a text such as ``"2 s"``; where neither it nor `turns` is given the run ends in
-        a steady state, in a standstill, or after 300 turns.
+        a steady state, in a standstill, or after 300 turns; of several drives after 30 turns, or
+        the time that these take at the drive's speed.
     turns : of the crank, after which the run ends.
     speed : of the crank at the start, rad/s, or a text such as ``"300 rpm"``; 0 with a motor, that
         of the drive without one, where not given.
@@ -409,8 +418,10 @@ def _run_drives(
         0.0 if speed is None and drive.motor is not None else rate * pace
         for drive, rate in zip(machine.driven, rates, strict=True)
     ]
-    if limits.time == inf and limits.steady:
-        limits = replace(limits, time=2 * pi * TURNS / (abs(machine.drive.speed) or 1.0))
+    if limits.steady:
+        usual = abs(machine.drive.speed) or 1.0
+        time = 2 * pi * TURNS_OF_DRIVES / usual
+        limits = replace(limits, time=time, turns=TURNS_OF_DRIVES)
     start = Start(angles, speeds, on_turns)
     return run_drives(DrivesEquation(machine, theta), limits, start)
 
@@ -427,7 +438,12 @@ def _result(equation: CrankEquation, integration: Integration, flywheel: Flywhee
     driving = driver.torque_of(electric[0]) if driver.lags else driving
     torque = np.where(time <= switched, driving, 0.0)
     brake = [BRAKE] if driver.brake else []
-    names = [*(source.key for source in equation.sources), *brake, DRIVE]
+    works = dict(zip([*equation.works, *brake, DRIVE], work, strict=True))
+    rubbed = {name: works.pop(f"{FRICTION}.{name}") for name in equation.rubbing}
+    if rubbed:
+        works[FRICTION] = np.sum([*rubbed.values()], axis=0)
+    keys = [*(source.key for source in equation.sources), *brake, DRIVE]
+    works = {key: works[key] for key in keys}
     return Run(
         machine,
         equation,
@@ -435,9 +451,10 @@ def _result(equation: CrankEquation, integration: Integration, flywheel: Flywhee
         crank_angle,
         crank_speed,
         torque,
-        dict(zip(names, work, strict=True)),
+        works,
         tuple(integration.events),
         tuple(integration.begins),
         flywheel,
         None if driver.circuit is None else Electric(*electric),
+        {name: -values for name, values in rubbed.items()},
     )
