@@ -207,13 +207,13 @@ def panels_left(laid: Laid) -> Iterator[Fault]:
                 break
 
 
-SMALLEST = 0.25
+SMALLEST = 0.33
 """Share of the axes that a machine takes at least along one of them."""
 
 
 def machines_small(laid: Laid) -> Iterator[Fault]:
-    """A machine is read where it is drawn; but to scale with what is new it may be small."""
-    for view, _ in laid.panels if laid.chart.name != "changes" else ():
+    """A machine stays in sight among its centrodes, which may run far away."""
+    for view, _ in laid.panels if laid.chart.name == "centrodes" else ():
         if view.panel.signs:
             x, y = (np.ptp(part) for part in _places(view, view.panel.signs).T)
             if max(x / view.x.length, y / view.y.length) < SMALLEST:
