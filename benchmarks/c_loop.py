@@ -35,7 +35,7 @@ ADD = {
     "highest": "{g} = {x} > {g} ? {x} : {g};",
     "lowest": "{g} = {x} < {g} ? {x} : {g};",
 }
-"""The line of what is gathered; others are not timed here."""
+"""The line of what is gathered; extremes, which are taken after the loop, are not timed here."""
 Loop = Callable[[np.ndarray, np.ndarray], np.ndarray]
 
 
@@ -94,8 +94,9 @@ def in_c(source: TermSource) -> str:
     setting = [*lines.write((DESIGN,), boundary(source.outputs, DESIGN))]
     going = [*lines.write((BOTH,), source.outputs)]
     signals = dict(zip(source.signals, map(lines.text, source.outputs), strict=True))
-    columns = [*enumerate(source.gathered.columns)]
-    width, count = source.width, len(columns)
+    every = [*enumerate(source.gathered.columns)]
+    columns = [(k, column) for k, column in every if column[1] in KINDS]
+    width, count = source.width, len(every)
     return "\n".join(
         [
             "#include <math.h>",
@@ -110,7 +111,8 @@ def in_c(source: TermSource) -> str:
             *going,
             *(ADD[kind].format(g=f"g{k}", x=signals[signal]) for k, (signal, kind) in columns),
             "}",
-            *(f"out[i * {count} + {k}] = g{k};" for k in range(count)),
+            *(f"out[i * {count} + {k}] = NAN;" for k in {*range(count)} - {k for k, _ in columns}),
+            *(f"out[i * {count} + {k}] = g{k};" for k, _ in columns),
             "}",
             "}",
             "",

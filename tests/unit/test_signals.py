@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import pi, sqrt
 
 import numpy as np
@@ -11,6 +12,8 @@ import equipoise as eq
 from equipoise import signals
 from equipoise.errors import UsageError
 from equipoise.signals import (
+    Figures,
+    JumpSampling,
     Periodic,
     figures,
     harmonics,
@@ -44,6 +47,110 @@ def test_figures_of_a_constant(value: float) -> None:
     found = figures(THETA, np.full(24, value))
     assert (found.mean, found.max, found.min) == (value, value, value)
     assert (found.rms, found.peak, found.peak_to_peak) == (abs(value), abs(value), 0.0)
+
+
+def curve(count: int, of: Callable[[np.ndarray], np.ndarray], turns: int = 1) -> Figures:
+    """Figures of a periodic function of the crank angle from so many samples in a turn."""
+    theta = 2 * pi * np.arange(count * turns) / count
+    return figures(theta, of(theta), 2 * pi * turns)
+
+
+@pytest.mark.parametrize("phase", [0.0, 0.3, 0.5, 0.77])
+@pytest.mark.parametrize("order", [1, 5, 20])
+def test_extremes_lie_between_samples(order: int, phase: float) -> None:
+    at = phase * 2 * pi / 360
+    found = curve(360, lambda theta: 2 + 3 * np.cos(order * (theta - at)))
+    error = 1e-12 + 5 * (2 * pi * order / 360) ** 9
+    assert found.max == pytest.approx(5, abs=error)
+    assert found.max_at == pytest.approx(at, abs=1e-4 * 2 * pi / 360)
+    assert found.min == pytest.approx(-1, abs=error)
+    assert found.peak_to_peak == pytest.approx(6, abs=2 * error)
+
+
+def test_extremes_from_few_samples() -> None:
+    found = curve(24, lambda theta: np.cos(theta - 0.1) + 0.2 * np.cos(2 * theta - 0.1))
+    want = Periodic(np.array([0, np.exp(-0.1j), 0.2 * np.exp(-0.1j)])).figures
+    assert found.max == pytest.approx(want.max, abs=1e-6)
+    assert found.max_at == pytest.approx(want.max_at, abs=1e-5)
+
+
+def test_extremes_of_several_turns() -> None:
+    found = curve(360, lambda theta: np.cos(theta / 3 - 3.001), turns=3)
+    assert (found.max, found.max_at) == (pytest.approx(1, abs=1e-13), pytest.approx(9.003))
+
+
+@pytest.mark.parametrize("shift", np.linspace(0, 1, 21).tolist())
+@pytest.mark.parametrize(
+    "of",
+    [
+        lambda x: 1 - np.abs(x),  # a kink upwards
+        lambda x: np.where(x > 0, 1 - x, 0.5 + x),  # a jump at the top
+        lambda x: np.where(x > 0.001, 1.0, 0.0) - 0.01 * x,
+        lambda x: np.maximum(np.cos(x), 0.9999),  # cut off
+        lambda x: -np.abs(x),
+    ],
+)
+def test_nothing_is_above_a_kink_or_a_jump(
+    of: Callable[[np.ndarray], np.ndarray], shift: float
+) -> None:
+    """Wherever it lies between two samples."""
+    at = (100 + shift) * 2 * pi / 360
+    found = curve(360, lambda theta: of(theta - at))
+    samples = of(2 * pi * np.arange(360) / 360 - at)
+    assert np.max(samples) <= found.max <= max(np.max(of(np.linspace(-0.1, 0.1, 200001))), 0.0)
+    assert 1e-6 >= found.min - np.min(samples) >= -1e-4
+
+
+def test_the_size_of_a_vector_near_zero() -> None:
+    """It has no kink but in the limit, and its square is smooth."""
+    at = 0.4321
+    for least in (0.0, 1e-5, 1e-3, 0.1):
+        found = curve(360, lambda theta, least=least: np.hypot(np.sin(theta - at), least))
+        assert found.min == pytest.approx(least, abs=1e-8)
+        assert np.sin(found.min_at - at) == pytest.approx(0, abs=1e-6)
+
+
+def test_of_equal_extremes_the_first() -> None:
+    """Also where one is nearer to a sample than the other."""
+    found = curve(90, lambda theta: np.cos(4 * theta - 0.2))
+    assert found.max_at == pytest.approx(0.05)
+    assert found.min_at == pytest.approx(0.05 + pi / 4)
+    assert found.peak_at == pytest.approx(0.05)
+    shifted = curve(90, lambda theta: np.sin(theta - 0.01) * np.cos(theta - 0.01))
+    assert shifted.peak_at == pytest.approx(0.01 + pi / 4)
+
+
+def test_a_top_that_is_a_sample_stays_there() -> None:
+    for order in (1, 2, 6):
+        found = curve(360, lambda theta, order=order: np.cos(order * theta))
+        assert (found.max, found.max_at) == (1.0, 0.0)
+
+
+def test_extremes_of_what_is_not_finite() -> None:
+    samples = np.tan(THETA / 2)
+    samples[12] = np.inf
+    found = figures(THETA, samples, 2 * pi)
+    assert (found.max, found.max_at) == (np.inf, pi)
+    assert found.min == pytest.approx(np.min(samples))
+
+
+def test_extremes_between_jumps() -> None:
+    """A top within a piece, one at the jump itself, and a kink where a slope is known to jump."""
+    jumps, bends = np.array([1.0, 4.0]), np.array([4.7])
+
+    def of(theta: np.ndarray) -> np.ndarray:
+        bent = np.where(theta < 4.7, theta - 4.7, 2 * (4.7 - theta))
+        inside = np.where(theta < 4.0, np.cos(3 * (theta - 2.3456)), 3 + bent)
+        return np.where(theta < 1.0, theta, inside)
+
+    grid = 2 * pi * np.arange(60) / 60
+    sampling = JumpSampling.of(grid, 1, jumps, bends)
+    every = np.array([of(sampling.crank_angle), np.minimum(of(sampling.crank_angle), 1.5)])
+    found, cut = sampling.figures_of_each(every)
+    assert (found.max, found.max_at) == (pytest.approx(3, abs=1e-9), pytest.approx(4.7, abs=1e-9))
+    assert found.min == pytest.approx(-1, abs=1e-9)
+    assert found.min_at == pytest.approx(2.3456 - pi / 3, abs=1e-6)
+    assert cut.max == pytest.approx(1.5, rel=1e-12)
 
 
 def test_figures_are_plain_numbers() -> None:

@@ -61,11 +61,6 @@ class Signal:
         return 2 * np.pi * self.sampling.shares
 
     @property
-    def shown(self) -> Signal:
-        """The samples that extremes are taken from: the grid and both sides of jumps."""
-        return self if self.sampling is None else self._of(self.sampling.shown)
-
-    @property
     def on_grid(self) -> Signal:
         """The samples at equally spaced crank angles."""
         return self if self.sampling is None else self._of(self.sampling.grid)

@@ -7,9 +7,9 @@ derivative by each number there.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
-from functools import cached_property, lru_cache
+from functools import cached_property, lru_cache, partial
 from math import pi
 
 import numpy as np
@@ -28,7 +28,7 @@ from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.objectives import GAUGES, OF_ROWS, WITHIN, output_of, quantity_of
 from equipoise.mechanism.parts.support import Row
 from equipoise.quantities import SI
-from equipoise.signals import Array, JumpSampling, Periodic, mean
+from equipoise.signals import Array, JumpSampling, Periodic, Tops, mean, smooth_tops, stencils_above
 from equipoise.vibration.linear import Linear, gauges_of
 from equipoise.vibration.linkages import rows_of
 
@@ -261,11 +261,16 @@ def measured_each(values: Array, measure: Measure, sampling: JumpSampling | None
         return np.asarray(np.sqrt(mean(np.abs(values) ** 2, shares)))
     if measure == "area":
         return np.asarray(2 * pi * mean(np.abs(values), shares))
-    if sampling is not None:
-        values = values[..., sampling.shown]
-    if measure == "peak":
-        return np.asarray(np.max(np.abs(values), axis=-1))
-    return np.asarray(np.max(values, axis=-1) - np.min(values, axis=-1))
+    tops = partial(smooth_tops, 2 * pi) if sampling is None else sampling.tops
+    if np.iscomplexobj(values):
+        return _highest(np.abs(values), tops)
+    high, deep = (_highest(sign * values, tops) for sign in (1, -1))
+    return np.asarray(np.maximum(high, deep) if measure == "peak" else high + deep)
+
+
+def _highest(values: Array, tops: Callable[[Array], Tops]) -> Array:
+    found, _ = tops(values.reshape(-1, values.shape[-1]))
+    return found.reshape(values.shape[:-1])
 
 
 def unit_of(objective: Objective, machine: Machine) -> str:
@@ -308,10 +313,9 @@ def bound_measure(
     numbers : (K,) places of the signal's numbers in the program.
     bound : one row; where it is a limit by itself, `name` is the limit's, in the bound's unit.
     """
-    if measure in {"peak", "peak_to_peak"}:
-        signal = signal.shown
     count, fixed = len(signal.start), Affine.fixed(1.0)
     value = Affine(signal.columns.T, numbers, signal.start)
+    peaks = stencils_above if signal.sampling is None else signal.sampling.stencils_above
     if measure in {"rms", "ripple"}:
         matrix, vector = mean_square_rows(signal, measure)
         rows = _bounded_cones(bound, 1, Affine(matrix, numbers, vector))
@@ -325,15 +329,18 @@ def bound_measure(
             _bounded_cones(bound, count, inner),
             Affine.fixed(np.tile([1.0, 0.0, 0.0], count)),
         )
-        program.add_lazy_rows(ConeRows("second-order", rows, 3, name, slope))
+        program.add_lazy_rows(ConeRows("second-order", rows, 3, name, slope, peaks=peaks))
     elif measure == "peak":
         for sign in (1.0, -1.0):
             slope = Affine.fixed(np.ones(count))
-            program.add_lazy_rows(ConeRows("nonnegative", bound + sign * value, 1, name, slope))
+            block = ConeRows("nonnegative", bound + sign * value, 1, name, slope, peaks=peaks)
+            program.add_lazy_rows(block)
     elif measure == "peak_to_peak":
         high, low = program.numbers(2)
         for place, sign in ((high, -1.0), (low, 1.0)):
-            program.add_lazy_rows(ConeRows("nonnegative", Affine.of(place, 1.0) + sign * value))
+            program.add_lazy_rows(
+                ConeRows("nonnegative", Affine.of(place, 1.0) + sign * value, peaks=peaks)
+            )
         program.nonnegative(bound - Affine.of([high, low], [1.0, 1.0]), name, fixed)
     else:
         from scipy import sparse

@@ -25,7 +25,7 @@ from equipoise.dataclass import dataclass
 from equipoise.errors import EquipoiseError
 from equipoise.i18n import Note, to_say
 from equipoise.limits import check_room
-from equipoise.signals import Array
+from equipoise.signals import Array, stencils_above
 
 Kind = Literal["zero", "nonnegative", "second-order"]
 Status = Literal["solved", "almost solved", "infeasible", "stalled"]
@@ -454,6 +454,13 @@ class Affine:
         """Some of the rows."""
         return Affine(self.factors[places], self.columns, self.constant[places])
 
+    def weighted(self, places: Array, weights: Array) -> Affine:
+        """Sums (K S,) of rows at places (K, n, S), with weights (K, n)."""
+        factors = np.einsum("knsc,kn->ksc", self.factors[places], weights)
+        constant = np.einsum("kns,kn->ks", self.constant[places], weights)
+        count = constant.size
+        return Affine(factors.reshape(count, self.factors.shape[1]), self.columns, constant.ravel())
+
     __array_ufunc__: ClassVar[None] = None  # NumPy's numbers leave arithmetic to this class
 
     def __add__(self, other: Affine) -> Affine:
@@ -495,6 +502,8 @@ class ConeRows:
     slope : its derivative by that limit, rows for rows.
     lift : place of the number that it keeps above a square, where it does that.
     local : name of what it cuts off near the last solution only; blocks of that name come and go.
+    peaks : of how far each cone is broken (G,), round a cycle, and a value: tops of it above that,
+        as places of cones and weights (K, n) of these.
     """
 
     cone: Cone
@@ -504,6 +513,7 @@ class ConeRows:
     slope: Affine | None = None
     lift: int | None = None
     local: str = ""
+    peaks: Callable[[Array, float], tuple[Array, Array]] = stencils_above
 
     @property
     def groups(self) -> int:
@@ -515,6 +525,12 @@ class ConeRows:
         places = (groups[:, None] * self.size + np.arange(self.size)).ravel()
         slope = None if self.slope is None else self.slope.of_rows(places)
         return replace(self, rows=self.rows.of_rows(places), slope=slope)
+
+    def between(self, groups: Array, weights: Array) -> ConeRows:
+        """Cones or rows that are weighted sums of others (K, n), as those between samples are."""
+        places = groups[..., None] * self.size + np.arange(self.size)
+        slope = None if self.slope is None else self.slope.weighted(places, weights)
+        return replace(self, rows=self.rows.weighted(places, weights), slope=slope)
 
     def slack(self, x: Array) -> Array:
         """By how much each cone or row (G,) is kept; below 0 where it is broken."""
@@ -571,7 +587,7 @@ class Program:
         self.blocks.append(ConeRows("second-order", rows, size, name, slope))
 
     def add_lazy_rows(self, block: ConeRows) -> None:
-        """A block of many rows, equally spaced round a cycle, few of which will matter."""
+        """A block of many rows round a cycle, few of which will matter, and those between them."""
         self.waiting.append(block)
         self.blocks.append(block.of(np.arange(0, block.groups, STRIDE)))
 
@@ -637,13 +653,13 @@ class Program:
             self.blocks += cuts
 
     def _broken(self, x: Array) -> Iterator[ConeRows]:
-        """Rows of the waiting blocks that a solution breaks most, each among its neighbours."""
+        """Rows of the waiting blocks, and between them, that a solution breaks most, each among its
+        neighbours.
+        """
         for block in self.waiting:
-            slack = block.slack(x)
-            lowest = (slack <= np.roll(slack, 1)) & (slack < np.roll(slack, -1))
-            broken = np.flatnonzero(lowest & (slack < -BROKEN))
-            if broken.size:
-                yield block.of(broken)
+            groups, weights = block.peaks(-block.slack(x), BROKEN)
+            if len(groups):
+                yield block.between(groups, weights)
 
     def _solve(self) -> ProgramSolution:
         matrix, right, cones = self._assembled()

@@ -14,7 +14,7 @@ import os
 import shutil
 import sys
 import tempfile
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cache
 from pathlib import Path
 from threading import Lock
@@ -23,20 +23,30 @@ from typing import Any
 
 import numpy as np
 
+from equipoise.codegen.extremes import (
+    HELPERS,
+    SIGNATURES,
+    CurveTops,
+    columns_of,
+    kernel_text,
+)
 from equipoise.codegen.figures import KINDS
-from equipoise.codegen.source import TermSource
+from equipoise.codegen.source import LANES, TermSource
 
 Array = np.ndarray[Any, Any]
-Loop = Callable[[Array, Array, Array], None]
-"""Is called with table (P, T), grid (G, N) and what it fills, (P, R); it lets other threads run."""
+Loop = Callable[[Array, Array, Array, Array], None]
+"""Is called with table (P, T), grid (G, N) and what it fills, (P, R) and, of signals whose extremes
+are wanted, (P, S, N); it lets other threads run."""
 
-SIGNATURE = "void(float64[:, ::1], float64[:, ::1], float64[:, ::1])"
+SIGNATURE = "void(float64[:, ::1], float64[:, ::1], float64[:, ::1], float64[:, :, ::1])"
 FOLDER = "EQUIPOISE_CACHE"
 """Variable of the environment with the folder for compiled loops."""
 NOTICE = (
     "Numba is not installed, so designs are computed by NumPy, which takes ten to thirty times as "
     'long; install it by: pip install "equipoise[studies]"'
 )
+SAMPLES_AT_ONCE = 65_536
+"""Values of signals whose extremes are wanted, so that they stay in the processor's cache."""
 AT_A_TIME = 16_384
 """Designs times crank angles, so that the values of a state stay in the processor's cache."""
 
@@ -60,16 +70,53 @@ def processors() -> int:
 _one_at_a_time = Lock()
 
 
-def run_loop(source: TermSource, table: Array, grid: Array) -> Array:
-    """What a loop gathers (P, R) of designs (P, T) over a grid (G, N)."""
-    out = np.empty((len(table), len(source.gathered.columns)))
+def run_loop(source: TermSource, table: Array, grid: Array, tops: CurveTops | None = None) -> Array:
+    """What a loop gathers (P, R) of designs (P, T) over a grid (G, N).
+
+    tops : finds extremes; where it is not given, their columns are NaN.
+    """
+    out = np.full((len(table), len(source.gathered.columns)), np.nan)
     if engine() == "numpy":
-        run_numpy(out, source, table, grid)
+        run_numpy(out, source, table, grid, tops)
         return out
+    sampled = source.gathered.sampled
+    count = int(grid[0].max()) + 1 if source.carried else grid.shape[1]
+    kernel = tops.kernel(count) if sampled and tops is not None else ""
     with _one_at_a_time:
         loop = _loop_of(source.text)
-    loop(table, grid, out)
+        find = compiled_kernel(kernel) if kernel else None
+    groups = max(1, -(-len(table) // LANES))  # a march fills whole lanes
+    if sampled:
+        groups = min(groups, max(1, SAMPLES_AT_ONCE // (LANES * len(sampled) * count)))
+    step = LANES * groups
+    samples, columns = np.empty((step, len(sampled), count)), columns_of(source.gathered)
+    for begin in range(0, len(table), step):
+        part = out[begin : begin + step]
+        loop(table[begin : begin + step], grid, part, samples)
+        if find is not None and tops is not None:
+            find(samples, part, columns, *tops.arguments())
+        elif tops is not None:
+            for k, signal in enumerate(sampled):
+                source.gathered.fill_tops(part, signal, samples[: len(part), k], tops)
     return out
+
+
+def extremes_of(curve: CurveTops, values: Array) -> tuple[Array, Array]:
+    """Highest and lowest values (M,) of the curves through values (M, N), in the order of the
+    curve; compiled where Numba is installed.
+    """
+    kernel = curve.kernel(values.shape[1])
+    if not kernel or engine() == "numpy":
+        return curve(values)[0], -curve(-values)[0]
+    with _one_at_a_time:
+        find = compiled_kernel(kernel)
+    out = np.empty((len(values), 4))
+    out[:, 0], out[:, 1] = values.max(axis=1), values.min(axis=1)
+    unknown = np.isnan(out[:, 0])  # which compiled code passes over
+    columns = np.array([[0, 1, 2, -1, 3, -1]])
+    find(np.ascontiguousarray(values)[:, None], out, columns, *curve.arguments())
+    out[unknown] = np.nan
+    return out[:, 2], out[:, 3]
 
 
 @cache
@@ -78,18 +125,32 @@ def _loop_of(text: str) -> Loop:
     path = _file_of(text)
     module = _imported(f"equipoise_{path.stem}", path)
     vars(module).update(compiled_functions())
-    return _compile(module)
+    return _compile(module.loop, SIGNATURE, {"fastmath": True})  # type: ignore[no-any-return]
 
 
-def _compile(module: ModuleType) -> Loop:
-    """Compile a module's loop, or take it from the cache."""
+@cache
+def compiled_kernel(name: str) -> Callable[..., None]:
+    """A compiled function that finds extremes, by its name; exact to rounding, as by NumPy."""
     import numba
 
-    options = {"nogil": True, "fastmath": True, "error_model": "numpy"}
+    path = _file_of(kernel_text())
+    module = _imported(f"equipoise_{path.stem}", path)
+    space = vars(module)
+    space["larger"], space["smaller"] = (compiled_functions()[name] for name in ("max", "min"))
+    for helper in HELPERS:
+        space[helper.__name__] = numba.njit(error_model="numpy")(space[helper.__name__])
+    return _compile(space[name], SIGNATURES[name], {})  # type: ignore[no-any-return]
+
+
+def _compile(function: Any, types: str, extra: Mapping[str, Any]) -> Any:
+    """Compile a function of a module, or take it from the cache."""
+    import numba
+
+    options = {"nogil": True, "error_model": "numpy", **extra}
     try:
-        return numba.njit(SIGNATURE, cache=True, **options)(module.loop)  # type: ignore[no-any-return]
+        return numba.njit(types, cache=True, **options)(function)
     except (OSError, RuntimeError):  # no place for the cache: compile for this run alone
-        return numba.njit(SIGNATURE, **options)(module.loop)  # type: ignore[no-any-return]
+        return numba.njit(types, **options)(function)
 
 
 # -- files -----------------------------------------------------------------------------------------
@@ -195,11 +256,13 @@ def _instruction(name: str, count: int, fastmath: tuple[str, ...] = ()) -> Any:
     return intrinsic(of_one if count == 1 else of_two)
 
 
-def run_numpy(out: Array, source: TermSource, table: Array, grid: Array) -> None:
+def run_numpy(
+    out: Array, source: TermSource, table: Array, grid: Array, tops: CurveTops | None = None
+) -> None:
     """Fill what a loop would gather, some designs at a time."""
     if source.carried:
         with np.errstate(all="ignore"):
-            march_numpy(out, source, table, grid)
+            march_numpy(out, source, table, grid, tops)
         return
     step, shares = max(1, AT_A_TIME // grid.shape[1]), None
     if source.has_shares:
@@ -210,12 +273,29 @@ def run_numpy(out: Array, source: TermSource, table: Array, grid: Array) -> None
             columns = table[some].T[:, :, None]
             values = dict(zip(source.signals, source.states(*columns, *grid), strict=True))
             shape = (columns.shape[1], grid.shape[1])
-            for k, (signal, kind) in enumerate(source.gathered.columns):
-                x = np.broadcast_to(values[signal], shape)
-                out[some, k] = KINDS[kind].gathered(x, shares)
+            whole = {name: np.broadcast_to(value, shape) for name, value in values.items()}
+            _gather(out[some], source, whole, shares, tops)
 
 
-def march_numpy(out: Array, source: TermSource, table: Array, grid: Array) -> None:
+def _gather(
+    out: Array,
+    source: TermSource,
+    values: Mapping[str, Array],
+    shares: Array | None,
+    tops: CurveTops | None,
+) -> None:
+    """Fill what is gathered (P, R) of values (P, N) by signal, and extremes where asked for."""
+    for k, (signal, kind) in enumerate(source.gathered.columns):
+        if kind in KINDS and signal in values:
+            out[:, k] = KINDS[kind].gathered(values[signal], shares)
+    if tops is not None:
+        for signal in source.gathered.sampled:
+            source.gathered.fill_tops(out, signal, values[signal], tops)
+
+
+def march_numpy(
+    out: Array, source: TermSource, table: Array, grid: Array, tops: CurveTops | None = None
+) -> None:
     """Fill that where crank angles follow from each other: all designs go round together."""
     carried: Sequence[Any] = [np.full(len(table), item.start) for item in source.carried]
     gathered: dict[int, list[Array]] = {}
@@ -234,8 +314,7 @@ def march_numpy(out: Array, source: TermSource, table: Array, grid: Array) -> No
     stacks = [np.stack(values, axis=1) for values in zip(*in_order, strict=True)]
     by_name = dict(zip(source.signals, stacks, strict=True))
     last = iter([v for item, v in zip(source.carried, carried, strict=True) if item.watch])
-    for k, (signal, kind) in enumerate(source.gathered.columns):
-        if signal in by_name:
-            out[:, k] = KINDS[kind].gathered(by_name[signal], share)
-        else:
+    for k, (signal, _) in enumerate(source.gathered.columns):
+        if signal not in by_name:
             out[:, k] = next(last)
+    _gather(out, source, by_name, share, tops)

@@ -16,10 +16,10 @@ import numpy as np
 from equipoise.codegen.backends import processors, run_loop
 from equipoise.codegen.coupled import known_by_crank
 from equipoise.codegen.emit import emit, moves_shared, moves_soil
+from equipoise.codegen.extremes import CurveTops, GridTops, PanelTops
 from equipoise.codegen.figures import (
     CHANGE_POINT,
     COMPUTED,
-    KINDS,
     MOST_ANGLES,
     NO_ASSEMBLY,
     NO_FULL_TURN,
@@ -92,11 +92,6 @@ def jumps_alike(linkage: Linkage, paths: Collection[str]) -> bool:
     return all(
         {item.driver, item.carrier} <= known and item.driven not in trace.late for item in jerking
     )
-
-
-def _grid(theta: Array, turns: int) -> JumpSampling:
-    """Crank angles (N,), each with the same share in sums."""
-    return JumpSampling(theta, np.zeros(len(theta)), theta, turns, 0)
 
 
 def grid_of(source: TermSource, theta: Array, shares: Array | None = None) -> Array:
@@ -271,7 +266,7 @@ class Batch:
     def _settled(self, designs: DesignBatch) -> tuple[Array, Array]:
         """Figures and reasons, with as many crank angles as it takes."""
         count = self.angles or FIRST
-        joined = self._at(designs.table, self._sampling(count))
+        joined = self._at(designs.table, count)
         figures = self._figures(joined, count)
         reason = self._reasons(designs.table, joined, count)
         if self.angles is not None:
@@ -281,10 +276,10 @@ class Batch:
         joined, calm = joined[left], np.zeros(left.size, dtype=int)
         while left.size and 2 * count <= MOST_ANGLES:
             if self.source.has_shares:
-                joined = self._at(designs.table[left], self._sampling(2 * count))
+                joined = self._at(designs.table[left], 2 * count)
             else:
-                between = _grid(all_angles(count, self.turns) + pi / count, self.turns)
-                joined = self.gathered.joined(joined, self._at(designs.table[left], between))
+                between = self._at(designs.table[left], count, pi / count)
+                joined = self.gathered.joined(joined, between)
             count *= 2
             now = self._figures(joined, count)
             still = self._still(now, figures[left], joined, count, designs.sizes(signals, left))
@@ -297,42 +292,30 @@ class Batch:
         reason[left] = NOT_STILL
         return figures, reason
 
-    def _sampling(self, count: int) -> JumpSampling:
-        """So many crank angles in a turn, and those that resolve jumps."""
-        theta = all_angles(count, self.turns)
+    def _at(self, table: Array, count: int, first: float = 0.0) -> Array:
+        """What is gathered (P, R) at so many crank angles in a turn, from the first on, rad, and at
+        those that resolve jumps.
+        """
+        theta = all_angles(count, self.turns) + first
         if self.source.has_shares:
             bends = bends_of_rows(self.base.machine, self.turns)
-            return JumpSampling.of(theta, self.turns, self.jumps, bends)
-        return _grid(theta, self.turns)
+            sampling = JumpSampling.of(theta, self.turns, self.jumps, bends)
+            tops = PanelTops(sampling)
+            theta, shares = sampling.crank_angle[tops.order], sampling.shares[tops.order]
+            return self._gathered(table, theta, tops, shares)
+        return self._gathered(table, theta, GridTops(2 * pi * self.turns, first))
 
-    def _at(self, table: Array, sampling: JumpSampling) -> Array:
-        """What is gathered (P, R) at crank angles; places are angles, not numbers.
-
-        Extremes are those of the grid and of both sides of jumps: what is gathered at the other
-        crank angles are means.
-        """
-        values = self._gathered(table, sampling, sampling.shown)
-        if self.source.has_shares:
-            inside = np.flatnonzero(sampling.shares)
-            means = self._gathered(table, sampling, inside)
-            for k, (_, kind) in enumerate(self.gathered.columns):
-                if KINDS[kind].shared:
-                    values[:, k] = means[:, k]
-        return values
-
-    def _gathered(self, table: Array, sampling: JumpSampling, some: Array) -> Array:
-        """What is gathered (P, R) at some of the crank angles of a sampling."""
-        theta, shares = sampling.crank_angle[some], sampling.shares[some]
-        values = self._run(table, self._grid(theta, shares))
+    def _gathered(
+        self, table: Array, theta: Array, tops: CurveTops, shares: Array | None = None
+    ) -> Array:
+        """What is gathered (P, R) at crank angles (N,), rad; shares : (N,) of each in a mean."""
+        values = self._run(table, self._grid(theta, shares), tops)
         if self.march:
             for step in STEPS[1:]:
                 loose = self.march.unsettled(values)
                 if loose.size:
                     grid = self.march.grid(theta, step, shares)
-                    values[loose] = self._run(table[loose], grid)
-        for k, (_, kind) in enumerate(self.gathered.columns):
-            if kind.endswith("_at"):
-                values[:, k] = sampling.at[some][values[:, k].astype(int)]
+                    values[loose] = self._run(table[loose], grid, tops)
         return values
 
     def _grid(self, theta: Array, shares: Array | None = None) -> Array:
@@ -344,14 +327,14 @@ class Batch:
         """What sums are divided by for means: shares add up to 1."""
         return 1 if self.source.has_shares else count * self.turns
 
-    def _run(self, table: Array, grid: Array) -> Array:
+    def _run(self, table: Array, grid: Array, tops: CurveTops | None = None) -> Array:
         """Run the loop, on several threads where that is worth it; it lets them run beside."""
         parts = min(self.threads, 1 + len(table) * grid.shape[1] // AT_ONCE)
         if parts == 1:
-            return run_loop(self.source, table, grid)
+            return run_loop(self.source, table, grid, tops)
         with ThreadPoolExecutor(parts) as pool:
             done = pool.map(
-                lambda part: run_loop(self.source, part, grid), np.array_split(table, parts)
+                lambda part: run_loop(self.source, part, grid, tops), np.array_split(table, parts)
             )
         return np.concatenate(list(done))
 

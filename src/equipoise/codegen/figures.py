@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.dataclass import dataclass
-from equipoise.signals import ROUNDING, place_of_peak
+from equipoise.signals import ROUNDING, Tops, place_of_peak
 
 COMPUTED = 0
 NO_ASSEMBLY = 1
@@ -44,12 +44,6 @@ MOST_ANGLES = 65_536
 Array = np.ndarray[Any, Any]
 
 
-def _first_highest(x: Array) -> Array:
-    """Place (P,) of the highest of values (P, N), of equal ones the first."""
-    high: Array = x.max(axis=1, keepdims=True)
-    return np.asarray(np.argmax(high - x <= ROUNDING * np.abs(high), axis=1))
-
-
 @dataclass(frozen=True)
 class Reduction:
     """Something that a loop gathers of a signal over the crank angles.
@@ -57,14 +51,14 @@ class Reduction:
     start : as source, before the first crank angle.
     add : line that takes in another value {x} of the signal; for places see `codegen.source`.
     of : the same of values (P, N) by NumPy, (P,).
-    joined : of two sets of crank angles, from that of each; None of places.
+    joined : of two sets of crank angles, from that of each.
     shared : line that takes in a value by its share in a mean, where crank angles have shares.
     """
 
     start: str
     add: str
     of: Callable[[Array], Array]
-    joined: Callable[[Array, Array], Array] | None = None
+    joined: Callable[[Array, Array], Array]
     shared: str = ""
 
     def gathered(self, x: Array, shares: Array | None) -> Array:
@@ -85,20 +79,21 @@ KINDS = {
         "{g} += share * {x} * {x}",
     ),
     "highest": Reduction("-1e300", "{g} = max({g}, {x})", lambda x: x.max(axis=1), np.maximum),
-    "highest_at": Reduction("0.0", "", _first_highest),
     "lowest": Reduction("1e300", "{g} = min({g}, {x})", lambda x: x.min(axis=1), np.minimum),
-    "lowest_at": Reduction("0.0", "", lambda x: _first_highest(-x)),
 }
+TOPS = {"top": 1.0, "top_at": 1.0, "dip": -1.0, "dip_at": -1.0}
+"""What is taken from all values of a signal after the loop, as of an analysis: its extremes and
+their crank angles, each with the sign by which it is highest."""
 GATHERED = {
     "mean": ("sum",),
     "rms": (),
-    "peak": ("highest", "lowest"),
-    "max": ("highest",),
-    "min": ("lowest",),
-    "peak_to_peak": ("highest", "lowest"),
-    "max_at": ("highest", "highest_at"),
-    "min_at": ("lowest", "lowest_at"),
-    "peak_at": ("highest", "lowest", "highest_at", "lowest_at"),
+    "peak": ("top", "dip"),
+    "max": ("top",),
+    "min": ("dip",),
+    "peak_to_peak": ("top", "dip"),
+    "max_at": ("top", "top_at"),
+    "min_at": ("dip", "dip_at"),
+    "peak_at": ("top", "dip", "top_at", "dip_at"),
 }
 """Figure -> what it is made of beside the sum of squares, which tells how large a signal is."""
 PLACES = ("max_at", "min_at", "peak_at")
@@ -121,7 +116,7 @@ def figure_of(value: str) -> Figure | None:
 
 @dataclass(frozen=True)
 class Gathered:
-    """What a loop gathers: a kind of `KINDS` of a signal, one column of its output each."""
+    """What a loop gathers: a kind of `KINDS` or `TOPS` of a signal, one column each."""
 
     columns: tuple[tuple[str, str], ...]
 
@@ -129,13 +124,32 @@ class Gathered:
     def of(cls, wanted: Sequence[Figure]) -> Gathered:
         needed = {(figure.signal, "squares") for figure in wanted}
         needed |= {(f.signal, kind) for f in wanted for kind in GATHERED[f.name]}
+        sampled = {signal for signal, kind in needed if kind in TOPS}
+        needed |= {(signal, kind) for signal in sampled for kind in ("highest", "lowest")}
         signals = list(dict.fromkeys(figure.signal for figure in wanted))
-        order = [(signal, kind) for signal in signals for kind in KINDS]
+        order = [(signal, kind) for signal in signals for kind in (*KINDS, *TOPS)]
         return cls(tuple(column for column in order if column in needed))
 
     @property
     def signals(self) -> tuple[str, ...]:
         return tuple(dict.fromkeys(signal for signal, _ in self.columns))
+
+    @property
+    def sampled(self) -> tuple[str, ...]:
+        """Signals of which every value is needed, since extremes lie between crank angles."""
+        return tuple(dict.fromkeys(signal for signal, kind in self.columns if kind in TOPS))
+
+    def fill_tops(
+        self, out: Array, signal: str, values: Array, tops: Callable[[Array], Tops]
+    ) -> None:
+        """Fill the columns of `TOPS` in what is gathered (P, R), from values (P, N) of a signal."""
+        kinds = [kind for name, kind in self.columns if name == signal and kind in TOPS]
+        for sign in dict.fromkeys(TOPS[kind] for kind in kinds):
+            top, at = tops(sign * values)
+            for kind in kinds:
+                if TOPS[kind] == sign:
+                    place = self.columns.index((signal, kind))
+                    out[:, place] = at if kind.endswith("_at") else sign * top
 
     def column(self, gathered: Array, signal: str, kind: str) -> Array:
         """One column (P,) of what was gathered (P, R)."""
@@ -146,13 +160,12 @@ class Gathered:
         """What was gathered at two sets of crank angles, together."""
         result = np.empty_like(first_part)
         for k, (signal, kind) in enumerate(self.columns):
-            if (join := KINDS[kind].joined) is not None:
-                result[:, k] = join(first_part[:, k], other[:, k])
+            if kind in KINDS:
+                result[:, k] = KINDS[kind].joined(first_part[:, k], other[:, k])
                 continue
             extreme = kind.removesuffix("_at")
-            sign = 1 if extreme == "highest" else -1
             first, second = (
-                sign * self.column(result, signal, extreme) for result in (first_part, other)
+                TOPS[kind] * self.column(part, signal, extreme) for part in (first_part, other)
             )
             equal = np.abs(second - first) <= ROUNDING * np.abs(first)
             later = np.where(second > first, other[:, k], first_part[:, k])
@@ -172,13 +185,13 @@ class Gathered:
         if figure.name == "rms":
             return self.rms(gathered, figure.signal, count)
         if figure.name in ("max", "min", "max_at", "min_at"):
-            return column(figure.name.replace("max", "highest").replace("min", "lowest"))
-        high, low = column("highest"), column("lowest")
+            return column(figure.name.replace("max", "top").replace("min", "dip"))
+        high, low = column("top"), column("dip")
         if figure.name == "peak_to_peak":
             return high - low
         if figure.name == "peak":
             return np.maximum(high, -low)
-        places = column("highest_at"), column("lowest_at")
+        places = column("top_at"), column("dip_at")
         return place_of_peak(high, low, *places)
 
     def rms(self, gathered: Array, signal: str, count: int) -> Array:

@@ -25,14 +25,11 @@ from equipoise.codegen.loops import WATCHED
 from equipoise.codegen.terms import ANGLE, BOTH, DESIGN, FOLDED, Term, reached
 from equipoise.codegen.trace import AngleFunction, Array, Recurrence, Slot, Trace
 from equipoise.dataclass import dataclass
-from equipoise.signals import ROUNDING
 
-PLACE = {"highest": "{x} - {g} >", "lowest": "{g} - {x} >"}
-"""An extreme has a new place where it grows by more than rounding, so that of equal ones the first
-is told; this takes a branch, which costs the loop its speed."""
 NO_NAMES: Mapping[Any, str] = {}
 LANES = 32
 """Designs that a march does side by side: their values fit into the nearest cache."""
+HEADER = "def loop(table, grid, out, samples):"
 HEAD = '"""Written by equipoise.codegen from the steps of a linkage."""'
 
 
@@ -216,9 +213,9 @@ def source_of(
 
 
 def _loop(source: TermSource, lines: Lines) -> Iterator[str]:
-    columns = {column: f"g{k}" for k, column in enumerate(source.gathered.columns)}
+    columns = {c: f"g{k}" for k, c in enumerate(source.gathered.columns) if c[1] in KINDS}
     own = boundary(lines.outputs, DESIGN)
-    yield "def loop(table, grid, out):"
+    yield HEADER
     yield "    for i in range(table.shape[0]):"
     yield from _indented(2, _of_design(lines, own))
     yield from _indented(
@@ -229,7 +226,8 @@ def _loop(source: TermSource, lines: Lines) -> Iterator[str]:
     yield from _indented(3, lines.write((BOTH,), lines.outputs))
     signals = dict(zip(source.signals, map(lines.text, lines.outputs), strict=True))
     yield from _indented(3, _gathering(source, columns, signals))
-    yield from _indented(2, (f"out[i, {k}] = {name}" for k, name in enumerate(columns.values())))
+    yield from _indented(3, _sampling(source, "i", signals))
+    yield from _indented(2, (f"out[i, {name[1:]}] = {name}" for name in columns.values()))
 
 
 def _indented(depth: int, lines: Iterable[str]) -> Iterator[str]:
@@ -258,7 +256,11 @@ def _march(source: TermSource, lines: Lines) -> Iterator[str]:
     """
     own = boundary(lines.outputs, DESIGN)
     signals = {signal: f"x{k}" for k, signal in enumerate(source.signals)}
-    columns = {c: f"g{k}" for k, c in enumerate(source.gathered.columns) if c[0] in signals}
+    columns = {
+        c: f"g{k}"
+        for k, c in enumerate(source.gathered.columns)
+        if c[0] in signals and c[1] in KINDS
+    }
     before = [item.before.args[0] for item in source.carried]
     setting = [*_of_design(lines, own)]
     going = [*lines.write((BOTH,), lines.outputs)]
@@ -269,12 +271,16 @@ def _march(source: TermSource, lines: Lines) -> Iterator[str]:
         for k, name in enumerate([*given, *signals.values(), *columns.values()])
     }
     last = iter([item.before.args[0] for item in source.carried if item.watch])
-    filled = [at[columns.get(c) or next(last)] for c in source.gathered.columns]
+    filled = [
+        (k, at[columns.get(c) or next(last)])
+        for k, c in enumerate(source.gathered.columns)
+        if c[1] in KINDS
+    ]
 
     def get(names: Iterable[str]) -> Iterator[str]:
         return (f"{name} = {at[name]}" for name in names)
 
-    yield "def loop(table, grid, out):"
+    yield HEADER
     yield f"    work = empty({len(at) * LANES})"
     yield f"    for begin in range(0, table.shape[0], {LANES}):"
     yield "        left = table.shape[0] - begin"
@@ -300,24 +306,29 @@ def _march(source: TermSource, lines: Lines) -> Iterator[str]:
     yield "            if place >= 0.0:"
     yield f"                for lane in range({LANES}):"
     yield from _indented(5, get([*signals.values(), *columns.values()]))
-    yield from _indented(5, _gathering(source, columns, signals, "place"))
+    yield from _indented(5, _gathering(source, columns, signals))
+    yield from _indented(5, _sampling(source, "begin + lane", signals, "int(place)"))
     yield from _indented(5, (f"{at[name]} = {name}" for name in columns.values()))
     yield "        for lane in range(lanes):"
-    yield from _indented(3, (f"out[begin + lane, {k}] = {x}" for k, x in enumerate(filled)))
+    yield from _indented(3, (f"out[begin + lane, {k}] = {x}" for k, x in filled))
 
 
 def _gathering(
     source: TermSource,
     columns: Mapping[tuple[str, str], str],
     signals: Mapping[str, str],
-    number: str = "k",
 ) -> Iterator[str]:
-    """Lines that take in the signals' values at the crank angle of this number."""
+    """Lines that take in the signals' values at a crank angle."""
     for (signal, kind), name in columns.items():
-        x = signals[signal]
-        place = columns.get((signal, f"{kind}_at"))
-        if place is not None:
-            yield f"if {PLACE[kind].format(g=name, x=x)} {ROUNDING!r} * abs({x}):"
-            yield f"    {place} = {number}"
-        if line := (source.has_shares and KINDS[kind].shared) or KINDS[kind].add:
-            yield line.format(g=name, x=x)
+        line = (source.has_shares and KINDS[kind].shared) or KINDS[kind].add
+        yield line.format(g=name, x=signals[signal])
+
+
+def _sampling(
+    source: TermSource, design: str, signals: Mapping[str, str], number: str = "k"
+) -> Iterator[str]:
+    """Lines that keep the values of signals whose extremes are wanted, at the crank angle of this
+    number.
+    """
+    for k, signal in enumerate(source.gathered.sampled):
+        yield f"samples[{design}, {k}, {number}] = {signals[signal]}"

@@ -15,9 +15,9 @@ from equipoise.figures.chart_parts import (
     crank_axis,
     extent,
     extremes,
+    extremes_of,
     groups,
     numbers,
-    sampled_extremes,
     told_angles,
     told_speed,
 )
@@ -27,6 +27,7 @@ from equipoise.mechanism.dynamics.reactions import JointForce, SliderForce
 from equipoise.mechanism.outputs.declared import body_named, joint_named
 from equipoise.results.charts import DEGREES, Array, Axis, Chart, Curve, Mark, Panel, quantity
 from equipoise.results.joint_blocks import contact_named, display_of_joints
+from equipoise.signals import Figures
 
 if TYPE_CHECKING:
     from equipoise.mechanism.dynamics.forces import Forces
@@ -74,6 +75,11 @@ def over(analysis: Analysis, values: Array) -> tuple[Array, Array]:
     if not motion.whole_cycle:
         return theta, values
     return closed(theta, values, 2 * np.pi * motion.turns)
+
+
+def with_figures(analysis: Analysis, values: Array) -> tuple[Array, Array, Figures]:
+    """Crank angles and values as of `over`, and the figures of a signal (N,)."""
+    return *over(analysis, values), analysis.motion.figures(values)
 
 
 def angle_axis(analysis: Analysis) -> Axis:
@@ -216,7 +222,7 @@ def _over_angle(analysis: Analysis, joint: JointCurve, every: Iterable[JointCurv
         values, most = np.abs(joint.values), 1
         unit = display_of_joints(analysis).unit
         y = Axis.of(say("force"), "force", same_kind, unit, low=0.0, room=ROOM)
-    places = sampled_extremes(*over(analysis, values))[:most]
+    places = extremes_of(analysis.motion.figures(values))[:most]
     return Panel(
         angle_axis(analysis),
         y,

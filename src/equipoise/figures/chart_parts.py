@@ -9,12 +9,12 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from equipoise import signals
 from equipoise.dataclass import dataclass
 from equipoise.figures.style import KINDS, short
 from equipoise.i18n import decimals, say
 from equipoise.quantities import Dimension
 from equipoise.results.charts import DEGREES, RPM, Array, Axis, Chart, Curve, Mark, Panel, shown
+from equipoise.signals import Figures
 
 Item = TypeVar("Item")
 
@@ -154,9 +154,8 @@ def extremes(
     return tuple(marks)
 
 
-def sampled_extremes(theta: Array, values: Array) -> list[tuple[float, float]]:
-    """The largest and the smallest of samples (N,): crank angle, rad, and value."""
-    figures = signals.figures(theta, values)
+def extremes_of(figures: Figures) -> list[tuple[float, float]]:
+    """Where a signal is largest and where smallest: crank angle, rad, and value."""
     return [(figures.max_at, figures.max), (figures.min_at, figures.min)]
 
 
@@ -164,7 +163,7 @@ def compared(
     x: Axis,
     label: str,
     dimension: Dimension | None,
-    lines: Mapping[str, tuple[Array, Array]],
+    lines: Mapping[str, tuple[Array, Array, Figures]],
     low: float | None = None,
     extent: Any = (),
     unit: str | None = None,
@@ -172,29 +171,31 @@ def compared(
 ) -> Panel:
     """Signals of one quantity by their roles over crank angle, with the extremes of each.
 
-    lines : role -> crank angles (N,), rad, and values (N,), SI units.  low : where the axis begins.
+    lines : as of `marks_at_extremes`.  low : where the axis begins.
     extent : values of the same quantity in other panels, so that all have one scale and unit.
     unit : as of `Axis.of`.  rest : of the panel.
     """
-    every = np.concatenate([values for _, values in lines.values()])
+    every = np.concatenate([values for _, values, _ in lines.values()])
     axis = Axis.of(label, dimension, np.append(every, extent), unit, room=ROOM, low=low)
     marks = marks_at_extremes(axis, lines)
-    curves = tuple(Curve(theta, values, "", role) for role, (theta, values) in lines.items())
+    curves = tuple(Curve(theta, values, "", role) for role, (theta, values, _) in lines.items())
     if not np.any(every):
         rest["message"] = say("zero at every crank angle")
     return Panel(x, axis, curves, marks, **rest)
 
 
-def marks_at_extremes(axis: Axis, lines: Mapping[str, tuple[Array, Array]]) -> tuple[Mark, ...]:
+def marks_at_extremes(
+    axis: Axis, lines: Mapping[str, tuple[Array, Array, Figures]]
+) -> tuple[Mark, ...]:
     """Marks at the largest and the smallest value of several curves; those of the last curve first,
     whose texts so have the first choice of room.
 
-    lines : role -> crank angles (N,), rad, and values (N,), SI units.
+    lines : role -> crank angles (N,), rad, and values (N,), SI units, and the signal's figures.
     """
     marks: list[Mark] = []
-    for role, (theta, values) in reversed(tuple(lines.items())):
-        others = [line for other, line in lines.items() if other != role]
-        own = extremes(axis, values, sampled_extremes(theta, values), role)
+    for role, (theta, values, figures) in reversed(tuple(lines.items())):
+        others = [line[:2] for other, line in lines.items() if other != role]
+        own = extremes(axis, values, extremes_of(figures), role)
         marks += (_clear_of_other_curves(mark, theta, others) for mark in own)
     return tuple(marks)
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from equipoise.figures.analysis import ALL, angle_axis, over, title
+from equipoise.figures.analysis import ALL, angle_axis, title, with_figures
 from equipoise.figures.chart_parts import compared
 from equipoise.figures.points import FORBIDDEN, outputs_chart
 from equipoise.figures.style import short
@@ -35,7 +35,7 @@ def ratios(analysis: Analysis) -> Iterator[Chart]:
         if np.all(driver != 0):
             names = {"link": short(item.driven, 16), "drive": short(item.driver, 16)}
             label = say("angular velocity ratio, {link} / {drive}", **names)
-            signal = {ALL: over(analysis, driven / driver)}
+            signal = {ALL: with_figures(analysis, driven / driver)}
             panel = compared(angle_axis(analysis), label, None, signal)
             what = say("Speed ratio on the carrier")
             name = f"{item.table}-{item.driven.translate(FORBIDDEN)}"

@@ -19,6 +19,7 @@ from equipoise.figures.analysis import (
     row_keys,
     settled,
     title,
+    with_figures,
 )
 from equipoise.figures.chart_parts import (
     ROOM,
@@ -34,7 +35,6 @@ from equipoise.quantities import Dimension
 from equipoise.results.analysis_blocks import display_of_totals
 from equipoise.results.charts import Array, Arrow, Axis, Bars, Chart, Curve, Line, Mark, Panel
 from equipoise.results.outputs import CAUSES, output_named
-from equipoise.signals import highest_at
 
 if TYPE_CHECKING:
     from equipoise.mechanism.kinematics.motion import Motion
@@ -76,7 +76,7 @@ def over_crank(
             x,
             label,
             dimension,
-            {role: over(analysis, values) for role, values in signals.items()},
+            {role: with_figures(analysis, values) for role, values in signals.items()},
             extent=np.concatenate(
                 [v for item, values in every if item == dimension for v in values]
             ),
@@ -229,27 +229,27 @@ def _told_sizes(
     analysis: Analysis, values: Array, axis: Axis
 ) -> tuple[list[Mark], list[Curve], tuple[Arrow, ...], str]:
     """An arrow to the peak and a circle of the mean size, with their values, or why not."""
-    mean = float(analysis.motion.mean(np.abs(values)))
-    theta, values = over(analysis, values)
     sizes = np.abs(values)
-    k = int(highest_at(sizes))
-    if not sizes[k]:
+    found = analysis.motion.figures(sizes)
+    theta, values = over(analysis, values)
+    if not found.peak:
         return [], [], (), say("zero at every crank angle")
-    peak = complex(values[k])
-    circle = mean * np.exp(1j * np.radians(np.arange(0, 361, 2)))
+    direction = np.interp(found.peak_at, theta, np.unwrap(np.angle(values)))
+    peak = found.peak * complex(np.exp(1j * direction))
+    circle = found.mean * np.exp(1j * np.radians(np.arange(0, 361, 2)))
     marks: list[Mark] = []
     arrows: tuple[Arrow, ...] = ()
 
     def tell(place: complex, text: str, role: str) -> None:
         marks.append(Mark.of(place, text, role, float(np.degrees(np.angle(place))), sign=False))
 
-    if np.ptp(sizes) > ALIKE * sizes[k]:
+    if found.peak_to_peak > ALIKE * found.peak:
         arrows = (Arrow(0j, peak, "stress"),)
-        at = degrees_told(float(theta[k]))
+        at = degrees_told(found.peak_at)
         text = say("peak {value} at {angle}", value=axis.quantity(abs(peak)), angle=at)
         tell(peak, text, "stress")
-    away = mean * complex(np.exp(1j * (np.angle(peak) + 2.4)))
-    tell(away, say("mean size {value}", value=axis.quantity(mean)), "mean size")
+    away = found.mean * complex(np.exp(1j * (np.angle(peak) + 2.4)))
+    tell(away, say("mean size {value}", value=axis.quantity(found.mean)), "mean size")
     return marks, [Curve.of(circle, "", "mean size")], arrows, ""
 
 

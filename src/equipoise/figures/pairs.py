@@ -14,6 +14,7 @@ from equipoise.i18n import say, to_say
 from equipoise.mechanism.parts.machine import Drive
 from equipoise.quantities import Dimension
 from equipoise.results.charts import Array, Panel
+from equipoise.signals import figures
 
 Pair = Mapping[str, Array]
 """``before`` and ``after``, or the latter alone."""
@@ -66,5 +67,8 @@ def compare(
     """
     period = float(angles[-1] + angles[1] - angles[0])
     axis = crank_axis(short(drive.crank, 16), drive.speed, round(period / (2 * np.pi)))
-    closeds = {role: closed(angles, values, period) for role, values in roles_of(pair).items()}
-    return compared(axis, label, dimension, closeds, **rest)
+    drawn = {
+        role: (*closed(angles, values, period), figures(angles, values, period))
+        for role, values in roles_of(pair).items()
+    }
+    return compared(axis, label, dimension, drawn, **rest)

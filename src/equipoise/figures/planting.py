@@ -234,10 +234,13 @@ def _air_and_soil(
     assert figures.forces is not None
     motion = figures.forces.motion
     names = {"air": say("in the air"), "soil signal": say("in the soil")}
-    lines = {role: motion.shown(values) for role, values in pair.items()}
+    lines = {role: (*motion.shown(values), motion.figures(values)) for role, values in pair.items()}
     marks = marks_at_extremes(y, lines)
     if not both:
         marks = tuple(mark for mark in marks if mark.role == "soil signal")[:1]
     period = figures.curve.period
-    curves = [Curve(*closed(*line, period), names[role], role) for role, line in lines.items()]
+    curves = [
+        Curve(*closed(theta, values, period), names[role], role)
+        for role, (theta, values, _) in lines.items()
+    ]
     return stay_panel(figures, y, curves, marks, figures.arms, **rest)

@@ -268,7 +268,7 @@ def outputs_chart(
         same_dimension = np.ravel(
             [other.values_to_draw for other in ones if other.dimension == entry.dimension]
         )
-        lines = {ALL: (theta, values)}
+        lines = {ALL: (theta, values, analysis.motion.figures(entry.values_to_draw))}
         panel = compared(x, "", entry.dimension, lines, extent=same_dimension)
         panels.append(replace(panel, title=replace(panel.y, label=entry.label()).text))
     text = what or say(", ").join(item.label() for item in ones)

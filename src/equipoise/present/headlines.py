@@ -264,8 +264,9 @@ def longest(analysis: Analysis) -> str:
 
 def fastest(analysis: Analysis) -> str:
     """Which point moves fastest."""
-    points = analysis.motion.points.items()
-    name, speed = largest_of({name: float(np.max(np.abs(p.velocity))) for name, p in points})
+    motion = analysis.motion
+    speeds = ((name, np.abs(point.velocity)) for name, point in motion.points.items())
+    name, speed = largest_of({name: motion.figures(each).peak for name, each in speeds})
     size = format_quantity(speed, "speed", digits=3)
     return say("{point} is the fastest point, at up to {speed}", point=named(name), speed=size)
 
@@ -324,7 +325,7 @@ def planted(figures: PlantingFigures | None) -> str:
 def geared(analysis: Analysis, link: str) -> str:
     """How much faster than the crank a link turns at most."""
     rate = analysis.motion.links[link].angular_velocity / analysis.motion.speed
-    ratio = brief(float(np.max(np.abs(rate))))
+    ratio = brief(analysis.motion.figures(rate).peak)
     return say(
         "{link} turns at up to {ratio} times the speed of the crank", link=named(link), ratio=ratio
     )

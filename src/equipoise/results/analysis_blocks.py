@@ -91,7 +91,8 @@ def motion_blocks(analysis: Analysis) -> Iterator[Block]:
     if analysis.strokes:
         yield strokes_table(analysis)
         yield advantages_table(analysis)
-    rate = abs(analysis.motion.speed)
+    motion = analysis.motion
+    rate = abs(motion.speed)
     columns = (
         "",
         Column(say("angle"), "angle"),
@@ -101,9 +102,9 @@ def motion_blocks(analysis: Analysis) -> Iterator[Block]:
     rows = (
         (
             name,
-            turned(analysis, name) or span(link.angle, pi),
-            span(link.angular_velocity, rate),
-            span(link.angular_acceleration, rate**2),
+            turned(analysis, name) or span(motion, link.angle, pi),
+            span(motion, link.angular_velocity, rate),
+            span(motion, link.angular_acceleration, rate**2),
         )
         for name, link in analysis.motion.links.items()
     )

@@ -5,14 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from equipoise.i18n import Note, say
 from equipoise.mechanism.outputs.declared import body_named
 from equipoise.quantities import angle, format_quantity
 from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Value
 from equipoise.results.machine_blocks import largest, smallest
-from equipoise.signals import highest_at
 
 if TYPE_CHECKING:
     from equipoise.mechanism.dynamics.forces import Forces
@@ -38,17 +35,17 @@ def belt_blocks(analysis: Analysis) -> Iterator[Block]:
 
 def slack(forces: Forces) -> Iterator[Note]:
     """Where a belt would have to push, which it cannot."""
-    theta = forces.motion.crank_angle
-    for belt in forces.motion.machine.belts:
+    motion = forces.motion
+    for belt in motion.machine.belts:
         result = forces.belts[belt.name]
-        least = np.minimum(result.left, result.right)
-        if belt.tension is not None and np.min(least) < 0:
-            at = highest_at(-least)
+        left, right = motion.figures(result.left), motion.figures(result.right)
+        least = min(left, right, key=lambda strand: strand.min)
+        if belt.tension is not None and least.min < 0:
             yield Note(
                 "the belt {name} hangs loose: at crank angle {angle} its slack strand would have "
                 "to push with {push}; give it a tension of more than {tension}",
                 name=belt.name,
-                angle=angle(float(theta[at])),
-                push=format_quantity(float(-least[at]), "force"),
-                tension=format_quantity(float(np.max(np.abs(result.pull))) / 2, "force"),
+                angle=angle(least.min_at),
+                push=format_quantity(-least.min, "force"),
+                tension=format_quantity(motion.figures(result.pull).peak / 2, "force"),
             )

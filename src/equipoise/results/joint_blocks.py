@@ -127,13 +127,13 @@ def joint_table(analysis: Analysis) -> Table:
     for name, joint in joints.items():
         couple = None
         if isinstance(joint, SliderForce):
-            couple = Value(float(np.max(np.abs(joint.moment))), scale)
+            couple = Value(analysis.motion.figures(joint.moment).peak, scale)
         rows.append(
             (
                 contact_named(forces, name),
                 *_cells(analysis, joint),
                 couple,
-                _peak(tilting.get(name), scale),
+                _peak(analysis, tilting.get(name), scale),
             )
         )
     for name, joint in across.bearings.items() if across is not None else ():
@@ -157,5 +157,7 @@ def _cells(analysis: Analysis, joint: JointForce) -> tuple[Cell, ...]:
     return ends, Value(figures.mean), Value(figures.rms), largest(figures)
 
 
-def _peak(moment: JointForce | None, scale: float) -> Value | None:
-    return None if moment is None else Value(float(np.max(moment.size)), scale)
+def _peak(analysis: Analysis, moment: JointForce | None, scale: float) -> Value | None:
+    if moment is None:
+        return None
+    return Value(analysis.motion.figures(moment.size).peak, scale)

@@ -27,6 +27,7 @@ from equipoise.signals import Array, Figures
 
 if TYPE_CHECKING:
     from equipoise.mechanism.dynamics.assessment import FourBar
+    from equipoise.mechanism.kinematics.motion import Motion
     from equipoise.mechanism.parts.bodies import Body
     from equipoise.mechanism.parts.machine import Machine
     from equipoise.results.analysis import Analysis
@@ -78,9 +79,10 @@ def _at(figures: Figures, crank_angle: float, scale: float) -> float | None:
     return None if steady else crank_angle
 
 
-def span(values: Array, scale: float = 0.0) -> Span:
-    """Smallest to largest of some values."""
-    return Span(float(np.min(values)), float(np.max(values)), scale)
+def span(motion: Motion, values: Array, scale: float = 0.0) -> Span:
+    """Smallest to largest of values (N,) over the crank angle."""
+    figures = motion.figures(values)
+    return Span(figures.min, figures.max, scale)
 
 
 def place(xy: tuple[float, ...], unit: Display) -> str:
@@ -285,9 +287,11 @@ def points_table(analysis: Analysis) -> Iterator[Table]:
     for name, point in motion.points.items():
         if name in analysis.machine.frame:
             continue
-        reach = float(np.max(np.abs(point.place)))
+        reach = motion.figures(np.abs(point.place)).max
         tops = (motion.figures(np.abs(v)) for v in (point.velocity, point.acceleration_vector))
-        rows.append((name, span(point.x, reach), span(point.y, reach), *map(largest, tops)))
+        rows.append(
+            (name, span(motion, point.x, reach), span(motion, point.y, reach), *map(largest, tops))
+        )
     columns = (
         "",
         Column("x", "length"),

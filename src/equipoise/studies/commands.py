@@ -140,7 +140,9 @@ def _of_order(numbers: Any, order: float, orders: Any, key: Step) -> Any:
 def _figure(numbers: Any, of: Of, whole: Values) -> float:
     samples = np.asarray(numbers, dtype=float)
     along = _abscissa(whole, len(samples))
-    result = figures(np.full(len(samples), nan) if along is None else along, samples)
+    turns = whole.get("turns") if along is whole.get("crank_angle") else None
+    period = None if turns is None else 2 * pi * turns
+    result = figures(np.full(len(samples), nan) if along is None else along, samples, period)
     return float(getattr(result, of.name))
 
 

@@ -9,9 +9,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from functools import partial
-from math import nan
+from math import nan, pi
 from typing import Any, Self
 
 import numpy as np
@@ -27,6 +28,8 @@ from equipoise.balancing.objectives import (
 )
 from equipoise.balancing.problem import Problem
 from equipoise.balancing.room import pin_of
+from equipoise.codegen.backends import extremes_of, processors
+from equipoise.codegen.extremes import GridTops, PanelTops
 from equipoise.dataclass import dataclass
 from equipoise.design.evaluator import ChunkTask, Pool, PooledEvaluator
 from equipoise.errors import EquipoiseError, MassError, ModelError, UsageError, at_place
@@ -215,13 +218,30 @@ class LinearValues:
         if self.measure in {"rms", "ripple"}:
             matrix, vector = mean_square_rows(signal, self.measure)
             return np.asarray(np.linalg.norm(changes @ matrix.T + vector, axis=1))
-        if self.measure == "peak":
-            return np.concatenate([_peaks(signal.shown, part) for part in _parts(changes)])
+        if self.measure in {"peak", "peak_to_peak"}:
+            return self._extremes(signal, changes)
         each = (
             measured_each(signal.at(part), self.measure, signal.sampling)
             for part in _parts(changes)
         )
         return np.concatenate([*each])
+
+    def _extremes(self, signal: Signal, changes: Array) -> Array:
+        """Peaks (P,), or peaks to peaks, of the curve of a signal for changes (P, K)."""
+        sampling = signal.sampling
+        curve = GridTops(2 * pi) if sampling is None else PanelTops(sampling)
+        start, columns = curve.kept(signal.start[None]), curve.kept(signal.columns)
+
+        def of(part: Array) -> Array:
+            values = part @ columns.real + start.real
+            if np.iscomplexobj(start):
+                other = part @ columns.imag + start.imag
+                return extremes_of(curve, np.sqrt(values**2 + other**2))[0]
+            high, low = extremes_of(curve, values)
+            return np.maximum(high, -low) if self.measure == "peak" else high - low
+
+        with ThreadPoolExecutor(processors()) as pool:
+            return np.concatenate([*pool.map(of, _parts(changes))])
 
     def _changes(self, points: Array) -> Array:
         """Changes (P, 4 L) of inertial parameters; NaN where no machine can have these numbers."""
@@ -253,14 +273,6 @@ class LinearValues:
 
 def _parts(changes: Array) -> Iterator[Array]:
     return (changes[k : k + AT_ONCE] for k in range(0, len(changes), AT_ONCE))
-
-
-def _peaks(signal: Signal, changes: Array) -> Array:
-    """Largest size (P,) of a signal for changes (P, K); of a vector by its two components."""
-    squares = np.square(changes @ signal.columns.real + signal.start.real)
-    if np.iscomplexobj(signal.start):
-        squares += np.square(changes @ signal.columns.imag + signal.start.imag)
-    return np.asarray(np.sqrt(np.max(squares, axis=1)))
 
 
 def _differ_in_masses(base: Machine, others: Sequence[Machine], of: Objective) -> bool:

@@ -122,7 +122,7 @@ def _rms(motion: Motion, values: Array) -> float:
 
 
 def _peak(motion: Motion, values: Array) -> float:
-    return float(np.max(np.abs(motion.shown(values)[1])))
+    return motion.figures(np.abs(values)).peak
 
 
 def _signed(measure: str, values: Array, size: float) -> float:

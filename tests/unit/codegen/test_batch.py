@@ -466,7 +466,8 @@ def test_doubled_angles_are_the_same_as_all_at_once(driver: str, numpy_engine: N
     ]
     for k in np.flatnonzero(reasons == 0):
         apart = [np.max(np.abs(settled[k] - other[k])) for other in at_once]
-        assert min(apart) < 1e-11 * np.max(settled[k])
+        # Tops are found among each set of crank angles alone, from values twice as far apart.
+        assert min(apart) < 1e-7 * np.max(settled[k])
 
 
 def with_gear(driver: str, ratio: float) -> Machine:
@@ -565,13 +566,14 @@ def of_samples(name: str, theta: Array, x: Array) -> float:
 @pytest.mark.parametrize("name", GATHERED)
 def test_each_figure_alone(name: str, numpy_engine: None) -> None:
     """What a figure is made of is gathered for it, whatever else is wanted."""
-    motion = eq.move(FOUR, 60)
+    motion = eq.move(FOUR, 72_000)
     batch = Batch(FOUR, ["drive.speed"], [Figure("points.C.vy", name)], angles=60)
     figures, _ = batch(np.array([[10.0], [-10.0]]))
     vy = motion.points["C"].vy
     for k, sign in enumerate((1, -1)):
         told = of_samples(name, motion.crank_angle, sign * vy)
-        assert figures[k, 0] == pytest.approx(told, rel=1e-12, abs=1e-12)
+        # Sixty crank angles give extremes to 1e-8, dense ones the places of these to half a step.
+        assert figures[k, 0] == pytest.approx(told, rel=1e-7, abs=1e-4 if "_at" in name else 1e-9)
 
 
 def test_names_of_figures() -> None:
@@ -603,7 +605,7 @@ def test_of_equal_extremes_the_first_is_told(
 
 def test_equal_extremes_of_two_sets_of_angles() -> None:
     gathered = Gathered.of([Figure("s", "max_at")])
-    highest, at = (gathered.columns.index(("s", kind)) for kind in ("highest", "highest_at"))
+    highest, at = (gathered.columns.index(("s", kind)) for kind in ("top", "top_at"))
     one, other = np.zeros((2, 3, len(gathered.columns)))
     one[:, highest], one[:, at] = (1.0, 1.0 - 1e-15, 1.0), 2.0
     other[:, highest], other[:, at] = (1.0 - 1e-15, 1.0, 1.1), (3.0, 1.0, 3.0)

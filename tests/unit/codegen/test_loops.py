@@ -46,13 +46,13 @@ def told(base: Machine, numbers: Sequence[Number], row: Array) -> list[float] | 
     except MotionError:
         return NO_FULL_TURN
     forces, motion = found.forces, found.motion
-    turning = motion.links["plate"].angular_acceleration
+    turning = motion.figures(motion.links["plate"].angular_acceleration)
     return [
         float(np.sqrt(np.mean(forces.shaking_force.y**2))),
-        float(np.max(np.abs(forces.shaking_moment))),
-        float(motion.crank_angle[np.argmax(forces.drive_torque)]),
+        motion.figures(forces.shaking_moment).peak,
+        motion.figures(forces.drive_torque).max_at,
         float(np.mean(motion.points["Q"].ax)),
-        float(np.ptp(turning)),
+        turning.peak_to_peak,
     ]
 
 

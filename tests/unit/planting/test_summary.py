@@ -251,8 +251,8 @@ def test_figures_of_torque_and_joints() -> None:
             mean = np.sum(values * found.motion.shares)
             theta, values = found.motion.shown(values)
             k = int(np.argmax(np.abs(values)))
-            assert figures.peak == abs(values[k])
-            assert figures.peak_at == theta[k]
+            assert abs(values[k]) <= figures.peak <= abs(values[k]) * (1 + 1e-4)  # between samples
+            assert figures.peak_at == pytest.approx(theta[k], abs=2 * np.pi / len(theta))
             assert figures.mean == pytest.approx(mean, rel=1e-12, abs=1e-12)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import replace
+from dataclasses import asdict, replace
 from functools import cache
 from inspect import signature
 from pathlib import Path
@@ -27,7 +27,6 @@ from equipoise.quantities.units import FACTORS
 from equipoise.results.analysis import ANGLES, order_values
 from equipoise.results.analysis_blocks import display_of_totals
 from equipoise.results.blocks import Block, Many, ReportSection, SvgPicture, Table, Value
-from equipoise.signals import highest_at
 from equipoise.vibration.linear import nearest_loud
 from equipoise.web.edits import solved
 from equipoise.web.figures import figures_of
@@ -93,7 +92,8 @@ def told(name: str) -> np.ndarray:
         numbers += [np.min(signal), np.max(signal), np.mean(signal), np.sqrt(np.mean(signal**2))]
         numbers += [np.ptp(signal), np.max(np.abs(signal))]
         if signal.shape == theta.shape:
-            numbers += [theta[highest_at(np.abs(signal))]]
+            for one in (signal, np.abs(signal)):
+                numbers += [*asdict(found.analysis.motion.figures(one)).values()]
         numbers += signal.ravel().tolist() if len(signal) < ANGLES else []
     numbers += [one for one in leaves(given) if isinstance(one, int | float)]
     machine = found.machine

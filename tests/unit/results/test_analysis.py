@@ -121,14 +121,54 @@ def test_summary() -> None:
     for name in found.summary:
         signal, told = found.outputs[name].resolved, summary[name]
         mean, signal = signal @ sampling.shares, signal[sampling.shown]
-        assert told["max"] == signal.max() >= found.outputs[name].values.max()
-        assert told["min"] == signal.min()
+        most = found.summary[name].peak_to_peak / 20 + 1e-8
+        assert signal.max() <= told["max"] <= signal.max() + most
+        assert signal.min() - most <= told["min"] <= signal.min()
         assert told["mean"] == pytest.approx(mean)
-        assert told["peak"] == np.abs(signal).max()
-        assert told["peak_to_peak"] == pytest.approx(np.ptp(signal))
+        assert told["peak"] == max(told["max"], -told["min"])
+        assert told["peak_to_peak"] == told["max"] - told["min"]
         assert told == {**asdict(found.summary[name]), "peak_to_peak": told["peak_to_peak"]}
     assert "joints.block on lever.moment" in summary
     assert "four_bar" not in summary
+
+
+KINKED = dict.fromkeys(
+    [
+        *("baler-pickup", "elliptic-quick-return", "four-stroke-engine", "hydraulic-loader"),
+        *("knife-drive", "pick-and-place", "quick-return", "rotary-transplanter"),
+        *("straw-walker", "transplanter"),
+    ],
+    1e-3,
+) | {"cutter-bar": 0.04}
+"""By how much of its range a sample may miss an extreme: gears and belts that change sides, tables
+of loads, slots along arcs and lines, laws whose jerk jumps; the force of a cut, which stops at once
+where the knife has passed.  There samples stand, or curves are a little off."""
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_extremes_are_those_of_the_machine(name: str) -> None:
+    """The machine has each extreme at its crank angle, or beside it where forces jump, and nothing
+    beyond it anywhere.
+    """
+    found = eq.analyze(eq.load(name))
+    names, figures = zip(*found.summary.items(), strict=True)
+    places = np.array([at for one in figures for at in (one.max_at, one.min_at)])
+    near = 3e-8 * found.motion.turns * np.array([[-1.0], [0.0], [1.0]])
+    there = eq.analyze(found.machine, (places + near).ravel()).outputs
+    everywhere = eq.analyze(found.machine, 7200 // found.motion.turns)
+    beyond, missed = (1e-5, KINKED[name]) if name in KINKED else (2e-7, 1e-7)
+    for k, (output, told) in enumerate(zip(names, figures, strict=True)):
+        if output.startswith(("transmission.", "curved_slots.")):
+            continue  # the one folds at a right angle, the other begins anew in a closed slot
+        rounding = 1e-9 * told.rms + 1e-9
+        some, most = (share * told.peak_to_peak + rounding for share in (beyond, missed))
+        if output in there:  # all rows together need the whole cycle
+            high, low = there[output].values.reshape(3, -1, 2)[:, k].T
+            assert told.max <= np.max(high) + some
+            assert told.min >= np.min(low) - some
+        values = everywhere.outputs[output].resolved
+        assert np.max(values) <= told.max + most
+        assert np.min(values) >= told.min - most
 
 
 def test_a_four_bar_is_told_by_its_links() -> None:

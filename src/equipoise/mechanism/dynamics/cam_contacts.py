@@ -114,8 +114,8 @@ def _forces_at(like: Forces, angles: int | Array) -> Forces:
 
 def _let_go(cam: Cam, forces: Forces, fine: Forces) -> LetGo:
     theta, normal = forces.motion.crank_angle, forces.cams[cam.name].normal
-    k = int(highest_at(-normal))
-    least = float(normal[k]), float(theta[k])
+    found = forces.motion.figures(normal)
+    least = found.min, found.min_at
     return LetGo(cam, _ranges(theta, normal), least, *_limit(cam.name, fine))
 
 

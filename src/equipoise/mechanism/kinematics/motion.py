@@ -198,10 +198,13 @@ class Motion(Displayed):
         return self.figures_of_each(values[None])[0]
 
     def figures_of_each(self, values: Array) -> list[Figures]:
-        """Mean, RMS and extremes of each of several signals (M, N)."""
-        if self.sampling is None:
-            return signals.figures_of_each(self.crank_angle, values)
-        return self.sampling.figures_of_each(values)
+        """Mean, RMS and extremes of each of several signals (M, N); over a whole cycle extremes are
+        those of the curves, see `signals.smooth_tops`, else the largest and smallest values.
+        """
+        if self.sampling is not None:
+            return self.sampling.figures_of_each(values)
+        period = 2 * pi * self.turns if self.whole_cycle else None
+        return signals.figures_of_each(self.crank_angle, values, period)
 
     def shown(self, values: Array) -> tuple[Array, Array]:
         """Crank angles, rad, and values (M,) of values (N,) that curves go through, of a sampling
