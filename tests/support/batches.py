@@ -127,8 +127,9 @@ def same_figures(
         if figure.name in PLACES:  # of tops that are so near to each other the first is told
             room += EQUAL * signal.figures.peak_to_peak / signal.scale
             room += 2 * float(np.ptp(sizes)) / signal.scale  # the top lies between samples
-        elif name == "min" and told:  # of a size near zero its square is what is computed
-            room += 1e-14 * signal.scale / abs(told)
+        elif name in ("min", "peak_to_peak") and signal.figures.min:
+            # of a size near zero its square is what is computed
+            room += 1e-14 * signal.scale / abs(signal.figures.min)
         assert apart <= room, f"{figure} is {found:.9g}, {apart:.2g} off {told:.9g}"
 
 
