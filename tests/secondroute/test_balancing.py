@@ -338,10 +338,16 @@ def test_values_before_and_after(name: str) -> None:
         jumps = loads_jump(machine)
         # the reference's samples miss a little of an area where the signal jumps
         near = 1e-4 if jumps and one.measure == "area" else 1e-12
-        if one.measure.startswith("peak"):  # a little before the jump; else between samples
-            near = 1e-7 if jumps else 1e-9
+        peaks = one.measure.startswith("peak")
+        if peaks:  # where loads jump, those of the reference's samples, though of many
+            near = 1e-6 if jumps else 1e-9
         assert before == pytest.approx(measured_exactly(machine, one), rel=near)
-        assert before == pytest.approx(goal.before, rel=5e-3 if jumps else 1e-12)
+        # the reference's own peaks are those of samples, which the curve rises above
+        coarse = one.measure.startswith("peak")
+        assert before >= goal.before * (1 - (5e-3 if jumps else 1e-12))
+        assert before == pytest.approx(
+            goal.before, rel=5e-3 if jumps else 1e-3 if coarse else 1e-12
+        )
         exact = measured_exactly(found.machine, one)
         assert after == pytest.approx(exact, abs=max(near, 1e-9) * before)
         values.append(np.array(after / before))

@@ -32,6 +32,8 @@ DENSER = 64
 parabola, to 1e-12 of order 5."""
 DENSE = 8
 """The same in convex programs, where peaks are those of values: to 1e-5 of order 5."""
+CLOSER = 16
+"""Crank angles for each of these, among which peaks are sought where loads jump: to 1e-6 of it."""
 BESIDE = 1e-7
 """Way before a jump at which a signal is read, rad: beyond what loads round their angles to."""
 NEGLIGIBLE = 1e-9
@@ -152,7 +154,8 @@ def _measured_in_pieces(machine: Machine, objective: eq.balancing.Objective) -> 
 
     signal, shown = signal_at(theta), theta
     if objective.measure.startswith("peak"):
-        even = 2 * pi * np.arange(SAMPLES * turns) / SAMPLES
+        count = SAMPLES * CLOSER
+        even = 2 * pi * np.arange(count * turns) / count
         shown = np.concatenate(
             [even, sides.ravel(), np.mod(sides.ravel() - BESIDE, 2 * pi * turns)]
         )

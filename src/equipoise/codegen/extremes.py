@@ -61,7 +61,7 @@ class CurveTops(Protocol):
     def __call__(self, values: Array) -> Tops:
         """Highest values of signals (M, N) and their crank angles, by NumPy."""
 
-    def kept(self, values: Array) -> Array:
+    def in_order(self, values: Array) -> Array:
         """Values (M, N) by rising crank angle in the order in which they are asked for."""
 
     def kernel(self, count: int) -> str:
@@ -83,7 +83,7 @@ class GridTops:
         top, at = smooth_tops(self.period, values)
         return top, within_period(at + self.first, self.period)
 
-    def kept(self, values: Array) -> Array:
+    def in_order(self, values: Array) -> Array:
         return values
 
     def kernel(self, count: int) -> str:
@@ -107,11 +107,11 @@ class PanelTops:
         return np.concatenate([self.sampling.shown, self.sampling.inside])
 
     def __call__(self, values: Array) -> Tops:
-        in_order = np.empty_like(values)
-        in_order[:, self.order] = values
-        return self.sampling.tops(in_order)
+        ordered = np.empty_like(values)
+        ordered[:, self.order] = values
+        return self.sampling.tops(ordered)
 
-    def kept(self, values: Array) -> Array:
+    def in_order(self, values: Array) -> Array:
         return np.asarray(values[:, self.order])
 
     def kernel(self, count: int) -> str:

@@ -230,7 +230,7 @@ class LinearValues:
         """Peaks (P,), or peaks to peaks, of the curve of a signal for changes (P, K)."""
         sampling = signal.sampling
         curve = GridTops(2 * pi) if sampling is None else PanelTops(sampling)
-        start, columns = curve.kept(signal.start[None]), curve.kept(signal.columns)
+        start, columns = curve.in_order(signal.start[None]), curve.in_order(signal.columns)
 
         def of(part: Array) -> Array:
             values = part @ columns.real + start.real

@@ -20,7 +20,7 @@ from equipoise.mechanism.dynamics.reactions import JointReactions
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.support import FREEDOMS
 from equipoise.results.analysis import analyze
-from equipoise.signals import GAUSS_POINTS, Array, JumpSampling, Periodic, mean
+from equipoise.signals import GAUSS_POINTS, Array, JumpSampling, Periodic, mean, smooth_tops
 from equipoise.vibration.body import IN_PLANE, PITCH, Reading, SupportBody
 from equipoise.vibration.coupled import TO_SETTLE, Coupled, StallError, follow, settled
 from equipoise.vibration.hand_held import hand_vibration
@@ -336,9 +336,14 @@ class ExactSolution:
         here = self.passes[0]
         ground = analyze(self.machine, speed=self.speed, acceleration=0.0).resolved
         still, figures = ground.forces.solved.contacts, ground.motion.figures
+        sizes = np.array([joint.size for joint in here.contacts.values()])
+        period = 2 * pi * self.turns
+        peaks, _ = (
+            smooth_tops(period, sizes) if self.sampling is None else self.sampling.tops(sizes)
+        )
         return {
-            name: Joint(float(np.max(joint.size)), figures(still[name].size).peak)
-            for name, joint in here.contacts.items()
+            name: Joint(float(peak), figures(still[name].size).peak)
+            for name, peak in zip(here.contacts, peaks, strict=True)
         }
 
     def energy(self) -> Energy:
