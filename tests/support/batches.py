@@ -29,6 +29,8 @@ PLACES = {"max_at": "max", "min_at": "min", "peak_at": "peak"}
 MOTIONS = ("x", "y", "vx", "vy", "ax", "ay", "angular_velocity", "angular_acceleration")
 RATES = {"vx": 1, "vy": 1, "angular_velocity": 1, "x": 0, "y": 0}
 MOMENTS = ("moment", "shaking_moment", "frame_moment", "drive_torque")
+SQUARE_ROUNDING = 1e-7
+"""Root of what is rounding in a square of a signal, over the square of its scale."""
 FLOOR = 1e-3
 """Part of its natural size below which a signal counts as vanishing."""
 
@@ -127,9 +129,9 @@ def same_figures(
         if figure.name in PLACES:  # of tops that are so near to each other the first is told
             room += EQUAL * signal.figures.peak_to_peak / signal.scale
             room += 2 * float(np.ptp(sizes)) / signal.scale  # the top lies between samples
-        elif name in ("min", "peak_to_peak") and signal.figures.min:
-            # of a size near zero its square is what is computed
-            room += 1e-14 * signal.scale / abs(signal.figures.min)
+        elif name in ("min", "peak_to_peak"):  # of a size near zero its square is what is computed
+            least = abs(signal.figures.min) / signal.scale
+            room += float(np.hypot(least, SQUARE_ROUNDING)) - least
         assert apart <= room, f"{figure} is {found:.9g}, {apart:.2g} off {told:.9g}"
 
 

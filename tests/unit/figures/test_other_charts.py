@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from collections.abc import Callable
 from math import pi
 from types import SimpleNamespace
 from typing import Any
@@ -24,7 +25,8 @@ from equipoise.figures.style import look_of
 from equipoise.figures.view import AxisScale, ends_of, ticks_of
 from equipoise.measured.decay import Decay, identify_decay
 from equipoise.measured.record import simulate_decay
-from equipoise.results.charts import RPM, Axis, Chart, Curve, Panel
+from equipoise.results.charts import RPM, Array, Axis, Chart, Curve, Panel
+from equipoise.signals import Figures, figures
 from unit.figures.checks import check
 from unit.figures.samples import words
 
@@ -213,10 +215,16 @@ def test_pictures_by_name() -> None:
         plot(analysis, "torqe")
 
 
+def around(wave: Callable[[Array], Array], size: float) -> tuple[Array, Array, Figures]:
+    """A wave over a turn with its end, and its figures."""
+    theta = np.linspace(0.0, 2 * np.pi, 361)
+    values = size * wave(theta)
+    return theta, values, figures(theta[:-1], values[:-1], 2 * np.pi)
+
+
 def test_values_of_lower_peaks_stand_under_their_curves() -> None:
     """Above it they would be taken for the other curve's."""
-    theta = np.linspace(0.0, 2 * np.pi, 361)
-    lines = {"before": (theta, 2 * np.sin(theta)), "after": (theta, np.sin(theta - 0.1))}
+    lines = {"before": around(np.sin, 2.0), "after": around(lambda theta: np.sin(theta - 0.1), 1.0)}
     panel = compared(crank_axis("crank", 10.0, 1), "size", "force", lines)
     wishes = {(mark.role, mark.y > 0): mark.wish for mark in panel.marks}
     assert wishes == {
@@ -228,8 +236,7 @@ def test_values_of_lower_peaks_stand_under_their_curves() -> None:
 
 
 def test_values_beside_each_other_stand_outside_their_curves() -> None:
-    theta = np.linspace(0.0, 2 * np.pi, 361)
-    lines = {"before": (theta, 2 * np.sin(theta)), "after": (theta, -np.sin(theta))}
+    lines = {"before": around(np.sin, 2.0), "after": around(np.sin, -1.0)}
     panel = compared(crank_axis("crank", 10.0, 1), "size", "force", lines)
     assert all(mark.wish == (90.0 if mark.y > 0 else -90.0) for mark in panel.marks)
 
