@@ -30,8 +30,9 @@ SAMPLES = 720
 DENSER = 64
 """Values for each of these by which peaks between samples are seen: through three of them goes a
 parabola, to 1e-12 of order 5."""
-DENSE = 8
-"""The same in convex programs, where peaks are those of values: to 1e-5 of order 5."""
+FEWER, BEYOND = 4 * DENSER, 1e-8
+"""Of these values one in so many is in a convex program at first; then the tops of its solution
+that are above all those in it, by this share, until there are none: to 6e-8 of order 5."""
 CLOSER = 16
 """Crank angles for each of these, among which peaks are sought where loads jump: to 1e-6 of it."""
 BESIDE = 1e-7
@@ -781,18 +782,16 @@ def _moved(move: eq.balancing.CenterMove, link: Link, unknown: _Lifted) -> list[
     return [*kept, place >= low, place <= high]
 
 
-def convex_measure(one: Measured, changes: Any, over: float, jumps: bool = False) -> Any:
-    """Return a measure over a value as a convex expression; of signals without jumps peaks are
-    seen between their values, too.
-    """
+def convex_measure(one: Measured, changes: Any, over: float) -> Any:
+    """Return a measure over a value as a convex expression."""
     import cvxpy as cp
 
     if one.smooth:
         return cp.norm(one.factor[:, 0] / over + (one.factor[:, 1:] / over) @ changes)
-    pairs = [*zip(one.base, one.columns, strict=True)]
-    if one.measure.startswith("peak") and not jumps:
-        pairs = [tuple(resample(item, DENSE * len(item)) for item in pair) for pair in pairs]
-    parts = [base / over + (columns / over) @ changes for base, columns in pairs]
+    parts = [
+        base / over + (columns / over) @ changes
+        for base, columns in zip(one.base, one.columns, strict=True)
+    ]
     if len(parts) == 2:
         return cp.max(cp.norm(cp.vstack(parts), axis=0))
     (signal,) = parts
@@ -801,6 +800,48 @@ def convex_measure(one: Measured, changes: Any, over: float, jumps: bool = False
     if one.measure == "peak_to_peak":
         return cp.max(signal) - cp.min(signal)
     return 2 * pi / one.base.shape[1] * cp.norm1(signal)
+
+
+class _Goal:
+    """A measure in a convex program, with the value that it is taken over; peaks are those between
+    samples, too, where no load jumps.
+    """
+
+    def __init__(self, one: Measured, objective: eq.balancing.Objective, original: Machine) -> None:
+        self.measured, self.before = one, one.before
+        self.places: Any = slice(None)
+        self.grows = one.measure.startswith("peak") and not loads_jump(original)
+        if self.grows:
+            base, columns = (
+                resample(each, DENSER * one.base.shape[1], axis=1)
+                for each in (one.base, one.columns)
+            )
+            self.measured, self.before = (
+                replace(one, base=base, columns=columns),
+                measured_exactly(original, objective),
+            )
+            self.places = np.arange(0, base.shape[1], FEWER)
+
+    def over(self, value: float, changes: Any) -> Any:
+        """The measure over a value as a convex expression."""
+        one = self.measured
+        if self.grows:
+            one = replace(one, base=one.base[:, self.places], columns=one.columns[:, self.places])
+        return convex_measure(one, changes, value)
+
+    def takes_more(self, changes: Array) -> bool:
+        """Whether a solution has tops above all values that are in the program, which are taken."""
+        if not self.grows:
+            return False
+        signal = self.measured.signal(changes[:, None])[..., 0]
+        size = np.sqrt(np.sum(signal**2, 0))
+        new: list[int] = []
+        for values in (size,) if self.measured.measure == "peak" else (signal[0], -signal[0]):
+            top = (values >= np.roll(values, 1)) & (values >= np.roll(values, -1))
+            most = np.max(values[self.places]) + BEYOND * np.max(size)
+            new += np.flatnonzero(top & (values > most)).tolist()
+        self.places = np.union1d(self.places, np.array(new, dtype=int))
+        return bool(new)
 
 
 def convex_optimum(problem: Problem, solver: str = "CLARABEL", least: int | None = None) -> float:
@@ -826,34 +867,42 @@ def convex_optimum(problem: Problem, solver: str = "CLARABEL", least: int | None
     weights = [item for _, item in unknowns if item.weight is not None]
     if plan.added_mass is not None:
         kept.append(sum(item.mass for item in weights) <= plan.added_mass)
-    limits = [
-        convex_measure(one, changes, limit, loads_jump(machine))
-        for one, limit in zip(problem.kept, problem.limits, strict=True)
-    ]
-    kept += [limit <= 1 for number, limit in enumerate(limits) if number != least]
-    shares = [
-        weight * convex_measure(goal, changes, goal.before, loads_jump(machine))
-        for weight, goal in zip(problem.weights, problem.goals, strict=True)
-    ]
-    cost = sum(shares)
-    if plan.combine == "squares":
-        most = cp.Variable(len(shares), nonneg=True)
-        kept += [share <= one for share, one in zip(shares, most, strict=True)]
-        cost = cp.norm(most)
-    if least is not None:
-        cost = limits[least]
+    goals, bounded = (
+        [_Goal(one, wish, problem.original) for one, wish in zip(each, wishes, strict=True)]
+        for each, wishes in (
+            (problem.goals, plan.objectives),
+            (problem.kept, [limit.objective for limit in plan.limits]),
+        )
+    )
     while True:
+        limits = [
+            item.over(limit.at_most or (limit.ratio or 0.0) * item.before, changes)
+            for item, limit in zip(bounded, plan.limits, strict=True)
+        ]
+        rows = [limit <= 1 for number, limit in enumerate(limits) if number != least]
+        shares = [
+            weight * goal.over(goal.before, changes)
+            for weight, goal in zip(problem.weights, goals, strict=True)
+        ]
+        cost = sum(shares)
+        if plan.combine == "squares":
+            most = cp.Variable(len(shares), nonneg=True)
+            rows += [share <= one for share, one in zip(shares, most, strict=True)]
+            cost = cp.norm(most)
+        if least is not None:
+            cost = limits[least]
         program = cp.Problem(
-            cp.Minimize(cost), kept + [one for item in weights for one in item.of_weight()]
+            cp.Minimize(cost), kept + rows + [one for item in weights for one in item.of_weight()]
         )
         program.solve(solver=solver, **PRECISION[solver])
         assert program.status == "optimal", program.status
-        if max((item.overhang() for item in weights), default=0.0) < 1e-7:
+        more = [item.takes_more(changes.value) for item in (*goals, *bounded)]
+        if max((item.overhang() for item in weights), default=0.0) < 1e-7 and not any(more):
             return float(program.value)
 
 
 PRECISION: dict[str, dict[str, Any]] = {
-    "CLARABEL": dict.fromkeys(("tol_gap_abs", "tol_gap_rel", "tol_feas"), 1e-9),
+    "CLARABEL": dict.fromkeys(("tol_gap_abs", "tol_gap_rel", "tol_feas"), 1e-8),
     "SCS": {"eps_abs": 1e-9, "eps_rel": 1e-9, "max_iters": 100_000},
 }
 
