@@ -7,10 +7,13 @@ A picture of each page of a test that fails is kept in ``build/screenshots``.
 
 from __future__ import annotations
 
+import fcntl
 import os
+import pickle
 import re
 import runpy
 from collections.abc import Callable, Iterator
+from typing import cast
 
 import pytest
 from playwright.sync_api import Browser, BrowserContext, ConsoleMessage, Page, expect
@@ -40,10 +43,18 @@ def server() -> Iterator[tuple[str, int]]:
 
 @pytest.fixture(scope="session")
 def hosted(tmp_path_factory: pytest.TempPathFactory) -> Site:
-    """The page as a folder for any web host."""
+    """The page as a folder for any web host, which the first worker writes for all of them."""
     if lacks_runtime():
         pytest.skip("the runtime and its wheels could not be fetched: make test fetches them")
-    return write_site(tmp_path_factory.mktemp("host") / "site", RUNTIME, WHEELS, node=find_node())
+    around = tmp_path_factory.getbasetemp()
+    around = around.parent if "PYTEST_XDIST_WORKER" in os.environ else around
+    written = around / "host.pickle"
+    with (around / "host.lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        if not written.exists():
+            site = write_site(around / "host" / "site", RUNTIME, WHEELS, node=find_node())
+            written.write_bytes(pickle.dumps(site))
+    return cast(Site, pickle.loads(written.read_bytes()))
 
 
 @pytest.fixture(scope="session")

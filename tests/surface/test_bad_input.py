@@ -638,7 +638,8 @@ HUGE = {
 LONG = {"20 000 links", "2000 links in four-bars", "a list of 200 000"} | {
     f"2 MB of {part}" for part in ("joints", "points", "loads", "gears")
 }
-"""Read by the same loops as others, for seconds."""
+LONG |= {"2 MB of description", "1 MB of spaces", "1 MB of an unknown key", "100 links about a pin"}
+"""Read by the same loops as others, most for seconds."""
 
 
 @pytest.mark.parametrize("huge", few(HUGE, {*HUGE} - LONG))

@@ -55,7 +55,7 @@ from surface.test_fuzz import NUMBERS, OF_UNIT, UNITS, WORDS, places
 
 SEARCH = int(os.environ.get("EQUIPOISE_FUZZ", "0"))
 FILES, MACHINES = SEARCH or 48, SEARCH or 200
-OF_A_CHANGE = 40
+OF_A_CHANGE = 24
 """Machines on every change; a release tries all."""
 PARTS = 8
 """Into which the machines are divided."""
@@ -65,7 +65,7 @@ SILENT = 16.0
 """Seconds on the clock in which a command need not say anything; processors together count more."""
 SOON, STOPPED, RARELY = 1.5, 12, 10
 """Seconds after which a command that computes on, and says so, is interrupted: on every change, so
-that all machines take about 20 s; where it is looked for longer; and of one machine in so many then
+that all machines take about 12 s; where it is looked for longer; and of one machine in so many then
 a minute.
 """
 WAITING = 4

@@ -111,6 +111,8 @@ main()
 """
 
 
+# An interrupt that an import swallows fails in `test_an_import_that_lasts_is_interrupted` too.
+@EXHAUSTIVE
 @pytest.mark.parametrize(
     ("name", "study"),
     [("search", LENGTHS_OF_FEW), pytest.param("tolerance", TOLERANCES, marks=EXHAUSTIVE)],

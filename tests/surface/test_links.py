@@ -738,7 +738,8 @@ SAVED = {
     ("kind", "plant"),
     few_together(
         product(SAVED, PLANTS),
-        {*product(["linkage"], PLANTS), ("tool", put_beside)} - {("linkage", put_beside)},
+        {*product(["linkage"], PLANTS), ("tool", put_beside)}
+        - {("linkage", put_beside), ("linkage", put_elsewhere)},
     ),
 )
 def test_a_page_saves_through_no_link_that_was_put_in_the_place_of_its_file(

@@ -20,6 +20,7 @@ from equipoise.cli import sweep
 from equipoise.schema.study_units import study_of
 from equipoise.studies.selection import NothingBestError
 from equipoise.studies.store import checksum_of
+from support.chosen import EXHAUSTIVE
 from surface.running import (
     command,
     command_lines,
@@ -200,6 +201,9 @@ def test_a_bundled_study_and_the_examples() -> None:
         assert f"ready for: equipoise sweep {name} -o designs.zarr" in shown
 
 
+# Processes that compute one design after the other are tried by
+# tests/unit/studies/test_executors.py.
+@EXHAUSTIVE
 def test_processes() -> None:
     """Figures of `plant` are computed one by one, in processes of their own."""
     study = written(

@@ -18,6 +18,7 @@ from equipoise.mechanism.parts.balance import (
     Objective,
     Weight,
 )
+from support.chosen import EXHAUSTIVE
 from support.refusals import refused
 from unit.mechanism.build import crank_rocker, slider_crank
 
@@ -188,6 +189,8 @@ def test_the_best_of_all_teeth() -> None:
     assert "9 choices of gears" in str(found.method)
 
 
+# A ratio that is no optimum fails in `test_a_free_ratio` of tests/secondroute/test_balancing.py.
+@EXHAUSTIVE
 def test_a_ratio_is_followed_between_the_grid() -> None:
     """No fixed ratio of a finer grid does better."""
     wish = (Objective("shaking_moment"),)

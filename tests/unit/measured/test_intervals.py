@@ -79,6 +79,8 @@ def test_estimates_do_not_lean_to_one_side(case: tuple[float, float, float]) -> 
         assert abs(np.mean(values) - value) < 0.5 * np.std(values), (method, name)
 
 
+# Intervals by noise that is white fail above of the same mistake, but for one in the factor.
+@EXHAUSTIVE
 def test_correlated_noise_widens_the_intervals() -> None:
     """Noise that stays for 30 samples; as white noise it would be held one time in three."""
     case = (0.03, 0.02, 0.01)

@@ -18,7 +18,7 @@ from equipoise.mechanism.parts.support import Row
 from equipoise.vibration.coupled import StallError
 from equipoise.vibration.forced import respond
 from equipoise.vibration.free import Transient
-from support.chosen import few
+from support.chosen import EXHAUSTIVE, few
 from support.refusals import refused
 from unit.mechanism.build import slider_crank
 from unit.vibration.build import DAMPING, PIVOT, SPEED, STIFFNESS, Mount, block, cart, rig
@@ -214,6 +214,9 @@ def test_a_motor_that_stalls(of: str, mean_speed: str, way: int) -> None:
     assert given == pytest.approx(4.0 * 22.0, rel=1e-3)  # its torque at standstill
 
 
+# A motor that runs up in time is compared with the steady state by
+# `test_a_motor_runs_up_to_the_steady_speed` too.
+@EXHAUSTIVE
 def test_a_motor_that_does_not_stall() -> None:
     """A weaker press is not refused, and its solution is what it settles into from rest."""
     machine = press(100.0, "free")
