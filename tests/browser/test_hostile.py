@@ -98,7 +98,7 @@ def most_memory() -> int:
 NAMES = (HOSTILE, "javascript:window.x=1", "../../etc/passwd", "n" * 9999)
 
 
-@pytest.mark.parametrize("name", few(NAMES, (HOSTILE, "n" * 9999)))
+@pytest.mark.parametrize("name", few(NAMES, (HOSTILE,)))
 def test_names_and_texts_of_a_shared_machine_are_text(
     name: str, new_page: Callable[..., Page], address: str
 ) -> None:
@@ -132,7 +132,7 @@ WRONG: dict[str, Callable[[], str]] = {
 
 
 ONE_OF_EACH = (
-    *("markup", "not UTF-8", "cut off", "a bomb"),
+    *("not UTF-8", "cut off", "a bomb"),
     *("tables that are a bomb", "tables that are no JSON"),
 )
 
@@ -155,7 +155,7 @@ TABLES: tuple[Any, ...] = ([], {"load.csv": 7}, {"__proto__": "x"})
 MORE_TABLES = (7, "text", {"load.csv": {"a": []}}, None)
 
 
-@pytest.mark.parametrize("tables", few((*TABLES, *MORE_TABLES), TABLES))
+@pytest.mark.parametrize("tables", few((*TABLES, *MORE_TABLES), TABLES[1:2]))
 def test_tables_of_other_kinds_are_refused_in_a_sentence(
     tables: object, new_page: Callable[..., Page], address: str
 ) -> None:

@@ -9,9 +9,10 @@ from playwright.sync_api import Browser, Page, expect
 
 import equipoise as eq
 from browser.live import LONGEST, Live
+from support.chosen import few
 
 NAME = "balance-crank"
-pytestmark = pytest.mark.parametrize("address", ["socket", "worker"], indirect=True)
+WIRES = ["socket", "worker"]
 
 
 @pytest.fixture
@@ -34,6 +35,7 @@ def example(page: Page):
     return page.get_by_role("combobox", name="Example")
 
 
+@pytest.mark.parametrize("address", WIRES, indirect=True)
 def test_a_machine_is_changed_balanced_and_taken_along(wired: Live) -> None:
     """To the same numbers as those that are computed without a page."""
     page, own = wired.page, eq.load(NAME)
@@ -66,6 +68,7 @@ def test_a_machine_is_changed_balanced_and_taken_along(wired: Live) -> None:
         assert made.links[name].center_of_mass == pytest.approx(link.center_of_mass, abs=1e-6)
 
 
+@pytest.mark.parametrize("address", few(WIRES, {"socket"}), indirect=True)
 def test_what_cannot_be_is_told_and_the_last_good_state_stays(wired: Live) -> None:
     field = wired.field("crank mass")
     field.fill("3 mm")
