@@ -25,7 +25,7 @@ from equipoise.running.integration import Integration
 from equipoise.running.piece_motion import Instant
 from equipoise.running.run import Run
 from support.analyses import subject_of
-from support.chosen import EXHAUSTIVE
+from support.chosen import EXHAUSTIVE, few
 from support.refusals import refused
 
 MASS, ARM, OWN, GRAVITY = 2.0, 0.3, 0.05, 9.81
@@ -133,7 +133,7 @@ def speed_by_scipy(machine: eq.Machine, found: Run) -> float:
     return float(solution.y[1, -1])
 
 
-@pytest.mark.parametrize("amplitude", [0.1, 1.5, 3.0])
+@pytest.mark.parametrize("amplitude", few([0.1, 1.5, 3.0], {0.1, 3.0}))
 def test_a_pendulum_swings_as_it_has_to(amplitude: float) -> None:
     found = eq.run(crank(), "20 s", speed=0.0, angle=amplitude - pi / 2)
     times = [event.time for event in found.events if event.kind == "reversal"]

@@ -143,7 +143,11 @@ main()
 
 
 @pytest.mark.parametrize(
-    "module", ["cyclopts", "equipoise.cli.linkage", "numpy.linalg", "equipoise.signals"]
+    "module",
+    few(
+        ["cyclopts", "equipoise.cli.linkage", "numpy.linalg", "equipoise.signals"],
+        {"equipoise.cli.linkage", "numpy.linalg"},
+    ),
 )
 def test_an_interrupt_while_modules_are_imported(module: str, folder: Path) -> None:
     words = [sys.executable, "-c", IMPORTING.format(name=module), "analyze", "yamashita-1"]

@@ -220,7 +220,7 @@ ONE_SIDED = ("planetary-planting-arm", "geared-counterweight", "kim-chung-b")
 
 @pytest.mark.parametrize(
     "name",
-    few(CARRIED, {"planetary-planting-arm", "class-three", "scotch-yoke"}),
+    few(CARRIED, {"planetary-planting-arm", "scotch-yoke"}),
 )
 def test_any_linkage_on_a_support(name: str) -> None:
     """Geared ones with cycles of several turns, loads with windows, soil."""
@@ -260,7 +260,9 @@ def test_odd_supports(changes: list[tuple[str, str]]) -> None:
     every_model(changed(RIG, *changes))
 
 
-@pytest.mark.parametrize("support", [HEAVE, SURGE, HEAVE + DAMPED, SURGE + DAMPED])
+@pytest.mark.parametrize(
+    "support", few([HEAVE, SURGE, HEAVE + DAMPED, SURGE + DAMPED], {HEAVE, SURGE + DAMPED})
+)
 @pytest.mark.parametrize("eccentric", [0, 10])
 def test_a_wheel_that_shakes_one_way(support: str, eccentric: float) -> None:
     """One freedom, m e w^2 / (k - M w^2); damping hardly counts that far from the resonance."""

@@ -26,6 +26,7 @@ from unit.figures.samples import words
 from unit.figures.vibration_samples import (
     RPM,
     dashed_and_lost,
+    exact,
     linkage,
     pictures,
     plane,
@@ -110,8 +111,7 @@ def test_lift_off_is_shaded() -> None:
 
 
 def test_drive_torque_and_crank_speed() -> None:
-    machine = eq.load("walking-transplanter")
-    response = respond(machine, drive=True)
+    response = exact("walking-transplanter")
     chart = pictures("walking-transplanter")["exact drive"]
     torque, speed = chart.panels
     assert (torque.y.text, speed.y.text) == ("drive torque, N m", "crank speed, rpm")

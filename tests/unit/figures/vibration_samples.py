@@ -14,6 +14,7 @@ from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.support import Gauge, Mount, Row
 from equipoise.results.charts import Chart
 from equipoise.vibration.forced import respond
+from equipoise.vibration.response import Response
 from equipoise.vibration.sweep import Sweep, sweep_speed
 from unit.figures.samples import three_turns
 
@@ -157,9 +158,15 @@ def pictures(kind: str) -> Drawn:
         transient = eq.simulate(machine, 0.5, drive=driven, samples=300)
         drawn |= named("rest", pictures_of(transient))
         if kind != "crowded":
-            exact = respond(machine, model="exact", drive=driven)
-            drawn |= named("exact", pictures_of(exact))
+            drawn |= named("exact", pictures_of(exact(kind)))
     return drawn
+
+
+@cache
+def exact(kind: str) -> Response:
+    """A machine at its own speed by the exact model, with its motor where it has one."""
+    machine = MACHINES[kind]() if kind in MACHINES else eq.load(kind)
+    return respond(machine, model="exact", drive=machine.drive.motor is not None)
 
 
 def named(prefix: str, drawn: Drawn) -> Drawn:

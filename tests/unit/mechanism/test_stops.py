@@ -14,6 +14,7 @@ import equipoise as eq
 from equipoise.errors import ModelError, UsageError
 from equipoise.exchange.export import export
 from equipoise.mechanism import Machine, Stop
+from support.chosen import few_together
 from support.own_kinds import designs_by_numbers, drawn, on_the_page, read_back, scripted
 
 ON_FRAME = Stop("rocker", "F", "S", 2e4, direction=0.4, restitution=0.6, speed=0.4)
@@ -93,7 +94,10 @@ def test_the_drive_gives_what_stops_store_and_lose() -> None:
     np.testing.assert_allclose(found.forces.frame_moment, bare.forces.frame_moment, atol=1e-8)
 
 
-@pytest.mark.parametrize(("restitution", "speed"), [(0.3, 1.2), (0.8, 0.5), (1.0, 0.5)])
+@pytest.mark.parametrize(
+    ("restitution", "speed"),
+    few_together([(0.3, 1.2), (0.8, 0.5), (1.0, 0.5)], {(0.3, 1.2), (1.0, 0.5)}),
+)
 def test_a_body_leaves_with_the_restitution(restitution: float, speed: float) -> None:
     """A crank without weight swings against a stop with `speed` at its tip; so at every mass."""
     link = eq.Link({"A": (0.0, 0.0), "B": (0.2, 0.0)}, 1.5, (0.1, 0.0), 0.01)

@@ -95,6 +95,12 @@ def test_numbers_are_set_by_the_paths_of_studies_and_figures_told_before_and_aft
     assert figures(shown(ask(desk, "redo")))["mass"]["after"] == mass["after"]
 
 
+@pytest.fixture(scope="module")
+def desk() -> PageBackend:
+    """A page with a tool, of which nothing that is asked may change anything."""
+    return begun("brush-cutter")()
+
+
 @pytest.mark.parametrize(
     ("asked", "said"),
     [
@@ -108,8 +114,7 @@ def test_numbers_are_set_by_the_paths_of_studies_and_figures_told_before_and_aft
         (("download", {"kind": "csv"}), "of a tool, model or report"),
     ],
 )
-def test_what_cannot_be_is_refused_and_nothing_changes(asked, said) -> None:
-    desk = begun("brush-cutter")()
+def test_what_cannot_be_is_refused_and_nothing_changes(desk: PageBackend, asked, said) -> None:
     before = figures(shown(ask(desk, "ready")))
     (refused,) = ask(desk, asked[0], **asked[1])
     assert refused.content["type"] == "refused" and said in refused.content["message"]
