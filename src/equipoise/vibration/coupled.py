@@ -59,6 +59,7 @@ class Coupled:
     (s), and the shift (rad/s) of the motor's curve.
 
     free : which of surge, heave and pitch.  torque : of the motor; None for a constant speed.
+    loaded_at : speed of the crank, rad/s, of which soil and friction are; that above if None.
     """
 
     machine: Machine
@@ -70,6 +71,7 @@ class Coupled:
     free: tuple[int, ...]
     contacts: tuple[MountContact, ...]
     torque: Torque | None = None
+    loaded_at: float | None = None
 
     @classmethod
     def on_support(
@@ -130,7 +132,8 @@ class Coupled:
 
     def sums(self, theta: Array) -> ReducedInertia:
         """The linkages at crank angles (P,), rad."""
-        return sums(self.machine, theta, self.reference, self.speed)
+        speed = self.speed if self.loaded_at is None else self.loaded_at
+        return sums(self.machine, theta, self.reference, speed)
 
     def crank_speed(self, states: Array) -> Array:
         """rad/s, of states (n, ...)."""

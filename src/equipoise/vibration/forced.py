@@ -127,7 +127,10 @@ def left_out(machine: Machine) -> list[Note | str]:
         said = to_say("rocking moments have no effect: the support can neither roll nor yaw")
         sentences.append(Note(said))
     if machine.rubs:
-        said = to_say("friction in joints is ignored in the excitation of the support")
+        said = to_say(
+            "friction in joints loads the drive as on solid ground at a constant crank speed; by "
+            "itself it shakes no support"
+        )
         sentences.append(Note(said))
     return sentences
 

@@ -243,7 +243,7 @@ class SupportExcitation:
     def _of_unit_forces(self) -> list[tuple[Array, Array]]:
         """What 1 N on each tip along x, and along y, adds to `_signals`, (5, N) each."""
         motion, machine = self.motion.at(0.0), self.machine
-        present = forces(motion, self.pivot).outer
+        present = self._outer(motion)
         loads, before = [*outer_loads(motion)], self._signals_of(present)
         rocks = self.model == "moment" and machine.has_planes
         pairs = []
@@ -316,7 +316,13 @@ class SupportExcitation:
     def _signals(self, motion: Motion) -> Array:
         """Signals (5, N) at the crank angles of a motion."""
         # Springs pull frame and links alike; left in, (57) would count their torque on the drive.
-        return self._signals_of(forces(motion, self.pivot).outer)
+        return self._signals_of(self._outer(motion))
+
+    def _outer(self, motion: Motion) -> Forces:
+        """Forces without friction, which cancels in what bodies do that the support carries alike,
+        and without springs between links and frame.
+        """
+        return replace(forces(motion, self.pivot), rubs=False).outer
 
     def _signals_of(self, forces: Forces) -> Array:
         force = forces.frame_force.value - forces.weight.value

@@ -32,7 +32,8 @@ from equipoise.mechanism.dynamics.applied_loads import (
     outer_loads,
     spring_demands,
 )
-from equipoise.mechanism.dynamics.forces import massless
+from equipoise.mechanism.dynamics.forces import forces, massless
+from equipoise.mechanism.dynamics.friction import with_friction
 from equipoise.mechanism.dynamics.rated_elements import rated_ways
 from equipoise.mechanism.dynamics.reactions import Demand, JointReactions, demands_of, reactions
 from equipoise.mechanism.dynamics.reduced import generalized_force, reduced_inertia
@@ -53,7 +54,7 @@ class ReducedInertia:
     mass : kg.  first, first_1, first_2 : complex, kg m.
     inertia, inertia_1, spin, spin_1, drive, drive_1 : kg m2.
     load_force (complex, N), load_moment (N m, about the reference point) and load_torque (N m, on
-    the crank) : what loads from outside do; the torque is that of springs, too.
+    the crank) : what loads from outside do; the torque is that of springs and of friction, too.
     ways : of dampers, stops and resistances of each row, as of `rated_ways`, each (N,).
     """
 
@@ -99,7 +100,7 @@ def sums(machine: Machine, theta: Array, reference: complex, speed: float) -> Re
     ----------
     theta : (N,) crank angles of a row of phase 0, rad.
     reference : point of the support that places are told from, m.
-    speed : of the crank, rad/s, for loads that depend on it.
+    speed : of the crank, rad/s, for loads that depend on it, and for friction.
 
     Raises
     ------
@@ -160,7 +161,17 @@ def _loads(motion: Motion, shift: complex) -> tuple[Array, Array, Array]:
         about = about - moment - cross(anchor + shift, force)
     every = (loads, inner_demands(motion), spring_demands(motion, rated=False))
     turning = sum(generalized_force(motion, demands) for demands in every)
-    return total, about, np.asarray(turning)
+    return total, about, np.asarray(turning + _rubbed(motion))
+
+
+def _rubbed(motion: Motion) -> Array | float:
+    """Torque (N,) of friction in joints on the crank, N m, on solid ground: beside the speed of the
+    crank that of the support is small, and friction acts between bodies that it carries alike.
+    """
+    if not motion.machine.rubs:
+        return 0.0
+    lost = sum(friction.loss for friction in forces(motion).frictions.values())
+    return np.asarray(-lost / motion.speed)
 
 
 def spread(motion: Motion) -> Array:
@@ -233,6 +244,8 @@ def joint_forces(
     for acting in (load_demands(motion), spring_demands(turning)):
         for link, (force, moment) in acting.items():
             demands[link] = (demands[link][0] + force, demands[link][1] + moment)
+    if machine.rubs:
+        return with_friction(replace(turning, whole_cycle=False), demands)
     return reactions(replace(motion, whole_cycle=False), demands)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from dataclasses import replace
 from math import ceil, copysign, pi
 
 import numpy as np
@@ -276,6 +277,8 @@ def _on_lines(motor: Motor, torque: float) -> float | None:
     return None
 
 
+SPEEDS = 4
+"""Times that friction follows the speed of a motor, and that speed the friction."""
 ROUGH = 12
 """Orders of the linear response that do to start from."""
 
@@ -287,11 +290,15 @@ def equations(machine: Machine, speed: float, drive: bool) -> tuple[Coupled, Lin
     """
     motor = machine.drive.motor if drive else None
     torque = None if motor is None else torque_on_crank(motor, speed)
+    loaded_at = speed
+    if motor is not None and motor.mean_speed == "free" and machine.rubs:
+        loaded_at, _ = motor_setting(machine, speed)
     if machine.support is None:
         assert torque is not None
-        return Coupled.on_ground(machine, speed, torque), None
+        return replace(Coupled.on_ground(machine, speed, torque), loaded_at=loaded_at), None
     linear = Linear.of(machine, "moment")
-    return Coupled.on_support(linear.body, linear.rest, speed, torque), linear
+    system = Coupled.on_support(linear.body, linear.rest, speed, torque)
+    return replace(system, loaded_at=loaded_at), linear
 
 
 def turns_of(machine: Machine) -> int:
@@ -349,6 +356,15 @@ def motor_setting(machine: Machine, speed: float) -> tuple[float, float]:
     """
     motor = machine.drive.motor
     assert motor is not None
+    if motor.mean_speed == "held":
+        return speed, motor.ratio * abs(speed) - _own_speed(machine, motor, speed)
+    for _ in range(SPEEDS if machine.rubs else 1):
+        speed = float(np.sign(speed)) * _own_speed(machine, motor, speed) / motor.ratio
+    return speed, 0.0
+
+
+def _own_speed(machine: Machine, motor: Motor, speed: float) -> float:
+    """Speed of a motor, rad/s, at which its curve has the mean torque of a speed of the crank."""
     sense = float(np.sign(speed))
     motion = resolved(move(machine, SAMPLES, speed, 0.0))
     torque = float(motion.mean(forces(motion).drive_torque)) * len(rows_of(machine))
@@ -356,6 +372,4 @@ def motor_setting(machine: Machine, speed: float) -> tuple[float, float]:
     if own < 0:
         most = motor.ratio * motor.largest_torque
         raise StallError(mean_stall_note(sense * torque, most, abs(speed)))
-    if motor.mean_speed == "free":
-        return sense * own / motor.ratio, 0.0
-    return speed, motor.ratio * abs(speed) - own
+    return own

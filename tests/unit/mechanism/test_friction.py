@@ -411,14 +411,6 @@ def test_formats_say_that_they_leave_friction_out(ending: str, tmp_path: Any) ->
     assert not any("friction" in one for one in eq.export(ENGINE, tmp_path / f"p.{ending}"))
 
 
-def test_a_response_says_that_it_leaves_friction_out() -> None:
-    machine = eq.load("yamashita-rig")
-    rubbing = replace(machine, joints=(JointProperties("joints.C", torsional_damping=0.01),))
-    left_out = "friction in joints is ignored in the excitation of the support"
-    assert left_out in map(str, eq.respond(rubbing).notes)
-    assert left_out not in map(str, eq.respond(machine).notes)
-
-
 def test_the_pump_of_the_examples_loses_what_is_reckoned_by_hand() -> None:
     """Of its packing, 45 N over 26 mm to and fro 15 times a second, and of what it delivers."""
     machine = eq.load("plunger-pump")
