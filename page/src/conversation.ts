@@ -53,12 +53,17 @@ const SLOW = new Set(["balance", "download", "gallery"]);
 
 /** Without a sign nobody waits longer than this, ms. */
 const PATIENCE = 100;
+/** For a move of a drag, which is seen itself: a bar that comes and goes with every move is no sign. */
+const OF_A_MOVE = 500;
 
 /** What leaves the machine on the server as it was; all else is said again after a broken line. */
 const IDLE = new Set(["ready", "speak", "save", "download", "tables", "study", "stores"]);
 
 /** What is kept until a server answers that does not: what changes the machine, or how it is shown. */
 const kept = ({ type }: Asked) => !(IDLE.has(type) || SLOW.has(type) || OPENS.has(type));
+
+/** Whether it only tries an edit, while something is held. */
+const isMove = (asked: Asked) => asked.type === "edit" && !asked.commit;
 
 /** Who asks these says himself why not. */
 const ASIDE = new Set(["entry", "tables"]);
@@ -148,7 +153,8 @@ export class Conversation {
     if (SLOW.has(question.asked.type) && !this.repeated(question.seq)) this.aside.set(question.seq, question);
     else this.flight = question;
     this.events.calm(false);
-    if (this.flight) this.late ||= window.setTimeout(() => this.events.waiting(true), PATIENCE);
+    const patience = isMove(question.asked) ? OF_A_MOVE : PATIENCE;
+    if (this.flight) this.late ||= window.setTimeout(() => this.events.waiting(true), patience);
     this.wire.send({ ...question.asked, seq: question.seq });
     this.next();
   }
@@ -263,8 +269,7 @@ export class Conversation {
   private heard(state: Shown): void {
     const { seq } = state;
     const asked = (this.flight?.seq === seq ? this.flight : this.aside.get(seq))?.asked;
-    const tried = asked?.type === "edit" && !asked.commit;
-    if (asked && !this.repeated(seq) && !tried && !IDLE.has(asked.type))
+    if (asked && !this.repeated(seq) && !isMove(asked) && !IDLE.has(asked.type))
       this.story.remember(asked, state);
     this.story.heard(state);
     this.end(seq, null);

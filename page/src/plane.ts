@@ -253,10 +253,8 @@ export class Plane {
           ([nx, ny]) => Math.abs(nx - px) < wide + 14 && Math.abs(ny - py) < 12,
         );
         if (room < 0 || taken) continue;
-        const free = curve.map(([cx, cy]) =>
-          Math.max(Math.abs(cx - px) - wide, Math.abs(cy - py) - high),
-        );
-        const clear = Math.min(...free, 6);
+        if (6 + 3 * outward - gap / 4 <= most) continue; // no curve is so far away that it would be better
+        const clear = clearance(curve, px, py, wide, high, 6);
         const rank = clear + 3 * outward - gap / 4 - (clear < 1 ? 8 : 0);
         if (rank > most) [best, most] = [[px, py], rank];
       }
@@ -309,15 +307,9 @@ export class Plane {
       const [ux, uy] = [Math.cos((turn * Math.PI) / 180), -Math.sin((turn * Math.PI) / 180)];
       const [r0] = radii;
       const shown = r0 !== undefined && this.inside(ox + ux * r0, oy + uy * r0);
-      let least = shown ? Infinity : -1000;
-      for (const [x, y] of curve) {
-        for (const r of radii)
-          least = Math.min(least, Math.hypot(ox + ux * r - x, oy + uy * r - y));
-      }
-      for (const [x, y] of this.named) {
-        for (const r of radii)
-          least = Math.min(least, Math.hypot(ox + ux * r - x, oy + uy * r - y) - 12);
-      }
+      const spots = radii.map((r): Spot => [ox + ux * r, oy + uy * r]);
+      const free = Math.min(apart(spots, curve), apart(spots, this.named) - 12);
+      const least = shown ? free : Math.min(free, -1000);
       if (least > most + 2) [best, most] = [[ux, uy], least];
     }
     return best;
@@ -334,7 +326,7 @@ export class Plane {
     const across = (by: number): Spot[] =>
       multiples(step * by, metres(0), metres(width)).map((x) => [this.place(x / factor, 0)[0], x]);
     const named = (by: number) => across(by).filter(([px]) => px >= 40 && px <= width - 34);
-    const by = WIDER.find((one) => named(one).length >= FEWEST && apart(named(one))) ?? 1;
+    const by = WIDER.find((one) => named(one).length >= FEWEST && legible(named(one))) ?? 1;
     for (const [px] of across(by)) d += `M${px.toFixed(1)} 0V${height}`;
     for (const [px, x] of named(by)) this.text(px, height - 4, x);
     const up = spacing(rising(height - 14), rising(8), most);
@@ -356,8 +348,26 @@ export class Plane {
   }
 }
 
+/** The least distance between two of several places. */
+function apart(some: Spot[], others: Spot[]): number {
+  let least = Infinity;
+  for (const [x, y] of some)
+    for (const [ox, oy] of others) least = Math.min(least, (x - ox) ** 2 + (y - oy) ** 2);
+  return Math.sqrt(least);
+}
+
+/** From the edge of a text, by half of its width and height, to the nearest place of a curve; `most` at most. */
+function clearance(curve: Spot[], x: number, y: number, wide: number, high: number, most: number): number {
+  let least = most;
+  for (const [cx, cy] of curve) {
+    const away = Math.max(Math.abs(cx - x) - wide, Math.abs(cy - y) - high);
+    if (away < least) least = away;
+  }
+  return least;
+}
+
 /** Whether numbers (place, value) stand beside each other with room between them. */
-function apart(numbers: Spot[]): boolean {
+function legible(numbers: Spot[]): boolean {
   const wide = (i: number) => DIGIT * plain(numbers[i]?.[1] ?? 0).length;
   const between = (i: number) => (numbers[i]?.[0] ?? 0) - (numbers[i - 1]?.[0] ?? 0);
   return numbers.every((_, i) => !i || between(i) > (wide(i - 1) + wide(i)) / 2 + DIGIT / 2);

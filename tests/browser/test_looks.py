@@ -55,6 +55,23 @@ def test_the_page(live: Live) -> None:
         assert live.findings() == []
 
 
+def test_a_sign_of_waiting_stands_still_where_less_motion_is_wanted(live: Live) -> None:
+    """A bar at the upper edge, which runs to and fro for everybody else."""
+    moving = """() => ["data-waiting", "data-busy"].map((sign) => {
+        const part = document.querySelector(sign === "data-busy" ? ".bar" : ".equipoise");
+        part.toggleAttribute(sign, true);
+        const bar = document.querySelector(".bar");
+        const { width } = getComputedStyle(bar, "::after");
+        const whole = parseFloat(width) > 0.9 * bar.clientWidth;
+        const running = bar.getAnimations({ subtree: true }).length;
+        part.toggleAttribute(sign, false);
+        return [running, whole];
+    })"""
+    assert live.page.evaluate(moving) == [[0, True], [0, True]]
+    live.page.emulate_media(reduced_motion="no-preference")
+    assert live.page.evaluate(moving) == [[1, False], [1, False]]
+
+
 @pytest.mark.parametrize(
     ("width", "height"),
     few_together([(600, 900), (400, 900), (400, 420), (1280, 380)], {(400, 420)}),

@@ -125,7 +125,8 @@ class AnalysisOutputs:
         members: dict[Any, dict[str, None]] = {}  # those of several declarations are the same
         # with friction that is solved already, and names are the same
         named = analysis.resolved if analysis.machine.rubs else analysis
-        self._linkage = analysis.motion.linkage
+        self._analysis = analysis
+        self._items: dict[str, tuple[Declared, str]] = {}
         self._outputs: dict[str, AnalysisOutput] = {}
         for _, group in groupby(had, key=lambda declaration: declaration.group):
             own = []
@@ -137,23 +138,24 @@ class AnalysisOutputs:
             for item in dict.fromkeys(item for _, items in own for item in items):
                 for declaration, items in own:
                     if item in items:
-                        self._outputs[declaration.named(item)] = AnalysisOutput(
-                            declaration, item, analysis
-                        )
+                        self._items[declaration.named(item)] = declaration, item
 
     def __iter__(self) -> Iterator[AnalysisOutput]:
-        return iter(self._outputs.values())
+        return map(self.__getitem__, self._items)
 
     def __len__(self) -> int:
-        return len(self._outputs)
+        return len(self._items)
 
     def __contains__(self, name: object) -> bool:
-        return name in self._outputs
+        return name in self._items
 
     def __getitem__(self, name: str) -> AnalysisOutput:
+        # Made when it is asked for: while something is dragged, few are.
         if name not in self._outputs:
-            refuse_unbounded(self._linkage, name)
-            raise UsageError(unknown(name, self._outputs, "output"))
+            if name not in self._items:
+                refuse_unbounded(self._analysis.motion.linkage, name)
+                raise UsageError(unknown(name, self._items, "output"))
+            self._outputs[name] = AnalysisOutput(*self._items[name], self._analysis)
         return self._outputs[name]
 
     def chosen(self, names: Iterable[str]) -> list[AnalysisOutput]:
@@ -173,7 +175,7 @@ class AnalysisOutputs:
     @property
     def names(self) -> list[str]:
         """Of all of them."""
-        return list(self._outputs)
+        return list(self._items)
 
     @property
     def arrays(self) -> list[AnalysisOutput]:

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import Field
-from functools import partial, wraps
+from functools import partial
 from math import isfinite
-from typing import TYPE_CHECKING, Any, TypeVar
-from weakref import WeakKeyDictionary
+from typing import TYPE_CHECKING, Any
 
 from equipoise.dataclass import dataclass
 from equipoise.errors import EquipoiseError
@@ -22,7 +21,7 @@ from equipoise.results.analysis import Analysis
 from equipoise.results.outputs import figures_by_name
 from equipoise.symbols.scene import Scene
 from equipoise.web.block import FloatBlock
-from equipoise.web.edits import Computed
+from equipoise.web.edits import Computed, kept_with_design
 from equipoise.web.figures import chart, gauge_choice, text_of, was_of
 
 if TYPE_CHECKING:
@@ -31,7 +30,6 @@ if TYPE_CHECKING:
     from equipoise.vibration.sweep import Sweep
 
 Values = dict[str, Any]
-R = TypeVar("R")
 SAMPLES = 360
 """In a turn."""
 
@@ -39,19 +37,6 @@ SAMPLES = 360
 def can_be_shaken(machine: Machine) -> bool:
     """Whether there is a support, and masses that shake it."""
     return machine.support is not None and not massless(machine)
-
-
-def kept_with_design(make: Callable[..., R]) -> Callable[..., R]:
-    """A function of a design whose result is kept as long as the design is."""
-    results: WeakKeyDictionary[Computed, R] = WeakKeyDictionary()
-
-    @wraps(make)
-    def result_of(shown: Computed, *arguments: Any) -> R:
-        if shown not in results:
-            results[shown] = make(shown, *arguments)
-        return results[shown]
-
-    return result_of
 
 
 @kept_with_design

@@ -6,10 +6,12 @@ coordinates in each link that has it, so that all other points stand still.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from contextlib import suppress
 from dataclasses import replace
-from functools import cached_property
+from functools import cached_property, wraps
+from typing import Any, TypeVar
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -30,6 +32,7 @@ from equipoise.web.fields import constrained_place, fields_of
 from equipoise.web.following import Goals, extent_of, following
 from equipoise.web.messages import Change, Drag, Setting
 
+R = TypeVar("R")
 MOST_SAMPLES = 2880
 """Crank angles in a cycle of many turns, which has fewer in each."""
 OTHER_SIDE = {item: other for pair in ALTERNATIVES for item, other in (pair, pair[::-1])}
@@ -74,6 +77,19 @@ class Computed:
     def scene(self) -> Scene:
         """What there is to draw of it."""
         return Scene.of(self.motion)
+
+
+def kept_with_design(make: Callable[..., R]) -> Callable[..., R]:
+    """A function of a design whose result is kept as long as the design is."""
+    results: WeakKeyDictionary[Computed, R] = WeakKeyDictionary()
+
+    @wraps(make)
+    def result_of(shown: Computed, *arguments: Any) -> R:
+        if shown not in results:
+            results[shown] = make(shown, *arguments)
+        return results[shown]
+
+    return result_of
 
 
 def solved(design: Design, previous: Computed | None = None, stuck: bool = True) -> Computed:

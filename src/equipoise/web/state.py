@@ -19,7 +19,7 @@ from equipoise.signals import Periodic
 from equipoise.web.block import Array, FloatBlock, Values
 from equipoise.web.completeness import forces_lack
 from equipoise.web.drawing import cams_told, ground_of, moves_of, stage_of
-from equipoise.web.edits import Computed, movable
+from equipoise.web.edits import Computed, kept_with_design, movable
 from equipoise.web.figures import charts_of, least_of, signals_of
 from equipoise.web.following import extent_of
 from equipoise.web.measured_records import MeasuredSignals
@@ -57,7 +57,7 @@ def state_of(
     old = None
     if before is not None:
         old = signals_of(before.analysis)
-        _add_signals(block, old, before.analysis, spectra_of(before.analysis), "before.")
+        _add_signals(block, old, before.analysis, _spectra_before(before), "before.")
         _add_outputs(block, before.analysis, wanted, "before.")
     against = against or before
     length = display("length", [extent_of(machine)])
@@ -205,6 +205,12 @@ def spectra_of(analysis: Analysis, last: Mapping[str, Array] | None = None) -> M
     if whole is not None:
         sizes += [_sizes(Periodic.of(part, turns)) for part in (whole.real, whole.imag)]
     return dict(zip(names, sizes, strict=True))
+
+
+@kept_with_design
+def _spectra_before(before: Computed) -> Mapping[str, Array]:
+    """Spectra of a machine that stays while another is changed."""
+    return spectra_of(before.analysis)
 
 
 def _places(turns: int) -> int:

@@ -51,6 +51,27 @@ def test_spectra_are_computed_anew_where_names_or_orders_are_others() -> None:
         np.testing.assert_array_equal(sizes, spectra[name])
 
 
+def test_spectra_of_the_machine_before_are_computed_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It stays the same while another one is dragged."""
+    session, first = opened("yamashita-1")
+    path = next(one["path"] for one in first.content["fields"] if one["path"].endswith(".mass"))
+    edit(session, {"set": path, "text": "5 kg"})
+    ask(session, "compare", on=True)
+    assert session.before is not None
+    analyses = []
+
+    def counted(analysis: eq.Analysis, last: object = None) -> object:
+        analyses.append(analysis)
+        return spectra_of(analysis)
+
+    monkeypatch.setattr("equipoise.web.state.spectra_of", counted)
+    key = "spectrum.shaking_force.x"
+    for text in ("6 kg", "7 kg"):
+        moved = edit(session, {"set": path, "text": text}, commit=False)
+        np.testing.assert_array_equal(moved.array(f"before.{key}"), first.array(key))
+    assert analyses.count(session.before.analysis) <= 1
+
+
 def test_arrays_are_those_of_the_analysis() -> None:
     _, shown = opened("yamashita-1")
     whole = eq.analyze(eq.load("yamashita-1"))
