@@ -6,13 +6,13 @@ import ast
 import re
 from collections import Counter
 from collections.abc import Iterator
-from functools import cache
 from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
 
 import equipoise
+from support.syntax import nodes, text_of, tree_of
 
 ROOT = Path(equipoise.__file__).parent
 FILES = sorted(ROOT.rglob("*.py"))
@@ -27,17 +27,6 @@ A file is one concept. The limit catches those that became two; nothing is cut t
 def named(file: Path) -> str:
     parts = file.relative_to(ROOT.parent).with_suffix("").parts
     return ".".join(parts).removesuffix(".__init__")
-
-
-@cache
-def text_of(file: Path) -> str:
-    return file.read_text(encoding="utf-8")
-
-
-@cache
-def nodes(file: Path) -> tuple[ast.AST, ...]:
-    """All of a module, read once for all that is asked of it."""
-    return tuple(ast.walk(ast.parse(text_of(file))))
 
 
 def imported(file: Path) -> Iterator[str]:
@@ -97,7 +86,7 @@ NUMBER = ast.Constant | ast.Tuple | ast.BinOp | ast.UnaryOp | ast.Name | ast.ope
 
 def without_reason(file: Path) -> Iterator[str]:
     """Numbers of a module, settings of a method, with neither a text nor a comment behind them."""
-    body, lines = ast.parse(text_of(file)).body, text_of(file).splitlines()
+    body, lines = tree_of(file).body, text_of(file).splitlines()
     for node, after in zip(body, [*body[1:], None], strict=True):
         if not isinstance(node, ast.Assign | ast.AnnAssign) or node.value is None:
             continue

@@ -15,6 +15,7 @@ from equipoise import errors
 from equipoise.errors import CallError, EquipoiseError, ModelError, UsageError
 from equipoise.i18n import Note
 from support.refusals import refused
+from support.syntax import nodes, tree_of
 
 SOURCES = Path(equipoise.__file__).parent
 FILES = sorted(SOURCES.rglob("*.py"))
@@ -29,17 +30,12 @@ THREE_WORDS = re.compile(r"[A-Za-z]{2,},? [a-z]{2,},? [a-z]{2,}")
 
 
 @cache
-def tree(file: Path) -> ast.Module:
-    return ast.parse(file.read_text(encoding="utf-8"))
-
-
-@cache
 def error_classes() -> frozenset[str]:
     """Names of all classes below `EquipoiseError`."""
     bases = {
         node.name: {getattr(base, "id", getattr(base, "attr", "")) for base in node.bases}
         for file in FILES
-        for node in ast.walk(tree(file))
+        for node in nodes(file)
         if isinstance(node, ast.ClassDef)
     }
     known = {EquipoiseError.__name__}
@@ -122,7 +118,7 @@ def found_in(module: ast.Module) -> list[int]:
 
 def test_no_refusal_and_no_note_is_plain_english() -> None:
     found = {
-        f"{file.relative_to(SOURCES)}:{line}" for file in FILES for line in found_in(tree(file))
+        f"{file.relative_to(SOURCES)}:{line}" for file in FILES for line in found_in(tree_of(file))
     }
     assert found == set()
 
@@ -220,7 +216,7 @@ def test_no_sentence_is_spelled_out_around_its_values() -> None:
     """Nor is one that goes into a result, a note or a line of a command."""
     lines: dict[str, list[int]] = {}
     for file in FILES:
-        if spelled := spelled_sentences(tree(file)):
+        if spelled := spelled_sentences(tree_of(file)):
             lines[file.relative_to(SOURCES).as_posix()] = spelled
     given = {
         name: spelled for name, spelled in lines.items() if not name.startswith((*OTHER_TEXTS,))

@@ -36,6 +36,7 @@ from equipoise.schema.entries import entry_of, own_keys, tables_below
 from equipoise.schema.file_numbers import plain_word
 from equipoise.schema.open_files import document_of
 from support.languages import COMPLETE
+from support.syntax import nodes
 
 SOURCES = Path(equipoise.__file__).parent
 TOP = Path(__file__).parents[3]
@@ -48,7 +49,7 @@ def said() -> set[str]:
     """Texts of `say`, `to_say`, `Note` and `unknown` in the package; `to_say` has a plain text."""
     found = set()
     for path in SOURCES.rglob("*.py"):
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        for node in nodes(path):
             if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
                 first = node.args[0] if node.args else None
                 if node.func.id == "to_say":

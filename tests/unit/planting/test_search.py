@@ -138,7 +138,7 @@ def test_what_is_as_small_as_was_found_is_not_called_proved() -> None:
 
 def test_a_design_that_meets_every_target_is_proved() -> None:
     """By the figures of the new machine itself; a target out of reach is not met."""
-    machine, few = eq.load("kim-chung-c"), {"generations": 30, "population": 15}
+    machine, few = eq.load("kim-chung-c"), {"generations": 20, "population": 15}
     wanted = {"curve.width": 0.1, "curve.height": 0.24}
     goals = [Requirement(name, target=value) for name, value in wanted.items()]
     fit = fit_planting(machine, goals, **few)
