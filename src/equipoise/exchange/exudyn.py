@@ -21,7 +21,7 @@ from equipoise.exchange.tree import (
 )
 from equipoise.i18n import Note
 from equipoise.mechanism.assembly.joints import structure
-from equipoise.mechanism.kinematics.motion import move
+from equipoise.mechanism.kinematics.motion import PlacedBodies, move
 from equipoise.mechanism.parts.machine import FRAME, Machine
 from equipoise.mechanism.parts.resistances import Resistance
 from equipoise.mechanism.parts.stops import Stop
@@ -31,8 +31,8 @@ Data = dict[str, Any]
 End = tuple[str, list[float]]
 BASE, GROUND = "support", "ground"
 LISTS = (
-    *("pins", "sliders", "geared", "springs", "dampers", "torsion_dampers", "stops"),
-    *("resistances", "loads", "mounts", "held"),
+    *("pins", "sliders", "geared", "springs", "dampers", "torsion_dampers", "bushings"),
+    *("stops", "resistances", "loads", "mounts", "held"),
 )
 EMPTY = "MODEL: Data = {}"
 
@@ -124,6 +124,7 @@ def _row(model: Data, tree: Tree, job: Job, flywheel: float) -> None:
     if machine.torsion_springs:
         job.leave_out(Note("the torsion springs"))
     _rated(model, tree, job)
+    _bushings(model, tree, job)
     for _, load in constant_loads(job):
         end = _end(tree, load.link, load.point or next(iter(machine.links[load.link].points)))
         force, turns = complex(*(load.force or (0.0, 0.0))), load.axes is not None
@@ -159,6 +160,36 @@ def _rated(model: Data, tree: Tree, job: Job) -> None:
                 continue
             ends = [_end(tree, FRAME, item.to), _end(tree, item.link, item.point)]
             model[noun].append({"ends": ends, **_law(item)})
+
+
+def _bushings(model: Data, tree: Tree, job: Job) -> None:
+    """Bushings on the ground; angles count from where the linkage is drawn."""
+    machine = tree.machine
+    motion = move(machine, [tree.crank_angle + tree.row.phase], acceleration=0.0)
+    for number, item in enumerate(machine.bushings):
+        if item.on != FRAME or machine.support is not None:
+            job.leave_out(Note("bushings on a body that moves"))
+            continue
+        *_, (turned, _) = item.ways(PlacedBodies(motion, f"bushings[{number + 1}]"))
+        stiffness = item.torsional_stiffness or 0.0
+        rest = item.torque / stiffness - float(np.ravel(turned)[0]) if stiffness else 0.0
+        own = f"{item.link}{tree.suffix}"
+        model["bushings"].append(
+            {
+                "ends": [_end(tree, FRAME, item.to), _end(tree, item.link, item.point)],
+                "direction": item.direction,
+                **{name: [*getattr(item, name)] for name in ("stiffness", "damping", "preload")},
+                "on": own,
+                "turning": {
+                    "stiffness": stiffness,
+                    "damping": item.torsional_damping or 0.0,
+                    "offset": rest,
+                },
+            }
+        )
+        if item.torque and not stiffness:
+            couple = {"force": [0.0, 0.0], "torque": item.torque, "turns": False}
+            model["loads"].append({"end": _end(tree, item.link, item.point), **couple})
 
 
 def _law(item: Stop | Resistance) -> Data:

@@ -60,6 +60,7 @@ class Build:
             "springs": self.spring,
             "dampers": self.damper,
             "torsion_dampers": self.torsion_damper,
+            "bushings": self.bushing,
             "stops": self.stop,
             "resistances": self.resistance,
             "loads": self.load,
@@ -166,6 +167,31 @@ class Build:
 
         pushed: Data = {"stiffness": [1.0] * 3, "springForceUserFunction": push}
         self.add(item.ObjectConnectorCartesianSpringDamper(markerNumbers=self.both(ends), **pushed))
+
+    def bushing(
+        self,
+        ends: list[Any],
+        direction: float,
+        stiffness: list[float],
+        damping: list[float],
+        preload: list[float],
+        on: str,
+        turning: Data,
+    ) -> None:
+        """Hold a point along a direction and across it, and the angle of its body."""
+        first = complex(cos(direction), sin(direction))
+        laws = [*zip((first, 1j * first), preload, stiffness, damping, strict=True)]
+
+        def force(place: complex, velocity: complex) -> complex:
+            sizes = [
+                (push - rate * along(line, place) - loss * along(line, velocity)) * line
+                for line, push, rate, loss in laws
+            ]
+            return sizes[0] + sizes[1]
+
+        self.pushed(ends, force)
+        pair = self.pair("", on)
+        self.add(item.ObjectConnectorCoordinateSpringDamper(markerNumbers=pair, **turning))
 
     def stop(self, ends: list[Any], direction: float, stiffness: float, loss: float = 0.0) -> None:
         """Push a point back where it is beyond a line; loss : of force, by speed of approach."""

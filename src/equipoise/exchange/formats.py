@@ -87,10 +87,10 @@ FORMATS: Mapping[str, Format] = {
             ".py",
             "Exudyn",
             "a script that builds and runs bodies, pins, sliders, gears, belts, linear springs, "
-            "dampers, stops, resistances, constant loads, rows, the support on its mounts in the "
-            "plane, the drive at constant speed",
+            "dampers, bushings, stops, resistances, constant loads, rows, the support on its "
+            "mounts in the plane, the drive at constant speed",
             turns=True,
-            joints=("damper", "torsion damper", "stop", "resistance"),
+            joints=("damper", "torsion damper", "bushing", "stop", "resistance"),
             rubs=False,
             tightens=False,
         ),
@@ -120,10 +120,10 @@ FORMATS: Mapping[str, Format] = {
             ".mo",
             "Modelica",
             "one flat model: equations of motion of each link, pins, sliders, gears, belts, "
-            "springs, torsion springs, dampers, stops, resistances, constant loads, the drive at "
-            "constant speed",
+            "springs, torsion springs, dampers, bushings, stops, resistances, constant loads, the "
+            "drive at constant speed",
             turns=True,
-            joints=("damper", "torsion damper", "stop", "resistance"),
+            joints=("damper", "torsion damper", "bushing", "stop", "resistance"),
             rubs=False,
             tightens=False,
         ),

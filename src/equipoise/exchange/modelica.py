@@ -10,12 +10,15 @@ import re
 from collections.abc import Iterator, Mapping
 from dataclasses import field
 
+import numpy as np
+
 from equipoise.dataclass import dataclass
 from equipoise.exchange.formats import Job
 from equipoise.exchange.tree import constant_loads, mass_of, weighed
 from equipoise.i18n import Note
 from equipoise.mechanism.assembly.joints import structure
-from equipoise.mechanism.kinematics.motion import Motion, move
+from equipoise.mechanism.kinematics.motion import Motion, PlacedBodies, move
+from equipoise.mechanism.parts.bushings import Bushing
 from equipoise.mechanism.parts.damping import Damping
 from equipoise.mechanism.parts.machine import FRAME, Load, Machine
 from equipoise.mechanism.parts.ramps import Ramps, ramps_of
@@ -235,6 +238,7 @@ def _forces(model: Flat, job: Job) -> None:
             model.push(spring.on, spring.to, force, "-")
     _torsion_springs(model, job)
     _dampers(model)
+    _bushings(model, job)
     _stops(model)
     _resistances(model)
     for _, load in constant_loads(job):
@@ -304,6 +308,30 @@ def _resisted(damper: Damping, speed: str) -> str:
     return _ramps(ramps_of(*damper.rows), speed)
 
 
+def _bushings(model: Flat, job: Job) -> None:
+    """Forces along a direction and across it, and couples; angles count from where it is drawn."""
+    motion = move(model.machine, [job.crank_angle], acceleration=0.0)
+    for number, item in enumerate(model.machine.bushings, 1):
+        at, pushes = _Guided.of(model, item, item.direction), []
+        laws = zip(item.preload, item.stiffness, item.damping, strict=True)
+        for across, (push, stiffness, damping) in enumerate(laws):
+            force = f"{_in_brackets(push)} - {stiffness!r} * ({at.place(across)})"
+            force = f"{force} - {damping!r} * ({at.speed(across)})"
+            pushes.append(model.define(f"FB{'ac'[across]}_{number}", force))
+        at.push(*pushes)
+        *_, (turned, _) = item.ways(PlacedBodies(motion, f"bushings[{number}]"))
+        ends = item.link, item.on
+        first, other = (0.0 if end == FRAME else motion.links[end].angle[0] for end in ends)
+        begin = _in_brackets(float(np.ravel(turned)[0] - first + other))
+        angle = f"({model.angle(ends[0])} - {model.angle(ends[1])} + {begin})"
+        rate = f"({model.rate(ends[0])} - {model.rate(ends[1])})"
+        rates = item.torsional_stiffness or 0.0, item.torsional_damping or 0.0
+        couple = f"{_in_brackets(item.torque)} - {rates[0]!r} * {angle} - {rates[1]!r} * {rate}"
+        couple = model.define(f"MB_{number}", couple)
+        model.turn(ends[0], couple)
+        model.turn(ends[1], f"(-{couple})")
+
+
 def _stops(model: Flat) -> None:
     """Forces that push points back over the lines of stops."""
     for number, stop in enumerate(model.machine.stops, 1):
@@ -350,13 +378,13 @@ class _Guided:
     """
 
     model: Flat
-    item: Stop | Resistance
+    item: Bushing | Stop | Resistance
     arm: tuple[str, str]
     moving: tuple[str, str]
     way: tuple[str, str]
 
     @classmethod
-    def of(cls, model: Flat, item: Stop | Resistance, direction: float) -> _Guided:
+    def of(cls, model: Flat, item: Bushing | Stop | Resistance, direction: float) -> _Guided:
         """direction : from the x axis of the other body, rad."""
         (link, point), (on, to) = (item.link, item.point), (item.on, item.to)
         (x, y), (x0, y0) = model.place(link, point), model.place(on, to)

@@ -26,8 +26,8 @@ RELATIVE, ABSOLUTE = 1e-11, 1e-13
 """Tolerances of a step, over the states and over their usual sizes."""
 BETWEEN = 4
 """Instants read in a step."""
-MOST_RATES = 2_000_000
-"""Of the motion, computed in a run: a minute or two; a turn takes some thousands."""
+MOST_RATES = 200_000
+"""Of the motion, computed in a run: half a minute; a turn takes some thousands."""
 STEADY = 1e-6
 """Share by which speeds may differ from those a cycle before, in a steady state."""
 AT_REST = 1e-6

@@ -15,7 +15,7 @@ import equipoise as eq
 from equipoise.mechanism.parts.support import unit_vector
 from support.conformance import compared
 from support.machines import make
-from support.rated import LAWS, LINEAR, ON_LINKS, machine_with
+from support.rated import HELD, LAWS, LINEAR, ON_LINKS, machine_with
 from support.refusals import refused
 from support.sources import EXUDYN
 
@@ -86,7 +86,7 @@ def test_a_support_from_rest(name: str, tmp_path: Path) -> None:
         assert np.max(np.abs(moved - wanted)) <= 1e-5 * np.max(np.abs(wanted)) + 1e-15, gauge
 
 
-@pytest.mark.parametrize("elements", [LINEAR, LAWS], ids=["linear", "laws"])
+@pytest.mark.parametrize("elements", [LINEAR, LAWS, HELD], ids=["linear", "laws", "bushings"])
 def test_dampers_stops_and_resistances(
     elements: dict[str, tuple[object, ...]], tmp_path: Path
 ) -> None:
@@ -104,6 +104,7 @@ def test_what_a_script_leaves_out_of_force_elements(tmp_path: Path) -> None:
         "torsion dampers with a table",
         "stops over a body that moves",
         "resistances over a body that moves",
+        "bushings on a body that moves",
     )
 
 

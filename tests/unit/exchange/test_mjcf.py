@@ -111,7 +111,7 @@ def test_what_a_file_leaves_out_of_force_elements(tmp_path: Path) -> None:
     machine = machine_with({**LAWS, "stops": ()})
     left_out = ("dampers with a table", "dry and one-way parts of resistances")
     assert eq.export(machine, path) == left_out
-    assert eq.export(machine_with({**ON_LINKS, "stops": ()}), path) == (
+    assert eq.export(machine_with({**ON_LINKS, "stops": (), "bushings": ()}), path) == (
         "torsion dampers with a table",
         "resistances over a body that moves",
     )

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from support.rated import LAWS, LINEAR, ON_LINKS, machine_with
+from support.rated import HELD, LAWS, LINEAR, ON_LINKS, machine_with
 
 START = 0.3
 TIMES = (0.02, 0.12, 0.22)
@@ -63,7 +63,9 @@ def test_equations_hold_and_give_the_drive_torque(name: str, tmp_path: Path) -> 
     check_equations(machine, tmp_path)
 
 
-@pytest.mark.parametrize("elements", [LINEAR, LAWS, ON_LINKS], ids=["linear", "laws", "on links"])
+@pytest.mark.parametrize(
+    "elements", [LINEAR, LAWS, HELD, ON_LINKS], ids=["linear", "laws", "bushings", "on links"]
+)
 def test_dampers_stops_and_resistances(
     elements: dict[str, tuple[object, ...]], tmp_path: Path
 ) -> None:
