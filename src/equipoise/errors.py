@@ -195,7 +195,7 @@ def noted(sentence: Note | str) -> Note:
 class MobilityError(EquipoiseError):
     """The number of free motions is not one."""
 
-    usual_topic = "the-linkage-has-several-free-motions"
+    usual_topic = "the-linkage-has-too-many-degrees-of-freedom"
 
 
 class MotionError(EquipoiseError):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
+from urllib.parse import quote
 
 import pytest
 from playwright.sync_api import Browser, Page, expect
@@ -62,6 +63,41 @@ def test_the_first_hit_answers(page: Page, site: Path, typed: str) -> None:
     assert (site / SOUGHT[typed]).is_file()
     if typed != "counterwieght":  # what is misspelled stands nowhere
         expect(first.locator("mark").first).to_be_visible()
+
+
+ASKED = {
+    "why does my crank not turn all the way": "errors/the-crank-cannot-turn-fully.html",
+    "degrees of freedom wrong": "errors/the-linkage-has-too-many-degrees-of-freedom.html",
+    "dead centre": "errors/change-point.html",
+    "the motor is too weak": "errors/the-motor-stalls.html",
+    "how to add friction in a bearing": "recipes/see-what-friction-costs.html",
+    "how to model a cam": "recipes/model-a-cam.html",
+    "how to model a hydraulic cylinder": "examples.html",
+    "how to size a flywheel": "recipes/size-a-flywheel.html",
+    "transmission angle too small": "recipes/improve-a-transmission-angle-that-is-too-small.html",
+    "isolate the floor from vibration": "recipes/put-a-machine-on-mounts.html",
+    "how to avoid a resonance": "recipes/find-speeds-to-keep-away-from.html",
+    "what counterweight do I need": "recipes/cut-a-counterweight.html",
+    "drawing of the counterweight for the workshop": "exchange.html",
+    "how much vibration may my hands take per day": "recipes/judge-what-a-hand-may-bear.html",
+    "how do tolerances affect the shaking": "studies.html",
+    "gas pressure on a piston": "model-file/loads.html",
+    "several rows with cranks out of phase": "balancing.html",
+    "how to use it from Python": "python.html",
+    "sign convention of angles": "conventions.html",
+    "bearing life": "output.html",
+}
+"""What an engineer asks in words of the trade, and the page that answers."""
+
+
+def test_the_first_hit_answers_questions_of_engineers(page: Page, site: Path) -> None:
+    """Each in words of the trade, none of which is a title of a page as it stands."""
+    first = {}
+    for typed in ASKED:
+        page.goto(f"{site.as_uri()}/search.html?q={quote(typed)}")
+        link = page.locator(".search-hits > li a").first.get_attribute("href")
+        first[typed] = (link or "").partition("#")[0]
+    assert first == ASKED
 
 
 def test_what_is_nowhere_is_not_shown(page: Page, site: Path) -> None:

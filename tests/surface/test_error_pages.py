@@ -81,12 +81,12 @@ CASES: dict[str, tuple[Callable[..., object], list[Change], list[Change]]] = {
         [('length = "20 mm"', 'length = "40 mm"'), ('length = "90 mm"', 'length = "100 mm"')],
         [('B = "left"', 'B = "antiparallel"')],
     ),
-    "The linkage has several free motions": (
+    "The linkage has too many degrees of freedom": (
         analyze,
         [('points = ["Q", "B"]', 'points = ["Q", "C"]')],
         [('points = ["Q", "C"]', 'points = ["Q", "B"]')],
     ),
-    "The linkage has no free motion": (
+    "The linkage has no degree of freedom": (
         analyze,
         [
             ('points.Q = ["100 mm", "0 mm"]', 'points.Q = ["100 mm", "0 mm"]\n' + ABOVE),

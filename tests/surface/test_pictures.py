@@ -42,6 +42,17 @@ def test_every_page_on_how_to_do_something_has_a_picture() -> None:
     assert [name for name, text in pages.items() if "![" not in text] == [*WITHOUT]
 
 
+def test_every_recipe_has_a_picture_and_is_told_in_python_too() -> None:
+    """With the lines of the file, or the command, before them."""
+    text = (ROOT / "docs" / "recipes.md").read_text(encoding="utf-8")
+    recipes = text.split("\n## ")[1:]
+    assert len(recipes) > 12
+    for recipe in recipes:
+        blocks = re.findall(r"^```(\w+)$", recipe, re.MULTILINE)
+        assert "](/" in recipe and "python" in blocks, recipe[:40]
+        assert blocks[0] in ("toml", "console", "bash"), recipe[:40]
+
+
 def test_readme_is_short_and_begins_with_what_balancing_gains() -> None:
     """Its numbers are those of the result."""
     text = (ROOT / "README.md").read_text(encoding="utf-8")

@@ -178,6 +178,12 @@ def _ordered(findings: Findings, shaking: Shaking) -> str:
     frequency = brief(order * abs(motion.speed) / (2 * pi))
     text = {"share": percent(share), "frequency": frequency}
     if not findings.machine.crank_turns:
+        if order * motion.turns == 1:
+            once = to_say(
+                "Its largest part, {share} % of the mean square, comes once a cycle, at "
+                "{frequency} Hz."
+            )
+            return say(once, **text)
         return say(
             "Its largest part, {share} % of the mean square, comes {order} times a cycle, at "
             "{frequency} Hz.",
@@ -186,6 +192,11 @@ def _ordered(findings: Findings, shaking: Shaking) -> str:
         )
     if order == 1 and share >= LEADING:
         return say("{share} % of it (mean square) comes once a turn, at {frequency} Hz.", **text)
+    if order == 1:
+        once = to_say(
+            "Its largest part, {share} % of the mean square, comes once a turn, at {frequency} Hz."
+        )
+        return say(once, **text)
     return say(
         "Its largest part, {share} % of the mean square, comes {order} times a turn, at "
         "{frequency} Hz.",

@@ -293,7 +293,7 @@ def no_motion(joints: Structure) -> Note:
         "the linkage cannot move (mobility by count {mobility}: {count})",
         mobility=joints.mobility,
         count=_count(joints),
-    ).about("the-linkage-has-no-free-motion")
+    ).about("the-linkage-has-no-degree-of-freedom")
 
 
 def held_fast(joints: Structure, drives: Sequence[str]) -> MobilityError:
