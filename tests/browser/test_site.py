@@ -91,7 +91,7 @@ ASKED = {
 
 
 def test_the_first_hit_answers_questions_of_engineers(page: Page, site: Path) -> None:
-    """Each in words of the trade, none of which is a title of a page as it stands."""
+    """Each in words of the trade."""
     first = {}
     for typed in ASKED:
         page.goto(f"{site.as_uri()}/search.html?q={quote(typed)}")

@@ -5,6 +5,13 @@ const ASKING = new Set(["how", "what", "which", "when", "where", "why", "do", "d
 const SHOWN = 30;
 const LENGTH = 220; // signs of an excerpt
 const EAST = /^[\u3005\u3040-\u30ff\u3400-\u9fff\uac00-\ud7af]/u;
+// Weights of pages by what they are for: answers first, formulas after what uses them, then lists and records of the project.
+const KINDS = [
+  [/^(recipes|errors)\//, 2],
+  [/^theory/, 0.4],
+  [/^(CHANGELOG|README|SECURITY|CONTRIBUTING|api\/|scripts|conformance|architecture)/, 0.3],
+];
+const WHOLE = 1.1; // weight of a page, over that of a section of a page that has the same title
 const stemmer = new Stemmer();
 
 const pairs = (run) => (run.length > 1 ? [...run].slice(1).map((sign, at) => run[at] + sign) : [run]);
@@ -22,7 +29,10 @@ const index = new MiniSearch({
     boost: { title: 4, above: 1.5 },
     prefix: (term) => term.length > 3,
     weights: { prefix: 0.3, fuzzy: 0.1 },
-    boostDocument: (id) => (/^(recipes|errors)\//.test(SECTIONS[id][0]) ? 2 : /^(CHANGELOG|api\/|scripts|conformance|architecture)/.test(SECTIONS[id][0]) ? 0.3 : 1),
+    boostDocument: (id) => {
+      const [page, anchor] = SECTIONS[id];
+      return (KINDS.find(([pages]) => pages.test(page))?.[1] ?? 1) * (anchor ? 1 : WHOLE);
+    },
   },
 });
 index.addAll(SECTIONS.map(([page, anchor, titles, text], id) => ({ id, title: titles.at(-1), above: titles.slice(0, -1).join(" "), text })));
