@@ -26,11 +26,23 @@ many of them several times: that is printed, and ends no benchmark after it.
     python benchmarks/live_page.py --worker [NAME ...]
 
 measures the page of a site in the same way, which computes in WebAssembly in the browser.  On two
-quiet cores, medians and 95th percentiles:
+cores without other programs, medians and 95th percentiles of two days:
 
-    yamashita-1                  40  75    35  54
-    slider-crank-engine          78 113    63  82
-    stephenson-six-bar           46  74    41  59
+    linkage                keys      drag         keys      drag
+    yamashita-1            40  75    35  54       93 177    67  94
+    slider-crank-engine    78 113    63  82       95 175    61  94
+    stephenson-six-bar     46  74    41  59      115 177    90 154
+
+On the second day the machine was slower, not the page: in alternation with the page of the first
+day, beside other programs, a frame of `yamashita-1` took 130 ms of the processor's time while keys
+were pressed, against 154 ms; a third of it in the browser's main thread, a quarter in the worker,
+and the rest to paint and compose, as there was no graphics card.
+
+A key costs as much as a move of a drag: keys that follow one another are moves of one drag, which
+is finished once they have paused.  But keys come whether or not the page keeps up, while a browser
+takes the next move of a mouse only with the next frame.  A drag therefore never runs ahead
+of the page, and where a frame takes longer than the pause between two inputs, keys do: beside other
+programs 150 keys had 92 frames, and as many moves 150.  Frames are printed beside the inputs.
 
     python benchmarks/live_page.py --cold
 
@@ -77,8 +89,10 @@ COLD = 15  # s
 MARKS = """name => performance.getEntriesByName(name).map(m => [m.detail.seq, m.startTime])"""
 
 
-def waits(page: Page) -> list[float]:
-    """Milliseconds from each input to the first frame that shows it or a newer one."""
+def waits(page: Page) -> tuple[list[float], int]:
+    """Milliseconds from each input to the first frame that shows it or a newer one, and how many
+    frames were painted.
+    """
     painted = sorted(page.evaluate(MARKS, "equipoise:painted"))
     found = []
     for seq, came in page.evaluate(MARKS, "equipoise:input"):
@@ -86,7 +100,7 @@ def waits(page: Page) -> list[float]:
         if frame is not None:
             found.append(frame - came)
     page.evaluate("performance.clearMarks()")
-    return found
+    return found, len(painted)
 
 
 def pin_of(name: str) -> str:
@@ -117,11 +131,12 @@ def drags(live: Live, joint: str) -> None:
     live.page.mouse.up()
 
 
-def report(what: str, found: list[float], limits: Limits) -> bool:
+def report(what: str, found: list[float], frames: int, limits: Limits) -> bool:
     """Print the times; tell whether they are within the limits."""
     values = {"median": median(found), "95th percentile": quantiles(found, n=20)[-1]}
     for name, value in values.items():
-        print(f"{what}, {name}: {value:.1f} ms (limit {limits[name]} ms, {len(found)} inputs)")
+        count = f"{len(found)} inputs, {frames} frames"
+        print(f"{what}, {name}: {value:.1f} ms (limit {limits[name]} ms, {count})")
     return all(value <= limits[name] for name, value in values.items())
 
 
@@ -132,7 +147,7 @@ def acted(live: Live, name: str, limits: Limits) -> bool:
         waits(live.page)
         act(live, pin_of(name))
         live.page.wait_for_timeout(500)
-        within.append(report(f"{name}, {what}", waits(live.page), limits))
+        within.append(report(f"{name}, {what}", *waits(live.page), limits))
     return all(within)
 
 
